@@ -155,13 +155,14 @@ fn of_motors(robot: &Robot) -> Vec<String> {
             "Coulomb friction that differs with the direction is written as its mean, for a URDF has one: {names}"
         ));
     }
-    let has_reversal = |joint: &&Joint| joint.coulomb_width.is_some() || joint.coulomb_displacement.is_some();
-    let reversals: Vec<String> = robot.joints.iter().filter(has_reversal).map(|joint| one_line(&joint.name)).collect();
-    if !reversals.is_empty() {
+    let has_transition = |joint: &&Joint| joint.coulomb_width.is_some() || joint.coulomb_displacement.is_some();
+    let transitions: Vec<String> =
+        robot.joints.iter().filter(has_transition).map(|joint| one_line(&joint.name)).collect();
+    if !transitions.is_empty() {
         remarks.push(format!(
             "how Coulomb friction changes its sign, `coulomb_width` and `coulomb_displacement`, is left out, for in a \
              URDF it jumps: {}",
-            reversals.join(", ")
+            transitions.join(", ")
         ));
     }
     if let Some(names) = named(|motor| Friction::at_joint(motor).is_none()) {

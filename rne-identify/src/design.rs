@@ -1,13 +1,13 @@
-//! What a motion would tell: the regressor along it, its condition, and how well parameters would be known.
+//! The information in a motion: the regressor along it, its condition, and the deviations of the parameters.
 
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, CompiledArm, Destination, EvaluationError, Form, Function};
 use rne_model::{JointKind, Robot};
 
-use crate::fit::condition;
 use crate::fourier::{Fourier, Grid};
 use crate::information::{Walk, plain_columns};
+use crate::least_squares::condition;
 use crate::motion_limits::MotionLimits;
 use crate::prior::{self, Scales};
 use crate::r_factor::RFactor;
@@ -31,16 +31,16 @@ const SMALLEST: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(crate) struct Design {
     structure: Structure,
-    /// By which the rows of each joint are multiplied.
+    /// The factor by which the rows of each joint are multiplied.
     weights: Vec<f64>,
     has_efforts: bool,
     grid: Grid,
-    /// Of base parameters: what the links of the file, or plausible ones, make of them.
+    /// The base parameters of the links of the file, or of plausible ones.
     plausible: DVector<f64>,
     scales: Scales,
 }
 
-/// Of each joint, a row for every instant: base parameters that it feels, then friction.
+/// The rows of each joint, one for every instant: base parameters that it feels, then friction.
 type Rows = Vec<DMatrix<f64>>;
 
 impl Design {
@@ -75,7 +75,7 @@ impl Design {
         plain_columns(&self.structure, &states, 0..states.len(), &Walk::new(&self.structure))
     }
 
-    /// What a motion would tell, by products of columns: exact to half the digits.
+    /// Computes the quality of a motion by products of columns: exact to half the digits.
     pub(crate) fn quality(&self, motion: &Fourier) -> Result<Quality, EvaluationError> {
         let rows = self.rows(motion)?;
         let own: Vec<DMatrix<f64>> = rows.iter().map(|rows| rows.tr_mul(rows)).collect();
@@ -122,8 +122,8 @@ impl Design {
         (rows.columns(0, felt.len()) * values).norm() / count.sqrt()
     }
 
-    /// Of each base parameter the deviation that an identification would find were every row a measurement with noise
-    /// of its own.
+    /// The deviation of each base parameter that an identification would find if every row were a measurement with
+    /// noise of its own.
     fn deviations(&self, own: &[DMatrix<f64>], efforts: &[f64]) -> Vec<f64> {
         let noise = |joint: usize| match self.weights[joint] {
             weight if self.has_efforts => NOISE_OF_LIMIT / weight,
@@ -142,7 +142,7 @@ impl Design {
         (0..self.structure.parameters().rank()).map(deviation).collect()
     }
 
-    /// What plausible links would give each base parameter.
+    /// The magnitude of each base parameter for plausible links.
     pub(crate) fn scales(&self) -> &DVector<f64> {
         &self.scales.bases
     }
@@ -165,12 +165,12 @@ impl Design {
     }
 }
 
-/// What a motion would tell.
+/// How well a motion determines the parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Quality {
     /// Largest over smallest singular value of the weighted columns, each of length one.
     pub(crate) condition: f64,
-    /// Of each base parameter.
+    /// The deviation of each base parameter.
     pub(crate) deviations: Vec<f64>,
 }
 

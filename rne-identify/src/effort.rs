@@ -14,7 +14,7 @@ const INSTANTS: usize = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct Effort {
     arm: CompiledArm,
-    /// Of each joint, friction at its speed limit, of the worse direction.
+    /// The friction of each joint at its speed limit, in the worse direction.
     friction: Vec<f64>,
     grid: Grid,
 }

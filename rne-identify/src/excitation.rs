@@ -13,10 +13,9 @@ use rne_model::{Robot, one_line};
 use crate::design::{Design, Quality};
 use crate::effort::Effort;
 use crate::excitation_error::ExcitationError;
-use crate::fourier::{Extent, Fourier, Grid, Series, beyond, largest, range};
+use crate::fourier::{Fourier, Grid, MotionBounds, Series, beyond, largest, range};
 use crate::identification::UNKNOWN;
 use crate::motion_limits::MotionLimits;
-use crate::parameters::{name, unit};
 use crate::random::Random;
 
 /// So often a search begins anew, with so many evaluations at least.
@@ -36,17 +35,17 @@ const SMALLEST: f64 = 1e-4;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ExcitationOptions {
-    /// Of the motion, s; it repeats then.
+    /// The period of the motion, s.
     pub period: f64,
     /// Harmonics of each joint's series, 2 or more.
     pub harmonics: usize,
     /// How many motions are tried.
     pub evaluations: u64,
-    /// Of the random numbers.
+    /// The seed of the random numbers.
     pub seed: u64,
-    /// With the columns of friction.
+    /// Whether friction is among the unknowns.
     pub friction: bool,
-    /// With those of rotors.
+    /// Whether the inertia of rotors is.
     pub rotors: bool,
 }
 
@@ -83,7 +82,7 @@ pub struct Excitation {
     pub condition: f64,
     /// How many instants of a period have rows, evenly from its start on.
     pub instants: usize,
-    /// Of each joint, what it uses of its limits.
+    /// The use that each joint makes of its limits.
     pub joints: Vec<JointUse>,
     /// Every base parameter, base to tip, then rotors.
     pub bases: Vec<BaseExcitation>,
@@ -91,7 +90,7 @@ pub struct Excitation {
     pub evaluations: u64,
 }
 
-/// What a joint uses of its limits.
+/// The use that a joint makes of its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointUse {
@@ -100,7 +99,7 @@ pub struct JointUse {
     /// Where the motion starts and ends, rad or m.
     pub start: f64,
     /// Bounds of the whole motion.
-    pub extent: Extent,
+    pub bounds: MotionBounds,
     /// N m or N: the largest torque that the file predicts, where it is limited.
     pub effort: Option<f64>,
 }
@@ -119,7 +118,7 @@ pub struct BaseExcitation {
     /// effort limits, or, where not every joint has one, of 5 % of the torque that plausible links take, root mean
     /// square.
     pub deviation: f64,
-    /// What plausible links would give it.
+    /// Its magnitude for plausible links.
     pub plausible: f64,
 }
 
@@ -316,7 +315,7 @@ impl<'a> Problem<'a> {
         Ok(Tried { point, motion, score: Score { beyond, merit }, quality })
     }
 
-    /// Of each base parameter, its deviation over the one below which it counts as excited.
+    /// The deviation of each base parameter over the one below which it counts as excited.
     fn uncertainties(&self, quality: &Quality) -> impl Iterator<Item = f64> {
         quality
             .deviations
@@ -345,10 +344,10 @@ impl<'a> Problem<'a> {
         let motion = &best.motion;
         let efforts = self.effort.as_ref().map(|effort| effort.largest(motion)).transpose()?;
         let start = motion.after(0.0)[0].clone();
-        let uses = motion.extents().into_iter().zip(self.limits).enumerate().map(|(at, (extent, limits))| JointUse {
+        let uses = motion.bounds().into_iter().zip(self.limits).enumerate().map(|(at, (bounds, limits))| JointUse {
             limits: *limits,
             start: start[at],
-            extent,
+            bounds,
             effort: limits.effort.and(efforts.as_ref()).map(|efforts| efforts[at]),
         });
         let joints: Vec<JointUse> = uses.collect();
@@ -367,9 +366,9 @@ impl<'a> Problem<'a> {
         let bases = &self.design.structure().parameters().bases;
         let bases = bases.iter().zip(deviations).zip(self.design.scales().iter());
         let bases = bases.map(|((base, deviation), plausible)| BaseExcitation {
-            name: name(base.kept),
+            name: base.name(),
             combination: base.combination(),
-            unit: unit(self.design.structure().robot(), base.kept),
+            unit: self.design.structure().unit(base.kept),
             deviation,
             plausible: *plausible,
         });

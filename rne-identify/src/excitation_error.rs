@@ -16,9 +16,9 @@ pub enum ExcitationError {
     Length {
         /// `velocity`
         what: &'static str,
-        /// Of the list.
+        /// The length of the list.
         found: usize,
-        /// Of the robot.
+        /// The number of joints.
         joints: usize,
     },
     /// A limit is not a number above 0: which.

@@ -1,16 +1,16 @@
 //! The links and friction that explain the logs best among those that bodies and motors can have.
 //!
 //! The problem is convex: least squares on the triangle of the rows, the pseudo-inertia of every link positive
-//! definite, frictions and rotors positive, and a weak pull to what is known before,
+//! definite, frictions and rotors positive, and a weak regularization towards what is known before,
 //!
 //! ```text
 //! min ½ |R u(y) - z|² + γ Σ (tr(P₀⁻¹ P) - log det P) + γ Σ (y / y₀ - log y)
 //! ```
 //!
-//! The pull is Bregman's divergence of the log determinant (T. Lee, F. C. Park, A geometric algorithm for robust
-//! multibody inertial parameter identification, IEEE RA-L 3(3), 2018): it does not depend on the frames, is least at
-//! the prior P₀, and grows beyond all bounds where a link ceases to be a body. It decides where the logs do not.
-//! Newton's method follows the minima from large γ to the one that was asked for.
+//! The regularization is Bregman's divergence of the log determinant (T. Lee, F. C. Park, A geometric algorithm for
+//! robust multibody inertial parameter identification, IEEE RA-L 3(3), 2018): it does not depend on the frames, is
+//! least at the prior P₀, and grows beyond all bounds where a link ceases to be a body. It decides where the logs do
+//! not. Newton's method follows the minima from large γ to the one that was asked for.
 //!
 //! G = γ P⁻¹ and g = γ / y are multipliers of P ⪰ 0 and y ≥ 0 in the problem without logarithms: the gradient is
 //! theirs, they are positive, and tr(G P) is γ for each row of a matrix, so the minimum is within the [`Certificate`]'s
@@ -18,7 +18,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
-use crate::fit::Fit;
+use crate::least_squares::LeastSquares;
 use crate::parameters::PER_LINK;
 use crate::prior::{self, Scales};
 use crate::pseudo_inertia;
@@ -38,28 +38,28 @@ const PART: f64 = 0.1;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Feasible {
-    /// Of each link, its pseudo-inertia.
+    /// The pseudo-inertia of each link.
     pub links: Vec<Matrix4<f64>>,
-    /// Of each joint, G² Jm in kg m² (or kg); zeros when rotors were not asked for.
+    /// G² Jm of each joint, kg m² (or kg); zeros when rotors were not asked for.
     pub rotors: Vec<f64>,
-    /// Of each joint: viscous friction, Coulomb friction forward and backward, both positive; zeros when friction was
+    /// Viscous friction and Coulomb friction forward and backward of each joint, all positive; zeros when friction was
     /// not asked for.
     pub friction: Vec<[f64; FRICTION]>,
-    /// The unknowns that they make, as [`Fit::solution`] has them.
+    /// The unknowns that they make, as [`LeastSquares::solution`] has them.
     pub unknowns: DVector<f64>,
     /// How near the minimum it is.
     pub certificate: Certificate,
 }
 
-/// What proves that a point is the minimum of the convex problem.
+/// The numbers that prove a point to be the minimum of the convex problem.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Certificate {
-    /// The pull γ.
-    pub pull: f64,
+    /// γ, the weight of the regularization.
+    pub regularization: f64,
     /// Half the sum of squares, weighted, at the point.
     pub misfit: f64,
-    /// The same at the unconstrained minimum.
+    /// Half the sum of squares at the unconstrained minimum.
     pub least_misfit: f64,
     /// Newton's decrement: what another step would gain, relative to one.
     pub decrement: f64,
@@ -69,7 +69,7 @@ pub struct Certificate {
     pub margin: f64,
 }
 
-/// What is minimised, in coordinates of order one.
+/// The convex problem, in coordinates of order one.
 struct Problem {
     /// Unknowns of coordinates.
     map: DMatrix<f64>,
@@ -78,7 +78,7 @@ struct Problem {
     target: DVector<f64>,
     least: DVector<f64>,
     links: usize,
-    /// Of each coordinate, its value for 1.
+    /// The value of each coordinate for 1.
     scale: DVector<f64>,
     /// The priors' inverses.
     inverses: Vec<Matrix4<f64>>,
@@ -90,12 +90,12 @@ struct Problem {
 }
 
 impl Feasible {
-    /// Of a fit, pulled to what is known before by γ: one is as strong as one row of the deviation of the noise.
+    /// Solves for a least-squares estimate, regularized towards the prior by γ: one is as strong as one row of noise.
     #[must_use]
-    pub fn of(structure: &Structure, fit: &Fit, scales: &Scales, pull: f64) -> Self {
+    pub fn of(structure: &Structure, fit: &LeastSquares, scales: &Scales, regularization: f64) -> Self {
         let problem = Problem::new(structure, fit, scales);
         let mut at = problem.start(structure);
-        let mut weight = START.max(pull);
+        let mut weight = START.max(regularization);
         let mut decrement = f64::INFINITY;
         loop {
             for _ in 0..STEPS {
@@ -104,17 +104,17 @@ impl Feasible {
                     break;
                 }
             }
-            if weight <= pull {
+            if weight <= regularization {
                 break;
             }
-            weight = (weight * STEP).max(pull);
+            weight = (weight * STEP).max(regularization);
         }
-        problem.result(structure, &at, pull, decrement)
+        problem.result(structure, &at, regularization, decrement)
     }
 }
 
 impl Problem {
-    fn new(structure: &Structure, fit: &Fit, scales: &Scales) -> Self {
+    fn new(structure: &Structure, fit: &LeastSquares, scales: &Scales) -> Self {
         let dof = structure.dof();
         let count = structure.count();
         let rank = structure.parameters.rank();
@@ -220,14 +220,14 @@ impl Problem {
         pseudo_inertia::of(&std::array::from_fn(parameter))
     }
 
-    /// What is minimised; infinite where a link is no body.
-    fn value(&self, at: &DVector<f64>, pull: f64) -> f64 {
+    /// The objective; infinite where a link is no body.
+    fn value(&self, at: &DVector<f64>, regularization: f64) -> f64 {
         let mut value = 0.5 * (&self.design * (&self.map * at) - &self.target).norm_squared();
         for link in 0..self.links {
             let pseudo = self.pseudo_inertia(at, link);
             let Some(cholesky) = pseudo.cholesky() else { return f64::INFINITY };
             let log: f64 = 2.0 * cholesky.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
-            value += pull * ((self.inverses[link] * pseudo).trace() - log);
+            value += regularization * ((self.inverses[link] * pseudo).trace() - log);
         }
         let inertial = self.links * PER_LINK;
         for index in 0..self.positive {
@@ -235,13 +235,13 @@ impl Problem {
             if y <= 0.0 {
                 return f64::INFINITY;
             }
-            value += pull * (y * self.scale[inertial + index] / self.expected[index] - y.ln());
+            value += regularization * (y * self.scale[inertial + index] / self.expected[index] - y.ln());
         }
         value
     }
 
-    /// One of Newton's steps; returns half the square of the decrement, relative to the pull.
-    fn step(&self, at: &mut DVector<f64>, pull: f64) -> f64 {
+    /// One of Newton's steps; returns half the square of the decrement, relative to its weight.
+    fn step(&self, at: &mut DVector<f64>, regularization: f64) -> f64 {
         let design = &self.design * &self.map;
         let residual = &design * &*at - &self.target;
         let mut gradient = design.tr_mul(&residual);
@@ -252,44 +252,50 @@ impl Problem {
             let turned: Vec<Matrix4<f64>> =
                 self.units.iter().enumerate().map(|(k, unit)| inverse * unit * self.scale[first + k]).collect();
             for k in 0..PER_LINK {
-                gradient[first + k] +=
-                    pull * ((self.inverses[link] * self.units[k]).trace() * self.scale[first + k] - turned[k].trace());
+                gradient[first + k] += regularization
+                    * ((self.inverses[link] * self.units[k]).trace() * self.scale[first + k] - turned[k].trace());
                 for l in 0..PER_LINK {
-                    hessian[(first + k, first + l)] += pull * (turned[k] * turned[l]).trace();
+                    hessian[(first + k, first + l)] += regularization * (turned[k] * turned[l]).trace();
                 }
             }
         }
         let inertial = self.links * PER_LINK;
         for index in 0..self.positive {
             let (place, y) = (inertial + index, at[inertial + index]);
-            gradient[place] += pull * (self.scale[place] / self.expected[index] - 1.0 / y);
-            hessian[(place, place)] += pull / (y * y);
+            gradient[place] += regularization * (self.scale[place] / self.expected[index] - 1.0 / y);
+            hessian[(place, place)] += regularization / (y * y);
         }
         let Some(cholesky) = hessian.cholesky() else { return 0.0 };
         let direction = cholesky.solve(&gradient);
         let decrement = 0.5 * gradient.dot(&direction);
-        let before = self.value(at, pull);
+        let before = self.value(at, regularization);
         let mut length = 1.0;
         while length > 1e-12 {
             let next = &*at - &direction * length;
-            if self.value(&next, pull) <= before - 0.25 * length * decrement {
+            if self.value(&next, regularization) <= before - 0.25 * length * decrement {
                 *at = next;
                 break;
             }
             length *= 0.5;
         }
-        decrement / pull.min(1.0)
+        decrement / regularization.min(1.0)
     }
 
-    fn result(&self, structure: &Structure, at: &DVector<f64>, pull: f64, decrement: f64) -> Feasible {
+    fn result(&self, structure: &Structure, at: &DVector<f64>, regularization: f64, decrement: f64) -> Feasible {
         let unknowns = &self.map * at;
         let links: Vec<Matrix4<f64>> = (0..self.links).map(|link| self.pseudo_inertia(at, link)).collect();
         let misfit = |unknowns: &DVector<f64>| 0.5 * (&self.design * unknowns - &self.target).norm_squared();
         let margin = links.iter().map(pseudo_inertia::margin).fold(f64::INFINITY, f64::min);
         #[allow(clippy::cast_precision_loss)]
-        let gap = pull * (4 * self.links + self.positive) as f64;
-        let certificate =
-            Certificate { pull, misfit: misfit(&unknowns), least_misfit: misfit(&self.least), decrement, gap, margin };
+        let gap = regularization * (4 * self.links + self.positive) as f64;
+        let certificate = Certificate {
+            regularization,
+            misfit: misfit(&unknowns),
+            least_misfit: misfit(&self.least),
+            decrement,
+            gap,
+            margin,
+        };
         let inertial = self.links * PER_LINK;
         let of = |index: usize| at[inertial + index] * self.scale[inertial + index];
         let of_rotors = if structure.options.rotors { self.links } else { 0 };

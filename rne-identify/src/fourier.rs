@@ -38,7 +38,7 @@ pub struct Series {
 
 /// Where a joint is at any time, not only at samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct MotionBounds {
     /// rad or m: no position is below.
     pub lower: f64,
     /// rad or m: no position is above.
@@ -69,13 +69,13 @@ impl Grid {
         self.0.len()
     }
 
-    /// Of a multiple of a point's angle.
+    /// Sine and cosine of a multiple of a point's angle.
     fn at(&self, point: usize, multiple: usize) -> (f64, f64) {
         self.0[point * multiple % self.0.len()]
     }
 }
 
-/// By which factor the largest magnitude may exceed that at the points of the dense grid.
+/// The factor by which the largest magnitude may exceed that at the points of the dense grid.
 ///
 /// About a point where a trigonometric polynomial p of degree N has its largest magnitude it is at least
 /// ‖p‖ cos N(t - t*) up to a quarter of that wave (M. Riesz, Jahresber. DMV 23, 1914), and one of M points is within
@@ -108,7 +108,7 @@ impl Series {
         Self { centre, a, b }
     }
 
-    /// The same motion about its centre, so many times as large.
+    /// Scales the motion about its centre.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let scaled = |list: &[f64]| list.iter().map(|x| x * factor).collect();
@@ -141,7 +141,7 @@ fn numbers() -> impl Iterator<Item = f64> {
 }
 
 impl Fourier {
-    /// Of a period (s) and the series of each joint, base to tip.
+    /// A motion of a period (s) and the series of each joint, base to tip.
     #[must_use]
     pub fn new(period: f64, joints: Vec<Series>) -> Self {
         Self { period, joints }
@@ -184,14 +184,14 @@ impl Fourier {
     /// Between which positions each joint moves, how fast, and with which acceleration: bounds of the whole motion,
     /// above the true ones by a thousandth of them at most.
     #[must_use]
-    pub fn extents(&self) -> Vec<Extent> {
+    pub fn bounds(&self) -> Vec<MotionBounds> {
         let harmonics = self.joints.iter().map(|series| series.a.len()).max().unwrap_or(0).max(1);
         let grid = Grid::dense(harmonics);
         let of = |series: &Series| {
             let states = series.on(&grid, self.period);
             let (lowest, highest) = range(&states);
             let (middle, half) = (f64::midpoint(lowest, highest), 0.5 * (highest - lowest) * beyond());
-            Extent {
+            MotionBounds {
                 lower: series.centre + middle - half,
                 upper: series.centre + middle + half,
                 velocity: largest(&states, 1) * beyond(),
@@ -262,19 +262,19 @@ mod tests {
     }
 
     #[test]
-    fn extents_hold_between_samples_and_are_no_wider_than_they_must_be() {
+    fn bounds_hold_between_samples_and_are_no_wider_than_they_must_be() {
         let mut numbers = Random::new(3);
         for harmonics in 2..9 {
             let motion = Fourier::new(2.0, vec![random(&mut numbers, harmonics)]);
-            let extent = motion.extents()[0];
+            let bounds = motion.bounds()[0];
             let fine = motion.joints()[0].on(&Grid::new(50 * DENSE * harmonics), 2.0);
             let (lowest, highest) = range(&fine);
             let centre = motion.joints()[0].centre;
             let [velocity, acceleration] = [1, 2].map(|derivative| largest(&fine, derivative));
-            assert!(extent.lower <= centre + lowest && extent.upper >= centre + highest, "{extent:?}");
-            assert!(extent.velocity >= velocity && extent.acceleration >= acceleration, "{extent:?}");
-            assert!(extent.upper - extent.lower <= 1.002 * (highest - lowest));
-            assert!(extent.velocity <= 1.002 * velocity && extent.acceleration <= 1.002 * acceleration);
+            assert!(bounds.lower <= centre + lowest && bounds.upper >= centre + highest, "{bounds:?}");
+            assert!(bounds.velocity >= velocity && bounds.acceleration >= acceleration, "{bounds:?}");
+            assert!(bounds.upper - bounds.lower <= 1.002 * (highest - lowest));
+            assert!(bounds.velocity <= 1.002 * velocity && bounds.acceleration <= 1.002 * acceleration);
         }
     }
 }

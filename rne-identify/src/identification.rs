@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use nalgebra::Matrix4;
 use rne_logs::Motion;
-use rne_model::{Inertia, InertiaReference, Joint, Link, Motor, Reversal, Robot};
+use rne_model::{FrictionTransition, Inertia, InertiaReference, Joint, Link, Motor, Robot};
 
 use crate::feasible::Feasible;
-use crate::fit::{Fit, effort};
 use crate::information::{Information, MotionError, Rejected, Weighting};
-use crate::parameters::{PER_LINK, Parameters, name};
+use crate::least_squares::LeastSquares;
+use crate::parameters::{PER_LINK, Parameters};
 use crate::prediction::{JointError, Prediction};
 use crate::prior::Scales;
 use crate::pseudo_inertia;
@@ -19,8 +19,9 @@ use crate::structure::{FRICTION, Options, Structure};
 /// Passes over the logs: one to begin with, and two in which rows that are far off count less.
 const PASSES: usize = 3;
 
-/// Deviations beyond which a row is of no free motion, where some stretches of the logs are not.
-const FAR: f64 = 30.0;
+/// A row that is off by more standard deviations does not count where the arm was pushed or touched during some
+/// segments.
+const OUTLIER_BOUND: f64 = 30.0;
 
 /// A base parameter is not excited where its deviation is larger than this part of what plausible links would give it.
 pub(crate) const UNKNOWN: f64 = 0.5;
@@ -28,7 +29,7 @@ pub(crate) const UNKNOWN: f64 = 0.5;
 /// A joint is not excited where more than this part of its effort is no torque of any model, root mean square.
 const NOISE: f64 = 0.5;
 
-/// What is left of a joint, as a part of its effort, where no model explains it; beyond these an effort does not
+/// The residual of a joint that no model explains, as a part of its effort; above this range the effort does not
 /// change.
 const UNEXPLAINED: Range<f64> = 0.9..10.0;
 
@@ -46,9 +47,9 @@ pub struct Identification {
     pub robot: Robot,
     /// The columns.
     pub structure: Structure,
-    /// What least squares say, without asking whether bodies can be so.
-    pub fit: Fit,
-    /// What bodies can be.
+    /// The least-squares estimate, whether or not bodies can be so.
+    pub least_squares: LeastSquares,
+    /// The estimate whose links are bodies.
     pub feasible: Feasible,
     /// Every base parameter, base to tip.
     pub bases: Vec<BaseReport>,
@@ -64,7 +65,7 @@ pub struct Identification {
     pub duration: f64,
 }
 
-/// What is known of a base parameter.
+/// The result for a base parameter.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BaseReport {
@@ -76,9 +77,9 @@ pub struct BaseReport {
     pub value: f64,
     /// Its standard deviation.
     pub deviation: f64,
-    /// What the links of the file make of it.
+    /// Its value for the links of the file.
     pub written: f64,
-    /// Half the width of its interval of 95 %, by Student's t of the stretches of time.
+    /// Half the width of its interval of 95 %, by Student's t of the segments of time.
     pub half_interval: f64,
     /// Its deviation over what plausible links would give it: below 0.5 it counts as excited. Infinite where the logs
     /// excite no joint that feels it: what none of their torques is told from noise by, they do not tell.
@@ -93,7 +94,7 @@ impl BaseReport {
     }
 }
 
-/// What is known of a joint.
+/// The result for a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointReport {
@@ -111,7 +112,7 @@ pub struct JointReport {
     /// friction counts as excited; else the robot has that of the file. Infinite without friction.
     pub friction_uncertainty: f64,
     /// How Coulomb friction changes its sign.
-    pub reversal: Option<Reversal>,
+    pub transition: Option<FrictionTransition>,
     /// An offset that least squares find to be larger than Coulomb friction, and the latter, N m or N: a spring, a
     /// counterweight, a sensor. A robot file holds as much of it as there is Coulomb friction, and nothing of the rest.
     pub offset: Option<(f64, f64)>,
@@ -153,8 +154,15 @@ impl Identification {
     }
 }
 
+/// The result of one pass over the logs.
+struct OverLogs {
+    information: Information,
+    scales: Scales,
+    least_squares: LeastSquares,
+}
+
 /// Identifies a robot. `pass` hands every motion of the logs to what it is given, each time it is called; the motions
-/// may be parts of logs. `pull` is γ of [`Feasible`].
+/// may be parts of logs. `regularization` is γ of [`Feasible`].
 ///
 /// # Errors
 /// When a motion is of another robot; when all of them make fewer rows than deviations need, or have no efforts; when
@@ -162,40 +170,40 @@ impl Identification {
 pub fn identify<E: From<MotionError>>(
     robot: &Robot,
     options: Options,
-    pull: f64,
+    regularization: f64,
     mut pass: impl FnMut(&mut dyn FnMut(&Motion) -> Result<(), MotionError>) -> Result<(), E>,
 ) -> Result<Identification, E> {
     let structure = Structure::new(robot, options);
-    let mut one = |weighting: Option<&Weighting>| -> Result<(Information, Scales, Fit), E> {
+    let mut one = |weighting: Option<&Weighting>| -> Result<OverLogs, E> {
         let mut information = Information::new(&structure);
         pass(&mut |motion| information.absorb(&structure, motion, weighting))?;
-        if information.stretches.len() < 2 {
+        if information.segments.len() < 2 {
             let (rows, needed, duration) = (information.rows(), information.needed(), information.duration());
             return Err(MotionError::TooFew { rows, needed, duration }.into());
         }
         if information.largest.iter().all(|most| *most <= LEAST_EFFORT) {
             return Err(MotionError::NoEfforts.into());
         }
-        let scales = scales(&structure, &information);
-        let fit = Fit::of(&structure, &information, &scales);
-        Ok((information, scales, fit))
+        let scales = information.scales(&structure);
+        let least_squares = LeastSquares::of(&structure, &information, &scales);
+        Ok(OverLogs { information, scales, least_squares })
     };
     let mut found = one(None)?;
-    let steady = steady(&structure, &found.0, &found.2);
-    let far = if steady.is_some() { FAR } else { f64::INFINITY };
-    found.2 = steady.unwrap_or(found.2);
+    let steady = steady(&structure, &found.information, &found.least_squares);
+    let outlier_bound = if steady.is_some() { OUTLIER_BOUND } else { f64::INFINITY };
+    found.least_squares = steady.unwrap_or(found.least_squares);
     for _ in 1..PASSES {
-        found = one(Some(&Weighting { far, ..found.2.weighting(&structure) }))?;
+        found = one(Some(&Weighting { outlier_bound, ..found.least_squares.weighting(&structure) }))?;
     }
-    let (information, scales, fit) = found;
-    let one = OnePass::of_fit(&structure, fit, &scales, pull);
+    let OverLogs { information, scales, least_squares } = found;
+    let one = Fit::of_least_squares(&structure, least_squares, &scales, regularization);
     if let Some(joint) = not_finite(&one.robot) {
         return Err(MotionError::NotANumber(joint).into());
     }
     let mut prediction = Prediction::new(&one.robot, structure.options.cutoff);
     pass(&mut |motion| prediction.absorb(motion))?;
     let joints = joints(&structure, &one, &prediction.errors(), &information.rejected);
-    let OnePass { robot: identified, fit, feasible, mut bases, .. } = one;
+    let Fit { robot: identified, least_squares, feasible, mut bases, .. } = one;
     for (base, report) in structure.parameters.bases.iter().zip(&mut bases) {
         let mut felt = joints.iter().enumerate().filter(|(joint, _)| Parameters::is_felt(base, *joint));
         if !felt.any(|(_, joint)| joint.is_excited()) {
@@ -204,8 +212,8 @@ pub fn identify<E: From<MotionError>>(
     }
     // what the last pass found beyond what its rows were shifted by
     let delay = structure.options.delay.then(|| {
-        let at = fit.solution.len() - 1;
-        (fit.delay, fit.deviation(at))
+        let at = least_squares.solution.len() - 1;
+        (least_squares.delay, least_squares.deviation(at))
     });
     Ok(Identification {
         robot: identified,
@@ -213,7 +221,7 @@ pub fn identify<E: From<MotionError>>(
         rows: information.rows(),
         duration: information.duration(),
         structure,
-        fit,
+        least_squares,
         feasible,
         bases,
         joints,
@@ -221,26 +229,26 @@ pub fn identify<E: From<MotionError>>(
     })
 }
 
-/// A robot of one pass over its rows, none of which counts less for being far off.
+/// The robot that fits gathered rows, all of which count alike.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct OnePass {
+pub struct Fit {
     /// The robot: the geometry that was given, links and motors that were identified.
     pub robot: Robot,
-    /// What least squares say, without asking whether bodies can be so.
-    pub fit: Fit,
-    /// What bodies can be.
+    /// The least-squares estimate, whether or not bodies can be so.
+    pub least_squares: LeastSquares,
+    /// The estimate whose links are bodies.
     pub feasible: Feasible,
     /// Every base parameter, base to tip.
     pub bases: Vec<BaseReport>,
     /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at each joint; without
     /// friction none.
     pub friction: Vec<[(f64, f64); FRICTION]>,
-    /// Of each joint's efforts, root mean square, N m or N.
+    /// The root mean square of each joint's efforts, N m or N.
     pub efforts: Vec<f64>,
 }
 
-impl OnePass {
+impl Fit {
     /// Whether the rows tell the friction of a joint: of the two deviations of its Coulomb friction the lesser one is
     /// below half of its efforts, root mean square. Viscous friction is told by the same rows: in its own unit it has
     /// no effort to be held against.
@@ -249,15 +257,16 @@ impl OnePass {
         joint < self.friction.len() && self.friction_uncertainty(joint) < UNKNOWN
     }
 
-    /// Of what was gathered. `pull` is γ of [`Feasible`].
+    /// Fits what was gathered. `regularization` is γ of [`Feasible`].
     #[must_use]
-    pub fn new(structure: &Structure, information: &Information, pull: f64) -> Self {
-        let scales = scales(structure, information);
-        Self::of_fit(structure, Fit::of(structure, information, &scales), &scales, pull)
+    pub fn new(structure: &Structure, information: &Information, regularization: f64) -> Self {
+        let scales = information.scales(structure);
+        let least_squares = LeastSquares::of(structure, information, &scales);
+        Self::of_least_squares(structure, least_squares, &scales, regularization)
     }
 
-    fn of_fit(structure: &Structure, fit: Fit, scales: &Scales, pull: f64) -> Self {
-        let feasible = Feasible::of(structure, &fit, scales, pull);
+    fn of_least_squares(structure: &Structure, fit: LeastSquares, scales: &Scales, regularization: f64) -> Self {
+        let feasible = Feasible::of(structure, &fit, scales, regularization);
         let joints = if structure.options.friction { structure.dof() } else { 0 };
         let friction = (0..joints).map(|joint| friction(structure, &fit, &feasible, joint)).collect();
         let mut one = Self {
@@ -265,33 +274,26 @@ impl OnePass {
             bases: Vec::new(),
             friction,
             efforts: scales.friction.clone(),
-            fit,
+            least_squares: fit,
             feasible,
         };
         one.robot = robot_of(structure, &one);
-        one.bases = bases(structure, &one.fit, scales, &one.robot);
+        one.bases = bases(structure, &one.least_squares, scales, &one.robot);
         one
     }
 
-    /// Of the Coulomb friction of a joint the lesser deviation over the joint's effort; what is no number is not known.
+    /// The lesser deviation of a joint's Coulomb friction over the joint's effort; infinite where it is not a number.
     fn friction_uncertainty(&self, joint: usize) -> f64 {
         let deviations = self.friction.get(joint).into_iter().flat_map(|[_, coulomb @ ..]| coulomb);
         deviations.fold(f64::INFINITY, |least, (_, deviation)| least.min(*deviation)) / self.efforts[joint]
     }
 }
 
-/// How large unknowns are, where efforts are as large as in the logs.
-#[must_use]
-pub fn scales(structure: &Structure, information: &Information) -> Scales {
-    let efforts: Vec<f64> = information.total(structure).iter().map(effort).collect();
-    Scales::of(&structure.robot, &structure.parameters, &efforts)
-}
-
-fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Vec<BaseReport> {
+fn bases(structure: &Structure, fit: &LeastSquares, scales: &Scales, robot: &Robot) -> Vec<BaseReport> {
     let parameters = structure.parameters();
     let written = &parameters.regrouping * parameters.of_robot(robot);
     let each = parameters.bases.iter().enumerate().map(|(at, base)| BaseReport {
-        name: name(base.kept),
+        name: base.name(),
         combination: base.combination(),
         value: fit.solution[at],
         deviation: fit.deviation(at),
@@ -302,7 +304,7 @@ fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Ve
     each.collect()
 }
 
-fn friction(structure: &Structure, fit: &Fit, feasible: &Feasible, joint: usize) -> [(f64, f64); FRICTION] {
+fn friction(structure: &Structure, fit: &LeastSquares, feasible: &Feasible, joint: usize) -> [(f64, f64); FRICTION] {
     let at = structure.parameters.rank() + FRICTION * joint;
     let [viscous, forward, backward] = feasible.friction[joint];
     [
@@ -312,21 +314,16 @@ fn friction(structure: &Structure, fit: &Fit, feasible: &Feasible, joint: usize)
     ]
 }
 
-fn joints(
-    structure: &Structure,
-    one: &OnePass,
-    errors: &[JointError],
-    rejected: &[Option<Rejected>],
-) -> Vec<JointReport> {
+fn joints(structure: &Structure, one: &Fit, errors: &[JointError], rejected: &[Option<Rejected>]) -> Vec<JointReport> {
     let each = errors.iter().zip(rejected).enumerate().map(|(joint, (error, rejected))| JointReport {
-        noise: one.fit.noise[joint],
+        noise: one.least_squares.noise[joint],
         effort: one.efforts[joint],
         rejected: *rejected,
         error: *error,
         friction: one.friction.get(joint).copied(),
         friction_uncertainty: one.friction_uncertainty(joint),
-        reversal: structure.options.friction.then(|| structure.reversals[one.fit.reversals[joint]]),
-        offset: one.fit.loose_offset(structure, joint, one.efforts[joint]),
+        transition: structure.options.friction.then(|| structure.transitions[one.least_squares.transitions[joint]]),
+        offset: one.least_squares.loose_offset(structure, joint, one.efforts[joint]),
         rotor: structure.options.rotors.then(|| one.feasible.rotors[joint]),
     });
     each.collect()
@@ -348,8 +345,8 @@ fn not_finite(robot: &Robot) -> Option<usize> {
 
 /// The robot with these links and motors: its friction is what was identified, that of the file where the logs do not
 /// tell, and none where nobody asked for friction.
-fn robot_of(structure: &Structure, one: &OnePass) -> Robot {
-    let OnePass { fit, feasible, .. } = one;
+fn robot_of(structure: &Structure, one: &Fit) -> Robot {
+    let Fit { least_squares, feasible, .. } = one;
     let mut robot = structure.robot.clone();
     for (at, joint) in robot.joints.iter_mut().enumerate() {
         joint.row.link = link(&feasible.links[at]);
@@ -367,10 +364,11 @@ fn robot_of(structure: &Structure, one: &OnePass) -> Robot {
             let [viscous, forward, backward] = feasible.friction[at];
             motor.viscous = rounded(viscous / (ratio * ratio));
             motor.coulomb = [rounded(forward / ratio), -rounded(backward / ratio)];
-            (joint.coulomb_width, joint.coulomb_displacement) = match structure.reversals[fit.reversals[at]] {
-                Reversal::Width(width) => (Some(width), None),
-                Reversal::Displacement(length) => (None, Some(length)),
-            };
+            (joint.coulomb_width, joint.coulomb_displacement) =
+                match structure.transitions[least_squares.transitions[at]] {
+                    FrictionTransition::Speed(width) => (Some(width), None),
+                    FrictionTransition::Displacement(length) => (None, Some(length)),
+                };
         }
         let is_nothing = motor.inertia == 0.0 && motor.viscous == 0.0 && motor.coulomb == [0.0; 2];
         // a gear that the file has stays

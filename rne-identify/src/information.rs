@@ -1,4 +1,4 @@
-//! What logs say of the unknowns: triangles of the weighted rows, in memory that does not grow with the logs.
+//! The information of logs about the unknowns: triangles of weighted rows, in memory that does not grow with the logs.
 
 mod instants;
 mod numbers;
@@ -9,9 +9,11 @@ use std::fmt;
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, Destination, EvaluationError, Function};
-use rne_model::ReversalSign;
+use rne_model::TransitionSign;
 
+use crate::least_squares::effort;
 use crate::parameters::PER_LINK;
+use crate::prior::Scales;
 use crate::r_factor::RFactor;
 use crate::smoothing::{Kernel, Weights};
 use crate::structure::Structure;
@@ -24,25 +26,25 @@ pub use weighting::{Rejected, Weighting};
 /// States that are computed at once.
 const WINDOW: usize = 2048;
 
-/// Stretches of time that are kept apart, at most; beyond that neighbours merge.
-const STRETCHES: usize = 64;
+/// Segments of time that are kept apart, at most; beyond that neighbours merge.
+const SEGMENTS: usize = 64;
 
-/// A stretch lasts so many widths of the filter at least; without filter it has so many states.
+/// A segment lasts so many widths of the filter at least; without filter it has so many states.
 const LENGTH: f64 = 20.0;
 const STATES_UNFILTERED: u64 = 64;
 
-/// The length of the one stretch of rows that have no order.
+/// The length of the one segment of rows that have no order.
 const UNORDERED: u64 = u64::MAX;
 
-/// The triangles of every joint's rows over a stretch of time.
-pub(crate) type Stretch = Vec<RFactor>;
+/// The triangles of every joint's rows over a segment of time.
+pub(crate) type Segment = Vec<RFactor>;
 
-/// What logs say of the unknowns: for each joint the triangle of its rows, in up to 64 stretches of time, from which
-/// deviations are computed that know of dependent errors. Parts of logs may be taken in by several of these, that merge
-/// into one.
+/// The information of logs about the unknowns: for each joint the triangle of its rows, in up to 64 segments of time,
+/// from which deviations are computed that know of dependent errors. Parts of logs may be taken in by several of these,
+/// that merge into one.
 #[derive(Clone, Debug)]
 pub struct Information {
-    pub(crate) stretches: Vec<Stretch>,
+    pub(crate) segments: Vec<Segment>,
     /// Rows of a joint in each.
     length: u64,
     /// States read, and those that became rows.
@@ -50,9 +52,9 @@ pub struct Information {
     pub(crate) duration: f64,
     /// s: how much later torques were taken.
     pub(crate) shift: f64,
-    /// Of each joint the largest effort, N m or N, either way.
+    /// The largest magnitude of the effort of each joint, N m or N.
     pub(crate) largest: Vec<f64>,
-    /// Of each joint, rows that do not count.
+    /// The rows of each joint that do not count.
     pub(crate) rejected: Vec<Option<Rejected>>,
 }
 
@@ -62,9 +64,9 @@ pub struct Information {
 pub enum MotionError {
     /// It is of another number of joints.
     Joints {
-        /// Of the robot.
+        /// Joints of the robot.
         expected: usize,
-        /// Of the motion.
+        /// Joints of the motion.
         found: usize,
     },
     /// A list has another length than the times.
@@ -84,7 +86,7 @@ pub enum MotionError {
     },
     /// The efforts of all joints are zero throughout.
     NoEfforts,
-    /// What was found of a joint is no number: its place, from 0.
+    /// An identified number of a joint is not finite: the index of the joint, from 0.
     NotANumber(usize),
 }
 
@@ -144,7 +146,7 @@ pub(crate) fn checked(dof: usize, motion: &Motion) -> Result<(), MotionError> {
 }
 
 impl Information {
-    /// Of no log.
+    /// Empty information, before any log.
     #[must_use]
     pub fn new(structure: &Structure) -> Self {
         let length = match structure.options.cutoff {
@@ -155,17 +157,18 @@ impl Information {
         };
         let rejected = vec![None; structure.dof()];
         let largest = vec![0.0; structure.dof()];
-        Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0, largest, rejected }
+        Self { segments: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0, largest, rejected }
     }
 
-    /// Of no rows, and of rows that have no order, as those of a table: no stretches are kept apart, so that memory is
-    /// one triangle a joint, and what is found depends on the order of rows and of merging by rounding alone.
+    /// Empty information for rows without an order in time, such as those of a table: no segments are kept apart, so
+    /// that memory is one triangle a joint, and what is found depends on the order of rows and of merging by rounding
+    /// alone.
     #[must_use]
     pub fn unordered(structure: &Structure) -> Self {
         Self { length: UNORDERED, ..Self::new(structure) }
     }
 
-    /// Rows of each joint that are needed for deviations by leaving out stretches: two of these.
+    /// Rows of each joint that are needed for deviations by leaving out segments: two of these.
     pub(crate) fn needed(&self) -> u64 {
         self.length + 1
     }
@@ -185,7 +188,7 @@ impl Information {
     /// How many rows it has of each joint.
     #[must_use]
     pub fn rows(&self) -> u64 {
-        self.stretches.iter().filter_map(|stretch| Some(stretch.first()?.rows())).sum()
+        self.segments.iter().filter_map(|segment| Some(segment.first()?.rows())).sum()
     }
 
     /// How long the motions were, s.
@@ -197,7 +200,7 @@ impl Information {
     /// How many numbers it keeps, whatever the logs were: what its memory is proportional to.
     #[must_use]
     pub fn size(&self) -> usize {
-        self.stretches.iter().flatten().map(|factor| factor.columns() * factor.columns()).sum()
+        self.segments.iter().flatten().map(|factor| factor.columns() * factor.columns()).sum()
     }
 
     /// Takes in a motion; its rows are weighted by what a fit before says of them.
@@ -240,16 +243,23 @@ impl Information {
         for (most, of_other) in self.largest.iter_mut().zip(other.largest) {
             *most = most.max(of_other);
         }
-        self.stretches.extend(other.stretches);
+        self.segments.extend(other.segments);
         self.reject(&other.rejected);
         self.compress();
     }
 
-    /// The same, with the rows of each joint and stretch weighted.
+    /// How large unknowns are, where efforts are as large as in the logs.
+    #[must_use]
+    pub fn scales(&self, structure: &Structure) -> Scales {
+        let efforts: Vec<f64> = self.total(structure).iter().map(effort).collect();
+        Scales::of(&structure.robot, &structure.parameters, &efforts)
+    }
+
+    /// This information with the rows of each joint and segment weighted.
     pub(crate) fn weighted(&self, weights: &[Vec<f64>]) -> Self {
         let mut weighted = self.clone();
-        for (at, stretch) in weighted.stretches.iter_mut().enumerate() {
-            for (factor, weights) in stretch.iter_mut().zip(weights) {
+        for (at, segment) in weighted.segments.iter_mut().enumerate() {
+            for (factor, weights) in segment.iter_mut().zip(weights) {
                 *factor = factor.weighted(weights[at]);
             }
         }
@@ -265,22 +275,22 @@ impl Information {
         }
     }
 
-    /// Of each joint the triangle of all its rows.
-    pub(crate) fn total(&self, structure: &Structure) -> Stretch {
-        let mut total: Stretch = (0..structure.dof()).map(|joint| RFactor::new(structure.columns(joint))).collect();
-        for stretch in &self.stretches {
-            add(&mut total, stretch);
+    /// The triangle of all rows of each joint.
+    pub(crate) fn total(&self, structure: &Structure) -> Segment {
+        let mut total: Segment = (0..structure.dof()).map(|joint| RFactor::new(structure.columns(joint))).collect();
+        for segment in &self.segments {
+            add(&mut total, segment);
         }
         total
     }
 
     fn take(&mut self, rows: Vec<DMatrix<f64>>, weights: Vec<f64>) {
-        let is_full = |stretch: &Stretch| stretch.first().is_none_or(|factor| factor.rows() >= self.length);
-        if self.stretches.last().is_none_or(is_full) {
-            self.stretches.push(rows.iter().map(|rows| RFactor::new(rows.ncols())).collect());
+        let is_full = |segment: &Segment| segment.first().is_none_or(|factor| factor.rows() >= self.length);
+        if self.segments.last().is_none_or(is_full) {
+            self.segments.push(rows.iter().map(|rows| RFactor::new(rows.ncols())).collect());
         }
-        if let Some(stretch) = self.stretches.last_mut() {
-            for ((factor, rows), weight) in stretch.iter_mut().zip(rows).zip(weights) {
+        if let Some(segment) = self.segments.last_mut() {
+            for ((factor, rows), weight) in segment.iter_mut().zip(rows).zip(weights) {
                 // of as many columns as the factor was made with
                 let _ = factor.absorb_weighted(rows, weight);
             }
@@ -290,49 +300,49 @@ impl Information {
 
     fn compress(&mut self) {
         if self.is_unordered() {
-            let rest = self.stretches.drain(self.stretches.len().min(1)..).collect::<Vec<_>>();
-            if let Some(total) = self.stretches.first_mut() {
-                for stretch in &rest {
-                    add(total, stretch);
+            let rest = self.segments.drain(self.segments.len().min(1)..).collect::<Vec<_>>();
+            if let Some(total) = self.segments.first_mut() {
+                for segment in &rest {
+                    add(total, segment);
                 }
             }
         }
-        while self.stretches.len() > STRETCHES {
+        while self.segments.len() > SEGMENTS {
             self.length *= 2;
-            let mut merged: Vec<Stretch> = Vec::with_capacity(self.stretches.len().div_ceil(2));
-            for stretch in self.stretches.drain(..) {
-                match merged.last_mut().filter(|last| rows_of(last) + rows_of(&stretch) <= self.length + 2) {
-                    Some(last) => add(last, &stretch),
-                    None => merged.push(stretch),
+            let mut merged: Vec<Segment> = Vec::with_capacity(self.segments.len().div_ceil(2));
+            for segment in self.segments.drain(..) {
+                match merged.last_mut().filter(|last| rows_of(last) + rows_of(&segment) <= self.length + 2) {
+                    Some(last) => add(last, &segment),
+                    None => merged.push(segment),
                 }
             }
-            self.stretches = merged;
+            self.segments = merged;
         }
     }
 }
 
-fn rows_of(stretch: &Stretch) -> u64 {
-    stretch.first().map_or(0, RFactor::rows)
+fn rows_of(segment: &Segment) -> u64 {
+    segment.first().map_or(0, RFactor::rows)
 }
 
-fn add(total: &mut Stretch, stretch: &Stretch) {
-    for (total, factor) in total.iter_mut().zip(stretch) {
+fn add(total: &mut Segment, segment: &Segment) {
+    for (total, factor) in total.iter_mut().zip(segment) {
         // of the same structure
         let _ = total.merge(factor);
     }
 }
 
-/// The signs of friction of every joint by every reversal, on their way through a motion: some remember.
+/// The signs of friction of every joint by every transition, on their way through a motion: some remember.
 pub(crate) struct Walk {
     /// The state that comes next.
     at: usize,
-    signs: Vec<Vec<ReversalSign>>,
+    signs: Vec<Vec<TransitionSign>>,
 }
 
 impl Walk {
     pub(crate) fn new(structure: &Structure) -> Self {
-        let signs: Vec<ReversalSign> =
-            structure.reversals.iter().map(|reversal| ReversalSign::new(*reversal)).collect();
+        let signs: Vec<TransitionSign> =
+            structure.transitions.iter().map(|transition| TransitionSign::new(*transition)).collect();
         Self { at: 0, signs: vec![signs; structure.dof()] }
     }
 
@@ -351,7 +361,7 @@ impl Walk {
 
 type Rows = (Vec<DMatrix<f64>>, Vec<f64>);
 
-/// The rows of every joint at some instants, weighted, with the sums of their weights; in pieces of a stretch's length.
+/// The rows of every joint at some instants, weighted, with the sums of their weights; in pieces of a segment's length.
 /// And those that do not count, of each joint.
 fn rows(
     structure: &Structure,

@@ -11,7 +11,8 @@ const SPEED: [f64; 2] = [1.0, 0.25];
 /// s: in which a joint reaches its speed, where no acceleration is asked for; robot files have none.
 const RISE: f64 = 0.5;
 
-/// What is asked of motions beside the robot file: a number for all joints, or one for each; rad or m, and per second.
+/// Limits that a request gives beside those of the robot file: a number for all joints, or one for each; rad or m, and
+/// per second.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct AskedLimits {
@@ -38,7 +39,7 @@ pub struct MotionLimits {
 }
 
 impl MotionLimits {
-    /// Of every joint of a robot.
+    /// Returns the limits of every joint of a robot.
     ///
     /// A revolute joint without limits moves between -π and π. Without a speed it moves with 1 rad/s or 0.25 m/s at
     /// most, and without an acceleration it reaches its speed in half a second.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::identifiability::{Identifiability, Parameter, Visibility};
 use nalgebra::{DMatrix, DVector};
-use rne_model::{JointKind, Link, Robot};
+use rne_model::{Link, Robot};
 use rne_runtime::{DynArm, LinkParameter};
 
 use crate::random::Random;
@@ -21,15 +21,21 @@ const STATES: usize = 60;
 pub struct Base {
     /// The parameter that stands for it.
     pub kept: Parameter,
-    /// What is regrouped into it, with factors.
+    /// The parameters that are regrouped into it, with factors.
     pub regrouped: Vec<(f64, Parameter)>,
 }
 
 impl Base {
-    /// In words: `Jzz2 + 0.3745 m3 - mcx4`.
+    /// The name of the parameter that stands for it, joints counted from 1: `Jzz2`, `Jm3`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        name(self.kept)
+    }
+
+    /// The combination in letters: `Jzz2 + 0.3745 m3 - mcx4`.
     #[must_use]
     pub fn combination(&self) -> String {
-        let mut text = name(self.kept);
+        let mut text = self.name();
         for (factor, parameter) in &self.regrouped {
             let sign = if *factor < 0.0 { '-' } else { '+' };
             let size = factor.abs();
@@ -52,7 +58,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Of the geometry of a robot; what its links weigh does not matter. With rotors where they are asked for.
+    /// The base parameters of a robot's geometry; the masses of its links do not matter. `rotors` includes rotors.
     #[must_use]
     pub fn of(robot: &Robot, rotors: bool) -> Self {
         let Identifiability { parameters, .. } = Identifiability::of(robot, rotors);
@@ -167,23 +173,9 @@ fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
     stacked
 }
 
-/// The name of a parameter, joints counted from 1: `Jzz2`, `Jm3`.
-#[must_use]
-pub fn name(parameter: Parameter) -> String {
+fn name(parameter: Parameter) -> String {
     match parameter {
         Parameter::Link(link, index) => LinkParameter { link, index }.to_string(),
         Parameter::Rotor(joint) => format!("Jm{}", joint + 1),
-    }
-}
-
-/// The unit of a parameter of a robot: a rotor of a joint that slides is as a mass.
-#[must_use]
-pub fn unit(robot: &Robot, parameter: Parameter) -> &'static str {
-    let slides = |joint: usize| robot.joints.get(joint).is_some_and(|joint| joint.row.kind == JointKind::Prismatic);
-    match parameter {
-        Parameter::Link(_, 0) => "kg",
-        Parameter::Link(_, 1..=3) => "kg m",
-        Parameter::Rotor(joint) if slides(joint) => "kg",
-        Parameter::Link(..) | Parameter::Rotor(_) => "kg m²",
     }
 }

@@ -1,4 +1,4 @@
-//! What a robot file says of a log: predicted torques beside measured ones.
+//! Predicted torques of a robot file beside the measured torques of a log.
 
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
@@ -32,7 +32,7 @@ pub struct JointError {
     /// Root mean square of recorded minus predicted over the deviation of the recorded effort: at every instant, and
     /// efforts as the log has them, before any filter.
     pub unfiltered: f64,
-    /// The same of efforts as the log is read, behind its own filter, which is wider than the low-pass.
+    /// The error of unfiltered predictions against efforts as the log is read, after its own filter, which is wider.
     pub as_read: f64,
     /// Root mean square of measured minus predicted behind the low-pass, N m or N.
     pub residual: f64,
@@ -56,11 +56,11 @@ struct Sums {
     by_speed: [(u64, f64); 4],
 }
 
-/// Of numbers that pass by.
+/// The running deviation of a series of numbers.
 #[derive(Clone, Copy, Debug, Default)]
 struct Deviation {
     mean: f64,
-    /// Of differences from the mean.
+    /// The sum of squared differences from the mean.
     squares: f64,
 }
 
@@ -68,7 +68,7 @@ struct Deviation {
 type Pairs = Vec<Vec<(f64, f64)>>;
 
 impl Prediction {
-    /// By a robot with its rotors and friction. Both sides pass a low-pass of this cut-off, Hz.
+    /// Predicts by a robot with its rotors and friction. Both sides pass a low-pass of this cut-off, Hz.
     #[must_use]
     pub fn new(robot: &Robot, cutoff: Option<f64>) -> Self {
         let arm = CompiledArm::from_robot(&robot.clone().with_rotors());

@@ -1,4 +1,4 @@
-//! What is known before: the links of the file, or plausible bodies where the file has none.
+//! Prior knowledge: the links of the file, or plausible bodies where the file has none.
 
 use nalgebra::{DVector, Matrix4, Vector3};
 use rne_model::{Convention, Robot};
@@ -12,7 +12,7 @@ const MASS: f64 = 3.0;
 /// m: as thick as links are.
 const RADIUS: f64 = 0.06;
 /// Unknowns are kept finite by knowing them to so many times their scale.
-const FAR: f64 = 30.0;
+const PRIOR_DEVIATIONS: f64 = 30.0;
 /// s: no torque lags more.
 const DELAY: f64 = 0.05;
 
@@ -51,7 +51,7 @@ pub fn links(robot: &Robot) -> Vec<PriorLink> {
 
 /// A round rod from the link's own joint to the next one.
 fn plausible(robot: &Robot, joint: usize, mass: f64) -> Matrix4<f64> {
-    let along = extent(robot, joint);
+    let along = span(robot, joint);
     let centre = along * 0.5;
     let length = along.norm();
     let mut second = nalgebra::Matrix3::identity() * (RADIUS * RADIUS * 0.5);
@@ -68,7 +68,7 @@ fn plausible(robot: &Robot, joint: usize, mass: f64) -> Matrix4<f64> {
 }
 
 /// In the axes of the link frame, from its origin to the other end of the link.
-fn extent(robot: &Robot, joint: usize) -> Vector3<f64> {
+fn span(robot: &Robot, joint: usize) -> Vector3<f64> {
     match robot.convention {
         // frame i is at the far end; the near one is where the row came from
         Convention::Standard => {
@@ -90,14 +90,14 @@ fn extent(robot: &Robot, joint: usize) -> Vector3<f64> {
 /// How large unknowns are, in orders of magnitude.
 #[derive(Clone, Debug)]
 pub struct Scales {
-    /// Of each base parameter: what plausible links would give it.
+    /// The magnitude of each base parameter for plausible links.
     pub bases: DVector<f64>,
-    /// Of each joint's friction, N m or N.
+    /// The magnitude of each joint's friction, N m or N.
     pub friction: Vec<f64>,
 }
 
 impl Scales {
-    /// Of a robot, whose efforts have these deviations.
+    /// The scales of a robot whose efforts have these deviations.
     #[must_use]
     pub fn of(robot: &Robot, parameters: &Parameters, efforts: &[f64]) -> Self {
         let links = links(robot);
@@ -136,7 +136,7 @@ impl Scales {
             } else {
                 DELAY
             };
-            1.0 / (FAR * scale)
+            1.0 / (PRIOR_DEVIATIONS * scale)
         })
     }
 }

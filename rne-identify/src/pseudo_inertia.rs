@@ -13,7 +13,7 @@ use nalgebra::{Matrix4, SymmetricEigen};
 
 use crate::parameters::PER_LINK;
 
-/// Of (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz) about the origin of the link frame.
+/// The pseudo-inertia of (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz) about the origin of the link frame.
 #[must_use]
 pub fn of(parameters: &[f64; PER_LINK]) -> Matrix4<f64> {
     let [m, hx, hy, hz, xx, xy, xz, yy, yz, zz] = *parameters;

@@ -1,6 +1,6 @@
 //! Least squares over rows that pass by: the triangle of a QR factorisation, updated by blocks of rows.
 //!
-//! Of a matrix A with more rows than anybody keeps, the triangle R with RᵀR = AᵀA is all that least squares need, and
+//! The triangle R with RᵀR = AᵀA of a matrix A with too many rows to keep is all that least squares need, and
 //! it has the size of one row squared. Householder reflections fold a block of new rows into it; the condition of A is
 //! not squared, as normal equations would. Triangles of parts of the rows merge into that of all, in any order.
 //!
@@ -23,13 +23,13 @@ pub struct RFactor {
 }
 
 impl RFactor {
-    /// Of no rows with so many columns.
+    /// The triangle of no rows.
     #[must_use]
     pub fn new(columns: usize) -> Self {
         Self { triangle: DMatrix::zeros(columns, columns), rows: 0, weight: 0.0 }
     }
 
-    /// Of a triangle, row by row from the diagonal on; `None` when they are not as many as so many columns have.
+    /// Reads a triangle row by row from the diagonal on; `None` when the count of numbers does not fit `columns`.
     pub(crate) fn from_upper(columns: usize, rows: u64, weight: f64, upper: &[f64]) -> Option<Self> {
         if upper.len() != columns * (columns + 1) / 2 {
             return None;
@@ -119,7 +119,7 @@ impl RFactor {
         selected
     }
 
-    /// The same rows, each with this weight times its own.
+    /// Multiplies the weight of every row.
     pub(crate) fn weighted(&self, weight: f64) -> Self {
         Self { triangle: &self.triangle * weight.sqrt(), rows: self.rows, weight: self.weight * weight }
     }

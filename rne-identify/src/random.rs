@@ -14,7 +14,7 @@ impl Random {
         2.0 * self.0.f64() - 1.0
     }
 
-    /// Of the standard normal distribution, but for its far ends: the sum of twelve numbers of variance 1/12.
+    /// A nearly standard normal number, without its tails: the sum of twelve numbers of variance 1/12.
     pub(crate) fn bell(&mut self) -> f64 {
         0.5 * (0..12).map(|_| self.number()).sum::<f64>()
     }

@@ -25,13 +25,6 @@ pub(crate) struct Weights {
     pub(crate) slopes: Vec<f64>,
 }
 
-/// How far the low-pass of both sides reaches before and behind an instant, s, of a cut-off in Hz: there are no rows
-/// nearer to the ends of a run.
-#[must_use]
-pub fn reach(cutoff: f64) -> f64 {
-    Kernel::of_cutoff(cutoff).reach()
-}
-
 impl Kernel {
     /// The kernel that lets half the power pass at this frequency, Hz: |H(f)|² = exp(-4π² width² f²) = 1/2.
     pub(crate) fn of_cutoff(cutoff: f64) -> Self {

@@ -1,28 +1,27 @@
-//! A fit that a few stretches of time cannot spoil, to begin with.
+//! A fit that a few segments of time cannot spoil, to begin with.
 //!
 //! Rows are weighted by how far they are from the fit before, in deviations of its noise (P. J. Huber, Robust
 //! statistics, 1981). A push or a sensor's fault that lasts spoils that fit, and its noise so much that nothing seems
-//! to be far off any more. Stretches of time are kept apart anyway: those that stand out from the others count less
+//! to be far off any more. Segments of time are kept apart anyway: those that stand out from the others count less
 //! until the others agree, which takes no other pass over the logs. From there on rows are told from each other.
 
-use crate::fit::{Fit, effort};
-use crate::identification::scales;
 use crate::information::Information;
+use crate::least_squares::{LeastSquares, effort};
 use crate::r_factor::RFactor;
 use crate::structure::Structure;
 
-/// A stretch stands out where its residual is so many times the median one of its joint.
+/// A segment stands out where its residual is so many times the median one of its joint.
 const SUSPECT: f64 = 7.0;
-/// A stretch with more than so many times the median counts less.
+/// A segment with more than so many times the median counts less.
 const BEND: f64 = 2.0;
 const ROUNDS: usize = 10;
 /// Weights that change by less have settled.
 const SETTLED: f64 = 0.1;
-/// Of the effort, root mean square: what is left of a clean log is rounding.
+/// Residuals below this part of the effort (root mean square) count as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The fit of the stretches that agree with each other, where others stand out from them; `None` where none does.
-pub(crate) fn steady(structure: &Structure, information: &Information, fit: &Fit) -> Option<Fit> {
+/// The fit of the segments that agree with each other, where others stand out from them; `None` where none does.
+pub(crate) fn steady(structure: &Structure, information: &Information, fit: &LeastSquares) -> Option<LeastSquares> {
     let before = residuals(structure, information, fit);
     let is_suspect = |of_joint: &Vec<f64>| of_joint.iter().any(|left| *left > SUSPECT * median(of_joint));
     if !before.iter().any(is_suspect) {
@@ -32,7 +31,7 @@ pub(crate) fn steady(structure: &Structure, information: &Information, fit: &Fit
     let mut found = fit.clone();
     for _ in 0..ROUNDS {
         let weighted = information.weighted(&weights);
-        found = Fit::of(structure, &weighted, &scales(structure, &weighted));
+        found = LeastSquares::of(structure, &weighted, &weighted.scales(structure));
         let next = self::weights(&residuals(structure, information, &found));
         let pairs = weights.iter().flatten().zip(next.iter().flatten());
         let has_settled = pairs.into_iter().all(|(a, b)| (a - b).abs() <= SETTLED * a.max(*b));
@@ -44,11 +43,11 @@ pub(crate) fn steady(structure: &Structure, information: &Information, fit: &Fit
     Some(found)
 }
 
-/// By joint and stretch the root mean square of what a fit leaves, N m or N.
-fn residuals(structure: &Structure, information: &Information, fit: &Fit) -> Vec<Vec<f64>> {
+/// The root mean square of the residual of a fit for each joint and segment, N m or N.
+fn residuals(structure: &Structure, information: &Information, fit: &LeastSquares) -> Vec<Vec<f64>> {
     let total = information.total(structure);
     let of_joint = |joint: usize| {
-        let used = structure.used(joint, fit.reversals[joint]);
+        let used = structure.used(joint, fit.transitions[joint]);
         let unknowns = structure.unknowns(joint);
         let left = |factor: &RFactor| {
             let selected = factor.selected(&used);
@@ -60,8 +59,8 @@ fn residuals(structure: &Structure, information: &Information, fit: &Fit) -> Vec
             left.norm() / factor.weight().max(1.0).sqrt()
         };
         let effort = effort(&total[joint]);
-        let stretches = information.stretches.iter().filter_map(|stretch| stretch.get(joint));
-        stretches.map(|factor| left(factor).max(ROUNDING * effort)).collect()
+        let segments = information.segments.iter().filter_map(|segment| segment.get(joint));
+        segments.map(|factor| left(factor).max(ROUNDING * effort)).collect()
     };
     (0..structure.dof()).map(of_joint).collect()
 }
@@ -74,7 +73,7 @@ fn weights(residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
     residuals.iter().map(of_joint).collect()
 }
 
-/// Of one number at least; the lower one of two in the middle.
+/// The median of at least one number; the lower one of two in the middle.
 fn median(of: &[f64]) -> f64 {
     let mut sorted = of.to_vec();
     sorted.sort_by(f64::total_cmp);

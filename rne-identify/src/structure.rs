@@ -1,11 +1,13 @@
-//! What is asked of the logs: which parameters, which friction, which filter.
+//! The unknowns and the filter of an identification: which parameters, which friction, which low-pass.
 
+use rne_codegen::Parameter;
 use rne_machine::CompiledArm;
-use rne_model::{Link, Reversal, Robot};
+use rne_model::{FrictionTransition, JointKind, Link, Robot};
 
 use crate::parameters::Parameters;
+use crate::smoothing::Kernel;
 
-/// What to identify, and how.
+/// Options of an identification.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
@@ -35,13 +37,20 @@ impl Default for Options {
 }
 
 impl Options {
+    /// How far the low-pass of both sides reaches before and behind an instant, s: there are no rows nearer to the ends
+    /// of a run. `cutoff` is in Hz.
+    #[must_use]
+    pub fn filter_reach(cutoff: f64) -> f64 {
+        Kernel::of_cutoff(cutoff).reach()
+    }
+
     /// How Coulomb friction may change its sign; at once, where no way was offered.
     #[must_use]
-    pub fn reversals(&self) -> Vec<Reversal> {
-        let widths = self.widths.iter().map(|width| Reversal::Width(*width));
-        let all: Vec<Reversal> =
-            widths.chain(self.displacements.iter().map(|length| Reversal::Displacement(*length))).collect();
-        if all.is_empty() { vec![Reversal::Width(0.0)] } else { all }
+    pub fn transitions(&self) -> Vec<FrictionTransition> {
+        let widths = self.widths.iter().map(|width| FrictionTransition::Speed(*width));
+        let all: Vec<FrictionTransition> =
+            widths.chain(self.displacements.iter().map(|length| FrictionTransition::Displacement(*length))).collect();
+        if all.is_empty() { vec![FrictionTransition::Speed(0.0)] } else { all }
     }
 }
 
@@ -49,12 +58,12 @@ impl Options {
 #[derive(Clone, Debug)]
 pub struct Structure {
     pub(crate) options: Options,
-    pub(crate) reversals: Vec<Reversal>,
+    pub(crate) transitions: Vec<FrictionTransition>,
     pub(crate) parameters: Parameters,
     pub(crate) robot: Robot,
     /// The geometry alone.
     pub(crate) arm: CompiledArm,
-    /// Of each joint, the base parameters that its torque may depend on.
+    /// The base parameters that the torque of each joint may depend on.
     pub(crate) felt: Vec<Vec<usize>>,
 }
 
@@ -62,7 +71,7 @@ pub struct Structure {
 pub(crate) const FRICTION: usize = 3;
 
 impl Structure {
-    /// Of a robot's geometry; its links count as prior knowledge alone.
+    /// Sets up the equations of a robot's geometry; its links count as prior knowledge alone.
     #[must_use]
     pub fn new(robot: &Robot, options: Options) -> Self {
         let parameters = Parameters::of(robot, options.rotors);
@@ -76,8 +85,8 @@ impl Structure {
                 (0..parameters.rank()).filter(felt).collect()
             })
             .collect();
-        let reversals = options.reversals();
-        Self { parameters, robot: robot.clone(), arm: CompiledArm::from_robot(&bare), felt, options, reversals }
+        let transitions = options.transitions();
+        Self { parameters, robot: robot.clone(), arm: CompiledArm::from_robot(&bare), felt, options, transitions }
     }
 
     /// The base parameters.
@@ -86,7 +95,7 @@ impl Structure {
         &self.parameters
     }
 
-    /// What was asked for.
+    /// The options that it was made with.
     #[must_use]
     pub fn options(&self) -> &Options {
         &self.options
@@ -98,27 +107,39 @@ impl Structure {
         &self.robot
     }
 
+    /// The unit of a parameter: the rotor of a joint that slides resists as a mass does.
+    #[must_use]
+    pub fn unit(&self, parameter: Parameter) -> &'static str {
+        let slides = |joint: usize| self.robot.joints.get(joint).is_some_and(|it| it.row.kind == JointKind::Prismatic);
+        match parameter {
+            Parameter::Link(_, 0) => "kg",
+            Parameter::Link(_, 1..=3) => "kg m",
+            Parameter::Rotor(joint) if slides(joint) => "kg",
+            Parameter::Link(..) | Parameter::Rotor(_) => "kg m²",
+        }
+    }
+
     pub(crate) fn dof(&self) -> usize {
         self.robot.dof()
     }
 
     /// Columns of the rows of a joint: base parameters; viscous friction, then Coulomb's and the offset by
-    /// each reversal; the torque's slope; the torque.
+    /// each transition; the torque's slope; the torque.
     pub(crate) fn columns(&self, joint: usize) -> usize {
         self.felt[joint].len() + self.own_columns() + 1
     }
 
     pub(crate) fn own_columns(&self) -> usize {
-        let friction = if self.options.friction { 1 + 2 * self.reversals.len() } else { 0 };
+        let friction = if self.options.friction { 1 + 2 * self.transitions.len() } else { 0 };
         friction + usize::from(self.options.delay)
     }
 
-    /// The columns of a joint's rows that are used with the reversal of this index.
-    pub(crate) fn used(&self, joint: usize, reversal: usize) -> Vec<usize> {
+    /// The columns of a joint's rows that are used with the transition of this index.
+    pub(crate) fn used(&self, joint: usize, transition: usize) -> Vec<usize> {
         let felt = self.felt[joint].len();
         let mut used: Vec<usize> = (0..felt).collect();
         if self.options.friction {
-            used.extend([felt, felt + 1 + 2 * reversal, felt + 2 + 2 * reversal]);
+            used.extend([felt, felt + 1 + 2 * transition, felt + 2 + 2 * transition]);
         }
         if self.options.delay {
             used.push(felt + self.own_columns() - 1);

@@ -5,57 +5,60 @@ use std::fmt::Write as _;
 use rne_convert::robot_file;
 use rne_model::{JointKind, Robot, one_line};
 
-use crate::identification::{Identification, JointReport};
+use crate::identification::{Fit, Identification, JointReport};
 
 /// Begins a note on a joint.
 const NOT_EXCITED: &str = "- joint not excited: ";
 
-/// The text of the robot file; `logs` says in words from what it was identified.
-#[must_use]
-pub fn written(identification: &Identification, logs: &str) -> String {
-    let mut unknown = String::new();
-    for (report, joint) in identification.joints.iter().zip(&identification.robot.joints) {
-        if !report.is_excited() {
-            let _ = write!(unknown, "\n{NOT_EXCITED}{}", one_line(&joint.name));
-        }
-    }
-    let robot = described(&identification.robot, logs, &unknown);
-    let mut text = head(identification);
-    let mut joint: usize = 0;
-    for line in robot_file::write(&robot).lines() {
-        if line.starts_with("  - name:") {
-            joint += 1;
-        }
-        if let Some(report) = joint.checked_sub(1).and_then(|joint| identification.joints.get(joint)) {
-            let kind = identification.robot.joints[joint - 1].row.kind;
-            if line == "    link:" {
-                let _ = writeln!(text, "    # {}", of_link(identification, report, joint - 1));
-            } else if line.starts_with("    motor:")
-                && let Some(words) = of_motor(report, kind)
-            {
-                let _ = writeln!(text, "    # {words}");
+impl Identification {
+    /// The text of the robot file; `logs` says in words from what it was identified.
+    #[must_use]
+    pub fn robot_file(&self, logs: &str) -> String {
+        let mut unknown = String::new();
+        for (report, joint) in self.joints.iter().zip(&self.robot.joints) {
+            if !report.is_excited() {
+                let _ = write!(unknown, "\n{NOT_EXCITED}{}", one_line(&joint.name));
             }
         }
-        text.push_str(line);
-        text.push('\n');
+        let robot = described(&self.robot, logs, &unknown);
+        let mut text = head(self);
+        let mut joint: usize = 0;
+        for line in robot_file::write(&robot).lines() {
+            if line.starts_with("  - name:") {
+                joint += 1;
+            }
+            if let Some(report) = joint.checked_sub(1).and_then(|joint| self.joints.get(joint)) {
+                let kind = self.robot.joints[joint - 1].row.kind;
+                if line == "    link:" {
+                    let _ = writeln!(text, "    # {}", of_link(self, report, joint - 1));
+                } else if line.starts_with("    motor:")
+                    && let Some(words) = of_motor(report, kind)
+                {
+                    let _ = writeln!(text, "    # {words}");
+                }
+            }
+            text.push_str(line);
+            text.push('\n');
+        }
+        text
     }
-    text
+
+    /// The joints of which the notes of a robot file say that they were not excited when it was identified:
+    /// [`robot_file`](Self::robot_file) writes a line for each.
+    #[must_use]
+    pub fn not_excited(robot: &Robot) -> Vec<bool> {
+        let notes = robot.notes.as_deref().unwrap_or_default();
+        let named: Vec<&str> = notes.lines().filter_map(|line| line.trim().strip_prefix(NOT_EXCITED)).collect();
+        robot.joints.iter().map(|joint| named.iter().any(|name| *name == one_line(&joint.name))).collect()
+    }
 }
 
-/// The joints of which the notes of a robot file say that they were not excited when it was identified: `written` puts
-/// it there, a line for each.
-#[must_use]
-pub fn not_excited(robot: &Robot) -> Vec<bool> {
-    let notes = robot.notes.as_deref().unwrap_or_default();
-    let named: Vec<&str> = notes.lines().filter_map(|line| line.trim().strip_prefix(NOT_EXCITED)).collect();
-    robot.joints.iter().map(|joint| named.iter().any(|name| *name == one_line(&joint.name))).collect()
-}
-
-/// The text of the robot file of an identified robot, without deviations; `logs` says in words from what it was
-/// identified.
-#[must_use]
-pub fn written_robot(robot: &Robot, logs: &str) -> String {
-    robot_file::write(&described(robot, logs, ""))
+impl Fit {
+    /// The text of the robot file, without deviations; `logs` says in words from what it was identified.
+    #[must_use]
+    pub fn robot_file(&self, logs: &str) -> String {
+        robot_file::write(&described(&self.robot, logs, ""))
+    }
 }
 
 /// A robot with its source and notes, the latter with what is added.

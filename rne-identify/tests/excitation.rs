@@ -193,11 +193,11 @@ fn limits_hold_everywhere_and_motions_start_and_end_at_rest() {
             let now = state(motion, motion.period() * (f64::from(point) + 0.5) / f64::from(points));
             for (joint, limits) in limits.iter().enumerate() {
                 let [q, qd, qdd] = [0, 1, 2].map(|derivative: usize| now[derivative][joint]);
-                let extent = found.joints[joint].extent;
+                let bounds = found.joints[joint].bounds;
                 assert!(limits.position.0 <= q && q <= limits.position.1, "{q} of {limits:?}\n{text}");
                 assert!(qd.abs() <= limits.velocity && qdd.abs() <= limits.acceleration, "{qd} {qdd} {limits:?}");
-                assert!(extent.lower <= q && q <= extent.upper, "{q} {extent:?}");
-                assert!(qd.abs() <= extent.velocity && qdd.abs() <= extent.acceleration, "{extent:?}");
+                assert!(bounds.lower <= q && q <= bounds.upper, "{q} {bounds:?}");
+                assert!(qd.abs() <= bounds.velocity && qdd.abs() <= bounds.acceleration, "{bounds:?}");
             }
             if point % 5 == 0 {
                 let torques = arm.inverse_dynamics(&now[0], &now[1], &now[2]).unwrap();
@@ -211,7 +211,7 @@ fn limits_hold_everywhere_and_motions_start_and_end_at_rest() {
             }
         }
         // a motion, no rest
-        assert!(found.joints.iter().all(|used| used.extent.velocity > 1e-3 * used.limits.velocity), "{text}");
+        assert!(found.joints.iter().all(|used| used.bounds.velocity > 1e-3 * used.limits.velocity), "{text}");
     }
     assert!(limited > 1000, "{limited}");
 }

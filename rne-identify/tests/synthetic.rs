@@ -3,11 +3,11 @@
 use fastrand::Rng;
 use nalgebra::DVector;
 use rne_identify::{
-    Feasible, Fit, Information, MotionError, Options, Parameter, Structure, identify, not_excited, prediction_errors,
-    pseudo_inertia, scales, written,
+    Feasible, Identification, Information, LeastSquares, MotionError, Options, Parameter, Structure, identify,
+    prediction_errors, pseudo_inertia,
 };
 use rne_logs::Motion;
-use rne_model::{Friction, Reversal, Robot};
+use rne_model::{Friction, FrictionTransition, Robot};
 use rne_runtime::DynArm;
 
 /// Two bodies in three dimensions, with friction.
@@ -113,7 +113,7 @@ fn truth(structure: &Structure, robot: &Robot) -> DVector<f64> {
     DVector::from_vec(unknowns)
 }
 
-fn with_few_reversals(options: &mut Options) {
+fn with_few_transitions(options: &mut Options) {
     options.widths = vec![0.025, 0.05];
     options.displacements = vec![0.005];
 }
@@ -124,7 +124,7 @@ fn a_clean_log_gives_the_arm_back() {
     let mut rng = Rng::with_seed(3);
     let motion = log(&robot, &Sines::new(&mut rng, 2), 0.0, 4000, 200.0, CLEAN, &mut rng);
     let mut options = Options::default();
-    with_few_reversals(&mut options);
+    with_few_transitions(&mut options);
     options.delay = false;
     let found = identify(&robot, options, 1e-4, |take| take(&motion)).unwrap();
     let truth = truth(&found.structure, &robot);
@@ -133,7 +133,7 @@ fn a_clean_log_gives_the_arm_back() {
         assert!(base.is_excited(), "{}", base.name);
     }
     // the file says it again
-    let text = written(&found, "a made-up log");
+    let text = found.robot_file("a made-up log");
     let read = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}\n{text}"));
     assert_eq!(read.joints, found.robot.joints);
     assert!(read.joints.iter().all(rne_model::Joint::is_physical));
@@ -167,9 +167,9 @@ fn parts_in_any_order_are_the_whole() {
         one.absorb(&structure, &parts[part], None).unwrap();
         merged.merge(one);
     }
-    let of = |information: &Information| Fit::of(&structure, information, &scales(&structure, information));
+    let of = |information: &Information| LeastSquares::of(&structure, information, &information.scales(&structure));
     let (whole, merged) = (of(&whole), of(&merged));
-    assert_eq!(whole.reversals, merged.reversals);
+    assert_eq!(whole.transitions, merged.transitions);
     for (a, b) in whole.solution.iter().zip(merged.solution.iter()) {
         assert!((a - b).abs() <= 1e-10 * whole.solution.amax(), "{a} {b}");
     }
@@ -206,14 +206,14 @@ fn friction_that_remembers_is_found() {
     let mut options = Options::default();
     options.delay = false;
     let found = identify(&robot, options.clone(), 1e-4, |take| take(&motion)).unwrap();
-    let reversals: Vec<_> = found.joints.iter().map(|joint| joint.reversal.unwrap()).collect();
-    assert_eq!(reversals, [Reversal::Displacement(0.02), Reversal::Displacement(0.01)]);
+    let transitions: Vec<_> = found.joints.iter().map(|joint| joint.transition.unwrap()).collect();
+    assert_eq!(transitions, [FrictionTransition::Displacement(0.02), FrictionTransition::Displacement(0.01)]);
     let truth = truth(&found.structure, &robot);
     for (at, value) in truth.iter().enumerate() {
-        let error = found.fit.solution[at] - value;
+        let error = found.least_squares.solution[at] - value;
         assert!(error.abs() < 1e-6 * (1.0 + value.abs()), "{at}: {error}");
     }
-    let read = Robot::from_yaml(&written(&found, "a made-up log")).unwrap_or_else(|report| panic!("{report}"));
+    let read = Robot::from_yaml(&found.robot_file("a made-up log")).unwrap_or_else(|report| panic!("{report}"));
     assert_eq!(read.joints, found.robot.joints);
     for error in prediction_errors(&read, [&motion], Some(2.0)).unwrap() {
         assert!(error.error < 1e-4 && error.unfiltered < 1e-4, "{error:?}");
@@ -225,7 +225,7 @@ fn friction_that_remembers_is_found() {
     // and in noise it is found, too
     let (robot, noisy) = remembering([0.02, 0.01], 0.1);
     let found = identify(&robot, Options::default(), 1.0, |take| take(&noisy)).unwrap();
-    assert!(found.joints.iter().all(|joint| matches!(joint.reversal, Some(Reversal::Displacement(_)))));
+    assert!(found.joints.iter().all(|joint| matches!(joint.transition, Some(FrictionTransition::Displacement(_)))));
 }
 
 /// What is not excited is said by the file alone.
@@ -235,15 +235,15 @@ fn a_file_says_which_joints_were_not_excited() {
     let mut rng = Rng::with_seed(17);
     let mut motion = log(&robot, &Sines::new(&mut rng, 2), 0.0, 4000, 200.0, CLEAN, &mut rng);
     let plain = identify(&robot, Options::default(), 1.0, |take| take(&motion)).unwrap();
-    let read = Robot::from_yaml(&written(&plain, "a made-up log")).unwrap_or_else(|report| panic!("{report}"));
-    assert_eq!(not_excited(&read), [false, false]);
+    let read = Robot::from_yaml(&plain.robot_file("a made-up log")).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(Identification::not_excited(&read), [false, false]);
     // noise where there was a torque
     motion.tau[1] = (0..4000).map(|_| gaussian(&mut rng)).collect();
     let found = identify(&robot, Options::default(), 1.0, |take| take(&motion)).unwrap();
     assert!(!found.joints[1].is_excited());
-    let read = Robot::from_yaml(&written(&found, "a made-up log")).unwrap_or_else(|report| panic!("{report}"));
-    assert_eq!(not_excited(&read), [false, true]);
-    assert_eq!(not_excited(&robot), [false, false]);
+    let read = Robot::from_yaml(&found.robot_file("a made-up log")).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(Identification::not_excited(&read), [false, true]);
+    assert_eq!(Identification::not_excited(&robot), [false, false]);
 }
 
 fn joined(parts: &[Motion]) -> Motion {
@@ -274,10 +274,10 @@ fn bodies_are_the_best_ones() {
     let structure = Structure::new(&robot, options);
     let mut information = Information::new(&structure);
     information.absorb(&structure, &motion, None).unwrap();
-    let scales = scales(&structure, &information);
-    let fit = Fit::of(&structure, &information, &scales);
-    let pull = 1e-3;
-    let found = Feasible::of(&structure, &fit, &scales, pull);
+    let scales = information.scales(&structure);
+    let fit = LeastSquares::of(&structure, &information, &scales);
+    let regularization = 1e-3;
+    let found = Feasible::of(&structure, &fit, &scales, regularization);
     assert!(found.certificate.margin > 0.0 && found.certificate.decrement < 1e-8, "{:?}", found.certificate);
     assert!(found.certificate.misfit >= found.certificate.least_misfit - 1e-9);
     // the gradient of the squares by the base parameters, from values of the misfit alone
@@ -287,13 +287,13 @@ fn bodies_are_the_best_ones() {
     let units = pseudo_inertia::units();
     for (link, pseudo) in found.links.iter().enumerate() {
         let inverse = pseudo.try_inverse().unwrap();
-        let multiplier = (inverse - priors[link].pseudo_inertia.try_inverse().unwrap()) * pull;
-        assert!((inverse * pull).symmetric_eigenvalues().min() > 0.0);
+        let multiplier = (inverse - priors[link].pseudo_inertia.try_inverse().unwrap()) * regularization;
+        assert!((inverse * regularization).symmetric_eigenvalues().min() > 0.0);
         for (index, unit) in units.iter().enumerate() {
             let column = parameters.regrouping.column(link * 10 + index);
             let of_squares: f64 = column.iter().zip(gradient.iter()).map(|(factor, slope)| factor * slope).sum();
             let of_multiplier = (multiplier * unit).trace();
-            let scale = 1.0 + of_squares.abs() + (inverse * unit).trace().abs() * pull;
+            let scale = 1.0 + of_squares.abs() + (inverse * unit).trace().abs() * regularization;
             assert!((of_squares - of_multiplier).abs() < 1e-5 * scale, "{link} {index}: {of_squares} {of_multiplier}");
         }
     }
@@ -318,10 +318,10 @@ fn five_million_states_need_no_more_memory() {
         sizes.push(information.size());
     }
     assert_eq!(information.states(), 5_000_000);
-    // between half of the stretches that are kept at most, and all
+    // between half of the segments that are kept at most, and all
     let (least, most) = (sizes.iter().min().unwrap(), sizes.iter().max().unwrap());
     assert!(most <= &(2 * least), "{sizes:?}");
-    let fit = Fit::of(&structure, &information, &scales(&structure, &information));
+    let fit = LeastSquares::of(&structure, &information, &information.scales(&structure));
     let truth = truth(&structure, &robot);
     for (at, value) in truth.iter().enumerate().take(structure.parameters().rank()) {
         assert!((fit.solution[at] - value).abs() < 6.0 * fit.deviation(at) + 1e-4, "{at}");
@@ -332,7 +332,7 @@ fn five_million_states_need_no_more_memory() {
 fn coverage(trials: u64) -> Vec<f64> {
     let robot = arm();
     let mut options = Options::default();
-    with_few_reversals(&mut options);
+    with_few_transitions(&mut options);
     options.cutoff = Some(4.0);
     let structure = Structure::new(&robot, options);
     let truth = truth(&structure, &robot);
@@ -342,12 +342,12 @@ fn coverage(trials: u64) -> Vec<f64> {
         let sines = Sines::new(&mut rng, 2);
         let spoilt = Spoilt { noise: 0.5, steps: Some((2e-5, 0.05)), delay: 0.004 };
         let motion = log(&robot, &sines, 0.0, 6000, 200.0, spoilt, &mut rng);
-        let mut fit: Option<Fit> = None;
+        let mut fit: Option<LeastSquares> = None;
         for _ in 0..3 {
             let mut information = Information::new(&structure);
             let weighting = fit.as_ref().map(|fit| fit.weighting(&structure));
             information.absorb(&structure, &motion, weighting.as_ref()).unwrap();
-            fit = Some(Fit::of(&structure, &information, &scales(&structure, &information)));
+            fit = Some(LeastSquares::of(&structure, &information, &information.scales(&structure)));
         }
         let fit = fit.unwrap();
         for (at, inside) in inside.iter_mut().enumerate() {

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use nalgebra::DVector;
-use rne_identify::{Information, OnePass, Options, Structure, written_robot};
+use rne_identify::{Fit, Information, Options, Structure};
 use rne_logs::Motion;
 use rne_model::Robot;
 use rne_runtime::DynArm;
@@ -54,7 +54,7 @@ fn truth(structure: &Structure, robot: &Robot) -> Vec<f64> {
 }
 
 /// The same, as it was found, with deviations.
-fn found(one: &OnePass) -> Vec<(f64, f64)> {
+fn found(one: &Fit) -> Vec<(f64, f64)> {
     let bases = one.bases.iter().map(|base| (base.value, base.deviation));
     bases.chain(one.friction.iter().flatten().copied()).collect()
 }
@@ -78,12 +78,12 @@ fn sixty_four_shuffled_parts_are_the_whole_in_every_respect() {
     }
     assert_eq!((whole.states(), merged.states(), merged.rows()), (64 * 70, 64 * 70, 64 * 70));
     assert_eq!(whole.size(), merged.size());
-    let [whole, merged] = [whole, merged].map(|information| OnePass::new(&structure, &information, 1.0));
+    let [whole, merged] = [whole, merged].map(|information| Fit::new(&structure, &information, 1.0));
     for (one, other) in found(&whole).iter().zip(found(&merged)) {
         assert!((one.0 - other.0).abs() <= 1e-10 * one.0.abs().max(1.0), "{one:?} {other:?}");
         assert!((one.1 - other.1).abs() <= 1e-10 * one.1, "{one:?} {other:?}");
     }
-    let text = written_robot(&merged.robot, "a table");
+    let text = merged.robot_file("a table");
     assert_eq!(Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}\n{text}")).joints, merged.robot.joints);
 }
 
@@ -96,9 +96,9 @@ fn too_few_rows_and_zeros_excite_nothing() {
     let identified = |motion: &Motion| {
         let mut information = Information::unordered(&structure);
         information.absorb(&structure, motion, None).unwrap();
-        OnePass::new(&structure, &information, 1.0)
+        Fit::new(&structure, &information, 1.0)
     };
-    let excited = |one: &OnePass| {
+    let excited = |one: &Fit| {
         let bases = one.bases.iter().filter(|base| base.is_excited()).count();
         bases + (0..2).filter(|joint| one.is_friction_excited(*joint)).count()
     };
@@ -137,11 +137,11 @@ fn deviations_of_white_noise_are_those_of_many_tables() {
         let mut rng = Rng::with_seed(300 + table);
         let mut information = Information::unordered(&structure);
         information.absorb(&structure, &states(&robot, 400, 0.5, &mut rng), None).unwrap();
-        let one = OnePass::new(&structure, &information, 1e-6);
+        let one = Fit::new(&structure, &information, 1e-6);
         for (at, (found, truth)) in found(&one).iter().zip(&truth).enumerate().take(bases) {
-            assert!((one.fit.half_interval(at) / found.1 - 1.96).abs() < 0.01);
+            assert!((one.least_squares.half_interval(at) / found.1 - 1.96).abs() < 0.01);
             all += 1;
-            inside += i32::from((found.0 - truth).abs() <= one.fit.half_interval(at));
+            inside += i32::from((found.0 - truth).abs() <= one.least_squares.half_interval(at));
         }
     }
     let part = f64::from(inside) / f64::from(all);

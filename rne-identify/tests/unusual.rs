@@ -1,7 +1,9 @@
 //! Logs and options that leave little to identify: what is found is said to be so little, or why nothing is found.
 
 use fastrand::Rng;
-use rne_identify::{BaseReport, Identification, MotionError, Options, Parameter, identify, prediction_errors, written};
+use rne_identify::{
+    BaseReport, Identification, MotionError, Options, Parameter, Structure, identify, prediction_errors,
+};
 use rne_logs::Motion;
 use rne_model::Robot;
 use rne_runtime::DynArm;
@@ -93,7 +95,7 @@ fn what_tells_nothing_is_refused() {
     motion.tau[1].fill(0.0);
     let found = found(&robot, options(), &motion).unwrap();
     assert!(found.bases.iter().all(|base| base.value.is_finite() && base.deviation.is_finite()));
-    Robot::from_yaml(&written(&found, "a made-up log")).unwrap_or_else(|report| panic!("{report}"));
+    Robot::from_yaml(&found.robot_file("a made-up log")).unwrap_or_else(|report| panic!("{report}"));
 }
 
 /// An arm that stands still tells nothing, with noise and without; and its friction is no guess.
@@ -148,7 +150,7 @@ fn a_dead_channel_is_of_no_account() {
         for (base, truth) in found.bases.iter().zip(truth.iter()).filter(|(base, _)| base.is_excited()) {
             assert!((base.value - truth).abs() < 5.0 * base.deviation + 1e-6, "{noise} {base:?} {truth}");
         }
-        let text = written(&found, "a log");
+        let text = found.robot_file("a log");
         assert!(text.contains("joint not excited: its effort does not change but by noise"), "{text}");
     }
 }
@@ -165,7 +167,7 @@ fn wrong_signs_and_large_offsets_are_found() {
     let of_wrong = found(&robot, options(), &wrong).unwrap();
     assert!(of_wrong.joints[0].is_unexplained() && !of_wrong.joints[0].is_excited());
     assert!(!of_wrong.joints[1].is_unexplained());
-    assert!(written(&of_wrong, "a log").contains("joint not excited: no model explains 1"));
+    assert!(of_wrong.robot_file("a log").contains("joint not excited: no model explains 1"));
     // Coulomb friction is 1.3, its offset 0.2
     for (more, said) in [(0.5, None), (-1.3, None), (2.0, Some(2.2)), (-3.0, Some(-2.8))] {
         let mut motion = right.clone();
@@ -192,10 +194,11 @@ fn units_are_those_of_the_joint() {
     let slides = Robot::from_yaml(&file().replacen("revolute", "prismatic", 1));
     let slides = slides.unwrap_or_else(|report| panic!("{report}"));
     for (robot, units) in [(arm(), ["kg m²", "kg m²"]), (slides, ["kg", "kg m²"])] {
+        let structure = Structure::new(&robot, options());
         for (joint, unit) in units.into_iter().enumerate() {
-            assert_eq!(rne_identify::unit(&robot, Parameter::Rotor(joint)), unit);
+            assert_eq!(structure.unit(Parameter::Rotor(joint)), unit);
         }
-        assert_eq!(rne_identify::unit(&robot, Parameter::Link(0, 9)), "kg m²");
+        assert_eq!(structure.unit(Parameter::Link(0, 9)), "kg m²");
     }
 }
 

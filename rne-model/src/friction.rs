@@ -21,19 +21,19 @@ const SLIPPING: f64 = 0.05;
 
 /// How Coulomb friction changes its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reversal {
+pub enum FrictionTransition {
     /// About a speed, rad/s or m/s.
-    Width(f64),
+    Speed(f64),
     /// Over a displacement after the joint turned, rad or m.
     Displacement(f64),
 }
 
-impl Reversal {
-    /// As a robot file has it; at once where it says nothing.
+impl FrictionTransition {
+    /// The transition that the robot file gives; without one the sign changes at once.
     #[must_use]
     pub fn of(joint: &Joint) -> Self {
-        let width = Self::Width(joint.coulomb_width.unwrap_or(0.0));
-        joint.coulomb_displacement.map_or(width, Self::Displacement)
+        let speed = Self::Speed(joint.coulomb_width.unwrap_or(0.0));
+        joint.coulomb_displacement.map_or(speed, Self::Displacement)
     }
 }
 
@@ -42,11 +42,11 @@ impl Reversal {
 pub struct Friction {
     /// N m s/rad, N m: at the joint; viscous, Coulomb's, offset.
     parts: [f64; 3],
-    sign: ReversalSign,
+    sign: TransitionSign,
 }
 
 impl Friction {
-    /// Of a joint that was nowhere yet.
+    /// The friction of a joint before its first state.
     #[must_use]
     pub fn of(joint: &Joint) -> Self {
         let motor = joint.motor.unwrap_or(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.0, coulomb: [0.0; 2] });
@@ -54,15 +54,15 @@ impl Friction {
         let [forward, backward] = motor.coulomb;
         let parts =
             [ratio * ratio * motor.viscous, 0.5 * ratio * (forward - backward), 0.5 * ratio * (forward + backward)];
-        Self { parts, sign: ReversalSign::new(Reversal::of(joint)) }
+        Self { parts, sign: TransitionSign::new(FrictionTransition::of(joint)) }
     }
 
     /// The friction of a joint at a speed that it has had for long, N m or N.
     #[must_use]
     pub fn at(joint: &Joint, speed: f64) -> f64 {
         let mut friction = Self::of(joint);
-        if matches!(friction.sign.reversal, Reversal::Displacement(_)) {
-            friction.sign.reversal = Reversal::Width(0.0);
+        if matches!(friction.sign.transition, FrictionTransition::Displacement(_)) {
+            friction.sign.transition = FrictionTransition::Speed(0.0);
         }
         friction.next(0.0, speed)
     }
@@ -71,31 +71,31 @@ impl Friction {
     pub fn next(&mut self, position: f64, speed: f64) -> f64 {
         let [viscous, coulomb, offset] = self.parts;
         let sign = self.sign.next(position, speed);
-        let is_nowhere = speed == 0.0 && self.sign.reversal == Reversal::Width(0.0);
+        let is_nowhere = speed == 0.0 && self.sign.transition == FrictionTransition::Speed(0.0);
         viscous * speed + coulomb * sign + if is_nowhere { 0.0 } else { offset }
     }
 }
 
 /// The odd part of Coulomb friction, -1 to 1, from state to state.
 #[derive(Clone, Copy, Debug)]
-pub struct ReversalSign {
-    reversal: Reversal,
+pub struct TransitionSign {
+    transition: FrictionTransition,
     /// The position before, and what it was there.
     before: Option<(f64, f64)>,
 }
 
-impl ReversalSign {
-    /// Of a joint that was nowhere yet.
+impl TransitionSign {
+    /// The sign of a joint before its first state.
     #[must_use]
-    pub fn new(reversal: Reversal) -> Self {
-        Self { reversal, before: None }
+    pub fn new(transition: FrictionTransition) -> Self {
+        Self { transition, before: None }
     }
 
-    /// At the next state: a position and a speed.
+    /// Returns the sign at the next state, given by a position and a speed.
     pub fn next(&mut self, position: f64, speed: f64) -> f64 {
-        let length = match self.reversal {
-            Reversal::Width(width) => return smooth_sign(speed, width),
-            Reversal::Displacement(length) => length,
+        let length = match self.transition {
+            FrictionTransition::Speed(width) => return smooth_sign(speed, width),
+            FrictionTransition::Displacement(length) => length,
         };
         let sign = match self.before {
             None => smooth_sign(speed, SLIPPING),
@@ -119,11 +119,11 @@ fn smooth_sign(speed: f64, width: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// After a reversal the friction is 1 - 2 exp(-x / ℓ), however finely the way is sampled.
+    /// After a transition the friction is 1 - 2 exp(-x / ℓ), however finely the way is sampled.
     #[test]
-    fn a_reversal_takes_its_displacement() {
+    fn a_transition_takes_its_displacement() {
         for steps in [1, 10, 1000] {
-            let mut sign = ReversalSign::new(Reversal::Displacement(0.01));
+            let mut sign = TransitionSign::new(FrictionTransition::Displacement(0.01));
             let mut last = 0.0;
             for k in 0..=100 {
                 last = sign.next(-0.01 * f64::from(k), -1.0);
@@ -166,10 +166,10 @@ joints:
 
     #[test]
     fn what_stands_still_keeps_its_friction() {
-        let mut sign = ReversalSign::new(Reversal::Displacement(0.002));
+        let mut sign = TransitionSign::new(FrictionTransition::Displacement(0.002));
         let begun = sign.next(0.3, 0.05);
         assert!((begun - 0.5_f64.sqrt()).abs() < 1e-15);
         assert_eq!(sign.next(0.3, 0.0), begun);
-        assert_eq!(ReversalSign::new(Reversal::Width(0.0)).next(1.0, -3.0), -1.0);
+        assert_eq!(TransitionSign::new(FrictionTransition::Speed(0.0)).next(1.0, -3.0), -1.0);
     }
 }

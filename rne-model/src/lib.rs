@@ -105,7 +105,7 @@ pub use expression::number;
 #[cfg(feature = "std")]
 pub use formula::Formula;
 #[cfg(feature = "std")]
-pub use friction::{Friction, Reversal, ReversalSign};
+pub use friction::{Friction, FrictionTransition, TransitionSign};
 #[cfg(feature = "std")]
 pub use golden::{GoldenFile, GoldenState};
 #[cfg(feature = "std")]

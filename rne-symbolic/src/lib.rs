@@ -1,7 +1,7 @@
 //! The dynamics of an arm in closed form, as a lecture writes them: τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ).
 //!
-//! The compiler's seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are the
-//! parameters of the robot file and the other numbers of its table. The torques are sorted into the mass matrix,
+//! The compiler's seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are
+//! the parameters of the robot file and the other numbers of its table. The torques are sorted into the mass matrix,
 //! Christoffel's symbols and gravity, held against Lagrange's equations, and collected for reading. What is printed is
 //! multiplied out again and must be what was derived. Data in, data out: nothing here opens a file or prints.
 //!

@@ -7,10 +7,10 @@ use rne_logs::median;
 use crate::report::BOUND;
 use crate::{Settings, Signals, Test, WatchError, watch};
 
-/// By so much deviations are raised at a time.
+/// The factor by which deviations are raised at a time.
 const RAISE: f64 = 1.1;
 
-/// Of a stretch that tells what noise is: so many blocks at least.
+/// Minimum number of blocks in a segment that noise is estimated from.
 const BLOCKS: usize = 20;
 
 /// An autocorrelation below this is none.
@@ -30,7 +30,7 @@ const LEAST: f64 = 1e-6;
 
 /// A signal while nothing happens, N m or N.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
+pub struct NoiseFloor {
     /// Its median.
     pub mean: f64,
     /// The standard deviation of its means over blocks.
@@ -39,8 +39,8 @@ pub struct Level {
     pub block: f64,
 }
 
-/// How wrong the model of a joint is, and what was usual along the motion that the levels are of: where a motion is not
-/// as usual, the levels are others.
+/// How wrong the model of a joint is, and what was usual along the motion of the noise floors: where a motion is not
+/// as usual, the floors are others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ModelError {
     /// The deviation of its error, as a part of its [terms](Signals::terms): where they are larger the torque is wrong
@@ -62,29 +62,29 @@ impl ModelError {
     }
 }
 
-/// The levels of the signals of every joint, base to tip.
+/// The noise floors of the signals of every joint, base to tip.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Baseline {
-    /// Of the residual.
-    pub residual: Vec<Level>,
-    /// Of the residual in the direction of motion.
-    pub friction: Vec<Level>,
-    /// Of the observer, sample by sample.
-    pub external: Vec<Level>,
-    /// Of the model.
+    /// The noise floor of the residual.
+    pub residual: Vec<NoiseFloor>,
+    /// The noise floor of the residual in the direction of motion.
+    pub friction: Vec<NoiseFloor>,
+    /// The noise floor of the observer, sample by sample.
+    pub external: Vec<NoiseFloor>,
+    /// The error of the model.
     pub model: Vec<ModelError>,
 }
 
 impl Baseline {
-    /// From a quiet stretch of signals, in samples. It ought to be like what will be watched: an arm that stands still
+    /// From a quiet segment of signals, in samples. It ought to be like what will be watched: an arm that stands still
     /// tells nothing of what its model gets wrong in motion.
     ///
     /// Medians and median deviations are taken, which a knock does not change; a deviation is raised by two of its own
-    /// standard errors, so that a short stretch makes cautious thresholds.
+    /// standard errors, so that a short segment makes cautious thresholds.
     ///
     /// # Errors
-    /// When the stretch is too short.
+    /// When the segment is too short.
     pub fn of(signals: &Signals, quiet: Range<usize>) -> Result<Self, WatchError> {
         let quiet = quiet.start.min(signals.time.len())..quiet.end.min(signals.time.len());
         if quiet.len() < BLOCKS {
@@ -100,23 +100,23 @@ impl Baseline {
             let known: Vec<f64> = known.into_iter().map(|(_, number)| number).collect();
             // of an arm that never leaves its place all is known that there is
             let of_residual = if known.len() < BLOCKS { &signals.residual[joint][quiet.clone()] } else { &known };
-            let level = level(of_residual, signals.period, least);
-            let moving = along_motion(signals, joint, level.mean, quiet.clone());
+            let floor = noise_floor(of_residual, signals.period, least);
+            let moving = along_motion(signals, joint, floor.mean, quiet.clone());
             let moving: Vec<f64> = moving.into_iter().map(|(_, number)| number).collect();
             // of an arm that stands still: the same noise
             friction.push(if moving.len() < BLOCKS {
-                Level { mean: 0.0, ..level }
+                NoiseFloor { mean: 0.0, ..floor }
             } else {
-                let found = self::level(&moving, signals.period, least);
-                Level { deviation: found.deviation.max(scaled(&level, &found)), ..found }
+                let found = noise_floor(&moving, signals.period, least);
+                NoiseFloor { deviation: found.deviation.max(scaled(&floor, &found)), ..found }
             });
             let usual = |lists: &[Vec<f64>]| median(lists[joint][quiet.clone()].to_vec());
             model.push(ModelError {
-                part: WrongParts::new(signals, joint, level.mean, quiet.clone()).deviation(),
+                part: WrongParts::new(signals, joint, floor.mean, quiet.clone()).deviation(),
                 terms: usual(&signals.terms),
                 inertia: usual(&signals.inertia),
             });
-            residual.push(level);
+            residual.push(floor);
             let settled: Vec<usize> = quiet.clone().filter(|&at| signals.settled[at]).collect();
             if settled.len() < BLOCKS {
                 return Err(WatchError::TooFew { found: settled.len(), needed: BLOCKS });
@@ -127,31 +127,31 @@ impl Baseline {
             // neighbours know of each other: fewer tell of the deviation
             let alone = seen.len() / remembered(&seen).max(1);
             let (mean, deviation) = spread(&seen, alone, least);
-            external.push(Level { mean, deviation, block: 0.0 });
+            external.push(NoiseFloor { mean, deviation, block: 0.0 });
         }
         Ok(Self { residual, friction, external, model })
     }
 
-    /// What several stretches have in common: the medians of their levels, which a stretch in which something happens
-    /// does not change. `None` of none.
+    /// The medians of several baselines, which a segment in which something happens does not change. `None` when there
+    /// are no baselines.
     #[must_use]
     pub fn typical(baselines: &[Self]) -> Option<Self> {
         let of_model = |all: &[ModelError]| {
             let of = |each: fn(&ModelError) -> f64| median(all.iter().map(each).collect());
             ModelError { part: of(|of| of.part), terms: of(|of| of.terms), inertia: of(|of| of.inertia) }
         };
-        Self::of_levels(baselines, of_model, |levels| {
-            let of = |each: fn(&Level) -> f64| median(levels.iter().map(each).collect());
-            Level {
-                mean: of(|level| level.mean),
-                deviation: of(|level| level.deviation),
-                block: of(|level| level.block),
+        Self::of_floors(baselines, of_model, |floors| {
+            let of = |each: fn(&NoiseFloor) -> f64| median(floors.iter().map(each).collect());
+            NoiseFloor {
+                mean: of(|floor| floor.mean),
+                deviation: of(|floor| floor.deviation),
+                block: of(|floor| floor.block),
             }
         })
     }
 
-    /// What covers several stretches in which nothing happens: means of all of them are within its deviation, and no
-    /// deviation or block is larger. `None` of none.
+    /// The baseline that covers several segments in which nothing happens: the means of all of them are within its
+    /// deviation, and no deviation or block is larger. `None` when there are no baselines.
     #[must_use]
     pub fn covering(baselines: &[Self]) -> Option<Self> {
         let of_model = |all: &[ModelError]| {
@@ -159,32 +159,32 @@ impl Baseline {
             let part = -least(|of| -of.part);
             ModelError { part, terms: least(|of| of.terms), inertia: least(|of| of.inertia) }
         };
-        Self::of_levels(baselines, of_model, |levels| {
-            let most = |of: fn(&Level) -> f64| levels.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-            let (low, high) = (-most(|level| -level.mean), most(|level| level.mean));
-            let deviation = most(|level| level.deviation) + 0.5 * (high - low);
-            Level { mean: 0.5 * (low + high), deviation, block: most(|level| level.block) }
+        Self::of_floors(baselines, of_model, |floors| {
+            let most = |of: fn(&NoiseFloor) -> f64| floors.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+            let (low, high) = (-most(|floor| -floor.mean), most(|floor| floor.mean));
+            let deviation = most(|floor| floor.deviation) + 0.5 * (high - low);
+            NoiseFloor { mean: 0.5 * (low + high), deviation, block: most(|floor| floor.block) }
         })
     }
 
-    /// Deviations of the levels that are so many times as large, and so many times those of the model's error.
+    /// Multiplies the deviations of the noise floors, and of the model's error.
     #[must_use]
-    pub fn widened(mut self, levels: f64, model: f64) -> Self {
-        for level in [&mut self.residual, &mut self.friction, &mut self.external].into_iter().flatten() {
-            level.deviation *= levels;
+    pub fn widened(mut self, floors: f64, model: f64) -> Self {
+        for floor in [&mut self.residual, &mut self.friction, &mut self.external].into_iter().flatten() {
+            floor.deviation *= floors;
         }
         self.model.iter_mut().for_each(|of| of.part *= model);
         self
     }
 
-    fn of_levels(
+    fn of_floors(
         baselines: &[Self],
         error: impl Fn(&[ModelError]) -> ModelError,
-        one: impl Fn(&[Level]) -> Level,
+        one: impl Fn(&[NoiseFloor]) -> NoiseFloor,
     ) -> Option<Self> {
         let dof = baselines.iter().map(|baseline| baseline.residual.len()).min()?;
-        let of = |levels: fn(&Self) -> &[Level]| -> Vec<Level> {
-            (0..dof).map(|joint| one(&baselines.iter().map(|of| levels(of)[joint]).collect::<Vec<_>>())).collect()
+        let of = |floors: fn(&Self) -> &[NoiseFloor]| -> Vec<NoiseFloor> {
+            (0..dof).map(|joint| one(&baselines.iter().map(|of| floors(of)[joint]).collect::<Vec<_>>())).collect()
         };
         let errors = |joint: usize| baselines.iter().map(|of| of.model[joint]).collect::<Vec<_>>();
         let model = (0..dof).map(|joint| error(&errors(joint))).collect();
@@ -192,7 +192,7 @@ impl Baseline {
         Some(Self { residual, friction, external, model })
     }
 
-    /// Takes the largest error of the model in a stretch in which nothing happens for three of its deviations, and
+    /// Takes the largest error of the model in a segment in which nothing happens for three of its deviations, and
     /// raises the deviations of what would be an event there, until nothing is: a model's errors are no noise that is
     /// normal.
     ///
@@ -213,12 +213,12 @@ impl Baseline {
             raised.sort_unstable();
             raised.dedup();
             for (joint, test) in raised {
-                let levels = match test {
+                let floors = match test {
                     Test::External => &mut self.external,
                     Test::Offset => &mut self.residual,
                     Test::Friction => &mut self.friction,
                 };
-                levels[joint].deviation *= RAISE;
+                floors[joint].deviation *= RAISE;
                 self.model[joint].part *= RAISE;
             }
         }
@@ -228,9 +228,9 @@ impl Baseline {
     /// of all noise. Lists run from base to tip.
     #[must_use]
     pub fn white(efforts: &[f64], external: &[f64]) -> Self {
-        let of = |deviations: &[f64]| -> Vec<Level> {
-            let level = |&deviation: &f64| Level { mean: 0.0, deviation, block: 0.0 };
-            deviations.iter().map(level).collect()
+        let of = |deviations: &[f64]| -> Vec<NoiseFloor> {
+            let floor = |&deviation: &f64| NoiseFloor { mean: 0.0, deviation, block: 0.0 };
+            deviations.iter().map(floor).collect()
         };
         let model = vec![ModelError::default(); efforts.len()];
         Self { residual: of(efforts), friction: of(efforts), external: of(external), model }
@@ -243,16 +243,16 @@ pub(crate) fn known(signals: &Signals, joint: usize, samples: Range<usize>) -> V
     samples.filter(|&at| !creeps[at]).map(|at| (at, residual[at])).collect()
 }
 
-/// The residual of a joint, less its level, in the direction of motion: where it moves, with the samples.
+/// The residual of a joint, less its floor, in the direction of motion: where it moves, with the samples.
 pub(crate) fn along_motion(signals: &Signals, joint: usize, mean: f64, samples: Range<usize>) -> Vec<(usize, f64)> {
     let (residual, direction) = (&signals.residual[joint], &signals.direction[joint]);
     let moving = samples.filter(|&at| direction[at] != 0.0 && !signals.creeps[joint][at]);
     moving.map(|at| (at, (residual[at] - mean) * direction[at])).collect()
 }
 
-/// By which parts of its terms a model is wrong.
+/// The relative errors of a model's terms.
 struct WrongParts {
-    /// Squares, growing: of means of the residual over stretches that are so short that the model's error does not
+    /// Squares, growing: of means of the residual over segments that are so short that the model's error does not
     /// change. Each is the product of its two halves, whose noise is not the same: of noise alone half are negative.
     squares: Vec<f64>,
     /// So many of them know nothing of each other.
@@ -270,10 +270,10 @@ impl WrongParts {
             samples.iter().map(each).sum::<f64>() / count
         };
         let (mut squares, mut signed) = (Vec::new(), Vec::new());
-        for stretch in known.chunks_exact(2 * half) {
+        for segment in known.chunks_exact(2 * half) {
             let off = |(_, residual): &(usize, f64)| residual - mean;
-            let (a, b) = (of(&stretch[..half], &off), of(&stretch[half..], &off));
-            let terms = of(stretch, &|(at, _)| signals.terms[joint][*at]);
+            let (a, b) = (of(&segment[..half], &off), of(&segment[half..], &off));
+            let terms = of(segment, &|(at, _)| signals.terms[joint][*at]);
             if terms > 0.0 {
                 squares.push(a * b / (terms * terms));
                 signed.push(0.5 * (a + b) / terms);
@@ -308,20 +308,20 @@ impl WrongParts {
     }
 }
 
-/// The deviation of a level for blocks of another one: of white noise, it falls with the root of their length.
-fn scaled(level: &Level, other: &Level) -> f64 {
-    if level.block == 0.0 || other.block == 0.0 {
+/// The deviation of a floor for blocks of another one: of white noise, it falls with the root of their length.
+fn scaled(floor: &NoiseFloor, other: &NoiseFloor) -> f64 {
+    if floor.block == 0.0 || other.block == 0.0 {
         return 0.0;
     }
-    level.deviation * (level.block / other.block).sqrt()
+    floor.deviation * (floor.block / other.block).sqrt()
 }
 
-fn level(numbers: &[f64], period: f64, least: f64) -> Level {
+fn noise_floor(numbers: &[f64], period: f64, least: f64) -> NoiseFloor {
     let length = block_length(numbers);
     let means = means(numbers, length);
     let (mean, deviation) = spread(&means, means.len(), least);
     #[allow(clippy::cast_precision_loss)] // a length of a list
-    Level { mean, deviation, block: length as f64 * period }
+    NoiseFloor { mean, deviation, block: length as f64 * period }
 }
 
 /// Samples of a block: several times what the noise remembers, but so few that there are blocks enough.

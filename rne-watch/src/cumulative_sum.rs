@@ -2,7 +2,7 @@
 
 use crate::threshold::ALLOWANCE;
 
-/// A stretch in which a sum was above its threshold, in indices of the numbers.
+/// A segment in which a sum was above its threshold, in indices of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Alarm {
     /// Where the sum began to grow: the change is there, or behind it.

@@ -8,9 +8,9 @@ use std::fmt;
 pub enum WatchError {
     /// A motion of another number of joints than the robot's.
     Joints {
-        /// Of the robot.
+        /// Joints of the robot.
         expected: usize,
-        /// Of the motion, or the baseline.
+        /// Joints of the motion, or of the baseline.
         found: usize,
     },
     /// A list of a motion that is not as long as its times: which one, and of which joint, counted from 1.

@@ -1,4 +1,4 @@
-//! What is found.
+//! Events.
 
 use std::fmt;
 
@@ -29,7 +29,7 @@ impl Test {
 }
 
 impl Test {
-    /// What shows itself by it.
+    /// The usual causes of its events.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {
@@ -46,13 +46,13 @@ impl fmt::Display for Test {
     }
 }
 
-/// A stretch of a motion in which a joint is not what its model says.
+/// A segment of a motion in which a joint is not what its model says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Event {
     /// The joint, counted from 0.
     pub joint: usize,
-    /// What found it.
+    /// The test that found it.
     pub test: Test,
     /// Where it begins, s.
     pub start: f64,

@@ -51,7 +51,7 @@ mod settings;
 mod signals;
 mod threshold;
 
-pub use crate::baseline::{Baseline, Level, ModelError};
+pub use crate::baseline::{Baseline, ModelError, NoiseFloor};
 pub use crate::error::WatchError;
 pub use crate::event::{Event, Test};
 pub use crate::picture::svg;

@@ -3,15 +3,15 @@
 use crate::baseline::{along_motion, known, means};
 use crate::change_point::change_point;
 use crate::cumulative_sum::{Alarm, alarms};
-use crate::{Baseline, Event, Level, ModelError, Settings, Signals, Test, Thresholds, WatchError};
+use crate::{Baseline, Event, ModelError, NoiseFloor, Settings, Signals, Test, Thresholds, WatchError};
 
-/// What is found in a motion.
+/// The events of a motion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Report {
-    /// By their beginnings.
+    /// The events, sorted by their start.
     pub events: Vec<Event>,
-    /// Of each joint.
+    /// The thresholds of each joint.
     pub thresholds: Vec<Thresholds>,
     /// The prediction error of each joint, see [`Signals::prediction_error`].
     pub errors: Vec<Option<f64>>,
@@ -20,7 +20,7 @@ pub struct Report {
 /// The mean of numbers, by their indices.
 struct Block {
     value: f64,
-    /// What the model leaves open.
+    /// The range that the model leaves open.
     open: f64,
     first: usize,
     last: usize,
@@ -37,9 +37,9 @@ pub fn watch(signals: &Signals, baseline: &Baseline, settings: &Settings) -> Res
     if let Some(&found) = lengths.iter().find(|&&length| length != dof) {
         return Err(WatchError::Joints { expected: dof, found });
     }
-    let levels = [&baseline.residual, &baseline.friction, &baseline.external];
-    if levels.into_iter().flatten().any(|level| !(level.deviation > 0.0 && level.mean.is_finite())) {
-        return Err(WatchError::Setting("the deviation of a level"));
+    let floors = [&baseline.residual, &baseline.friction, &baseline.external];
+    if floors.into_iter().flatten().any(|floor| !(floor.deviation > 0.0 && floor.mean.is_finite())) {
+        return Err(WatchError::Setting("the deviation of a noise floor"));
     }
     let held = samples_in(settings.hold, signals.period);
     #[allow(clippy::cast_precision_loss)] // samples of a hold
@@ -47,19 +47,19 @@ pub fn watch(signals: &Signals, baseline: &Baseline, settings: &Settings) -> Res
     let settings = Settings { hold, ..settings.clone() };
     let (mut events, mut all) = (Vec::new(), Vec::with_capacity(dof));
     for joint in 0..dof {
-        let levels = [baseline.residual[joint], baseline.friction[joint]];
+        let floors = [baseline.residual[joint], baseline.friction[joint]];
         #[allow(clippy::cast_precision_loss)] // samples of a block
-        let seconds = levels.map(|level| samples_in(level.block, signals.period) as f64 * signals.period);
+        let seconds = floors.map(|floor| samples_in(floor.block, signals.period) as f64 * signals.period);
         let thresholds = Thresholds::new(&settings, dof, seconds);
         let whole = known(signals, joint, 0..signals.time.len());
-        let moving = along_motion(signals, joint, levels[0].mean, 0..signals.time.len());
+        let moving = along_motion(signals, joint, floors[0].mean, 0..signals.time.len());
         for (index, (test, numbers)) in [(Test::Offset, whole), (Test::Friction, moving)].into_iter().enumerate() {
             let open = Open { terms: &signals.terms[joint], wrong: baseline.model[joint] };
-            let blocks = blocks(&numbers, &open, samples_in(levels[index].block, signals.period));
-            events.extend(of_sums(signals, (joint, test), &numbers, &blocks, &levels[index], thresholds.sums[index]));
+            let blocks = blocks(&numbers, &open, samples_in(floors[index].block, signals.period));
+            events.extend(of_sums(signals, (joint, test), &numbers, &blocks, &floors[index], thresholds.sums[index]));
         }
-        let (level, wrong) = (&baseline.external[joint], &baseline.model[joint]);
-        events.extend(of_observer(signals, joint, level, wrong, thresholds.external, held));
+        let (floor, wrong) = (&baseline.external[joint], &baseline.model[joint]);
+        events.extend(of_observer(signals, joint, floor, wrong, thresholds.external, held));
         all.push(thresholds);
     }
     events.sort_by(|a, b| a.start.total_cmp(&b.start).then((a.joint, a.test).cmp(&(b.joint, b.test))));
@@ -74,7 +74,7 @@ fn samples_in(time: f64, period: f64) -> usize {
     samples.max(1)
 }
 
-/// What the model of a joint leaves open, as it may be wrong.
+/// The range that the model of a joint leaves open, because it may be wrong.
 #[derive(Clone, Copy)]
 struct Open<'a> {
     terms: &'a [f64],
@@ -106,17 +106,17 @@ fn of_sums(
     (joint, test): (usize, Test),
     numbers: &[(usize, f64)],
     blocks: &[Block],
-    level: &Level,
+    floor: &NoiseFloor,
     h: f64,
 ) -> Vec<Event> {
     // what the model leaves open is no change
     let beyond = |block: &Block| {
-        let off = block.value - level.mean;
-        off.signum() * (off.abs() - block.open).max(0.0) / level.deviation
+        let off = block.value - floor.mean;
+        off.signum() * (off.abs() - block.open).max(0.0) / floor.deviation
     };
     let event = |alarm: Alarm| {
-        let (first, last) = bounds(numbers, blocks, alarm, level.mean);
-        let peak = largest_mean(&numbers[first..=last], level.mean, signals.period);
+        let (first, last) = bounds(numbers, blocks, alarm, floor.mean);
+        let peak = largest_mean(&numbers[first..=last], floor.mean, signals.period);
         let [start, end] = [first, last].map(|index| signals.time[numbers[index].0]);
         Event { joint, test, start, end, peak }
     };
@@ -138,21 +138,21 @@ fn bounds(numbers: &[(usize, f64)], blocks: &[Block], alarm: Alarm, mean: f64) -
     (first, last.max(first))
 }
 
-/// The mean, less another, that is the largest of stretches of half a second, or of all where they are shorter.
+/// The mean, less another, that is the largest of segments of half a second, or of all where they are shorter.
 fn largest_mean(numbers: &[(usize, f64)], mean: f64, period: f64) -> f64 {
     let values: Vec<f64> = numbers.iter().map(|(_, number)| number - mean).collect();
-    let length = samples_in(STRETCH, period).min(values.len());
+    let length = samples_in(SEGMENT, period).min(values.len());
     means(&values, length).into_iter().fold(0.0, farther)
 }
 
 /// s: a change lasts as long, or is no change of the mean.
-const STRETCH: f64 = 0.5;
+const SEGMENT: f64 = 0.5;
 
 /// Events of the observer: beyond the threshold for so many samples, and until it is within half of it.
 fn of_observer(
     signals: &Signals,
     joint: usize,
-    level: &Level,
+    floor: &NoiseFloor,
     wrong: &ModelError,
     threshold: f64,
     held: usize,
@@ -162,11 +162,11 @@ fn of_observer(
     let mut beyond = 0;
     // what friction may be is no torque of the environment
     let sure = |at: usize| {
-        let off = signals.external[joint][at] - level.mean;
+        let off = signals.external[joint][at] - floor.mean;
         off.signum() * (off.abs() - signals.open[joint][at]).max(0.0)
     };
     for (at, seen) in signals.external[joint].iter().enumerate() {
-        let off = seen - level.mean;
+        let off = seen - floor.mean;
         if !signals.settled[at] {
             (beyond, open) = (
                 0,
@@ -177,9 +177,9 @@ fn of_observer(
             );
             continue;
         }
-        let sign_stays = beyond == 0 || off * (signals.external[joint][at - 1] - level.mean) > 0.0;
+        let sign_stays = beyond == 0 || off * (signals.external[joint][at - 1] - floor.mean) > 0.0;
         let (terms, inertia) = (signals.terms[joint][at], signals.inertia[joint][at]);
-        let limit = threshold * wrong.deviation(level.deviation, terms, inertia) + signals.open[joint][at];
+        let limit = threshold * wrong.deviation(floor.deviation, terms, inertia) + signals.open[joint][at];
         beyond = if off.abs() > limit { if sign_stays { beyond + 1 } else { 1 } } else { 0 };
         if let Some(event) = &mut open {
             event.peak = farther(event.peak, sure(at));

@@ -1,4 +1,4 @@
-//! What the one who watches chooses.
+//! Settings of watching.
 
 use crate::WatchError;
 

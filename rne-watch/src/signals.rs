@@ -1,4 +1,4 @@
-//! What an arm's efforts are beyond its model, along a motion.
+//! The part of an arm's efforts that its model does not explain, along a motion.
 //!
 //! ```text
 //! residual = τ_measured - (τ(q, q̇, q̈) + friction(q̇))
@@ -47,7 +47,7 @@ pub struct Signals {
     pub time: Vec<f64>,
     /// The usual time between two samples, s.
     pub period: f64,
-    /// What was measured.
+    /// The measured efforts.
     pub measured: Vec<Vec<f64>>,
     /// Measured, less the model with rotors and friction of the robot file.
     pub residual: Vec<Vec<f64>>,
@@ -55,8 +55,8 @@ pub struct Signals {
     pub direction: Vec<Vec<f64>>,
     /// Torques of the environment on the arm by the momentum observer.
     pub external: Vec<Vec<f64>>,
-    /// What friction leaves open, N m or N, 0 or more: a joint that creeps or turns back may be held by anything
-    /// between Coulomb's friction of both directions, whatever the file says of its speed.
+    /// The range that friction leaves open, N m or N, 0 or more: a joint that creeps or turns back may be held by
+    /// anything between Coulomb's friction of both directions, whatever the file says of its speed.
     pub open: Vec<Vec<f64>>,
     /// Whether a joint creeps, or does so within a moment, so that its residual tells nothing.
     pub creeps: Vec<Vec<bool>>,
@@ -220,8 +220,8 @@ fn norm(row: &[f64]) -> f64 {
     row.iter().map(|number| number * number).sum::<f64>().sqrt()
 }
 
-/// What friction leaves open along a motion, sample by sample: where a joint creeps, and where it turns back between
-/// two samples.
+/// The range that friction leaves open along a motion, sample by sample: where a joint creeps, and where it turns back
+/// between two samples.
 fn left_open(joint: &Joint, qd: &[f64], still: f64) -> Vec<f64> {
     let of_file = joint.coulomb_displacement.map(|_| SLIPPING).or(joint.coulomb_width).unwrap_or(0.0);
     let slow = CREEPING * of_file.max(still);
@@ -260,7 +260,7 @@ fn spread(open: &[f64]) -> Vec<f64> {
     (0..open.len()).map(largest).collect()
 }
 
-/// What was open, as an observer forgets it; of less than `over` it is over.
+/// The range that was open, as an observer forgets it; it ends where it is less than `over`.
 fn faded(time: &[f64], open: &[f64], gain: f64, over: f64) -> Vec<f64> {
     let mut open = spread(open);
     for at in 1..open.len() {

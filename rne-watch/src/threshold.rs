@@ -16,7 +16,7 @@
 
 use crate::Settings;
 
-/// Of a cumulative sum: half of the offset that it finds soonest, in deviations.
+/// The allowance of a cumulative sum: half of the offset that it finds soonest, in deviations.
 pub(crate) const ALLOWANCE: f64 = 0.5;
 
 /// Tests of a joint.
@@ -26,9 +26,9 @@ const TESTS: f64 = 3.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Thresholds {
-    /// Of the observer: so many deviations, for the time of hold.
+    /// The threshold of the observer, in deviations, for the time of hold.
     pub external: f64,
-    /// Of the cumulative sums, in deviations of a block: [of the offset, of the friction].
+    /// The thresholds of the cumulative sums, in deviations of a block: [of the offset, of the friction].
     pub sums: [f64; 2],
 }
 
@@ -77,7 +77,7 @@ mod tests {
         }
     }
 
-    /// Of two sides with K = 1/2: h = 4 has 168, h = 5 has 465 in the mean, as in tables of control charts.
+    /// For two sides with K = 1/2: h = 4 has 168, h = 5 has 465 in the mean, as in tables of control charts.
     #[test]
     fn sums_are_those_of_tables() {
         for (blocks, h) in [(168.0, 4.0), (465.0, 5.0)] {

@@ -11,7 +11,7 @@ use datafusion::common::{Result, ScalarValue, exec_err, plan_err};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
 use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, DocSection, Documentation, Signature, Volatility};
 use datafusion::physical_expr::expressions::Literal;
-use rne_identify::{Information, OnePass, Structure, unit, written_robot};
+use rne_identify::{Fit, Information, Structure};
 use rne_logs::Motion;
 
 use crate::argument::{self, Argument};
@@ -24,7 +24,7 @@ const NAME: &str = "identification";
 const ARGUMENTS: [&str; 4] = ["q", "qd", "qdd", "tau"];
 
 /// How strongly links are pulled to those of the file, as `rne identify` does unasked.
-const PULL: f64 = 1.0;
+const REGULARIZATION: f64 = 1.0;
 
 const SUMMARY: &str = "Links and friction from states with measured torques, by least squares row by row.";
 
@@ -179,7 +179,7 @@ impl Accumulator for Gathered {
         if self.information.states() == 0 {
             return ScalarValue::try_from(&DataType::Struct(result_fields()));
         }
-        let found = OnePass::new(&self.structure, &self.information, PULL);
+        let found = Fit::new(&self.structure, &self.information, REGULARIZATION);
         Ok(ScalarValue::Struct(Arc::new(result(&self.structure, &self.information, &found)?)))
     }
 
@@ -198,12 +198,12 @@ struct Unknown {
 }
 
 /// Base parameters, base to tip, then the friction of each joint.
-fn unknowns(structure: &Structure, found: &OnePass) -> Vec<Unknown> {
+fn unknowns(structure: &Structure, found: &Fit) -> Vec<Unknown> {
     let bases = structure.parameters().bases.iter().zip(&found.bases).map(|(base, report)| Unknown {
         name: report.name.clone(),
         value: report.value,
         deviation: report.deviation,
-        unit: unit(structure.robot(), base.kept).to_owned(),
+        unit: structure.unit(base.kept).to_owned(),
         is_excited: report.is_excited(),
     });
     let joints = structure.robot().joints.iter().zip(&found.friction).enumerate();
@@ -225,7 +225,7 @@ fn unknowns(structure: &Structure, found: &OnePass) -> Vec<Unknown> {
 }
 
 /// A row of the result.
-fn result(structure: &Structure, information: &Information, found: &OnePass) -> Result<StructArray> {
+fn result(structure: &Structure, information: &Information, found: &Fit) -> Result<StructArray> {
     let unknowns = unknowns(structure, found);
     let texts =
         |of: fn(&Unknown) -> &str| -> ArrayRef { Arc::new(unknowns.iter().map(of).map(Some).collect::<StringArray>()) };
@@ -246,11 +246,11 @@ fn result(structure: &Structure, information: &Information, found: &OnePass) -> 
         Ok(Arc::new(ListArray::try_new(of, offsets, values, None)?))
     };
     let states = i64::try_from(information.states()).unwrap_or(i64::MAX);
-    let robot = written_robot(&found.robot, &format!("{states} states of a table"));
+    let robot = found.robot_file(&format!("{states} states of a table"));
     let columns: Vec<ArrayRef> = vec![
         Arc::new(Int64Array::from(vec![states])),
         one(Arc::new(unknowns))?,
-        one(Arc::new(Float64Array::from(found.fit.noise.clone())))?,
+        one(Arc::new(Float64Array::from(found.least_squares.noise.clone())))?,
         Arc::new(StringArray::from(vec![robot])),
     ];
     Ok(StructArray::try_new(result_fields(), columns, None)?)

@@ -151,7 +151,7 @@ fn truth(yaml: &str) -> Vec<(String, f64)> {
     let structure = Structure::new(&robot, Options::default());
     let parameters = structure.parameters();
     let values = &parameters.regrouping * parameters.of_robot(&robot);
-    let bases = parameters.bases.iter().zip(values.iter()).map(|(base, value)| (rne_identify::name(base.kept), *value));
+    let bases = parameters.bases.iter().zip(values.iter()).map(|(base, value)| (base.name(), *value));
     let friction = robot.joints.iter().enumerate().flat_map(|(at, joint)| {
         let motor = joint.motor.expect("it has one");
         let [forward, backward] = motor.coulomb;

@@ -347,18 +347,18 @@ fn joints(text: &mut String, robot: &Robot, found: &Excitation) {
     let mut cells = vec![heading.map(str::to_owned)];
     let percent = |used: f64, limit: f64| format!("{:.0} %", 100.0 * used / limit);
     for (joint, used) in robot.joints.iter().zip(&found.joints) {
-        let JointUse { limits, start, extent, effort, .. } = used;
+        let JointUse { limits, start, bounds, effort, .. } = used;
         let unit = joint.row.kind.position_unit();
         let (lower, upper) = limits.position;
         cells.push([
             format!("  {}", shortened(&one_line(&joint.name), 14)),
             rounded(*start, 3),
-            rounded(extent.lower, 3),
-            rounded(extent.upper, 3),
+            rounded(bounds.lower, 3),
+            rounded(bounds.upper, 3),
             unit.to_owned(),
-            percent(extent.upper - extent.lower, upper - lower),
-            percent(extent.velocity, limits.velocity),
-            percent(extent.acceleration, limits.acceleration),
+            percent(bounds.upper - bounds.lower, upper - lower),
+            percent(bounds.velocity, limits.velocity),
+            percent(bounds.acceleration, limits.acceleration),
             effort.zip(limits.effort).map_or_else(|| "-".to_owned(), |(used, limit)| percent(used, limit)),
         ]);
     }

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::{Identification, JointError, MotionError, Options, Prediction, identify, not_excited, written};
+use rne_identify::{Identification, JointError, MotionError, Options, Prediction, identify};
 use rne_logs::Motion;
-use rne_model::{JointKind, Reversal, Robot, one_line};
+use rne_model::{FrictionTransition, JointKind, Robot, one_line};
 use rne_plot::comparison_svg;
 
 use crate::commands::prediction_errors::{errors_table, prediction};
@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff);
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
     if arguments.judge {
-        text += &judged(&robot, &log, Part::All, &not_excited(&robot), "prediction of the log")?;
+        text += &judged(&robot, &log, Part::All, &Identification::not_excited(&robot), "prediction of the log")?;
         draw(arguments, &robot, &log, Part::All, &sources, &mut remark)?;
         return Ok(Outcome { text, remark, ..Outcome::default() });
     }
@@ -115,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Ok(Outcome { text, remark, at_fault: true });
     }
     if let Some(path) = &arguments.output {
-        let file = written(&found, &log.words());
+        let file = found.robot_file(&log.words());
         if is_standard_output(path) {
             // what is not the file is a remark then
             return Ok(Outcome { text: file, remark: remark + &text, ..Outcome::default() });
@@ -200,13 +200,13 @@ fn account(found: &Identification, log: &MotionLog) -> String {
     let _ = writeln!(
         text,
         "{of_links} base parameters of the links{rotors}, {excited} of them excited; condition {}",
-        rounded(found.fit.condition, 0)
+        rounded(found.least_squares.condition, 0)
     );
     let certificate = &found.feasible.certificate;
     let _ = writeln!(
         text,
         "{QUIET}{} rows a joint of {:.1} s, {} stretches; every link is a body, margin {:.1e}{QUIET:#}",
-        found.rows, found.duration, found.fit.stretches, certificate.margin
+        found.rows, found.duration, found.least_squares.segments, certificate.margin
     );
     if let Some((delay, deviation)) = found.delay {
         let _ = writeln!(
@@ -218,7 +218,7 @@ fn account(found: &Identification, log: &MotionLog) -> String {
     }
     let mut cells = vec![["  parameter", "value", "", "deviation", "", "in the file", "unit"].map(str::to_owned)];
     for (base, report) in found.structure.parameters().bases.iter().zip(&found.bases) {
-        let unit = rne_identify::unit(&found.robot, base.kept).to_owned();
+        let unit = found.structure.unit(base.kept).to_owned();
         let (value, deviation, percent) = if report.is_excited() {
             let percent = 100.0 * report.deviation / report.value.abs();
             let percent = if percent < 1000.0 { format!("{percent:.1} %") } else { "> 999 %".to_owned() };
@@ -256,9 +256,9 @@ fn friction(text: &mut String, found: &Identification) {
             with(friction[1]),
             with(friction[2]),
             report
-                .reversal
+                .transition
                 .filter(|_| report.is_friction_excited())
-                .map_or_else(String::new, |reversal| turns(reversal, joint.row.kind)),
+                .map_or_else(String::new, |transition| turns(transition, joint.row.kind)),
         ]);
     }
     let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right];
@@ -273,11 +273,11 @@ fn friction(text: &mut String, found: &Identification) {
 }
 
 /// The speed or the displacement in which friction changes its sign.
-fn turns(reversal: Reversal, kind: JointKind) -> String {
+fn turns(transition: FrictionTransition, kind: JointKind) -> String {
     let unit = kind.position_unit();
-    match reversal {
-        Reversal::Width(width) => format!("{width} {unit}/s"),
-        Reversal::Displacement(length) => format!("{length} {unit}"),
+    match transition {
+        FrictionTransition::Speed(speed) => format!("{speed} {unit}/s"),
+        FrictionTransition::Displacement(length) => format!("{length} {unit}"),
     }
 }
 

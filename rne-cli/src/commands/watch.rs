@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::not_excited;
+use rne_identify::Identification;
 use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Event, Report, Settings, Signals, WatchError, svg, watch};
 use serde::Serialize;
@@ -148,7 +148,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let usual = quiet.map_or("the log itself, by medians".to_owned(), |quiet| quiet.words());
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("what is usual: {usual}"), PAGE, "  "));
     text += &events_table(&robot, &watched.events, log.runs() > 1);
-    text += &errors_table(&robot, &judged, &errors, &not_excited(&robot), "prediction of the log");
+    text += &errors_table(&robot, &judged, &errors, &Identification::not_excited(&robot), "prediction of the log");
     Ok(Outcome { text, remark, at_fault })
 }
 
@@ -209,7 +209,7 @@ const NOTHING: f64 = 1e-9;
 /// The joints whose torques are no better predicted than by their mean, or not at all; but those of which the file says
 /// that nothing is known.
 fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<String> {
-    let each = robot.joints.iter().zip(errors).zip(not_excited(robot));
+    let each = robot.joints.iter().zip(errors).zip(Identification::not_excited(robot));
     // what is no number is no prediction
     let found = each.filter(|((_, error), unknown)| {
         // an effort that does not change, and is what the model says, is explained

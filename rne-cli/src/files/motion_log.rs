@@ -3,7 +3,6 @@
 use std::fmt::{Display, Write as _};
 use std::path::PathBuf;
 
-use rne_identify::reach;
 use rne_logs::{Dimension, JointUnits, Layout, Log, LogError, Motion, Motions, Options, Survey};
 use rne_model::{JointKind, Robot, one_line};
 
@@ -275,7 +274,7 @@ fn check_efforts(log: &Log) -> Result<(), Failure> {
 fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64) -> Result<(), Failure> {
     let rate = 1.0 / log.layout().step;
     let highest = HIGHEST * rate;
-    let is_left = |cutoff: f64| left(cutoff) > 2.0 * reach(cutoff);
+    let is_left = |cutoff: f64| left(cutoff) > 2.0 * rne_identify::Options::filter_reach(cutoff);
     if cutoff <= highest && is_left(cutoff) {
         return Ok(());
     }

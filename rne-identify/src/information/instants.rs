@@ -26,7 +26,7 @@ pub(super) fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f
     (0..=count).map(|k| first + k as f64 * kernel.width()).collect()
 }
 
-/// What samples have some time behind one of them, on the straight line between its neighbours.
+/// Interpolates samples linearly at some time after one of them.
 pub(super) fn between(time: &[f64], at: usize, behind: f64, of: impl Fn(usize) -> f64) -> f64 {
     if behind == 0.0 {
         return of(at);

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use super::{Information, STRETCHES, Stretch};
+use super::{Information, SEGMENTS, Segment};
 use crate::r_factor::RFactor;
 use crate::structure::Structure;
 
-/// Numbers before those of the stretches: rows of a stretch, states, duration, shift, stretches.
+/// Numbers before those of the segments: rows of a segment, states, duration, shift, segments.
 const HEAD: usize = 5;
 
 /// Counts from here on are no longer exact as numbers.
@@ -32,15 +32,15 @@ impl fmt::Display for WrongNumbers {
 impl std::error::Error for WrongNumbers {}
 
 impl Information {
-    /// Everything it has, as numbers: a head, the largest effort of each joint, then of each stretch and joint the
+    /// Everything it has, as numbers: a head, the largest effort of each joint, then of each segment and joint the
     /// rows, their weight and the triangle.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // counts below 2^53; one that has no end is infinite
     pub fn to_numbers(&self) -> Vec<f64> {
         let length = if self.is_unordered() { f64::INFINITY } else { self.length as f64 };
-        let mut numbers = vec![length, self.states as f64, self.duration, self.shift, self.stretches.len() as f64];
+        let mut numbers = vec![length, self.states as f64, self.duration, self.shift, self.segments.len() as f64];
         numbers.extend(&self.largest);
-        for factor in self.stretches.iter().flatten() {
+        for factor in self.segments.iter().flatten() {
             numbers.extend([factor.rows() as f64, factor.weight()]);
             numbers.extend(factor.upper());
         }
@@ -56,7 +56,7 @@ impl Information {
     }
 
     fn read(structure: &Structure, numbers: &[f64]) -> Option<Self> {
-        let (&[length, states, duration, shift, stretches], mut rest) = numbers.split_first_chunk::<HEAD>()?;
+        let (&[length, states, duration, shift, segments], mut rest) = numbers.split_first_chunk::<HEAD>()?;
         let empty = Self::new(structure);
         let empty = if length == f64::INFINITY {
             Self::unordered(structure)
@@ -67,18 +67,18 @@ impl Information {
         rest = after;
         let is_effort = |most: &f64| most.is_finite() && *most >= 0.0;
         let largest = largest.iter().all(is_effort).then(|| largest.to_vec())?;
-        let stretches = count(stretches).filter(|stretches| *stretches <= STRETCHES as u64)?;
+        let segments = count(segments).filter(|segments| *segments <= SEGMENTS as u64)?;
         let mut read = Self { states: count(states)?, duration, shift, largest, ..empty };
-        for _ in 0..stretches {
-            let mut stretch: Stretch = Vec::with_capacity(structure.dof());
+        for _ in 0..segments {
+            let mut segment: Segment = Vec::with_capacity(structure.dof());
             for joint in 0..structure.dof() {
                 let columns = structure.columns(joint);
                 let (&[rows, weight], after) = rest.split_first_chunk()?;
                 let (upper, after) = after.split_at_checked(columns * (columns + 1) / 2)?;
-                stretch.push(RFactor::from_upper(columns, count(rows)?, weight, upper)?);
+                segment.push(RFactor::from_upper(columns, count(rows)?, weight, upper)?);
                 rest = after;
             }
-            read.stretches.push(stretch);
+            read.segments.push(segment);
         }
         rest.is_empty().then_some(read)
     }

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 /// A row that is off by more deviations than that counts less: Huber's function.
 const HUBER: f64 = 2.5;
 
-/// What the fit before says of each row: by it rows are weighted.
+/// The weights of rows, which follow from the residuals of the fit before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weighting {
     /// Unknowns of each joint's columns.
@@ -16,8 +16,8 @@ pub struct Weighting {
     pub(crate) noise: Vec<f64>,
     /// s
     pub(crate) delay: f64,
-    /// Deviations beyond which a row does not count.
-    pub(crate) far: f64,
+    /// A row that is off by more standard deviations does not count.
+    pub(crate) outlier_bound: f64,
 }
 
 /// Rows of a joint that do not count.
@@ -43,7 +43,7 @@ impl Weighting {
                 }
                 let off = residual.abs() / noise;
                 // what is no number counts as it is
-                if off > self.far {
+                if off > self.outlier_bound {
                     0.0
                 } else if off > HUBER {
                     HUBER / off

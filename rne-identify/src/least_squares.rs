@@ -1,15 +1,15 @@
-//! Weighted least squares on the triangles: unknowns, noise, reversals of friction, and deviations.
+//! Weighted least squares on the triangles: unknowns, noise, transitions of friction, and deviations.
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::information::{Information, Stretch, Weighting};
+use crate::information::{Information, Segment, Weighting};
 use crate::prior::Scales;
 use crate::r_factor::RFactor;
 use crate::structure::Structure;
 
 /// Rounds in which noise and unknowns settle.
 const ROUNDS: usize = 12;
-/// Rounds before the reversals of friction are chosen, and in which they are.
+/// Rounds before the transitions of friction are chosen, and in which they are.
 const FIRST: usize = 3;
 const CHOOSING: usize = 2;
 /// N m or N: no joint's noise is less, so that efforts without any divide nothing by nothing.
@@ -24,10 +24,10 @@ const ENOUGH: usize = 2;
 /// An offset is larger than Coulomb friction by so many deviations, and by that part of the effort, root mean square.
 const BEYOND: [f64; 2] = [4.0, 0.02];
 
-/// What least squares say of the unknowns.
+/// The least-squares estimate of the unknowns.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Fit {
+pub struct LeastSquares {
     /// Base parameters; viscous friction, Coulomb's and the offset of each joint; the delay. Of what logs do not excite
     /// at all, 0.
     pub solution: DVector<f64>,
@@ -39,26 +39,26 @@ pub struct Fit {
     pub noise: Vec<f64>,
     /// s: how much the torques lag behind the positions, as the rows were shifted and as is left.
     pub delay: f64,
-    /// How the friction of each joint changes its sign: which of [`Options::reversals`](crate::Options::reversals).
-    pub reversals: Vec<usize>,
+    /// How the friction of each joint changes its sign: which of [`Options::transitions`](crate::Options::transitions).
+    pub transitions: Vec<usize>,
     /// Largest over smallest singular value of the weighted columns, each of length one.
     pub condition: f64,
-    /// Stretches of time that the deviations are from.
-    pub stretches: usize,
+    /// Segments of time that the deviations are from.
+    pub segments: usize,
     /// The triangle of all weighted rows, torque last.
     pub(crate) triangle: RFactor,
     /// Degrees of freedom of the deviations.
     freedom: usize,
 }
 
-impl Fit {
-    /// Of what logs say.
+impl LeastSquares {
+    /// Solves for the unknowns.
     #[must_use]
     pub fn of(structure: &Structure, information: &Information, scales: &Scales) -> Self {
         let total = information.total(structure);
         let dof = structure.dof();
         let middle = structure.options.widths.len() / 2;
-        let mut state = State { structure, scales, noise: vec![1.0; dof], reversals: vec![middle; dof] };
+        let mut state = State { structure, scales, noise: vec![1.0; dof], transitions: vec![middle; dof] };
         let largest = information.largest.iter().copied().fold(0.0, f64::max);
         for ((noise, factor), most) in state.noise.iter_mut().zip(&total).zip(&information.largest) {
             // the torque itself, to begin with
@@ -67,7 +67,7 @@ impl Fit {
         }
         for round in 0..ROUNDS {
             if (FIRST..FIRST + CHOOSING).contains(&round) && structure.options.friction {
-                state.choose_reversals(&total);
+                state.choose_transitions(&total);
             }
             state.settle_noise(&total);
         }
@@ -77,8 +77,8 @@ impl Fit {
             let left = information.rows().saturating_sub(solution.len() as u64);
             (state.independent(&triangle), usize::try_from(left).unwrap_or(usize::MAX))
         } else {
-            let stretches = &information.stretches;
-            (state.covariance(stretches, &triangle, &solution), stretches.len().saturating_sub(1))
+            let segments = &information.segments;
+            (state.covariance(segments, &triangle, &solution), segments.len().saturating_sub(1))
         };
         let measured = state.noise.iter().filter(|noise| noise.is_finite()).count();
         let equations = usize::try_from(information.rows()).unwrap_or(usize::MAX).saturating_mul(measured);
@@ -87,14 +87,14 @@ impl Fit {
             covariance.fill(f64::NAN);
         }
         let condition = condition(&triangle, state.count(), &state.ridge());
-        let State { noise, reversals, .. } = state;
+        let State { noise, transitions, .. } = state;
         let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
         let delay = information.shift + left;
-        let stretches = information.stretches.len();
-        Self { solution, covariance, noise, delay, reversals, condition, stretches, triangle, freedom }
+        let segments = information.segments.len();
+        Self { solution, covariance, noise, delay, transitions, condition, segments, triangle, freedom }
     }
 
-    /// What rows are weighted by in the next pass.
+    /// The weighting of rows in the next pass.
     #[must_use]
     pub fn weighting(&self, structure: &Structure) -> Weighting {
         let unknowns = |joint| structure.unknowns(joint);
@@ -112,10 +112,10 @@ impl Fit {
         };
         Weighting {
             solutions: (0..dof).map(solution).collect(),
-            used: (0..dof).map(|joint| structure.used(joint, self.reversals[joint])).collect(),
+            used: (0..dof).map(|joint| structure.used(joint, self.transitions[joint])).collect(),
             noise: self.noise.clone(),
             delay,
-            far: f64::INFINITY,
+            outlier_bound: f64::INFINITY,
         }
     }
 
@@ -151,7 +151,7 @@ impl Fit {
     }
 
     /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree
-    /// of freedom less than there are stretches of time; of rows without an order, with the rows that are
+    /// of freedom less than there are segments of time; of rows without an order, with the rows that are
     /// more than unknowns.
     #[must_use]
     pub fn half_interval(&self, unknown: usize) -> f64 {
@@ -166,8 +166,8 @@ impl Fit {
     }
 }
 
-/// Errors behind the filter depend on each other across the ends of stretches, too: white noise behind a Gaussian
-/// kernel of width σ has the correlation exp(-t²/4σ²), of which stretches of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ
+/// Errors behind the filter depend on each other across the ends of segments, too: white noise behind a Gaussian
+/// kernel of width σ has the correlation exp(-t²/4σ²), of which segments of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ
 /// times ∫ exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
 const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 
@@ -188,7 +188,7 @@ struct State<'a> {
     structure: &'a Structure,
     scales: &'a Scales,
     noise: Vec<f64>,
-    reversals: Vec<usize>,
+    transitions: Vec<usize>,
 }
 
 impl State<'_> {
@@ -197,8 +197,8 @@ impl State<'_> {
     }
 
     /// A joint's triangle as rows of all unknowns and the torque, in units of its noise.
-    fn rows(&self, joint: usize, reversal: usize, factor: &RFactor) -> DMatrix<f64> {
-        let selected = factor.selected(&self.structure.used(joint, reversal));
+    fn rows(&self, joint: usize, transition: usize, factor: &RFactor) -> DMatrix<f64> {
+        let selected = factor.selected(&self.structure.used(joint, transition));
         let mut columns = self.structure.unknowns(joint);
         columns.push(self.count());
         let mut rows = DMatrix::zeros(columns.len(), self.count() + 1);
@@ -208,12 +208,12 @@ impl State<'_> {
         rows
     }
 
-    /// What keeps unknowns finite that no log excites: a row for each, far weaker than anything that was measured.
+    /// The ridge keeps unknowns finite that no log excites: a row for each, far weaker than anything that was measured.
     fn ridge(&self) -> DVector<f64> {
         self.scales.ridge(self.structure)
     }
 
-    fn stacked(&self, stretch: &Stretch) -> RFactor {
+    fn stacked(&self, segment: &Segment) -> RFactor {
         let mut all = RFactor::new(self.count() + 1);
         let mut ridge = DMatrix::zeros(self.count(), self.count() + 1);
         ridge.view_mut((0, 0), (self.count(), self.count())).set_diagonal(&self.ridge());
@@ -222,14 +222,14 @@ impl State<'_> {
             let _ = all.absorb_weighted(rows, 0.0);
         };
         add(ridge);
-        for (joint, factor) in stretch.iter().enumerate() {
-            add(self.rows(joint, self.reversals[joint], factor));
+        for (joint, factor) in segment.iter().enumerate() {
+            add(self.rows(joint, self.transitions[joint], factor));
         }
         all
     }
 
     /// The noise is what is left, with as many degrees of freedom as the unknowns leave to the joint.
-    fn settle_noise(&mut self, total: &Stretch) {
+    fn settle_noise(&mut self, total: &Segment) {
         let triangle = self.stacked(total);
         let solution = solved(&triangle, self.count());
         let Some(inverse) = inverse(&triangle, self.count()) else { return };
@@ -237,7 +237,7 @@ impl State<'_> {
             if self.noise[joint].is_infinite() {
                 continue;
             }
-            let rows = self.rows(joint, self.reversals[joint], factor);
+            let rows = self.rows(joint, self.transitions[joint], factor);
             let (design, target) = (rows.columns(0, self.count()), rows.column(self.count()));
             let residual = (target - design * &solution).norm_squared() * self.noise[joint].powi(2);
             let taken = (design * &inverse).norm_squared();
@@ -246,23 +246,23 @@ impl State<'_> {
         }
     }
 
-    /// Joint by joint the reversal that leaves the least.
-    fn choose_reversals(&mut self, total: &Stretch) {
+    /// Joint by joint the transition that leaves the least.
+    fn choose_transitions(&mut self, total: &Segment) {
         for joint in 0..self.structure.dof() {
-            let before = self.reversals[joint];
+            let before = self.transitions[joint];
             let left = |state: &Self| {
                 let triangle = state.stacked(total);
                 triangle.triangle()[(state.count(), state.count())].abs()
             };
             let mut best = (before, left(self));
-            for reversal in 0..self.structure.reversals.len() {
-                self.reversals[joint] = reversal;
+            for transition in 0..self.structure.transitions.len() {
+                self.transitions[joint] = transition;
                 let left = left(self);
                 if left < best.1 {
-                    best = (reversal, left);
+                    best = (transition, left);
                 }
             }
-            self.reversals[joint] = best.0;
+            self.transitions[joint] = best.0;
         }
     }
 
@@ -273,31 +273,31 @@ impl State<'_> {
             .map_or_else(|| DMatrix::from_element(count, count, f64::NAN), |inverse| &inverse * inverse.transpose())
     }
 
-    /// The covariance of the unknowns by leaving out one stretch of time after the other: errors within a stretch may
+    /// The covariance of the unknowns by leaving out one segment of time after the other: errors within a segment may
     /// depend on each other as they like.
     ///
     /// B. Efron, C. Stein, The jackknife estimate of variance, Annals of Statistics 9 (1981), 586-596.
-    fn covariance(&self, stretches: &[Stretch], triangle: &RFactor, solution: &DVector<f64>) -> DMatrix<f64> {
+    fn covariance(&self, segments: &[Segment], triangle: &RFactor, solution: &DVector<f64>) -> DMatrix<f64> {
         let count = self.count();
         let Some(inverse) = inverse(triangle, count) else { return DMatrix::from_element(count, count, f64::NAN) };
         let mut sum = DMatrix::zeros(count, count);
-        let mut shifts: Vec<DVector<f64>> = Vec::with_capacity(stretches.len());
-        for stretch in stretches {
+        let mut shifts: Vec<DVector<f64>> = Vec::with_capacity(segments.len());
+        for segment in segments {
             // in the coordinates in which all rows together are the unit matrix
             let mut share = DMatrix::identity(count, count);
-            let mut pull = DVector::zeros(count);
-            for (joint, factor) in stretch.iter().enumerate() {
-                let rows = self.rows(joint, self.reversals[joint], factor);
+            let mut slope = DVector::zeros(count);
+            for (joint, factor) in segment.iter().enumerate() {
+                let rows = self.rows(joint, self.transitions[joint], factor);
                 let design = rows.columns(0, count) * &inverse;
                 let residual = rows.column(count) - rows.columns(0, count) * solution;
-                pull += design.tr_mul(&residual);
+                slope += design.tr_mul(&residual);
                 share -= design.tr_mul(&design);
             }
-            // what only this stretch tells has no finite deviation
+            // what only this segment tells has no finite deviation
             for at in 0..count {
                 share[(at, at)] += 1e-9;
             }
-            let shift = share.cholesky().map_or_else(|| pull.clone(), |cholesky| cholesky.solve(&pull));
+            let shift = share.cholesky().map_or_else(|| slope.clone(), |cholesky| cholesky.solve(&slope));
             shifts.push(shift);
         }
         #[allow(clippy::cast_precision_loss)]
@@ -310,7 +310,7 @@ impl State<'_> {
         if number < 2.0 {
             return DMatrix::from_element(count, count, f64::NAN);
         }
-        let rows: u64 = stretches.iter().filter_map(|stretch| Some(stretch.first()?.rows())).sum();
+        let rows: u64 = segments.iter().filter_map(|segment| Some(segment.first()?.rows())).sum();
         #[allow(clippy::cast_precision_loss)]
         let length = rows as f64 / number;
         let across = if self.structure.options.cutoff.is_some() { ACROSS / length.max(2.0 * ACROSS) } else { 0.0 };
@@ -318,9 +318,9 @@ impl State<'_> {
         of_rows + self.of_ridge(&inverse)
     }
 
-    /// What the ridge adds: it draws unknowns to zero, and they may be as far from there as it supposes. Of what the
-    /// rows tell it is nothing beside their own covariance; what they do not tell is as unknown as before, although it
-    /// is zero whatever stretch is left out.
+    /// The covariance that the ridge adds: it draws unknowns to zero, and they may be as far from there as it supposes.
+    /// Of what the rows tell it is nothing beside their own covariance; what they do not tell is as unknown as before,
+    /// although it is zero whatever segment is left out.
     fn of_ridge(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
         let mut drawn = inverse * inverse.transpose();
         for (mut column, ridge) in drawn.column_iter_mut().zip(self.ridge().iter()) {
@@ -330,7 +330,7 @@ impl State<'_> {
     }
 }
 
-/// Of the efforts of a joint's rows, root mean square, N m or N.
+/// The root mean square of the efforts of a joint's rows, N m or N.
 pub(crate) fn effort(factor: &RFactor) -> f64 {
     let power = factor.triangle().column(factor.columns() - 1).norm_squared();
     (power / factor.weight().max(1.0)).sqrt()
@@ -349,7 +349,7 @@ fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
     triangle.triangle().view((0, 0), (count, count)).solve_upper_triangular(&DMatrix::identity(count, count))
 }
 
-/// Of the columns, each of length one; those that the ridge alone holds are left out.
+/// The condition number of the columns, each of length one; those that the ridge alone holds are left out.
 pub(crate) fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
     let square = triangle.triangle().view((0, 0), (count, count));
     let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
