@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
 use rne_codegen::{Capability, Compiler, Form, Function, Operations, Program, Step};
 use rne_emit::{Selection, listing};
-use rne_model::{Convention, JointKind, Robot};
+use rne_model::{JointKind, Robot};
 
 /// The documents with blocks, and which blocks these are; what is measured or printed by a command does not count.
 const DOCUMENTS: &[(&str, &[&str])] = &[
@@ -202,10 +202,7 @@ fn sources() -> String {
             text,
             "| [{name}]({name}.yaml) | {title} | {} | {} | {quality} | {} |",
             kinds(&robot),
-            match robot.convention {
-                Convention::Standard => "standard",
-                Convention::Modified => "modified",
-            },
+            robot.convention.name(),
             doubtful.unwrap_or_default()
         );
     }

@@ -70,10 +70,7 @@ pub fn urdf(robot: &Robot) -> String {
         };
         before = table;
         let (link, inertia) = (index + 1, &row.link.inertia);
-        let kind = match row.kind {
-            JointKind::Revolute => "revolute",
-            JointKind::Prismatic => "prismatic",
-        };
+        let kind = row.kind.name();
         let placed = Frame { shift: table.place(row.link.com), ..table };
         let _ = writeln!(
             text,

@@ -38,11 +38,7 @@ pub fn convert(robot: &Robot, convention: Convention) -> Result<Converted, Repor
     result.name.clone_from(&robot.name);
     result.title.clone_from(&robot.title);
     result.source.clone_from(&robot.source);
-    let word = |convention| match convention {
-        Convention::Standard => "standard",
-        Convention::Modified => "modified",
-    };
-    let note = format!("- converted from {} to {} rows by rne", word(robot.convention), word(convention));
+    let note = format!("- converted from {} to {} rows by rne", robot.convention.name(), convention.name());
     result.notes = Some(robot.notes.as_ref().map_or_else(|| note.clone(), |notes| format!("{notes}\n{note}")));
     let text = robot_file::write(&result);
     let checked = Reader::new(&format!("{}, converted", robot.name)).read(&text)?;

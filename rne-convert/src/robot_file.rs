@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_model::{Convention, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform};
+use rne_model::{Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform};
 
 use crate::snap::angle_text;
 
@@ -33,10 +33,6 @@ const WIDTH: usize = 110;
 #[must_use]
 pub fn write(robot: &Robot) -> String {
     let mut text = String::new();
-    let convention = match robot.convention {
-        Convention::Standard => "standard",
-        Convention::Modified => "modified",
-    };
     let _ = writeln!(text, "format: 1\nname: {}", robot.name);
     if let Some(title) = &robot.title {
         let _ = writeln!(text, "title: {}", scalar(title));
@@ -51,7 +47,7 @@ pub fn write(robot: &Robot) -> String {
             let _ = writeln!(text, "  {name}: {}", number(*value));
         }
     }
-    let _ = writeln!(text, "convention: {convention}");
+    let _ = writeln!(text, "convention: {}", robot.convention.name());
     noted(&mut text, &format!("gravity: {}", list(&robot.gravity)), "m/s²");
     for (key, placement) in [("base", &robot.base), ("tool", &robot.tool)] {
         if *placement != Transform::IDENTITY {

@@ -9,98 +9,74 @@ use crate::computation::Computation;
 use crate::lecture::Misprint;
 use crate::typo::Typo;
 
-/// A slip that makes two tools disagree. In this order they are looked for: the commonest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Slip {
-    /// The rows are read in the other Denavit-Hartenberg convention.
-    OtherConvention,
-    /// Gravity points up.
-    GravityReversed,
-    /// There is no gravity.
-    NoGravity,
-    /// Gravity points along another axis: 0 to 2, and whether the other way.
-    GravityAlong(usize, bool),
-    /// Gravity is given in the world's axes and turned by the base.
-    GravityInWorld,
-    /// The inertia as it is written is taken for one about the origin of the link frame.
-    InertiaAboutOrigin,
-    /// The inertia gets m (c² 1 - c cᵀ) once more.
-    InertiaShifted,
-    /// xy, xz and yz have the other sign.
-    ProductsOfInertia,
-    /// The centres of mass are on the other side.
-    ComReversed,
-    /// The centres of mass count from the frame at the other end of the link.
-    ComFromOtherEnd,
-    /// The centres of mass are given from the other end of the link and count from this one.
-    ComOfOtherEnd,
-    /// The angles are taken for degrees.
-    PositionsAsDegrees,
-    /// Degrees are taken for radians.
-    PositionsInDegrees,
-    /// Angles, speeds and accelerations of revolute joints are taken for degrees.
-    StateAsDegrees,
-    /// Degrees are taken for radians in angles, speeds and accelerations.
-    StateInDegrees,
-    /// The constant parts of the joint variables are left out.
-    NoOffsets,
-    /// The constant parts of the joint variables are subtracted.
-    OffsetsReversed,
-    /// A joint, counted from 0, turns or slides the other way.
-    JointReversed(usize),
-    /// The velocities do not count.
-    NoVelocities,
-    /// The accelerations do not count.
-    NoAccelerations,
-    /// The acceleration of a first joint that slides is dropped in modified tables, as in the C code of the Robotics
-    /// Toolbox for MATLAB.
-    NoFirstSlide,
-    /// The rotors' inertia G² Jm belongs to the arm.
-    RotorInertia,
-    /// The motors' inertia and friction are added.
-    MotorTorques,
-    /// The wrench is that of the environment on the arm.
-    WrenchReversed,
-    /// The wrench is left out.
-    NoWrench,
-    /// The wrench acts at the last frame instead of the tip.
-    NoTool,
-    /// The torques are those of the arm on its motors.
-    TorquesReversed,
-    /// The torques stand from tip to base.
-    TorquesFromTheTip,
-    /// The torques of revolute joints are N mm.
-    TorquesInNmm,
-    /// Velocities and accelerations are exchanged.
-    RatesExchanged,
-    /// A formula of the lecture as it was printed, or a common mistake in one.
-    Misprint(Misprint),
-    /// A sign that is mistyped in one row or link; looked for alone, not in pairs.
-    Typo(Typo),
+/// A row for each slip: its word for programs, what it changes, and its documentation.
+macro_rules! slips {
+    ($($variant:ident $(($($of:ty),+))?: $name:literal, $subject:literal, $doc:literal;)*) => {
+        /// A slip that makes two tools disagree. In this order they are looked for: the commonest first.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[non_exhaustive]
+        pub enum Slip { $(#[doc = $doc] $variant $(($($of),+))?,)* }
+
+        impl Slip {
+            /// A word for programs: `gravity_reversed`, `joint_reversed`.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                if let Self::Typo(typo) = self {
+                    return typo.name();
+                }
+                match self { $(Self::$variant { .. } => $name,)* }
+            }
+
+            /// What it changes: two slips that change the same thing exclude each other.
+            fn subject(self) -> &'static str {
+                match self { $(Self::$variant { .. } => $subject,)* }
+            }
+        }
+    };
 }
 
-/// Which slips exclude each other: they change the same thing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Subject {
-    Convention,
-    Gravity,
-    Inertia,
-    Products,
-    Com,
-    Units,
-    Offsets,
-    Joint(usize),
-    Velocities,
-    Accelerations,
-    Motors,
-    Wrench,
-    Torques,
-    Order,
-    UnitOfTorque,
-    Rates,
-    Formula(Misprint),
-    Number(Typo),
+slips! {
+    OtherConvention: "other_convention", "convention",
+        "The rows are read in the other Denavit-Hartenberg convention.";
+    GravityReversed: "gravity_reversed", "gravity", "Gravity points up.";
+    NoGravity: "no_gravity", "gravity", "There is no gravity.";
+    GravityAlong(usize, bool): "gravity_along_another_axis", "gravity",
+        "Gravity points along another axis: 0 to 2, and whether the other way.";
+    GravityInWorld: "gravity_in_world", "gravity", "Gravity is given in the world's axes and turned by the base.";
+    InertiaAboutOrigin: "inertia_about_origin", "inertia",
+        "The inertia as it is written is taken for one about the origin of the link frame.";
+    InertiaShifted: "inertia_shifted", "inertia", "The inertia gets m (c² 1 - c cᵀ) once more.";
+    ProductsOfInertia: "products_of_inertia", "products", "xy, xz and yz have the other sign.";
+    ComReversed: "com_reversed", "com", "The centres of mass are on the other side.";
+    ComFromOtherEnd: "com_from_other_end", "com",
+        "The centres of mass count from the frame at the other end of the link.";
+    ComOfOtherEnd: "com_of_other_end", "com",
+        "The centres of mass are given from the other end of the link and count from this one.";
+    PositionsAsDegrees: "positions_as_degrees", "units", "The angles are taken for degrees.";
+    PositionsInDegrees: "positions_in_degrees", "units", "Degrees are taken for radians.";
+    StateAsDegrees: "state_as_degrees", "units",
+        "Angles, speeds and accelerations of revolute joints are taken for degrees.";
+    StateInDegrees: "state_in_degrees", "units", "Degrees are taken for radians in angles, speeds and accelerations.";
+    NoOffsets: "no_offsets", "offsets", "The constant parts of the joint variables are left out.";
+    OffsetsReversed: "offsets_reversed", "offsets", "The constant parts of the joint variables are subtracted.";
+    JointReversed(usize): "joint_reversed", "joint", "A joint, counted from 0, turns or slides the other way.";
+    NoVelocities: "no_velocities", "velocities", "The velocities do not count.";
+    NoAccelerations: "no_accelerations", "accelerations", "The accelerations do not count.";
+    NoFirstSlide: "no_first_slide", "accelerations",
+        "The acceleration of a first joint that slides is dropped in modified tables, as in the C code of \
+         the Robotics Toolbox for MATLAB.";
+    RotorInertia: "rotor_inertia", "motors", "The rotors' inertia G² Jm belongs to the arm.";
+    MotorTorques: "motor_torques", "motors", "The motors' inertia and friction are added.";
+    WrenchReversed: "wrench_reversed", "wrench", "The wrench is that of the environment on the arm.";
+    NoWrench: "no_wrench", "wrench", "The wrench is left out.";
+    NoTool: "no_tool", "wrench", "The wrench acts at the last frame instead of the tip.";
+    TorquesReversed: "torques_reversed", "torques", "The torques are those of the arm on its motors.";
+    TorquesFromTheTip: "torques_from_the_tip", "order", "The torques stand from tip to base.";
+    TorquesInNmm: "torques_in_nmm", "unit of torque", "The torques of revolute joints are N mm.";
+    RatesExchanged: "rates_exchanged", "rates", "Velocities and accelerations are exchanged.";
+    Misprint(Misprint): "misprint", "formula",
+        "A formula of the lecture as it was printed, or a common mistake in one.";
+    Typo(Typo): "typo", "number", "A sign that is mistyped in one row or link; looked for alone, not in pairs.";
 }
 
 impl Slip {
@@ -152,35 +128,11 @@ impl Slip {
         all
     }
 
-    fn subject(self) -> Subject {
-        match self {
-            Self::OtherConvention => Subject::Convention,
-            Self::GravityReversed | Self::NoGravity | Self::GravityAlong(..) | Self::GravityInWorld => Subject::Gravity,
-            Self::InertiaAboutOrigin | Self::InertiaShifted => Subject::Inertia,
-            Self::ProductsOfInertia => Subject::Products,
-            Self::ComReversed | Self::ComFromOtherEnd | Self::ComOfOtherEnd => Subject::Com,
-            Self::PositionsAsDegrees | Self::PositionsInDegrees | Self::StateAsDegrees | Self::StateInDegrees => {
-                Subject::Units
-            }
-            Self::NoOffsets | Self::OffsetsReversed => Subject::Offsets,
-            Self::JointReversed(joint) => Subject::Joint(joint),
-            Self::NoVelocities => Subject::Velocities,
-            Self::NoAccelerations | Self::NoFirstSlide => Subject::Accelerations,
-            Self::RotorInertia | Self::MotorTorques => Subject::Motors,
-            Self::WrenchReversed | Self::NoWrench | Self::NoTool => Subject::Wrench,
-            Self::TorquesReversed => Subject::Torques,
-            Self::TorquesFromTheTip => Subject::Order,
-            Self::TorquesInNmm => Subject::UnitOfTorque,
-            Self::RatesExchanged => Subject::Rates,
-            Self::Misprint(misprint) => Subject::Formula(misprint),
-            Self::Typo(typo) => Subject::Number(typo),
-        }
-    }
-
-    /// Whether both can be made at once.
+    /// Whether both can be made at once. Of joints, formulas and numbers there are several.
     #[must_use]
     pub fn goes_with(self, other: Self) -> bool {
-        self.subject() != other.subject()
+        let is_one_of_several = matches!(self, Self::JointReversed(_) | Self::Misprint(_) | Self::Typo(_));
+        self.subject() != other.subject() || is_one_of_several && self != other
     }
 
     /// Makes the slip.
@@ -278,45 +230,6 @@ fn move_com(robot: &mut Robot, times: f64) {
 }
 
 impl Slip {
-    /// A word for programs: `gravity_reversed`, `joint_reversed`.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::OtherConvention => "other_convention",
-            Self::GravityReversed => "gravity_reversed",
-            Self::NoGravity => "no_gravity",
-            Self::GravityAlong(..) => "gravity_along_another_axis",
-            Self::GravityInWorld => "gravity_in_world",
-            Self::InertiaAboutOrigin => "inertia_about_origin",
-            Self::InertiaShifted => "inertia_shifted",
-            Self::ProductsOfInertia => "products_of_inertia",
-            Self::ComReversed => "com_reversed",
-            Self::ComFromOtherEnd => "com_from_other_end",
-            Self::ComOfOtherEnd => "com_of_other_end",
-            Self::PositionsAsDegrees => "positions_as_degrees",
-            Self::PositionsInDegrees => "positions_in_degrees",
-            Self::StateAsDegrees => "state_as_degrees",
-            Self::StateInDegrees => "state_in_degrees",
-            Self::NoOffsets => "no_offsets",
-            Self::OffsetsReversed => "offsets_reversed",
-            Self::JointReversed(_) => "joint_reversed",
-            Self::NoVelocities => "no_velocities",
-            Self::NoAccelerations => "no_accelerations",
-            Self::NoFirstSlide => "no_first_slide",
-            Self::RotorInertia => "rotor_inertia",
-            Self::MotorTorques => "motor_torques",
-            Self::WrenchReversed => "wrench_reversed",
-            Self::NoWrench => "no_wrench",
-            Self::NoTool => "no_tool",
-            Self::TorquesReversed => "torques_reversed",
-            Self::TorquesFromTheTip => "torques_from_the_tip",
-            Self::TorquesInNmm => "torques_in_nmm",
-            Self::RatesExchanged => "rates_exchanged",
-            Self::Misprint(_) => "misprint",
-            Self::Typo(typo) => typo.name(),
-        }
-    }
-
     /// What the other computation does, in a clause: "gravity points the other way".
     #[must_use]
     pub fn says(self, robot: &Robot) -> String {

@@ -15,14 +15,10 @@ pub(super) fn dh_table(robot: &Robot) -> String {
             JointKind::Revolute => (with_variable(i, &angle(&row.dh.theta)), number(row.dh.d)),
             JointKind::Prismatic => (angle(&row.dh.theta), with_variable(i, &number(row.dh.d))),
         };
-        let kind = match row.kind {
-            JointKind::Revolute => "revolute",
-            JointKind::Prismatic => "prismatic",
-        };
         lines.push([
             i.to_string(),
             one_line(&joint.name),
-            kind.to_owned(),
+            row.kind.name().to_owned(),
             theta,
             d,
             number(row.dh.a),

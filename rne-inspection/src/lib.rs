@@ -26,7 +26,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use rne_codegen::{self as codegen, CompileError, Compiler, Form, Function, Program};
 use rne_emit::{Line, Selection};
-use rne_model::{Angle, Convention, JointKind};
+use rne_model::Angle;
 
 use crate::component::{Equations, owner};
 pub use crate::record::{
@@ -244,10 +244,7 @@ fn described(robot: &rne_model::Robot) -> Robot {
         let (row, inertia) = (&joint.row, joint.row.link.inertia);
         Joint {
             name: joint.name.clone(),
-            kind: match row.kind {
-                JointKind::Revolute => "revolute",
-                JointKind::Prismatic => "prismatic",
-            },
+            kind: row.kind.name(),
             parent: name::parent(robot, index + 1),
             theta: row.dh.theta.radians,
             d: row.dh.d,
@@ -266,10 +263,7 @@ fn described(robot: &rne_model::Robot) -> Robot {
         name: robot.name.clone(),
         title: robot.title.clone().unwrap_or_else(|| robot.name.clone()),
         source: robot.source.clone(),
-        convention: match robot.convention {
-            Convention::Standard => "standard",
-            Convention::Modified => "modified",
-        },
+        convention: robot.convention.name(),
         gravity: robot.gravity,
         base: transform(&robot.base),
         tool: transform(&robot.tool),

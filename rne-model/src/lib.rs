@@ -41,7 +41,7 @@ mod angle;
 mod table;
 
 pub use angle::{Angle, LARGEST_ANGLE, QuarterTurns};
-pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Motor, Row, Transform, parent};
+pub use table::{Convention, Dh, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, Row, Transform, parent};
 
 #[cfg(feature = "std")]
 mod check;

@@ -12,6 +12,17 @@ pub enum Convention {
     Modified,
 }
 
+impl Convention {
+    /// The name of its rows in robot files: `standard` or `modified`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Standard => "standard",
+            Self::Modified => "modified",
+        }
+    }
+}
+
 /// What a joint does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
@@ -22,6 +33,15 @@ pub enum JointKind {
 }
 
 impl JointKind {
+    /// Its name in robot files: `revolute` or `prismatic`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Revolute => "revolute",
+            Self::Prismatic => "prismatic",
+        }
+    }
+
     /// The unit of its position: rad or m. Per second it is that of its velocity.
     #[must_use]
     pub const fn position_unit(self) -> &'static str {
@@ -85,6 +105,10 @@ impl<S: Copy> Inertia<S> {
         [[self.xx, self.xy, self.xz], [self.xy, self.yy, self.yz], [self.xz, self.yz, self.zz]]
     }
 }
+
+/// The inertial parameters of a link in the order in which regressors count them: mass, first moments, inertia about the
+/// origin of the link frame.
+pub const INERTIAL_PARAMETERS: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
 
 /// The inertial data of one link, in its link frame.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

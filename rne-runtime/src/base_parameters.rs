@@ -12,15 +12,13 @@
 use std::{array, fmt};
 
 use nalgebra::DVector;
-use rne_model::{JointKind, Link, Row};
+use rne_model::{INERTIAL_PARAMETERS, JointKind, Link, Row};
 
 use crate::regressor::PARAMETERS;
 use crate::{DynArm, WrongLength};
 
 /// The order in which a link's parameters are kept, as they are counted in the regressor: J, m c, m.
 const ORDER: [usize; PARAMETERS] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
-
-const NAMES: [&str; PARAMETERS] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
 
 /// Random states: each gives a row per joint, and there are ten columns per joint.
 const STATES: usize = 40;
@@ -173,7 +171,7 @@ impl BaseParameters {
 
 impl fmt::Display for LinkParameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", NAMES.get(self.index).unwrap_or(&"?"), self.link + 1)
+        write!(f, "{}{}", INERTIAL_PARAMETERS.get(self.index).unwrap_or(&"?"), self.link + 1)
     }
 }
 

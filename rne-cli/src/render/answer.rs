@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use rne::{Payload, Wrench};
 use rne_codegen::{Answer, Argument, Function, Labels, MatrixUnit, Shape};
-use rne_model::{Inertia, InertiaElement, JointKind, Robot};
+use rne_model::{INERTIAL_PARAMETERS, Inertia, InertiaElement, JointKind, Robot};
 
 use crate::palette::{QUIET, TITLE};
 use crate::render::layout::{Align, columns, left, width};
@@ -16,9 +16,6 @@ const DIGITS: usize = 6;
 
 /// Digits behind the point where ten parameters stand side by side.
 const FEW_DIGITS: usize = 4;
-
-/// The parameters of a link, as the regressor counts them.
-const PARAMETERS: [&str; 10] = ["m", "m cx", "m cy", "m cz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
 
 /// The numbers of a function as text.
 pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
@@ -138,11 +135,11 @@ fn poses(text: &mut String, frames: &[String], numbers: &[f64]) {
 
 /// A table per torque, a line per link that enters it.
 fn regressor(text: &mut String, joints: &[String], numbers: &[f64]) {
-    let columns = PARAMETERS.map(str::to_owned);
-    let per_torque = joints.len() * PARAMETERS.len();
+    let columns = INERTIAL_PARAMETERS.map(|name| name.replacen("mc", "m c", 1));
+    let per_torque = joints.len() * INERTIAL_PARAMETERS.len();
     for (joint, torque) in joints.iter().zip(numbers.chunks_exact(per_torque.max(1))) {
         let links: Vec<(String, &[f64])> = torque
-            .chunks_exact(PARAMETERS.len())
+            .chunks_exact(INERTIAL_PARAMETERS.len())
             .enumerate()
             .filter(|(_, link)| link.iter().any(|number| *number != 0.0))
             .map(|(index, link)| (format!("link {}", index + 1), link))

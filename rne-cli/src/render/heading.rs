@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use rne_codegen::Program;
 use rne_convert::Difference;
-use rne_model::{Convention, JointKind, Robot};
+use rne_model::{JointKind, Robot};
 
 use crate::palette::{QUIET, TITLE};
 
@@ -51,11 +51,7 @@ pub(crate) fn about(robot: &Robot) -> String {
             JointKind::Prismatic => 'P',
         })
         .collect();
-    let convention = match robot.convention {
-        Convention::Standard => "standard",
-        Convention::Modified => "modified",
-    };
-    format!("{}, {joints}, {convention}", robot.name)
+    format!("{}, {joints}, {}", robot.name, robot.convention.name())
 }
 
 /// What a conversion loses.

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use rne::BaseMotion;
 use rne_codegen::{Argument, Step};
 use rne_diagnose::worksheet::{self, Line, Quantity, Situation, Worksheet};
-use rne_model::{JointKind, Robot};
+use rne_model::Robot;
 
 use crate::palette::{FORMULA, QUIET, TITLE};
 use crate::render::layout::{PAGE, left, width, wrap};
@@ -143,10 +143,7 @@ pub(crate) fn triple(values: &[f64]) -> String {
 }
 
 fn title(text: &mut String, robot: &Robot, line: &Line, letters: Letters) {
-    let kind = match line.kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Prismatic => "prismatic",
-    };
+    let kind = line.kind.name();
     let way = if line.quantity.is_inward() { "back" } else { "outward" };
     let name = letters.of(robot.joints.get(line.joint - 1).map_or("", |joint| &joint.name));
     let margin = left(&format!("link {}", line.joint), MARGIN);

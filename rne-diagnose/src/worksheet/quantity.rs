@@ -5,228 +5,99 @@ use std::str::FromStr;
 
 use rne_model::{JointKind, did_you_mean};
 
-/// A quantity of a worksheet: what is given for a joint, and what the seven steps find. The order is that in which a
-/// joint's are computed, outward and then back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[non_exhaustive]
-pub enum Quantity {
-    /// The joint's position as it is given, rad or m.
-    Q,
-    /// Its rate, rad/s or m/s.
-    Qd,
-    /// Its acceleration, rad/s² or m/s².
-    Qdd,
-    /// θ_i with its constant part, rad.
-    Theta,
-    /// b_i with its constant part, the `d` of the row, m.
-    Offset,
-    /// m_i, kg.
-    Mass,
-    /// R_i: from the axes of this joint's entry to those of the entry before; for the first, of frame 0.
-    Rotation,
-    /// A_i, in base axes alone: from axes fixed to link i, z along joint i, to those of frame 0.
-    Orientation,
-    /// e_i, in base axes alone; (0, 0, 1) in all others.
-    Axis,
-    /// d_i, from the joint to the centre of mass, m.
-    D,
-    /// r_i, from the centre of mass to the next joint or the tip, m.
-    R,
-    /// I_i about the centre of mass, kg m².
-    Inertia,
-    /// Step 1: ω_i, rad/s.
-    Omega,
-    /// Step 2: ω̇_i, rad/s².
-    OmegaDot,
-    /// Step 3: ċ_i, m/s.
-    Velocity,
-    /// Step 4: c̈_i, m/s².
-    Acceleration,
-    /// Step 5: g_i, m/s².
-    Gravity,
-    /// Step 6: f_i, N.
-    InertiaForce,
-    /// Step 6: n_i, N m.
-    InertiaMoment,
-    /// Step 6: f_{i,i+1} in the axes of joint i's entry, N.
-    NextForce,
-    /// Step 6: n_{i,i+1} in the axes of joint i's entry, N m.
-    NextMoment,
-    /// Step 6: f_{i-1,i}, N.
-    JointForce,
-    /// Step 6: n_{i-1,i}, N m.
-    JointMoment,
-    /// Step 7: τ_i, N m or N.
-    Tau,
-}
-
-/// How many components a quantity has, and their names.
+/// The components of a number alone, of vectors and of matrices.
 const SCALAR: &[&str] = &[""];
 const VECTOR: &[&str] = &["x", "y", "z"];
 const SYMMETRIC: &[&str] = &["xx", "xy", "xz", "yy", "yz", "zz"];
 const MATRIX: &[&str] = &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
 
+/// A row for each quantity: its name in files, its symbol for joint i (p is the one before, n the next), the step that
+/// finds it, its components, its units for a revolute and a prismatic joint, and its documentation.
+macro_rules! quantities {
+    ($($variant:ident: $name:literal, $symbol:literal, $step:literal, $components:ident, $turns:literal | $slides:literal,
+       $doc:literal;)*) => {
+        /// A quantity of a worksheet: an input of a joint, or a result of the seven steps. The order is that in which a
+        /// joint's are computed, outward and then back.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum Quantity { $(#[doc = $doc] $variant,)* }
+
+        impl Quantity {
+            /// All, in the order in which a joint's are computed.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
+
+            /// Its name in files: `omega_dot`.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            /// Its symbol for joint `i`, counted from 1: `ω̇2`, `f1,2`.
+            #[must_use]
+            pub fn symbol(self, i: usize) -> String {
+                let (p, n) = (i.saturating_sub(1).to_string(), (i + 1).to_string());
+                let symbol = match self { $(Self::$variant => $symbol,)* };
+                symbol.replace("{i}", &i.to_string()).replace("{p}", &p).replace("{n}", &n)
+            }
+
+            /// The step that finds it; 0 for inputs of the steps.
+            #[must_use]
+            pub const fn step(self) -> u8 {
+                match self { $(Self::$variant => $step,)* }
+            }
+
+            /// The names of its components; a number alone has one, without a name.
+            #[must_use]
+            pub const fn components(self) -> &'static [&'static str] {
+                match self { $(Self::$variant => $components,)* }
+            }
+
+            /// Its unit for a kind of joint; 1 where there is none.
+            #[must_use]
+            pub const fn unit(self, kind: JointKind) -> &'static str {
+                let [turns, slides] = match self { $(Self::$variant => [$turns, $slides],)* };
+                if matches!(kind, JointKind::Revolute) { turns } else { slides }
+            }
+        }
+    };
+}
+
+quantities! {
+    Q: "q", "q{i}", 0, SCALAR, "rad" | "m", "The joint's position as it is given, rad or m.";
+    Qd: "qd", "q̇{i}", 0, SCALAR, "rad/s" | "m/s", "Its rate, rad/s or m/s.";
+    Qdd: "qdd", "q̈{i}", 0, SCALAR, "rad/s²" | "m/s²", "Its acceleration, rad/s² or m/s².";
+    Theta: "theta", "θ{i}", 0, SCALAR, "rad" | "rad", "θ_i with its constant part, rad.";
+    Offset: "offset", "b{i}", 0, SCALAR, "m" | "m", "b_i with its constant part, the `d` of the row, m.";
+    Mass: "mass", "m{i}", 0, SCALAR, "kg" | "kg", "m_i, kg.";
+    Rotation: "rotation", "R{i}", 0, MATRIX, "1" | "1",
+        "R_i: from the axes of this joint's entry to those of the entry before; for the first, of frame 0.";
+    Orientation: "orientation", "A{i}", 0, MATRIX, "1" | "1",
+        "A_i, in base axes alone: from axes fixed to link i, z along joint i, to those of frame 0.";
+    Axis: "axis", "e{i}", 0, VECTOR, "1" | "1", "e_i, in base axes alone; (0, 0, 1) in all others.";
+    D: "d", "d{i}", 0, VECTOR, "m" | "m", "d_i, from the joint to the centre of mass, m.";
+    R: "r", "r{i}", 0, VECTOR, "m" | "m", "r_i, from the centre of mass to the next joint or the tip, m.";
+    Inertia: "inertia", "I{i}", 0, SYMMETRIC, "kg m²" | "kg m²", "I_i about the centre of mass, kg m².";
+    Omega: "omega", "ω{i}", 1, VECTOR, "rad/s" | "rad/s", "Step 1: ω_i, rad/s.";
+    OmegaDot: "omega_dot", "ω̇{i}", 2, VECTOR, "rad/s²" | "rad/s²", "Step 2: ω̇_i, rad/s².";
+    Velocity: "velocity", "ċ{i}", 3, VECTOR, "m/s" | "m/s", "Step 3: ċ_i, m/s.";
+    Acceleration: "acceleration", "c̈{i}", 4, VECTOR, "m/s²" | "m/s²", "Step 4: c̈_i, m/s².";
+    Gravity: "gravity", "g{i}", 5, VECTOR, "m/s²" | "m/s²", "Step 5: g_i, m/s².";
+    InertiaForce: "inertia_force", "f{i}", 6, VECTOR, "N" | "N", "Step 6: f_i, N.";
+    InertiaMoment: "inertia_moment", "n{i}", 6, VECTOR, "N m" | "N m", "Step 6: n_i, N m.";
+    NextForce: "next_force", "f{i},{n}", 6, VECTOR, "N" | "N",
+        "Step 6: f_{i,i+1} in the axes of joint i's entry, N.";
+    NextMoment: "next_moment", "n{i},{n}", 6, VECTOR, "N m" | "N m",
+        "Step 6: n_{i,i+1} in the axes of joint i's entry, N m.";
+    JointForce: "joint_force", "f{p},{i}", 6, VECTOR, "N" | "N", "Step 6: f_{i-1,i}, N.";
+    JointMoment: "joint_moment", "n{p},{i}", 6, VECTOR, "N m" | "N m", "Step 6: n_{i-1,i}, N m.";
+    Tau: "tau", "τ{i}", 7, SCALAR, "N m" | "N", "Step 7: τ_i, N m or N.";
+}
+
 impl Quantity {
-    /// All, in the order in which a joint's are computed.
-    pub const ALL: [Self; 24] = [
-        Self::Q,
-        Self::Qd,
-        Self::Qdd,
-        Self::Theta,
-        Self::Offset,
-        Self::Mass,
-        Self::Rotation,
-        Self::Orientation,
-        Self::Axis,
-        Self::D,
-        Self::R,
-        Self::Inertia,
-        Self::Omega,
-        Self::OmegaDot,
-        Self::Velocity,
-        Self::Acceleration,
-        Self::Gravity,
-        Self::InertiaForce,
-        Self::InertiaMoment,
-        Self::NextForce,
-        Self::NextMoment,
-        Self::JointForce,
-        Self::JointMoment,
-        Self::Tau,
-    ];
-
-    /// Its name in files: `omega_dot`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Q => "q",
-            Self::Qd => "qd",
-            Self::Qdd => "qdd",
-            Self::Theta => "theta",
-            Self::Offset => "offset",
-            Self::Mass => "mass",
-            Self::Rotation => "rotation",
-            Self::Orientation => "orientation",
-            Self::Axis => "axis",
-            Self::D => "d",
-            Self::R => "r",
-            Self::Inertia => "inertia",
-            Self::Omega => "omega",
-            Self::OmegaDot => "omega_dot",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-            Self::Gravity => "gravity",
-            Self::InertiaForce => "inertia_force",
-            Self::InertiaMoment => "inertia_moment",
-            Self::NextForce => "next_force",
-            Self::NextMoment => "next_moment",
-            Self::JointForce => "joint_force",
-            Self::JointMoment => "joint_moment",
-            Self::Tau => "tau",
-        }
-    }
-
-    /// Its symbol for joint `i`, counted from 1: `ω̇2`, `f1,2`.
-    #[must_use]
-    pub fn symbol(self, i: usize) -> String {
-        let (p, n) = (i.saturating_sub(1), i + 1);
-        match self {
-            Self::Q => format!("q{i}"),
-            Self::Qd => format!("q̇{i}"),
-            Self::Qdd => format!("q̈{i}"),
-            Self::Theta => format!("θ{i}"),
-            Self::Offset => format!("b{i}"),
-            Self::Mass => format!("m{i}"),
-            Self::Rotation => format!("R{i}"),
-            Self::Orientation => format!("A{i}"),
-            Self::Axis => format!("e{i}"),
-            Self::D => format!("d{i}"),
-            Self::R => format!("r{i}"),
-            Self::Inertia => format!("I{i}"),
-            Self::Omega => format!("ω{i}"),
-            Self::OmegaDot => format!("ω̇{i}"),
-            Self::Velocity => format!("ċ{i}"),
-            Self::Acceleration => format!("c̈{i}"),
-            Self::Gravity => format!("g{i}"),
-            Self::InertiaForce => format!("f{i}"),
-            Self::InertiaMoment => format!("n{i}"),
-            Self::NextForce => format!("f{i},{n}"),
-            Self::NextMoment => format!("n{i},{n}"),
-            Self::JointForce => format!("f{p},{i}"),
-            Self::JointMoment => format!("n{p},{i}"),
-            Self::Tau => format!("τ{i}"),
-        }
-    }
-
-    /// The step that finds it; 0 for what goes into the steps.
-    #[must_use]
-    pub const fn step(self) -> u8 {
-        match self {
-            Self::Q
-            | Self::Qd
-            | Self::Qdd
-            | Self::Theta
-            | Self::Offset
-            | Self::Mass
-            | Self::Rotation
-            | Self::Orientation
-            | Self::Axis
-            | Self::D
-            | Self::R
-            | Self::Inertia => 0,
-            Self::Omega => 1,
-            Self::OmegaDot => 2,
-            Self::Velocity => 3,
-            Self::Acceleration => 4,
-            Self::Gravity => 5,
-            Self::InertiaForce
-            | Self::InertiaMoment
-            | Self::NextForce
-            | Self::NextMoment
-            | Self::JointForce
-            | Self::JointMoment => 6,
-            Self::Tau => 7,
-        }
-    }
-
     /// Whether it is found on the way back, from the tip to the base.
     #[must_use]
     pub const fn is_inward(self) -> bool {
         self.step() >= 6
-    }
-
-    /// The names of its components; a number alone has one, without a name.
-    #[must_use]
-    pub const fn components(self) -> &'static [&'static str] {
-        match self {
-            Self::Q | Self::Qd | Self::Qdd | Self::Theta | Self::Offset | Self::Mass | Self::Tau => SCALAR,
-            Self::Inertia => SYMMETRIC,
-            Self::Rotation | Self::Orientation => MATRIX,
-            _ => VECTOR,
-        }
-    }
-
-    /// Its unit for a kind of joint; 1 where there is none.
-    #[must_use]
-    pub const fn unit(self, kind: JointKind) -> &'static str {
-        let turns = matches!(kind, JointKind::Revolute);
-        match self {
-            Self::Q => kind.position_unit(),
-            Self::Qd if turns => "rad/s",
-            Self::Qdd if turns => "rad/s²",
-            Self::Tau => kind.effort_unit(),
-            Self::Theta => "rad",
-            Self::Mass => "kg",
-            Self::Rotation | Self::Orientation | Self::Axis => "1",
-            Self::Offset | Self::D | Self::R => "m",
-            Self::Inertia => "kg m²",
-            Self::Omega => "rad/s",
-            Self::OmegaDot => "rad/s²",
-            Self::Qd | Self::Velocity => "m/s",
-            Self::Qdd | Self::Acceleration | Self::Gravity => "m/s²",
-            Self::InertiaForce | Self::NextForce | Self::JointForce => "N",
-            Self::InertiaMoment | Self::NextMoment | Self::JointMoment => "N m",
-        }
     }
 
     /// Whether its components depend on the axes.
