@@ -36,7 +36,7 @@ impl Body {
         self.mass.high == 0.0 && self.moment != Vector::ZERO
     }
 
-    /// The same body about the origin of the frame in which this one's frame stands at `place`.
+    /// Moves the body to the origin of the frame in which this one's frame stands at `place`.
     pub(crate) fn seen_from(self, place: Pose) -> Self {
         let (r, t) = (place.rotation, place.translation);
         let turned_columns = self.inertia.map(|row| r * row);
@@ -75,7 +75,7 @@ impl Body {
         self.link(0.0)
     }
 
-    /// What is nothing beside `added` counts as zero.
+    /// A number that is negligible beside `added` counts as zero.
     fn link(self, added: f64) -> Link {
         let centre = self.centre();
         let back = Self { moment: Vector::ZERO, ..self.about_centre(centre) };

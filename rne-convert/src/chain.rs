@@ -50,7 +50,7 @@ pub(crate) struct ChainJoint {
     pub(crate) is_prismatic: bool,
     /// Frame of the link before, at the first joint the base → frame of this one's link, at q = 0.
     pub(crate) place: Pose,
-    /// Of length 1, in the link's axes.
+    /// The unit vector of the axis, in the link's axes.
     pub(crate) axis: Vector,
     /// About the origin of the link's frame.
     pub(crate) body: Body,
@@ -60,7 +60,7 @@ pub(crate) struct ChainJoint {
     pub(crate) coulomb_displacement: Option<f64>,
 }
 
-/// What became of a tree on its way to a chain.
+/// The record of a tree's way to a chain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Extracted {
     pub(crate) base: String,
@@ -78,7 +78,7 @@ pub(crate) struct Extracted {
     pub(crate) links: BTreeSet<usize>,
     /// Joints of the chain, and those that are held.
     pub(crate) joints: BTreeSet<usize>,
-    /// What the reader of the robot file should know too, in sentences.
+    /// Notes for the reader of the robot file, in sentences.
     pub(crate) remarks: Vec<String>,
 }
 
@@ -389,8 +389,8 @@ impl Walk<'_> {
         }
     }
 
-    /// What decides where a joint is: those that it follows, one after the other, up to one that is held by name or
-    /// follows none.
+    /// The joints that decide where a joint is: those that it follows, one after the other, up to one that is held by
+    /// name or follows none.
     fn follows(&self, index: usize) -> Result<(Vec<&Mimic>, usize), Report> {
         let joints = &self.urdf.joints;
         let (mut mimics, mut leader) = (Vec::new(), index);
@@ -547,7 +547,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// What is remarkable about a joint of the chain that moves.
+    /// Remarks on a moving joint of the chain.
     fn remark(&mut self, index: usize) {
         self.told.joints.insert(index);
         let joint = &self.urdf.joints[index];
@@ -591,7 +591,7 @@ impl Walk<'_> {
         Ok(body)
     }
 
-    /// What moves on a link that stands still moves by itself, unless it follows a joint of the chain.
+    /// A joint on a link that stands still moves by itself, unless it follows a joint of the chain.
     fn aside(&mut self, link: usize, next: Option<usize>) {
         let mut open = vec![link];
         while let Some(index) = open.pop() {

@@ -14,16 +14,16 @@ pub(crate) const STATES: usize = 1000;
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Difference {
-    /// Of the tip's place, m.
+    /// The difference of the tip's place, m.
     pub position: f64,
-    /// Of the tip's rotation, rad.
+    /// The difference of the tip's rotation, rad.
     pub rotation: f64,
-    /// Of a torque or force, relative to the largest of its state.
+    /// The difference of a torque or force, relative to the largest of its state.
     pub torque: f64,
-    /// Of a torque or force, N m or N.
+    /// The difference of a torque or force, N m or N.
     pub absolute_torque: f64,
-    /// Of an acceleration that the same torques cause, relative to the largest of its state; `None` where the mass
-    /// matrix is singular.
+    /// The difference of an acceleration that the same torques cause, relative to the largest of its state; `None`
+    /// where the mass matrix is singular.
     pub acceleration: Option<f64>,
 }
 

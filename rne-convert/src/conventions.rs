@@ -21,12 +21,12 @@ pub struct Converted {
     pub text: String,
     /// Between the two tables: rounding.
     pub rounding: Difference,
-    /// What is remarkable, in sentences.
+    /// Remarks, in sentences.
     pub remarks: Vec<String>,
 }
 
-/// The same arm with the rows of `convention`. Name, title, source, limits and motors stay; expressions of the file are
-/// written as their values, and notes say that it was converted.
+/// Converts an arm to the rows of `convention`. Name, title, source, limits and motors stay; expressions of the file
+/// are written as their values, and notes say that it was converted.
 ///
 /// # Errors
 ///

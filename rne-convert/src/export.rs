@@ -20,7 +20,7 @@ pub struct Exported {
     pub text: String,
     /// The acceleration of gravity in the axes of its root link `world`, m/s²: a URDF cannot say it.
     pub gravity: [f64; 3],
-    /// What the URDF cannot say, in sentences.
+    /// Losses of the URDF, in sentences.
     pub remarks: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ pub enum NoUrdf {
     },
     /// A number is larger than an import takes.
     TooLarge {
-        /// What it is the number of.
+        /// The quantity of the number.
         what: String,
         /// The number.
         number: f64,
@@ -67,7 +67,7 @@ impl Error for NoUrdf {}
 /// The URDF of a robot. Its root link `world` carries the link `base`, which is frame 0; joint i moves the link
 /// `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
 ///
-/// Of a motor the friction is there, as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
+/// The friction of a motor is written as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
 /// both directions.
 ///
 /// # Errors
@@ -137,7 +137,7 @@ fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
     Ok(())
 }
 
-/// What a URDF cannot say of motors.
+/// The numbers of motors that a URDF cannot hold.
 fn of_motors(robot: &Robot) -> Vec<String> {
     let mut remarks = Vec::new();
     let motors = || robot.joints.iter().filter_map(|joint| Some((one_line(&joint.name), joint.motor?)));
@@ -188,7 +188,7 @@ impl Friction {
         (damping.is_finite() && friction.is_finite()).then_some(Self { damping, friction })
     }
 
-    /// The same, where there is any.
+    /// The value, where it exists.
     fn of(motor: &Motor) -> Option<Self> {
         Self::at_joint(motor).filter(|at_joint| at_joint.damping != 0.0 || at_joint.friction != 0.0)
     }

@@ -8,7 +8,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use rne_model::{Angle, Double, QuarterTurns};
 
-/// What cancels leaves less than this of what went in: far below an `f64`'s last place, far above that of a [`Double`].
+/// Cancelling numbers leave less than this part of them: far below an `f64`'s last place, far above that of a
+/// [`Double`].
 const CANCELLED: f64 = 1e-26;
 
 /// A number as its text has it: 0.1 is a tenth.
@@ -68,7 +69,7 @@ impl Vector {
         Some(scaled * (Double::new(1.0) / scaled.norm()))
     }
 
-    /// What of it is perpendicular to the unit vector `axis`.
+    /// The part of it that is perpendicular to the unit vector `axis`.
     pub(crate) fn across(self, axis: Self) -> Self {
         self - axis * self.dot(axis)
     }

@@ -54,11 +54,11 @@ pub struct Imported {
     pub robot: Robot,
     /// Its robot file: reading it gives the robot, bit for bit.
     pub text: String,
-    /// What was done on the way.
+    /// The steps of the import.
     pub account: Account,
 }
 
-/// What an import did.
+/// The record of an import.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Account {
@@ -74,11 +74,11 @@ pub struct Account {
     pub lumped: Vec<(String, Vec<String>)>,
     /// Angles and axes that were taken for what they round.
     pub snapped: Vec<Snapped>,
-    /// What that changed; `None` where nothing was snapped.
+    /// The change by snapping; `None` where nothing was snapped.
     pub change: Option<Difference>,
     /// Between the chain and the table as rne computes it: the rounding of the conversion.
     pub rounding: Difference,
-    /// What is remarkable, in sentences.
+    /// Remarks, in sentences.
     pub remarks: Vec<String>,
     /// The lints of the robot file.
     pub lints: Report,
@@ -107,7 +107,7 @@ impl Urdf {
     ///
     /// # Errors
     ///
-    /// What stands in the way, with its place in the URDF: a name that is not there, a tip that must be named, movable
+    /// An error with its place in the URDF: a name that is not there, a tip that must be named, movable
     /// joints off the chain that nobody holds, joints that no row of a table can say, bodies that are none.
     pub fn import(&self, options: &Options) -> Result<Imported, Report> {
         let (chain, told) = extract(self, &options.selection, options.gravity, options.snap)?;
@@ -241,7 +241,7 @@ fn printable(text: &str) -> String {
     rne_model::one_line(text)
 }
 
-/// What a reader of the robot file should know.
+/// Notes for the reader of the robot file.
 fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     let mut notes = Vec::new();
     for (joint, value) in &told.held {
@@ -259,7 +259,7 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
 }
 
 impl Urdf {
-    /// What of the chain, and beside the links and joints, is not known.
+    /// Unknown names in the chain, and beside the links and joints.
     fn ignored(&self, told: &Extracted) -> Vec<String> {
         let links = told.links.iter().map(|&link| &self.links[link].unknown);
         let joints = told.joints.iter().map(|&joint| &self.joints[joint].unknown);
@@ -292,7 +292,7 @@ impl Urdf {
     }
 }
 
-/// What is remarkable about a table.
+/// Remarks on a table.
 pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
     let mut remarks = Vec::new();
     for (joint, tilt) in &table.levelled {

@@ -15,7 +15,7 @@ use crate::urdf;
 
 /// Far more than the description of any arm.
 pub(crate) const MAX_BYTES: usize = 16 << 20;
-/// What dynamics needs stands four deep.
+/// The elements that dynamics needs are nested four deep.
 const MAX_DEPTH: usize = 64;
 /// More links than any robot has.
 const MAX_ELEMENTS: usize = 20_000;
@@ -25,10 +25,10 @@ pub(crate) const LARGEST: f64 = 1e9;
 /// More kinds of unknown elements and attributes than any description has.
 const MAX_UNKNOWN: usize = 1000;
 
-/// What matters of the text, and what was seen of links and joints in the order of the text.
+/// The relevant values of the text, and the links and joints in the order of the text.
 #[derive(Default)]
 pub(crate) struct Scanned {
-    /// What stands beside links and joints, and the robot's own name.
+    /// The values beside links and joints, and the robot's own name.
     pub(crate) robot: Seen,
     pub(crate) links: Vec<Seen>,
     pub(crate) joints: Vec<Seen>,
@@ -36,7 +36,7 @@ pub(crate) struct Scanned {
     pub(crate) unknown: Vec<String>,
 }
 
-/// What was seen of a link or a joint.
+/// The values of a link or a joint.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
     /// The place of its tag.
@@ -45,7 +45,7 @@ pub(crate) struct Seen {
     pub(crate) elements: BTreeSet<&'static str>,
     /// The values of their attributes, by element and attribute.
     values: HashMap<(&'static str, &'static str), String>,
-    /// What in it is not known, as indices of [`Scanned::unknown`].
+    /// Unknown names in it, as indices of [`Scanned::unknown`].
     pub(crate) unknown: BTreeSet<usize>,
 }
 
@@ -83,7 +83,7 @@ struct Attribute {
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Text,
-    /// What a joint can be.
+    /// A kind of joint.
     Joint,
     Number,
     /// A number that may be infinite.
@@ -160,7 +160,7 @@ const PASSED_OVER: &[(&str, &[&str])] = &[
 /// Attributes that are known and do not matter here, by their element.
 const PASSED_OVER_ATTRIBUTES: &[(&str, &[&str])] = &[("robot", &["version", "xmlns"])];
 
-/// What stands in a list under a name.
+/// The entry of a list under a name.
 fn passed_over(list: &[(&str, &'static [&'static str])], name: &str) -> &'static [&'static str] {
     list.iter().find(|(of, _)| *of == name).map_or(&[], |(_, known)| known)
 }

@@ -11,17 +11,17 @@ pub const TOLERANCE: f64 = 2e-4;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Snapped {
-    /// Of what: `joint shoulder, roll`.
+    /// The place: `joint shoulder, roll`.
     pub place: String,
     /// As the file has it.
     pub from: String,
     /// As it is taken.
     pub to: String,
-    /// By how much it turns, rad.
+    /// The angle by which it turns, rad.
     pub by: f64,
 }
 
-/// What is taken for something else, in the order in which it is met. Without `is_on` nothing is.
+/// The numbers that were snapped, in the order in which it is met. Without `is_on` nothing is.
 #[derive(Debug, Default)]
 pub(crate) struct Snapping {
     pub(crate) is_on: bool,

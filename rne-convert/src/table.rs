@@ -18,7 +18,7 @@ use crate::chain::Chain;
 use crate::geometry::{Pose, Rotation, Vector, atan2, rounded, twelfths_of_pi};
 use crate::snap::of_twelfths;
 
-/// What is shorter than this, m, is the rounding of an `f64`.
+/// A length below this, m, is the rounding of an `f64`.
 const NOTHING: f64 = 1e-15;
 /// A tilt that is the rounding of an `f64`, rad.
 const ROUNDING: f64 = 1e-15;

@@ -29,7 +29,7 @@ pub struct Urdf {
 pub(crate) struct Link {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
-    /// What in it is not known.
+    /// Unknown names in it.
     pub(crate) unknown: BTreeSet<usize>,
     /// Mass, kg; 0 where there is no `inertial`.
     pub(crate) mass: f64,
@@ -89,7 +89,7 @@ impl Kind {
 #[derive(Clone, Debug)]
 pub(crate) struct Mimic {
     pub(crate) joint: String,
-    /// The same, where there is such a joint.
+    /// The index of that joint, where it exists.
     pub(crate) leader: Option<usize>,
     pub(crate) multiplier: f64,
     pub(crate) offset: f64,
@@ -99,7 +99,7 @@ pub(crate) struct Mimic {
 pub(crate) struct Joint {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
-    /// What in it is not known.
+    /// Unknown names in it.
     pub(crate) unknown: BTreeSet<usize>,
     /// Whether its axis is written; 1 0 0 otherwise.
     pub(crate) has_axis: bool,
@@ -128,7 +128,7 @@ impl Urdf {
     ///
     /// # Errors
     ///
-    /// What is wrong, with its place in the text: not XML, a document type, more than 16 MiB, a value that is no finite
+    /// An error with its place in the text: not XML, a document type, more than 16 MiB, a value that is no finite
     /// number, a name that is there twice or not at all, links that are not one tree.
     pub fn read(file: &str, text: &str) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);

@@ -7,7 +7,7 @@ use crate::lecture::{self, Misprint};
 use crate::observation::Observation;
 use crate::slip::{Slip, rotation};
 
-/// What another tool might compute: the arm as it understands it, and what it does with a state.
+/// The computation of another tool: the arm as it understands it, and its treatment of a state.
 #[derive(Clone, Debug)]
 pub(crate) struct Computation {
     pub(crate) robot: Robot,
@@ -19,12 +19,12 @@ pub(crate) struct Computation {
     offsets: f64,
     pub(crate) velocity_factor: f64,
     pub(crate) acceleration_factor: f64,
-    /// Of the acceleration of the first joint.
+    /// A factor on the acceleration of the first joint.
     pub(crate) first_factor: f64,
     pub(crate) motor_torques: bool,
     pub(crate) rates_exchanged: bool,
     pub(crate) from_the_tip: bool,
-    /// Of the torques of revolute joints.
+    /// A factor on the torques of revolute joints.
     pub(crate) moment_factor: f64,
     pub(crate) wrench_factor: f64,
     pub(crate) torque_factor: f64,

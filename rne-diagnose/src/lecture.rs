@@ -8,75 +8,16 @@
 //! a_i   O_i → O_{i+1}       d_i   O_i → C_i (centre of mass)       r_i   C_i → O_{i+1}       I_i   about C_i
 //! ```
 //!
-//! What the table gives is constant in frame i+1: \[r_i\]_{i+1} and \[I_i\]_{i+1}.
+//! The numbers of the table are constant in frame i+1: \[r_i\]_{i+1} and \[I_i\]_{i+1}.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::Row;
 use rne_runtime::Wrench;
 
-/// A formula as it was printed or spoken; its number in the list of errata comes first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Misprint {
-    /// Step 1: third column (0, -1, -1) in Q_{i-1}ᵀ.
-    E1ThirdColumn,
-    /// Step 1: Q of frame i with respect to frame i+1.
-    E2WrongQ,
-    /// Step 2: ω_i on the left side.
-    E3LeftSide,
-    /// Step 2, P: \[ω̇_{i-1}\]_i is turned, although it stands in frame i already.
-    E4TurnedTwice,
-    /// Step 3, P: b_i without its dot.
-    E5NoDot,
-    /// Step 3: the factors of the cross product the other way round.
-    E6FactorsSwapped,
-    /// Step 3: \[r_i\]_i is constant.
-    E7ConstantR,
-    /// Step 3: d_i is the joint offset.
-    E8OffsetForD,
-    /// Step 3: a_i connects O_{i-1} to O_i.
-    E9FramesBefore,
-    /// Step 6: f_{i,i+1} is not turned.
-    E10ForceNotTurned,
-    /// Step 6: n_{i,i+1} is not turned.
-    E10MomentNotTurned,
-    /// Step 6: I_i is not turned.
-    E11InertiaNotTurned,
-    /// Step 5: the ground is a frame before frame 1.
-    E13GroundFrame,
-    /// Example: e = (1, 0, 0).
-    E17AxisX,
-    /// Step 1: ω_i = ω_{i-1} for every joint.
-    E22NoJointRate,
-    /// No erratum, a common mistake in step 4, P: ḃ_i ω_i × e_i without the 2.
-    CoriolisOnce,
-    /// No erratum, a common mistake in step 6: without ω_i × I_i ω_i.
-    NoGyroscopicMoment,
-}
+pub use crate::misprint::Misprint;
 
-impl Misprint {
-    /// Those that change torques; step 3, the velocity, is used by none.
-    pub const IN_TORQUES: [Self; 15] = [
-        Self::NoGyroscopicMoment,
-        Self::CoriolisOnce,
-        Self::E1ThirdColumn,
-        Self::E2WrongQ,
-        Self::E3LeftSide,
-        Self::E4TurnedTwice,
-        Self::E7ConstantR,
-        Self::E8OffsetForD,
-        Self::E9FramesBefore,
-        Self::E10ForceNotTurned,
-        Self::E10MomentNotTurned,
-        Self::E11InertiaNotTurned,
-        Self::E13GroundFrame,
-        Self::E17AxisX,
-        Self::E22NoJointRate,
-    ];
-}
-
-/// What moves and pulls at an arm.
+/// The motion of an arm, and the forces on it.
 #[derive(Clone, Debug)]
 pub struct State {
     /// θ_i or b_i, without the constant of the table.
@@ -91,7 +32,7 @@ pub struct State {
     pub wrench: Wrench<f64>,
 }
 
-/// What the seven steps find for link i, in frame i.
+/// The results of the seven steps for link i, in frame i.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LinkVectors {
     /// ω_i

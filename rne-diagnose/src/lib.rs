@@ -37,7 +37,7 @@ pub use crate::observation::Observation;
 pub use crate::slip::Slip;
 pub use crate::typo::Typo;
 
-/// What is to be said of torques.
+/// The diagnosis of given torques.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Diagnosis {
     /// They are right: the largest difference, in parts of the largest torque.
@@ -95,7 +95,7 @@ pub fn torques_with(robot: &Robot, slips: &[Slip], at: &Observation) -> Result<O
     computation.torques(&DynArm::from_robot(&computation.robot), at).map(Some)
 }
 
-/// What came of some slips.
+/// The result of trying some slips.
 struct Tried {
     /// Whether the torques are the torques that were seen.
     fits: bool,

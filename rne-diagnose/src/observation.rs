@@ -1,4 +1,4 @@
-//! What somebody else's computation printed.
+//! The printed torques of somebody else's computation.
 
 use rne_runtime::Wrench;
 
@@ -13,7 +13,7 @@ pub struct Observation {
     pub qd: Vec<f64>,
     /// Joint accelerations.
     pub qdd: Vec<f64>,
-    /// What the last link exerts on its environment, at the tip, in tip axes; `None` for a free tip.
+    /// The wrench that the last link exerts on its environment, at the tip, in tip axes; `None` for a free tip.
     pub wrench: Option<Wrench<f64>>,
     /// The torques in question.
     pub tau: Vec<f64>,
@@ -44,7 +44,7 @@ impl Observation {
     }
 }
 
-/// What two right computations differ by, in parts of the largest torque.
+/// The difference of two right computations, in parts of the largest torque.
 const ROUNDING: f64 = 1e-9;
 
 pub(crate) fn largest(values: &[f64]) -> f64 {

@@ -27,7 +27,7 @@ macro_rules! slips {
                 match self { $(Self::$variant { .. } => $name,)* }
             }
 
-            /// What it changes: two slips that change the same thing exclude each other.
+            /// The subject that it changes: two slips that change the same thing exclude each other.
             fn subject(self) -> &'static str {
                 match self { $(Self::$variant { .. } => $subject,)* }
             }
@@ -230,7 +230,7 @@ fn move_com(robot: &mut Robot, times: f64) {
 }
 
 impl Slip {
-    /// What the other computation does, in a clause: "gravity points the other way".
+    /// The mistake of the other computation, in a clause: "gravity points the other way".
     #[must_use]
     pub fn says(self, robot: &Robot) -> String {
         let (this, other) = match robot.convention {

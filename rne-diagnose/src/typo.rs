@@ -73,13 +73,13 @@ impl Typo {
         }
     }
 
-    /// What the other computation does, in a clause.
+    /// The mistake of the other computation, in a clause.
     #[must_use]
     pub fn says(self, robot: &Robot) -> String {
         format!("{} has the other sign", self.number(robot).0)
     }
 
-    /// What stands in the file.
+    /// The number in the file.
     #[must_use]
     pub fn right(self, robot: &Robot) -> String {
         let (what, value, unit) = self.number(robot);

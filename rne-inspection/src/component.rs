@@ -16,7 +16,7 @@ pub(crate) struct Equations<'p> {
     robot: &'p Robot,
     program: &'p Program,
     became: HashMap<String, Became>,
-    /// What the components are that no statement needs, where that is a letter or a number.
+    /// The components that no statement needs, where they are a letter or a number.
     plain: HashMap<String, Tree>,
     used_by: BTreeMap<String, Vec<String>>,
     statements: HashMap<String, Vec<String>>,
@@ -66,7 +66,7 @@ impl<'p> Equations<'p> {
         all
     }
 
-    /// What every component of an equation is, in order.
+    /// The components of the chosen equations, in order.
     pub(crate) fn components(&mut self, is_here: impl Fn(&Equation) -> bool) -> Vec<Component> {
         let program = self.program;
         program.equations.iter().filter(|equation| is_here(equation)).map(|of| self.component(of)).collect()
@@ -135,7 +135,7 @@ impl<'p> Equations<'p> {
         }
     }
 
-    /// What stands in the place of a name for this robot.
+    /// The tree that replaces a name for this robot.
     fn here(&self, name: &str) -> Tree {
         match self.became.get(name) {
             Some(Became::Constant { value, .. }) => Tree::Number(*value),
@@ -183,7 +183,7 @@ impl<'p> Equations<'p> {
         }
     }
 
-    /// What a factor of 1 or -1 leaves of a product.
+    /// The rest of a product with a factor of 1 or -1.
     fn other_factor(&self, operands: &[Tree]) -> String {
         let unit = |operand: &Tree| match operand.map_names(&|name| self.here(name)) {
             of if !of.names().is_empty() => None,
@@ -218,7 +218,7 @@ mod tests {
         f64::from(sum) / 500.0 - 1.0
     }
 
-    /// What components are by the equations alone, each computed once.
+    /// The values of components by the equations alone, each computed once.
     struct Values<'e> {
         equations: &'e Equations<'e>,
         trees: HashMap<String, Tree>,

@@ -1,4 +1,4 @@
-//! What the compiler knows of an arm, as data to look at: of every component of every step the general equation, the
+//! The compiler's knowledge of an arm as data: for every component of every step the general equation, the
 //! equation of this robot, what folded away and because of which zeros, the code that is left, units, frames, counts.
 //!
 //! [`inspect`] makes it; it becomes JSON by serde. Text, pages and plots are renderers of it, and none of them computes
@@ -48,7 +48,7 @@ pub fn inspect(robot: &rne_model::Robot, function: Function) -> Result<Inspectio
 }
 
 impl Inspection {
-    /// What there is to say of a program. Equations are told where the program has them
+    /// Inspects a program. Equations are told where the program has them
     /// ([`Compiler::with_equations`]).
     #[must_use]
     pub fn new(robot: &rne_model::Robot, program: &Program) -> Self {
@@ -127,7 +127,7 @@ impl Inspection {
         }
     }
 
-    /// What a name is, and what its quantity is.
+    /// The meaning of a name, and its quantity.
     #[must_use]
     pub fn meaning(&self, name: &str) -> Option<(&Name, &Quantity)> {
         let name = self.names.get(name)?;
@@ -226,7 +226,7 @@ fn sine_and_cosine(program: &Program, turn: &codegen::SineCosine) -> SineCosine 
     SineCosine { joint, sine: text(&turn.sine), cosine: text(&turn.cosine), angle }
 }
 
-/// What every name of the program means.
+/// The meaning of every name of the program.
 fn names(program: &Program) -> BTreeSet<codegen::Name> {
     let turned = program.sines_and_cosines.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
     let written = program.equations.iter().flat_map(|of| std::iter::once(of.name).chain(of.term.names()));

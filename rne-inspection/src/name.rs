@@ -1,4 +1,4 @@
-//! What a name means: quantity, unit, frame, and where it is drawn on the arm.
+//! The meaning of a name: quantity, unit, frame, and where it is drawn on the arm.
 
 use rne_codegen::{self as codegen, Component, Quantity};
 use rne_model::{JointKind, Robot};
@@ -27,7 +27,7 @@ pub(crate) fn record(name: codegen::Name) -> Name {
     Name { quantity: quantity(name.quantity), joint: name.joint, component, part }
 }
 
-/// What there is to know of a quantity.
+/// Describes a quantity.
 pub(crate) fn of_quantity(of: Quantity) -> record::Quantity {
     record::Quantity {
         letter: of.letter(),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::tree::Tree;
 
-/// What the compiler knows of one function of one arm.
+/// The compiler's knowledge of one function of one arm.
 #[derive(Clone, Debug, Serialize)]
 pub struct Inspection {
     /// `rne-inspection`.
@@ -25,9 +25,9 @@ pub struct Inspection {
     pub refusals: Vec<String>,
     /// Its operations.
     pub counts: Counts,
-    /// What every name means, by its text.
+    /// The meaning of every name, by its text.
     pub names: BTreeMap<String, Name>,
-    /// What there is to know of the quantities of these names.
+    /// The quantities of these names.
     pub quantities: BTreeMap<String, Quantity>,
     /// Why operations folded; a [`Mark`](crate::Mark) tells its number here, counted from 0.
     pub reasons: Vec<String>,
@@ -41,7 +41,7 @@ pub struct Inspection {
     pub sines_and_cosines: Vec<SineCosine>,
     /// The statements of the code, each using only what stands before it.
     pub statements: Vec<Statement>,
-    /// What is returned, in order: its name, and its value over the names before it.
+    /// The outputs, in order: the name, and the value over the names before it.
     pub outputs: Vec<(String, Tree)>,
     /// Numbers of the table and what is made of them before any step: link by link.
     pub table: Vec<Component>,
@@ -138,7 +138,7 @@ pub struct Operations {
     pub sums: usize,
 }
 
-/// What a name means.
+/// The meaning of a name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Name {
     /// The quantity, as `rne explain quantities` lists them: `omega`, `joint_force`.
@@ -153,12 +153,12 @@ pub struct Name {
     pub part: Option<usize>,
 }
 
-/// What there is to know of a quantity.
+/// A quantity: letter, unit, axes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quantity {
     /// Its letter in formulas: `ω`.
     pub letter: &'static str,
-    /// What it is, in words.
+    /// Its meaning in words.
     pub meaning: &'static str,
     /// The step that computes it, 1 to 7; absent for arguments and numbers of the table.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -212,7 +212,7 @@ pub struct Cell {
     pub joint: usize,
     /// The step, 1 to 7.
     pub step: usize,
-    /// What the step computes.
+    /// The title of the step.
     pub title: &'static str,
     /// Its equations between vectors, in the letters of the lecture.
     pub formulas: Vec<Formula>,
@@ -229,7 +229,7 @@ pub struct Cell {
 /// An equation between vectors.
 #[derive(Clone, Debug, Serialize)]
 pub struct Formula {
-    /// What it gives.
+    /// The quantity that it gives.
     pub quantity: String,
     /// The equation.
     pub text: String,
@@ -242,11 +242,11 @@ pub struct Component {
     pub name: String,
     /// Its equation before folding, for any arm with these joints.
     pub general: Tree,
-    /// The same for this robot, as text: what has a number of its own stands as number.
+    /// The equation for this robot, as text: names with a constant value are replaced by the number.
     pub with_numbers: String,
-    /// What folded away, and why.
+    /// The terms that folded away, and why.
     pub folded: Vec<Folded>,
-    /// What became of it in the code.
+    /// Its fate in the code.
     pub became: Became,
     /// The statements that compute it and its parts, in order.
     pub statements: Vec<String>,
@@ -259,13 +259,13 @@ pub struct Component {
 pub struct Folded {
     /// The term.
     pub term: String,
-    /// What is left of it: `0`, or the operand that a factor 1 leaves, or the name under which it stands elsewhere.
+    /// The rest of it: `0`, or the operand that a factor 1 leaves, or the name under which it stands elsewhere.
     pub left: String,
     /// Why, in the words of the table.
     pub why: String,
 }
 
-/// What a component became in the code.
+/// The fate of a component in the code.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Became {

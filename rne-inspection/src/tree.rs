@@ -19,7 +19,7 @@ pub enum Tree {
     Node(&'static str, Vec<Tree>, Option<Mark>),
 }
 
-/// What became of an operation.
+/// The fate of an operation.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Mark {
     /// `kept`, `zero`, `one`, `constant`, `cancelled`, `shared` or `unused`.
@@ -118,7 +118,7 @@ impl Tree {
         }
     }
 
-    /// The same with other leaves in the place of its names.
+    /// Replaces names by other trees.
     #[must_use]
     pub fn map_names(&self, of: &impl Fn(&str) -> Self) -> Self {
         match self {
@@ -131,7 +131,7 @@ impl Tree {
         }
     }
 
-    /// The same without products of 0 and 1, sums with 0, and two signs in a row.
+    /// Folds products of 0 and 1, sums with 0, and two signs in a row.
     #[must_use]
     pub(crate) fn folded(&self) -> Self {
         let Self::Node(operator, operands, _) = self else { return self.clone() };

@@ -69,7 +69,7 @@ impl Angle<f64> {
         Self { radians, sin, cos, right: None }
     }
 
-    /// The same angle in single precision; sine and cosine are rounded, not computed again.
+    /// Converts the angle to single precision; sine and cosine are rounded, not computed again.
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
     pub const fn to_f32(self) -> Angle<f32> {

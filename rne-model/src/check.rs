@@ -57,8 +57,8 @@ impl<'a> Reader<'a> {
     /// These parameters of the file, each once, stay free until run time. The robot is that of their values in the
     /// file; [`Robot::run_time`] says how it depends on them.
     ///
-    /// What may vary: gravity, `xyz`, `d`, `a`, masses, centres of mass, inertias and the numbers of motors, by
-    /// `+ - * /` and whole powers, which are products. Where `libm::pow` rounds a power otherwise, the number in the
+    /// These numbers may vary: gravity, `xyz`, `d`, `a`, masses, centres of mass, inertias and the numbers of motors,
+    /// by `+ - * /` and whole powers, which are products. Where `libm::pow` rounds a power otherwise, the number in the
     /// robot is the product too.
     ///
     /// It is an error of the file when a name does not stand under `parameters`; when an angle or a limit depends on

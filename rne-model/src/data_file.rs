@@ -10,7 +10,7 @@ use crate::spelling::did_you_mean;
 /// graph of as many dense joints a half.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// What the name of a plan file ends with, in place of the extension of its robot file.
+/// The ending of the name of a plan file, in place of the extension of its robot file.
 const PLAN: &str = "plan.yaml";
 
 /// The bytes of a robot file for [`Reader::read`](crate::Reader::read), and no more of them than tell that a file is
@@ -60,9 +60,9 @@ pub fn golden_of(robot_file: &Path) -> PathBuf {
     robot_file.with_extension("golden.csv")
 }
 
-/// What was probably meant to be the [golden file](golden_of) of a robot file that has none: a file beside it whose
-/// name is that but for its case, a slip or two, or the point before `golden`. It is not that of another robot file
-/// there; and a digit tells robots apart.
+/// The file that was probably meant to be the [golden file](golden_of) of a robot file that has none: a file beside it
+/// whose name is that but for its case, a slip or two, or the point before `golden`. It is not that of another robot
+/// file there; and a digit tells robots apart.
 pub fn misnamed_golden_of(robot_file: &Path) -> Option<PathBuf> {
     let stem = robot_file.file_stem()?.to_str()?;
     let golden = golden_of(robot_file);

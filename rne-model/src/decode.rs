@@ -39,7 +39,7 @@ pub(crate) const fn is_required(rule: &str) -> bool {
     matches!(rule.as_bytes(), [b'r', ..])
 }
 
-/// What every reader needs: the text, the names of the numbers, and where mistakes go.
+/// The state that every reader needs: the text, the names of the numbers, and where mistakes go.
 pub(crate) struct Context<'t> {
     pub(crate) text: &'t str,
     problems: &'t Problems,
@@ -275,7 +275,7 @@ impl<'d> Fields<'d> {
     }
 }
 
-/// What a required key may look like.
+/// An example of a required key.
 fn how_to_write(key: &str) -> Option<&'static str> {
     Some(match key {
         "format" => "begin the file with `format: 1`",
@@ -390,7 +390,7 @@ pub(crate) fn list<const N: usize>(
     values.into_iter().collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
-/// What to write instead of `[0 -0.02 0]`, `0 0 0.3` or `[0, 0, 0,3]`, where as many numbers as are needed can be seen.
+/// The help for `[0 -0.02 0]`, `0 0 0.3` or `[0, 0, 0,3]`, where as many numbers as are needed can be seen.
 fn separated<const N: usize>(raw: &str) -> Option<String> {
     let inner = raw.trim_start_matches('[').trim_end_matches(']').trim();
     if inner.len() > 100 {
@@ -452,7 +452,7 @@ pub(crate) fn choice<T: Copy>(cx: &Context, node: &Node, what: &str, words: &[(&
     )
 }
 
-/// What becomes of a joint of URDF that is none here.
+/// The help for a kind of joint of URDF that does not exist here.
 fn no_joint(what: &str, word: &str) -> Option<String> {
     (what == "joint type").then_some(())?;
     Some(match word.to_lowercase().as_str() {

@@ -34,7 +34,7 @@ pub struct Diagnostic {
     pub line: usize,
     /// Column of the first byte of `span`, from 1, in characters.
     pub column: usize,
-    /// What to do about it.
+    /// The remedy.
     pub help: Option<String>,
 }
 
@@ -67,7 +67,7 @@ impl Diagnostic {
     }
 }
 
-/// What is wrong with one file: errors first, then warnings, then notes, each in the order of the text.
+/// The problems of one file: errors first, then warnings, then notes, each in the order of the text.
 ///
 /// `Display` gives the full rendering without colour; [`Report::render`] and [`Report::short`] give the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,7 +76,7 @@ pub struct Report {
     pub name: String,
     /// Its text, without a byte order mark; spans count in it.
     pub text: String,
-    /// What was found.
+    /// The problems that were found.
     pub diagnostics: Vec<Diagnostic>,
     work: usize,
 }

@@ -11,10 +11,10 @@ use crate::diagnostic::{Diagnostic, Problems, Report};
 use crate::schema::MAX_JOINTS;
 use crate::source::{self, quoted};
 
-/// What messages say of a file.
+/// The words of messages for a kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kind {
-    /// What it is: `a robot file`.
+    /// Its kind: `a robot file`.
     pub name: &'static str,
     /// The number that it begins with: `format: 1`.
     pub format: u32,
@@ -135,8 +135,8 @@ impl Node {
 ///
 /// # Errors
 ///
-/// What is no YAML, or of a kind that no file of ours has: tags, several documents, a key that stands twice, control
-/// characters, more than 1 MiB.
+/// Reports text that is no YAML, or of a kind that no file of ours has: tags, several documents, a key that stands
+/// twice, control characters, more than 1 MiB.
 pub fn read(name: &str, text: &str, kind: Kind) -> Result<Rc<Node>, Report> {
     let problems = Problems::new();
     if !source::size_is_fine(text.len(), kind.name, &problems) {
@@ -271,7 +271,7 @@ impl<'t> Builder<'t> {
         Some(format!("is the `{bracket}` in line {} closed?", line(&self.breaks, start)))
     }
 
-    /// What the lines at a syntax error look like: a list that begins as a mapping, or a key without its blank.
+    /// Recognises the lines at a syntax error: a list that begins as a mapping, or a key without its blank.
     fn around(&self, at: usize) -> Option<String> {
         let before = self.text.get(..at)?;
         let start = before.rfind('\n').map_or(0, |newline| newline + 1);

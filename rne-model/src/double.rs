@@ -12,7 +12,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub struct Double {
     /// The number, rounded.
     pub high: f64,
-    /// What rounding took away.
+    /// The part that rounding removed.
     pub low: f64,
 }
 

@@ -28,7 +28,7 @@ const MAX_PARTS: usize = 1000;
 /// forever.
 const MAX_RUN_TIME_PARTS: usize = 250;
 
-/// What a number may be, for the help of every mistake.
+/// The forms of a number, for the help of every mistake.
 pub(crate) const ALLOWED: &str = "a number is a finite decimal such as 0.4 or 2.0e-4, or an expression over numbers, \
      `pi`, parameters, `+ - * / ^`, parentheses and sqrt sin cos tan deg";
 
@@ -149,7 +149,7 @@ fn is_name_part(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// What is wrong with an expression, and where in its text.
+/// A mistake in an expression, and its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mistake {
     pub(crate) range: Range<usize>,
@@ -167,7 +167,7 @@ impl Mistake {
     }
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Meaning {
     /// A parameter with a value.
@@ -182,7 +182,7 @@ pub(crate) enum Meaning {
 
 /// The names an expression may use.
 pub(crate) trait Names {
-    /// What `name` stands for; counts as a use of it.
+    /// Looks a name up, which counts as a use of it.
     fn meaning(&self, name: &str) -> Meaning;
     /// A known name that resembles `name`.
     fn similar(&self, name: &str) -> Option<String>;
@@ -356,7 +356,7 @@ impl Expression {
 ///
 /// # Errors
 ///
-/// What is wrong, and where in the text.
+/// A mistake, and its place in the text.
 pub fn number(text: &str) -> Result<f64, Diagnostic> {
     struct Nameless;
     impl Names for Nameless {

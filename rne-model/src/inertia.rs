@@ -11,7 +11,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 ///
 /// A zero mass or a zero coordinate takes nothing away, so exact zeros stay exact zeros.
 ///
-/// The same for numbers and for formulas, so that both take the same steps.
+/// It serves numbers and formulas, so that both take the same steps.
 pub(crate) fn about_com<S>(origin: Inertia<S>, m: &S, [x, y, z]: [S; 3]) -> Inertia<S>
 where
     S: Clone + PartialEq<f64> + Add<Output = S> + Sub<Output = S> + Mul<Output = S>,

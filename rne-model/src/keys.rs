@@ -8,7 +8,7 @@ use crate::{document, schema, source};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Mapping {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: &'static str,
     /// The keys that it may have, in the order in which they are read.
     pub keys: &'static [Key],

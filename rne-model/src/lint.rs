@@ -26,7 +26,7 @@ const FARTHEST: f64 = 5.0;
 const WIDEST_GYRATION: f64 = 2.0;
 /// No arm has a heavier link, kg.
 const HEAVIEST: f64 = 2000.0;
-/// What the acceleration of gravity measures on Earth, generously, m/s².
+/// The range of the acceleration of gravity on Earth, generously, m/s².
 const GRAVITY: RangeInclusive<f64> = 8.0..=11.0;
 /// Four turns; more in a revolute joint's limits are degrees.
 const WIDEST: f64 = 8.0 * PI;
@@ -209,7 +209,7 @@ pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [
     }
 }
 
-/// What the joints' inertias are together: joints that nothing resists, and masses whose inertia is forgotten.
+/// Checks the joints' inertias together: joints that nothing resists, and masses whose inertia is forgotten.
 pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints: &[Joint]) {
     let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
     cx.count(joints.len() * joints.len() * joints.len());

@@ -69,7 +69,7 @@ impl Quantity {
         Some(if exponent < 0.0 { Self::constant(1.0) / power } else { power })
     }
 
-    /// The same without the sign of a zero, which carries no meaning in a table.
+    /// Removes the sign of a zero, which carries no meaning in a table.
     pub(crate) fn without_negative_zero(self) -> Self {
         let value = self.value + 0.0;
         match self.formula {

@@ -2,7 +2,7 @@
 
 use crate::{Convention, Joint, JointKind, Row, parent};
 
-/// What is below this part of the largest moment that the links could have, at their distance from the base, is
+/// An inertia below this part of the largest moment that the links could have, at their distance from the base, is
 /// rounding.
 const ROUNDING: f64 = 1e-12;
 

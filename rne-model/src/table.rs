@@ -23,7 +23,7 @@ impl Convention {
     }
 }
 
-/// What a joint does.
+/// The kind of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// Turns: the joint variable (rad) is added to `theta`.
@@ -106,8 +106,8 @@ impl<S: Copy> Inertia<S> {
     }
 }
 
-/// The inertial parameters of a link in the order in which regressors count them: mass, first moments, inertia about the
-/// origin of the link frame.
+/// The inertial parameters of a link in the order in which regressors count them: mass, first moments, inertia about
+/// the origin of the link frame.
 pub const INERTIAL_PARAMETERS: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
 
 /// The inertial data of one link, in its link frame.
@@ -198,7 +198,7 @@ mod single {
     }
 
     impl Transform<f64> {
-        /// The same placement in single precision.
+        /// Converts the placement to single precision.
         #[must_use]
         pub const fn to_f32(self) -> Transform<f32> {
             Transform { xyz: vector(self.xyz), rpy: [self.rpy[0].to_f32(), self.rpy[1].to_f32(), self.rpy[2].to_f32()] }
@@ -206,7 +206,7 @@ mod single {
     }
 
     impl Row<f64> {
-        /// The same row in single precision, each number rounded once.
+        /// Converts the row to single precision; each number is rounded once.
         #[must_use]
         pub const fn to_f32(self) -> Row<f32> {
             let (dh, link, i) = (self.dh, self.link, self.link.inertia);
@@ -231,7 +231,7 @@ mod single {
     }
 
     impl Motor<f64> {
-        /// The same motor in single precision, each number rounded once.
+        /// Converts the motor to single precision; each number is rounded once.
         #[must_use]
         pub const fn to_f32(self) -> Motor<f32> {
             Motor {
@@ -244,7 +244,7 @@ mod single {
     }
 
     impl<const DOF: usize> Model<DOF, f64> {
-        /// The same robot in single precision, each number rounded once.
+        /// Converts the robot to single precision; each number is rounded once.
         #[must_use]
         pub fn to_f32(self) -> Model<DOF, f32> {
             Model {

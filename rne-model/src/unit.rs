@@ -1,6 +1,6 @@
 //! Units behind numbers: numbers of a robot file have none, and whoever writes one is told what to write instead.
 
-/// What to write instead of `number` with `unit` behind it; `None` where that is no unit.
+/// The help for a `number` with a `unit` after it; `None` where that is no unit.
 ///
 /// The units of a robot file are rad, m, kg, s and N; only angles have a function, `deg`, for those of another.
 pub(crate) fn instead(number: &str, unit: &str) -> Option<String> {

@@ -17,8 +17,8 @@ pub fn is_urdf(text: &str) -> bool {
     text.starts_with('<') && head(text).contains("<robot")
 }
 
-/// What to say of a text that is XML, in most cases URDF; `name` is what messages call its file. `None` for a text that
-/// may be a robot file: that never begins with such a tag.
+/// The message for a text that is XML, in most cases URDF; `name` is what messages call its file. `None` for a text
+/// that may be a robot file: that never begins with such a tag.
 pub(crate) fn instead_of_a_robot_file(name: &str, text: &str) -> Option<Diagnostic> {
     let start = text.len() - text.trim_start().len();
     let rest = text.get(start..)?;

@@ -12,7 +12,7 @@ use crate::{Entry, Inertia, InertiaElement, InertiaReference, inertia};
 /// More parameters than a message should list.
 const MOST_LISTED: usize = 12;
 
-/// What to do about a number that cannot depend on a run-time parameter.
+/// The remedy for a number that cannot depend on a run-time parameter.
 pub(crate) fn leave_out(name: &str) -> String {
     format!("leave {} out of the run-time parameters: it then has its value in the file", quoted(name))
 }

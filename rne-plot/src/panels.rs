@@ -7,7 +7,7 @@ use crate::chart::{
 /// A curve of a panel.
 #[derive(Clone, Copy, Debug)]
 pub struct PanelCurve<'a> {
-    /// What it is, for the legend: the same in every panel.
+    /// Its name in the legend: the same in every panel.
     pub name: &'a str,
     /// A value for each time.
     pub values: &'a [f64],
@@ -20,7 +20,7 @@ pub struct Band {
     pub start: f64,
     /// s
     pub end: f64,
-    /// What it is, for who points at it.
+    /// The words that a pointer shows.
     pub words: String,
 }
 
@@ -31,7 +31,7 @@ pub struct Panel<'a> {
     pub title: String,
     /// Above them, on the right.
     pub note: String,
-    /// What is drawn.
+    /// The curves.
     pub curves: Vec<PanelCurve<'a>>,
     /// Dashed lines across.
     pub limits: Vec<f64>,

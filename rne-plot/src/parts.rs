@@ -1,4 +1,4 @@
-//! What a torque is made of.
+//! The parts of a torque.
 //!
 //! ```text
 //! τ = M(q) q̈ + C(q, q̇) q̇ + g(q)

@@ -1,4 +1,4 @@
-//! What a page knows of its arm: the inspection, without what the page can derive of the rest.
+//! The data of a page: the inspection, without the parts that the page can derive.
 
 use rne_codegen::Program;
 use rne_inspection::{Became, Component, Inspection, Name, Statement};
@@ -63,7 +63,7 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
     })
 }
 
-/// What every name means.
+/// The meaning of every name.
 fn names(inspection: &Inspection) -> Value {
     let record = |name: &Name| match name.part {
         None => json!([name.quantity, name.joint, name.component]),

@@ -24,7 +24,7 @@ use rne_model::Robot;
 
 pub use crate::data::data;
 
-/// What every page consists of besides its data.
+/// The parts of every page besides its data.
 const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 

@@ -186,8 +186,8 @@ fn common_factors(terms: &[Flat]) -> BTreeMap<Factor, i32> {
     common
 }
 
-/// What is put before the parentheses: a magnitude that all coefficients have, or what divides integers; and the sign,
-/// if none is positive.
+/// The coefficient before the parentheses: a magnitude that all coefficients have, or what divides integers; and the
+/// sign, if none is positive.
 fn common_coefficient(terms: &[Flat]) -> Rational {
     let magnitudes: BTreeSet<Rational> = terms.iter().map(|term| term.coefficient.abs()).collect();
     let magnitude = match magnitudes.first() {
@@ -370,7 +370,7 @@ impl Sum {
         self.0.is_empty()
     }
 
-    /// The same without parentheses, in letters.
+    /// Multiplies the sum out again, in letters.
     #[cfg(test)]
     pub(crate) fn expanded(&self) -> Polynomial {
         self.0.iter().fold(Polynomial::zero(), |sum, term| {

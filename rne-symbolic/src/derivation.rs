@@ -20,7 +20,7 @@ use crate::vector::{Matrix, Vector};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooLong;
 
-/// What the seven steps find for an arm in letters: torques, and the quantities that were asked for.
+/// The results of the seven steps for an arm in letters: torques, and the quantities that were asked for.
 #[derive(Debug)]
 pub(crate) struct Derivation {
     values: HashMap<Name, Polynomial>,
@@ -73,7 +73,7 @@ impl Derivation {
         self.values.get(&name).cloned().unwrap_or_else(Polynomial::zero)
     }
 
-    /// What the actuators of all joints deliver, base to tip.
+    /// The torques or forces of all actuators, base to tip.
     pub(crate) fn torques(&self) -> Vec<Polynomial> {
         let of = |joint| self.values.get(&Name::scalar(Quantity::Torque, joint)).cloned();
         (1..).map_while(of).collect()

@@ -1,4 +1,4 @@
-//! What is said of a closed form, in order, whatever the script: torques, M, h, γ, and what the letters are.
+//! The sections of a closed form, in order, in any script: torques, M, h, γ, and the meaning of the letters.
 
 use std::collections::BTreeSet;
 
@@ -239,7 +239,7 @@ pub(crate) fn used<'p>(polynomials: impl Iterator<Item = &'p Polynomial>) -> BTr
     terms.flat_map(|(monomial, _)| monomial.0.iter().map(|(symbol, _)| *symbol)).collect()
 }
 
-/// What the letters are.
+/// The section on the meaning of the letters.
 pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Symbol>) -> Option<Section> {
     let notation = &composer.notation;
     let value = |index: usize| -> Option<(String, String)> {

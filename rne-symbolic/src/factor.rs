@@ -1,4 +1,4 @@
-//! What stands in a printed product: the letters, and sines and cosines of sums of angles.
+//! The factors of a printed product: the letters, and sines and cosines of sums of angles.
 
 #[cfg(test)]
 use crate::polynomial::Polynomial;
@@ -26,7 +26,7 @@ pub(crate) enum Factor {
     Acceleration(usize),
 }
 
-/// What a factor belongs to; sums are collected by the later ones first.
+/// The class of a factor; sums are collected by the later classes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Class {
     Constant,
@@ -59,7 +59,7 @@ impl Factor {
         }
     }
 
-    /// The same in letters.
+    /// The factor as a polynomial in letters.
     #[cfg(test)]
     pub(crate) fn expanded(&self) -> Polynomial {
         match self {

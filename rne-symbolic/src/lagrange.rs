@@ -1,4 +1,4 @@
-//! The same equations by Lagrange, from the energies: the independent side.
+//! The equations of motion by Lagrange, from the energies: the independent side.
 //!
 //! It shares the letters of the table with the seven steps and nothing else: frames are placed in the base frame by the
 //! four turns and shifts of a row, velocities are Jacobians, which are derivatives of positions, and

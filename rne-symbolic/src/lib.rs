@@ -164,7 +164,7 @@ impl ClosedForm {
         self.text_spelt(str::to_owned)
     }
 
-    /// The same with letters spelt otherwise, such as `theta1` for θ1: each part of a line is given to `spelling`
+    /// The text with letters spelt otherwise, such as `theta1` for θ1: each part of a line is given to `spelling`
     /// before lines are broken.
     #[must_use]
     pub fn text_spelt(&self, spelling: impl Fn(&str) -> String) -> String {

@@ -57,7 +57,7 @@ impl Pieces {
         Self(writer.pieces)
     }
 
-    /// The same in other letters.
+    /// Rewrites the pieces in other letters.
     pub(crate) fn spelt(self, spelling: impl Fn(&str) -> String) -> Self {
         let piece = |piece: Piece| {
             let text = spelling(&piece.text);

@@ -20,7 +20,7 @@ pub(crate) enum Script {
 pub(crate) struct Notation<'c> {
     pub(crate) script: Script,
     pub(crate) constants: &'c Constants,
-    /// What the joints do, base to tip.
+    /// The kinds of the joints, base to tip.
     pub(crate) kinds: &'c [JointKind],
 }
 
@@ -144,7 +144,7 @@ impl Notation<'_> {
         }
     }
 
-    /// What stands between factors.
+    /// The sign between factors.
     pub(crate) fn times(&self) -> &'static str {
         match self.script {
             Script::Unicode => " ",

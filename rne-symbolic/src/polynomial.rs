@@ -121,7 +121,7 @@ impl Polynomial {
         Some(Self::term(coefficient.recip(), Monomial(factors.collect::<Option<_>>()?)))
     }
 
-    /// What stands beside this power of a letter; the sum over all powers is the polynomial.
+    /// The coefficient of this power of letters; the sum over all powers is the polynomial.
     pub(crate) fn coefficient(&self, of: &[(Symbol, i32)], is_in: impl Fn(Symbol) -> bool + Copy) -> Self {
         self.map(|terms| {
             let beside = terms.iter().filter_map(|(monomial, value)| {
@@ -261,7 +261,7 @@ impl Mul for &Polynomial {
     }
 }
 
-/// The same operators for what is not needed again.
+/// Operators that take their operands by value.
 macro_rules! owned {
     ($($operation:ident $method:ident),*) => {$(
         impl $operation for Polynomial {

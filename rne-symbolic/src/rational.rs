@@ -13,7 +13,7 @@ pub(crate) fn fraction(p: i64, q: i64) -> Rational {
     Rational::new(BigInt::from(p), BigInt::from(q))
 }
 
-/// What a number of the file stands for: a simple fraction that rounds to it, or the decimal as it is written. The
+/// The exact value of a number of the file: a simple fraction that rounds to it, or the decimal as it is written. The
 /// value is finite.
 pub(crate) fn exact(value: f64) -> Rational {
     #[allow(clippy::cast_possible_truncation)] // an integer of at most 53 bits

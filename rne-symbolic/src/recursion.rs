@@ -142,7 +142,7 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     sections
 }
 
-/// What sliding joints, rotors and first moments without mass add to the formulas, in words.
+/// The terms of sliding joints, rotors and first moments without mass, in words.
 fn besides(form: &ClosedForm, script: Script, forward: &mut Vec<Item>, backward: &mut Vec<Item>) {
     let rows = &form.table.rows;
     let math = |unicode: &str, latex: &str| if script == Script::Latex { latex } else { unicode }.to_owned();

@@ -32,7 +32,7 @@ pub(crate) enum Symbol {
     Acceleration(usize),
 }
 
-/// What a constant is, which decides how a sum is collected.
+/// The kind of a constant, which decides how a sum is collected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     /// A mass.

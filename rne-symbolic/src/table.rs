@@ -1,6 +1,6 @@
 //! The table of a robot in letters.
 //!
-//! What is zero in the file is zero here, and right angles are exact. Of the other numbers those that the file writes
+//! Zeros of the file are zeros here, and right angles are exact. Of the other numbers those that the file writes
 //! by its parameters are formulas of these; each of the rest is a letter, called as textbooks do: m1, a2, d3, x_C2,
 //! I2_xx.
 
@@ -262,7 +262,7 @@ impl Table {
     }
 }
 
-/// What the equations call variables, matrices and torques, as a parameter might be called too.
+/// The names of variables, matrices and torques in the equations, which a parameter might have too.
 fn structure(kinds: &[JointKind]) -> Vec<String> {
     let joints = 1..=kinds.len();
     let mut names: Vec<String> = joints

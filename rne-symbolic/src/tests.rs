@@ -65,7 +65,7 @@ fn shipped(name: &str) -> Robot {
     read(name, file.yaml.as_bytes()).expect("it is valid")
 }
 
-/// The same arm up to a joint.
+/// Cuts an arm after a joint.
 fn up_to(robot: &Robot, joints: usize) -> Robot {
     let mut first = robot.clone();
     first.joints.truncate(joints);
@@ -107,7 +107,7 @@ fn random_robots(count: usize) -> Vec<Robot> {
     robots.collect()
 }
 
-/// The same arms with first moments in place of masses, in every second link.
+/// Puts first moments in the place of masses, in every second link.
 fn without_mass(mut robot: Robot) -> Robot {
     for joint in robot.joints.iter_mut().step_by(2) {
         let link = &mut joint.row.link;
@@ -212,7 +212,7 @@ fn the_numbers_are_those_of_the_runtime() {
     assert!(largest < 1e-12, "{largest:e} of the largest torque");
 }
 
-/// What is printed, multiplied out again.
+/// A printed form gives the polynomial again when it is multiplied out.
 #[test]
 fn what_is_collected_is_what_was_derived() {
     let mut compared = 0;

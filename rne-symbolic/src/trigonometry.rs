@@ -16,10 +16,10 @@ use crate::symbol::{Angle, Symbol};
 /// A coefficient with its factors.
 pub(crate) type Product = (Rational, Vec<(Factor, i32)>);
 
-/// Of so many joints angles are added and subtracted in every way, of more of them consecutive ones are added.
+/// Up to so many angles are added and subtracted in every way; of more angles consecutive ones are added.
 const MOST_COMBINED: usize = 3;
 
-/// What is longer stays as it is.
+/// Longer sums stay as they are.
 const MOST_TERMS: usize = 24;
 
 /// Forms that are tried, times the waves of each; the plain ones come first.
@@ -87,7 +87,7 @@ fn angle((symbol, _): &(Symbol, i32)) -> Option<Angle> {
     }
 }
 
-/// What a reader has to read: terms, then factors.
+/// The length for a reader: terms, then factors.
 fn length(products: &[Product]) -> (usize, usize) {
     let of_factor = |(factor, power): &(Factor, i32)| match factor {
         Factor::Sine(argument) | Factor::Cosine(argument) => {
@@ -176,7 +176,7 @@ fn bases(angles: &[Angle]) -> Vec<Vec<Vec<i32>>> {
     })
 }
 
-/// The same waves by other angles φ = A θ: k·θ = k'·φ with k = Aᵀ k'.
+/// Expresses the waves by other angles φ = A θ: k·θ = k'·φ with k = Aᵀ k'.
 fn in_basis(waves: &Waves, basis: &[Vec<i32>]) -> Waves {
     let turned = waves.iter().map(|(k, value)| {
         let mut left = k.clone();

@@ -64,7 +64,7 @@ impl Written {
     }
 }
 
-/// What the joints do.
+/// The kinds of the joints.
 pub(crate) fn kinds(table: &Table) -> Vec<JointKind> {
     table.rows.iter().map(|row| row.kind).collect()
 }

@@ -23,7 +23,7 @@ pub struct GivenValue {
     pub resolution: f64,
 }
 
-/// What comes of a comparison.
+/// The result of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Comparison {
@@ -45,11 +45,11 @@ pub struct Difference {
     pub line: usize,
     /// The index of its component.
     pub component: usize,
-    /// What is given.
+    /// The given value.
     pub theirs: f64,
-    /// What is right.
+    /// The right value.
     pub ours: f64,
-    /// What explains it, the likeliest first.
+    /// The reasons that explain it, the likeliest first.
     pub reasons: Vec<Reason>,
 }
 
@@ -57,11 +57,11 @@ pub struct Difference {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reason {
-    /// What was done, in a clause.
+    /// The mistake, in a clause.
     pub says: String,
-    /// What is right, where that is more than the formula of the line.
+    /// The correction, where it is more than the formula of the line.
     pub right: Option<String>,
-    /// What it explains.
+    /// The extent of what it explains.
     pub reach: Reach,
 }
 
@@ -73,7 +73,7 @@ pub enum Reach {
     Everything,
     /// All torques that are given.
     Torques,
-    /// What is given of this line.
+    /// All values that are given of this line.
     Line,
     /// This component.
     Component,
@@ -84,7 +84,7 @@ pub enum Reach {
 /// Explanations that are kept.
 const MOST: usize = 4;
 
-/// What a double-precision computation is off by, in parts of the largest value of that unit.
+/// The error of a double-precision computation, in parts of the largest value of that unit.
 const ROUNDING: f64 = 1e-9;
 
 /// One digit alone would explain anything: digits count to this part of a line's size.
@@ -132,7 +132,7 @@ struct Ordered<'a> {
     sheet: &'a Worksheet,
     values: BTreeMap<Place, GivenValue>,
     digits: u8,
-    /// What rounding makes of the largest value of a unit.
+    /// The rounding error of the largest value of each unit.
     rounding: BTreeMap<&'static str, f64>,
 }
 
@@ -152,7 +152,7 @@ impl<'a> Ordered<'a> {
         Self { sheet, values: given.iter().filter_map(place).collect(), digits, rounding }
     }
 
-    /// What a hand that rounds to these digits at each line is off by, in a line of this size: two units of the last
+    /// The error of a hand that rounds to these digits at each line, in a line of this size: two units of the last
     /// digit, for what is rounded before adds up.
     fn by_hand(&self, size: f64) -> f64 {
         2.0 * size * 10_f64.powi(1 - i32::from(self.digits))
@@ -221,7 +221,7 @@ impl<'a> Ordered<'a> {
         Ok(reasons)
     }
 
-    /// What was done on the line alone.
+    /// The mistakes on the line alone that explain it.
     fn of_the_line(&self, line: usize, component: usize) -> Vec<Reason> {
         let ways = local::ways(self.line(line), component);
         let zero_is_no_multiple = |way: &local::Way| {
@@ -245,7 +245,7 @@ impl<'a> Ordered<'a> {
         found
     }
 
-    /// What `diagnose` says of the torques, where all of them are given.
+    /// The reasons that `diagnose` finds for the torques, where all of them are given.
     fn of_torques(&self, robot: &Robot, at: &Situation) -> Result<Vec<Reason>, WrongLength> {
         let of_tau = |joint: usize| self.values.values().find(|v| v.quantity == Quantity::Tau && v.joint == joint);
         let tau: Vec<GivenValue> = (1..=robot.dof()).filter_map(of_tau).copied().collect();

@@ -8,7 +8,7 @@ use rne_runtime::{BaseMotion, LinkTrace};
 
 use super::{Axes, Input, Line, Quantity, Situation, Term, first_lever, orientations};
 
-/// What the lines are made of.
+/// The data that the lines are made of.
 pub(super) struct Formulas<'a> {
     pub(super) robot: &'a Robot,
     pub(super) at: &'a Situation,
@@ -106,7 +106,7 @@ impl Formulas<'_> {
         Here { i: index + 1, kind, row, link, rotation: link.rotation_matrix(), turn, e, q, before }
     }
 
-    /// What goes into the steps.
+    /// The lines of the inputs of the steps.
     fn given(&self, here: &Here<'_>, orientations: &[Matrix3<f64>]) -> Vec<Line> {
         let Here { i, kind, row, link, turn, .. } = here;
         let (i, [q, qd, qdd]) = (*i, here.q);
@@ -362,7 +362,7 @@ impl Formulas<'_> {
         [vec![force, moment], handed_on, vec![joint_force, joint_moment, tau]].concat()
     }
 
-    /// What the next link takes, turned into these axes.
+    /// The wrench that the next link takes, turned into these axes.
     fn handed_on(&self, here: &Here<'_>) -> Vec<Line> {
         let (i, n) = (here.i, here.i + 1);
         [Quantity::NextForce, Quantity::NextMoment]
@@ -426,7 +426,7 @@ impl Here<'_> {
         }
     }
 
-    /// The same as it stands in a formula.
+    /// A vector of the link as a part of a formula.
     fn part(&self, quantity: Quantity) -> Part {
         Part::new(&quantity.symbol(self.i), self.vector(quantity), quantity.unit(self.kind))
     }

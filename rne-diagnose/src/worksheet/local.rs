@@ -1,4 +1,4 @@
-//! What somebody may have done on one line alone: a term left out, a sign, axes exchanged, degrees.
+//! Mistakes on one line alone: a term left out, a sign, axes exchanged, degrees.
 
 use std::f64::consts::PI;
 

@@ -49,7 +49,7 @@ impl Axes {
     }
 }
 
-/// What an arm does, and what acts on it. Lists run from base to tip; rad or m, and per second.
+/// The motion of an arm, and the forces on it. Lists run from base to tip; rad or m, and per second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Situation {
     /// Joint positions.
@@ -60,9 +60,9 @@ pub struct Situation {
     pub qdd: Vec<f64>,
     /// How the base moves, and gravity, in frame 0; `None` for a base at rest under the robot's gravity.
     pub base: Option<BaseMotion<f64>>,
-    /// What the last link exerts on its environment, at the tip, in tip axes.
+    /// The wrench that the last link exerts on its environment, at the tip, in tip axes.
     pub wrench: Option<Wrench<f64>>,
-    /// What is fixed to the tip of an arm on a base at rest; then there is no other wrench.
+    /// The payload that is fixed to the tip of an arm on a base at rest; then there is no other wrench.
     pub payload: Option<Payload<f64>>,
 }
 
@@ -84,7 +84,7 @@ pub struct Line {
     pub joint: usize,
     /// Whether it turns or slides.
     pub kind: JointKind,
-    /// What is on the line.
+    /// The quantity of the line.
     pub quantity: Quantity,
     /// A number for each of [`Quantity::components`].
     pub values: Vec<f64>,
@@ -92,7 +92,7 @@ pub struct Line {
     pub formula: String,
     /// The terms whose sum it is; none where it is given.
     pub terms: Vec<Term>,
-    /// What goes into the formula, in its order.
+    /// The inputs of the formula, in its order.
     pub inputs: Vec<Input>,
 }
 
@@ -104,7 +104,7 @@ pub struct Term {
     pub text: String,
     /// Its numbers, with its sign.
     pub values: Vec<f64>,
-    /// What it becomes by slips in it alone: what the slip is, and its numbers then.
+    /// Slips in this term alone: the words for the slip, and the numbers that it gives.
     pub slips: Vec<(String, Vec<f64>)>,
 }
 

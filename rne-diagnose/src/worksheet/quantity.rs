@@ -1,4 +1,4 @@
-//! What a worksheet has a line for.
+//! The quantities that a worksheet has lines for.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,8 +14,8 @@ const MATRIX: &[&str] = &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
 /// A row for each quantity: its name in files, its symbol for joint i (p is the one before, n the next), the step that
 /// finds it, its components, its units for a revolute and a prismatic joint, and its documentation.
 macro_rules! quantities {
-    ($($variant:ident: $name:literal, $symbol:literal, $step:literal, $components:ident, $turns:literal | $slides:literal,
-       $doc:literal;)*) => {
+    ($($variant:ident: $name:literal, $symbol:literal, $step:literal, $components:ident,
+       $turns:literal | $slides:literal, $doc:literal;)*) => {
         /// A quantity of a worksheet: an input of a joint, or a result of the seven steps. The order is that in which a
         /// joint's are computed, outward and then back.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

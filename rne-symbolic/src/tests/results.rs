@@ -125,7 +125,7 @@ fn components(formula: &str, table: &Table) -> Vec<Polynomial> {
     inside.unwrap_or(formula).split(", ").map(read).collect()
 }
 
-/// What the seven steps and the runtime find for results 1 to 10.
+/// Results 1 to 10 by the seven steps, and by the runtime.
 fn found(robot: &Robot, table: &Table) -> Vec<(Vec<Polynomial>, Vec<f64>)> {
     let vectors = [
         Quantity::Omega,
