@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne::model::{Angle, Convention, JointKind, Robot};
+use rne::model::{Angle, Convention, Robot};
 
 /// Gravity of `dynibo`, m/s² along -z of the world. It cannot be set.
 pub const GRAVITY: f64 = 9.80665;

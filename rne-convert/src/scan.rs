@@ -104,50 +104,37 @@ const fn optional(name: &'static str, kind: Kind) -> Attribute {
     Attribute { name, kind, required: false }
 }
 
+const fn limit(name: &'static str) -> Attribute {
+    optional(name, Kind::Limit)
+}
+
 const TYPE: Attribute = Attribute { name: "type", kind: Kind::Joint, required: true };
 
 const ORIGIN: &[Attribute] = &[optional("xyz", Kind::Vector), optional("rpy", Kind::Angles)];
 
+const fn element(name: &'static str, parent: &'static str, attributes: &'static [Attribute]) -> Element {
+    Element { name, parent, attributes }
+}
+
 const ELEMENTS: &[Element] = &[
-    Element { name: "robot", parent: "", attributes: &[optional("name", Kind::Text)] },
-    Element { name: "link", parent: "robot", attributes: &[text("name")] },
-    Element { name: "inertial", parent: "link", attributes: &[] },
-    Element { name: "origin", parent: "inertial", attributes: ORIGIN },
-    Element { name: "mass", parent: "inertial", attributes: &[number("value")] },
-    Element {
-        name: "inertia",
-        parent: "inertial",
-        attributes: &[number("ixx"), number("ixy"), number("ixz"), number("iyy"), number("iyz"), number("izz")],
-    },
-    Element { name: "joint", parent: "robot", attributes: &[text("name"), TYPE] },
-    Element { name: "origin", parent: "joint", attributes: ORIGIN },
-    Element { name: "parent", parent: "joint", attributes: &[text("link")] },
-    Element { name: "child", parent: "joint", attributes: &[text("link")] },
-    Element {
-        name: "axis",
-        parent: "joint",
-        attributes: &[Attribute { name: "xyz", kind: Kind::Vector, required: true }],
-    },
-    Element {
-        name: "limit",
-        parent: "joint",
-        attributes: &[
-            optional("lower", Kind::Limit),
-            optional("upper", Kind::Limit),
-            optional("effort", Kind::Limit),
-            optional("velocity", Kind::Limit),
-        ],
-    },
-    Element {
-        name: "mimic",
-        parent: "joint",
-        attributes: &[text("joint"), optional("multiplier", Kind::Number), optional("offset", Kind::Number)],
-    },
-    Element {
-        name: "dynamics",
-        parent: "joint",
-        attributes: &[optional("damping", Kind::Number), optional("friction", Kind::Number)],
-    },
+    element("robot", "", &[optional("name", Kind::Text)]),
+    element("link", "robot", &[text("name")]),
+    element("inertial", "link", &[]),
+    element("origin", "inertial", ORIGIN),
+    element("mass", "inertial", &[number("value")]),
+    element(
+        "inertia",
+        "inertial",
+        &[number("ixx"), number("ixy"), number("ixz"), number("iyy"), number("iyz"), number("izz")],
+    ),
+    element("joint", "robot", &[text("name"), TYPE]),
+    element("origin", "joint", ORIGIN),
+    element("parent", "joint", &[text("link")]),
+    element("child", "joint", &[text("link")]),
+    element("axis", "joint", &[Attribute { name: "xyz", kind: Kind::Vector, required: true }]),
+    element("limit", "joint", &[limit("lower"), limit("upper"), limit("effort"), limit("velocity")]),
+    element("mimic", "joint", &[text("joint"), optional("multiplier", Kind::Number), optional("offset", Kind::Number)]),
+    element("dynamics", "joint", &[optional("damping", Kind::Number), optional("friction", Kind::Number)]),
 ];
 
 /// Elements that are known and do not matter here, by what they stand in.

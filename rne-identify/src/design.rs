@@ -1,5 +1,7 @@
 //! The information in a motion: the regressor along it, its condition, and the deviations of the parameters.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, CompiledArm, Destination, EvaluationError, Form, Function};
@@ -222,11 +224,22 @@ pub(crate) fn states(motion: &Fourier, grid: &Grid) -> Motion {
 
 /// Torques of an arm at states, joint by joint.
 pub(crate) fn torques(arm: &CompiledArm, states: &Motion) -> Result<Vec<Vec<f64>>, EvaluationError> {
-    let [q, qd, qdd] =
-        [&states.q, &states.qd, &states.qdd].map(|lists| lists.iter().map(Vec::as_slice).collect::<Vec<_>>());
-    let arguments = Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
     let mut torques = vec![vec![0.0; states.len()]; arm.dof()];
     let columns = torques.iter_mut().map(Vec::as_mut_slice).collect();
-    arm.run(Function::InverseDynamics, states.len(), &arguments, Destination::Columns(columns))?;
+    run(arm, Function::InverseDynamics, states, 0..states.len(), columns)?;
     Ok(torques)
+}
+
+/// Runs a function of an arm at some states of a motion: each number of its result has a column.
+pub(crate) fn run(
+    arm: &CompiledArm,
+    function: Function,
+    motion: &Motion,
+    range: Range<usize>,
+    columns: Vec<&mut [f64]>,
+) -> Result<(), EvaluationError> {
+    let [q, qd, qdd] = [&motion.q, &motion.qd, &motion.qdd]
+        .map(|lists| lists.iter().map(|list| &list[range.clone()]).collect::<Vec<_>>());
+    let arguments = Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
+    arm.run(function, range.len(), &arguments, Destination::Columns(columns))
 }

@@ -8,9 +8,10 @@ use std::fmt;
 
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
-use rne_machine::{Arguments, Array, Destination, EvaluationError, Function};
+use rne_machine::{EvaluationError, Function};
 use rne_model::TransitionSign;
 
+use crate::design::run;
 use crate::least_squares::effort;
 use crate::parameters::PER_LINK;
 use crate::prior::Scales;
@@ -444,35 +445,27 @@ pub(crate) fn plain_columns(
 ) -> Result<Vec<DMatrix<f64>>, EvaluationError> {
     let dof = structure.dof();
     let states = range.len();
-    let of =
-        |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|column| column[range.clone()].to_vec()).collect() };
-    let (q, qd, qdd) = (of(&motion.q), of(&motion.qd), of(&motion.qdd));
-    let [q_columns, qd_columns, qdd_columns] =
-        [&q, &qd, &qdd].map(|list| list.iter().map(Vec::as_slice).collect::<Vec<_>>());
-    let arguments = Arguments::new()
-        .q(Array::Columns(&q_columns))
-        .qd(Array::Columns(&qd_columns))
-        .qdd(Array::Columns(&qdd_columns));
     let mut regressor = DMatrix::zeros(states, dof * dof * PER_LINK);
     let columns = regressor.as_mut_slice().chunks_mut(states.max(1)).collect();
     if states > 0 {
-        structure.arm.run(Function::Regressor, states, &arguments, Destination::Columns(columns))?;
+        run(&structure.arm, Function::Regressor, motion, range.clone(), columns)?;
     }
     let friction = structure.options.friction;
     let of_joint = |joint: usize| {
+        let [q, qd, qdd] = [&motion.q, &motion.qd, &motion.qdd].map(|lists| &lists[joint][range.clone()]);
         let mut columns: Vec<DVector<f64>> = Vec::with_capacity(structure.columns(joint));
         for &base in &structure.felt[joint] {
             columns.push(match structure.parameters.bases[base].kept {
                 crate::Parameter::Link(link, index) => {
                     regressor.column((joint * dof + link) * PER_LINK + index).clone_owned()
                 }
-                crate::Parameter::Rotor(_) => DVector::from_column_slice(&qdd[joint]),
+                crate::Parameter::Rotor(_) => DVector::from_column_slice(qdd),
             });
         }
         if friction {
-            columns.push(DVector::from_column_slice(&qd[joint]));
+            columns.push(DVector::from_column_slice(qd));
             for mut sign in walk.signs[joint].iter().copied() {
-                let states_of = q[joint].iter().zip(&qd[joint]);
+                let states_of = q.iter().zip(qd);
                 let odd = DVector::from_iterator(states, states_of.map(|(q, qd)| sign.next(*q, *qd)));
                 columns.extend([odd, DVector::from_element(states, 1.0)]);
             }

@@ -1,9 +1,10 @@
 //! Predicted torques of a robot file beside the measured torques of a log.
 
 use rne_logs::Motion;
-use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
+use rne_machine::{CompiledArm, Function};
 use rne_model::{Friction, Robot};
 
+use crate::design::run;
 use crate::information::{MotionError, checked};
 use crate::smoothing::Kernel;
 
@@ -84,13 +85,8 @@ impl Prediction {
         let mut torques = vec![vec![0.0; motion.len()]; self.robot.dof()];
         for start in (0..motion.len()).step_by(WINDOW) {
             let range = start..motion.len().min(start + WINDOW);
-            let of =
-                |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|x| x[range.clone()].to_vec()).collect() };
-            let (q, qd, qdd) = (of(&motion.q), of(&motion.qd), of(&motion.qdd));
-            let [q, qd, qdd] = [&q, &qd, &qdd].map(|list| list.iter().map(Vec::as_slice).collect::<Vec<_>>());
-            let arguments = Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
             let columns = torques.iter_mut().map(|torques| &mut torques[range.clone()]).collect();
-            self.arm.run(Function::InverseDynamics, range.len(), &arguments, Destination::Columns(columns))?;
+            run(&self.arm, Function::InverseDynamics, motion, range, columns)?;
         }
         for (at, (torques, joint)) in torques.iter_mut().zip(&self.robot.joints).enumerate() {
             let mut friction = Friction::of(joint);
