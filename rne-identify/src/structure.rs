@@ -1,6 +1,6 @@
 //! The unknowns and the filter of an identification: which parameters, which friction, which low-pass.
 
-use rne_codegen::Parameter;
+use crate::Parameter;
 use rne_machine::CompiledArm;
 use rne_model::{FrictionTransition, JointKind, Link, Robot};
 
