@@ -3,7 +3,7 @@
 /// A row for each misprint: the formula as it was printed or is often written, and as it is right.
 macro_rules! misprints {
     ($($variant:ident: $says:literal, $right:literal;)*) => {
-        /// A formula as it was printed or spoken; its number in the list of errata comes first. Two are common mistakes.
+        /// A formula as it was printed or spoken; its number in the list of errata comes first. Two are mistakes.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Misprint { $(#[doc = $says] $variant,)* }
