@@ -268,7 +268,7 @@ fn functions() -> String {
          |---|---|---|---|---|---|---|---|\n",
     );
     for capability in Capability::ALL {
-        for &function in capability.functions() {
+        for function in capability.functions() {
             let count = |form| {
                 Compiler::new(&robot).with_plans(&plans).compile(function, form).expect("finite constants").operations()
             };

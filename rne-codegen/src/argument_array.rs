@@ -1,6 +1,6 @@
 //! The arguments of a generated function.
 
-use crate::function::Argument;
+use crate::function::{Argument, ArgumentPart, Length};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
 use crate::program::Program;
@@ -39,40 +39,17 @@ impl Program {
 
 fn arguments(program: &Program) -> Vec<ArgumentArray> {
     let used = |name: Name| program.arguments().any(|used| used == name).then_some(name);
-    let joints = |name, quantity| ArgumentArray {
-        name,
-        elements: (1..=program.dof).map(|joint| used(Name::scalar(quantity, joint))).collect(),
-    };
-    let vector = |name, quantity, joint| ArgumentArray {
-        name,
-        elements: Axis::ALL.map(|axis| used(Name::vector(quantity, joint, axis))).into(),
-    };
     let tip = program.dof + 1;
-    let mut arrays = Vec::new();
-    for argument in program.function.arguments() {
-        match argument {
-            Argument::Sines => arrays.push(joints("sin", Quantity::Sine)),
-            Argument::Cosines => arrays.push(joints("cos", Quantity::Cosine)),
-            Argument::Positions => arrays.push(joints("q", Quantity::Position)),
-            Argument::Rates => arrays.push(joints("qd", Quantity::Rate)),
-            Argument::Accelerations => arrays.push(joints("qdd", Quantity::RateDot)),
-            Argument::Torques => arrays.push(joints("tau", Quantity::AppliedTorque)),
-            Argument::Wrench => {
-                arrays.push(vector("force", Quantity::JointForce, tip));
-                arrays.push(vector("moment", Quantity::JointMoment, tip));
-            }
-            Argument::Payload => {
-                arrays.push(ArgumentArray { name: "payload", elements: Name::of_payload(tip).map(used).into() });
-            }
-            Argument::Base => {
-                arrays.push(vector("base_omega", Quantity::Omega, 0));
-                arrays.push(vector("base_omega_dot", Quantity::OmegaDot, 0));
-                arrays.push(vector("base_acceleration", Quantity::Acceleration, 0));
-                arrays.push(vector("base_gravity", Quantity::Gravity, 0));
-            }
+    let elements = |part: &ArgumentPart| match (part.length, part.argument) {
+        (Length::Joints, _) => (1..=program.dof).map(|joint| used(Name::scalar(part.quantity, joint))).collect(),
+        (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
+        (_, argument) => {
+            let joint = if argument == Argument::Base { 0 } else { tip };
+            Axis::ALL.map(|axis| used(Name::vector(part.quantity, joint, axis))).into()
         }
-    }
-    arrays
+    };
+    let parts = program.function.arguments().iter().flat_map(|argument| argument.parts());
+    parts.map(|part| ArgumentArray { name: part.name, elements: elements(part) }).collect()
 }
 
 /// The array of the run-time parameters, where the robot has some.

@@ -46,8 +46,8 @@ pub use error::{CompileError, Extreme, Suspect};
 pub use exact::ExactFunction;
 pub use expression::{Expression, ExpressionKind};
 pub use function::{
-    Answer, AnswerTable, Argument, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit, Own, Record,
-    Shape,
+    Answer, AnswerTable, Argument, ArgumentPart, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit,
+    Own, Record, Returned, Shape,
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::Residue;

@@ -5,7 +5,7 @@ use std::fmt;
 /// An enum with all its variants in order, their names, and the variant of a name.
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident, $what:literal {
-        $($(#[$variant_doc:meta])* $variant:ident = $name:literal),* $(,)?
+        $($(#[$variant_doc:meta])* $variant:ident = $name:expr),* $(,)?
     }) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -76,7 +76,9 @@ fn strided<T>(numbers: &[T], start: usize, stride: usize) -> Source<'_, T> {
 }
 
 macro_rules! arguments {
-    ($($(#[$about:meta])* $name:ident,)*) => {
+    ($(
+        $name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;
+    )*) => {
         /// The arguments of a function, by name. What it does not take may be there and is not read.
         ///
         /// ```
@@ -89,26 +91,34 @@ macro_rules! arguments {
         #[derive(Clone, Copy, Debug)]
         pub struct Arguments<'a, T> {
             $($name: Option<Array<'a, T>>,)*
+            parameters: Option<Array<'a, T>>,
         }
 
         impl<'a, T> Arguments<'a, T> {
             /// None yet.
             #[must_use]
             pub const fn new() -> Self {
-                Self { $($name: None,)* }
+                Self { $($name: None,)* parameters: None }
             }
 
-            $($(#[$about])*
+            $(#[doc = $about]
             #[must_use]
             pub fn $name(self, $name: Array<'a, T>) -> Self {
                 Self { $name: Some($name), ..self }
             })*
+
+            /// The parameters of the robot file that are known at run time only, in their order.
+            #[must_use]
+            pub fn parameters(self, parameters: Array<'a, T>) -> Self {
+                Self { parameters: Some(parameters), ..self }
+            }
 
             /// The argument of a name; `None` when there is no such argument, and nothing has changed then.
             #[must_use]
             pub fn with(self, name: &str, array: Array<'a, T>) -> Option<Self> {
                 match name {
                     $(stringify!($name) => Some(self.$name(array)),)*
+                    "parameters" => Some(self.parameters(array)),
                     _ => None,
                 }
             }
@@ -116,46 +126,18 @@ macro_rules! arguments {
             pub(crate) fn get(&self, name: &str) -> Option<&Array<'a, T>> {
                 match name {
                     $(stringify!($name) => self.$name.as_ref(),)*
+                    "parameters" => self.parameters.as_ref(),
                     _ => None,
                 }
             }
         }
 
         /// The names of all arguments.
-        pub const ARGUMENTS: &[&str] = &[$(stringify!($name)),*];
+        pub const ARGUMENTS: &[&str] = &[$(stringify!($name),)* "parameters"];
     };
 }
-arguments! {
-    /// Joint positions, rad or m.
-    q,
-    /// Joint velocities, rad/s or m/s.
-    qd,
-    /// Joint accelerations, rad/s² or m/s².
-    qdd,
-    /// Joint torques, N m or N.
-    tau,
-    /// Sines of the joint positions.
-    sin,
-    /// Cosines of the joint positions.
-    cos,
-    /// Force that the last link exerts at the tip, in tip axes, N: three elements.
-    force,
-    /// Moment that it exerts about the origin of the tip frame, N m: three elements.
-    moment,
-    /// What is fixed to the tip: mass, kg; centre of mass x, y, z, m; inertia about it xx, yy, zz, xy, xz, yz, kg m²:
-    /// ten elements, in tip axes.
-    payload,
-    /// Angular velocity of the base, rad/s, in the axes of frame 0: three elements.
-    base_omega,
-    /// Angular acceleration of the base, rad/s²: three elements.
-    base_omega_dot,
-    /// Acceleration of the base, gravity not included, m/s²: three elements.
-    base_acceleration,
-    /// Acceleration of gravity, m/s², pointing down: three elements.
-    base_gravity,
-    /// The parameters of the robot file that are known at run time only, in their order.
-    parameters,
-}
+
+rne_codegen::argument_parts!(arguments);
 
 impl<T> Default for Arguments<'_, T> {
     fn default() -> Self {

@@ -220,7 +220,7 @@ pub(crate) fn compiler<'r>(
     errors: &mut Errors,
 ) -> Option<Compiler<'r>> {
     let compiler = Compiler::new(robot);
-    let is_planned = capability.functions().iter().any(|&function| plan::is_planned(function));
+    let is_planned = capability.functions().any(|function| plan::is_planned(function));
     match (form, plan) {
         (Form::Reduced, None) if is_planned => Some(compiler.with_plans(default_plans(robot))),
         // nothing is chosen
@@ -258,8 +258,7 @@ fn programs(
     span: Span,
     errors: &mut Errors,
 ) -> Option<Vec<Program>> {
-    let programs: Result<Vec<_>, _> =
-        capability.functions().iter().map(|&function| compiler.compile(function, form)).collect();
+    let programs: Result<Vec<_>, _> = capability.functions().map(|function| compiler.compile(function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
 }
 

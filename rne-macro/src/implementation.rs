@@ -68,7 +68,7 @@ impl Target<'_> {
         let constants = if capability == Capability::InverseDynamics {
             self.constants(&Constants::unknown(joints))
         } else {
-            self.counts_of(capability.functions().iter().map(|&function| (function, Operations::default())))
+            self.counts_of(capability.functions().map(|function| (function, Operations::default())))
         };
         let (ident, krate, name) = (&self.item.ident, self.krate, format_ident!("{}", capability.name()));
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
@@ -76,7 +76,7 @@ impl Target<'_> {
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
         let (impl_generics, ..) = generics.split_for_impl();
         let joints = quote!(__JOINTS);
-        let methods = capability.functions().iter().map(|&function| {
+        let methods = capability.functions().map(|function| {
             // what has the shape of an argument returns it
             let body = if function.takes(Argument::Positions)
                 && *function.shape() == Shape::Array(Length::Joints, &Shape::Number)

@@ -1,6 +1,6 @@
 //! What a function is evaluated at: its arguments, complete and of the right lengths.
 
-use rne::{BaseMotion, DynArm, Payload, Pose, Wrench, WrongLength};
+use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
 use rne_codegen::{Argument, Function};
 use rne_model::Robot;
 
@@ -75,50 +75,87 @@ impl State {
     /// What the function returns, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
         let Self { q, qd, qdd, tau, base, .. } = self;
-        let wrench = || self.wrench.unwrap_or_else(Wrench::zero);
-        Ok(match self.function {
-            Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd)?,
-            Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, &wrench())?,
-            Function::InverseDynamicsWithPayload => {
-                arm.inverse_dynamics_with_payload(q, qd, qdd, &self.payload.unwrap_or_default())?
-            }
-            Function::InverseDynamicsFromSinCos => {
-                let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
-                arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)?
-            }
-            Function::GravityTorques => arm.gravity_torques(q)?,
-            Function::BiasTorques => arm.bias_torques(q, qd)?,
-            Function::MassMatrix => arm.mass_matrix(q)?.concat(),
-            Function::CoriolisMatrix => arm.coriolis_matrix(q, qd)?.concat(),
-            Function::ForwardDynamics => arm.forward_dynamics(q, qd, tau)?,
-            Function::ForwardKinematics => pose(&arm.forward_kinematics(q)?).collect(),
-            Function::LinkPoses => arm.link_poses(q)?.iter().flat_map(pose).collect(),
-            Function::Jacobian => arm.jacobian(q)?.concat(),
-            Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd)?.to_vec(),
-            Function::KineticEnergy => vec![arm.kinetic_energy(q, qd)?],
-            Function::PotentialEnergy => vec![arm.potential_energy(q)?],
-            Function::CentreOfMass => arm.centre_of_mass(q)?.to_vec(),
-            Function::CentreOfMassJacobian => arm.centre_of_mass_jacobian(q)?.concat(),
-            Function::Regressor => arm.regressor(q, qd, qdd)?.into_iter().flatten().flatten().collect(),
-            Function::InverseDynamicsDerivatives => {
-                let derivatives = arm.inverse_dynamics_derivatives(q, qd, qdd)?;
-                [derivatives.dq.concat(), derivatives.dqd.concat()].concat()
-            }
-            Function::JointWrenches => {
-                let wrenches = arm.joint_wrenches(q, qd, qdd)?;
-                wrenches.iter().flat_map(|Wrench { force, moment }| [*force, *moment]).flatten().collect()
-            }
-            Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau)?.concat(),
-            Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base)?,
-            Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
-        })
+        let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
+        let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
+        let mut numbers = Vec::new();
+        macro_rules! argument {
+            (sin) => {
+                &sin
+            };
+            (cos) => {
+                &cos
+            };
+            (q) => {
+                q
+            };
+            (qd) => {
+                qd
+            };
+            (qdd) => {
+                qdd
+            };
+            (tau) => {
+                tau
+            };
+            (wrench) => {
+                wrench
+            };
+            (payload) => {
+                payload
+            };
+            (base) => {
+                base
+            };
+        }
+        macro_rules! calls {
+            ($(
+                $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident: $summary:literal;
+            )*) => {
+                match self.function {
+                    $(Function::$variant => arm.$name($(argument!($argument)),*)?.tell(&mut numbers),)*
+                }
+            };
+        }
+        rne_codegen::functions!(calls);
+        Ok(numbers)
     }
 }
 
-fn pose(pose: &Pose<f64>) -> impl Iterator<Item = f64> + use<> {
-    let Pose { rotation, translation } = *pose;
-    rotation.into_iter().chain([translation]).flatten()
+/// What the runtime returns, as numbers in the order of a function's layout.
+trait Told {
+    fn tell(&self, numbers: &mut Vec<f64>);
 }
+
+impl Told for f64 {
+    fn tell(&self, numbers: &mut Vec<f64>) {
+        numbers.push(*self);
+    }
+}
+
+impl<E: Told> Told for Vec<E> {
+    fn tell(&self, numbers: &mut Vec<f64>) {
+        self.iter().for_each(|element| element.tell(numbers));
+    }
+}
+
+impl<E: Told, const N: usize> Told for [E; N] {
+    fn tell(&self, numbers: &mut Vec<f64>) {
+        self.iter().for_each(|element| element.tell(numbers));
+    }
+}
+
+macro_rules! records {
+    ($($record:ident { $first:ident, $second:ident })*) => {$(
+        impl Told for $record<f64> {
+            fn tell(&self, numbers: &mut Vec<f64>) {
+                self.$first.tell(numbers);
+                self.$second.tell(numbers);
+            }
+        }
+    )*};
+}
+
+records! { Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd } }
 
 /// Mass and centre of mass, and inertia where it is given.
 fn payload(function: Function, given: Option<&List>) -> Result<Option<Payload<f64>>, Failure> {

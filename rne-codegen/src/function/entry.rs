@@ -1,24 +1,29 @@
 //! What the table has of each function.
 
-use super::table::{Capability, Function, VECTOR};
-use super::{Answer, Argument, Shape};
+use super::table::{Capability, Function};
+use super::{Answer, Argument, Returned};
 use crate::ir::quantity::Quantity;
 
-/// What there is to know of a function.
+/// What a caller must know of a function.
+#[derive(Debug)]
+pub(super) struct Signature {
+    /// What it computes, for the first line of its documentation.
+    pub(super) summary: &'static str,
+    /// What it takes, in order.
+    pub(super) arguments: &'static [Argument],
+    /// What it returns.
+    pub(super) returned: Returned,
+}
+
+/// What else there is to know of a function.
 #[derive(Debug)]
 pub struct Entry {
     /// The variant, which is at this place.
     pub function: Function,
     /// The trait.
     pub capability: Capability,
-    /// What it computes, for the first line of its documentation.
-    pub summary: &'static str,
     /// What else a caller of C must know: shapes, units, frames and signs that the names do not tell.
     pub details: &'static str,
-    /// What it takes, in order.
-    pub arguments: &'static [Argument],
-    /// What it returns.
-    pub shape: Shape,
     /// The argument of C behind which the result is written. A single number is returned.
     pub output: &'static str,
     /// What a listing says above the returned numbers.
@@ -31,6 +36,8 @@ pub struct Entry {
     pub returns_torques: bool,
     /// Whether what it returns is a part of the torques of motion, or how they change: it may vanish but for rounding.
     pub is_of_motion: bool,
+    /// Whether rotors that belong to the arm change what it returns, though it is no torque by accelerations.
+    pub feels_rotors: bool,
     /// Whether it has the seven steps as its only form: bearings feel what regrouping moves from link to link, and
     /// motors have nothing to reduce.
     pub is_irreducible: bool,
@@ -55,16 +62,14 @@ impl Entry {
         Self {
             function,
             capability,
-            summary: "",
             details: "",
-            arguments: &[],
-            shape: Shape::Number,
             output: "",
             listed: "returned",
             own: &[],
             answer: Answer::Torques,
             returns_torques: false,
             is_of_motion: false,
+            feels_rotors: false,
             is_irreducible: false,
             divides: None,
         }
@@ -72,7 +77,7 @@ impl Entry {
 
     /// What functions that return the torques of the joints have in common.
     pub(super) const fn torques(function: Function, capability: Capability) -> Self {
-        Self { shape: VECTOR, output: "tau", returns_torques: true, ..Self::of(function, capability) }
+        Self { output: "tau", returns_torques: true, ..Self::of(function, capability) }
     }
 }
 

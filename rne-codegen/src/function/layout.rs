@@ -11,6 +11,67 @@ pub enum Shape {
     Record(Record, &'static [Self]),
 }
 
+const VECTOR: Shape = Shape::Array(Length::Joints, &Shape::Number);
+const MATRIX: Shape = Shape::Array(Length::Joints, &VECTOR);
+const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
+const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
+
+/// The shapes of results, by the names that they have in the list of functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Returned {
+    /// One number.
+    Number,
+    /// A number per joint.
+    Vector,
+    /// A row and a column per joint.
+    Matrix,
+    /// Three coordinates.
+    Point,
+    /// Three rows with a column per joint.
+    PointRows,
+    /// Three linear coordinates, then three angular ones.
+    Spatial,
+    /// Three linear rows, then three angular ones, with a column per joint.
+    SpatialRows,
+    /// A rotation and a translation.
+    Pose,
+    /// A pose per joint.
+    Poses,
+    /// A force and a moment per joint.
+    Wrenches,
+    /// Ten numbers per torque and link.
+    Regressor,
+    /// Two matrices.
+    TorqueDerivatives,
+    /// Two vectors.
+    MomentumAndRate,
+}
+
+impl Returned {
+    /// The shape.
+    #[must_use]
+    pub const fn shape(self) -> &'static Shape {
+        match self {
+            Self::Number => &Shape::Number,
+            Self::Vector => &VECTOR,
+            Self::Matrix => &MATRIX,
+            Self::Point => &TRIPLE,
+            Self::PointRows => &Shape::Array(Length::Fixed(3), &VECTOR),
+            Self::Spatial => &Shape::Array(Length::Fixed(6), &Shape::Number),
+            Self::SpatialRows => &Shape::Array(Length::Fixed(6), &VECTOR),
+            Self::Pose => &POSE,
+            Self::Poses => &Shape::Array(Length::Joints, &POSE),
+            Self::Wrenches => &Shape::Array(Length::Joints, &Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE])),
+            Self::Regressor => &Shape::Array(
+                Length::Joints,
+                &Shape::Array(Length::Joints, &Shape::Array(Length::Fixed(10), &Shape::Number)),
+            ),
+            Self::TorqueDerivatives => &Shape::Record(Record::TorqueDerivatives, &[MATRIX, MATRIX]),
+            Self::MomentumAndRate => &Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
+        }
+    }
+}
+
 /// The length of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {

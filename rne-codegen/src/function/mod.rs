@@ -1,6 +1,7 @@
 //! The functions of a robot that can be compiled, and the forms they can take.
 
 mod answer;
+mod argument;
 mod entry;
 mod layout;
 mod table;
@@ -9,41 +10,17 @@ use crate::ir::quantity::Quantity;
 use crate::named::named;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
+pub use argument::{Argument, ArgumentPart};
+use entry::Signature;
 pub use entry::{Entry, Own};
-pub use layout::{Layout, Length, Record, Shape};
-use table::TABLE;
+pub use layout::{Layout, Length, Record, Returned, Shape};
 pub use table::{Capability, Function};
-
-/// An argument of a function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Argument {
-    /// Sines of the joint positions.
-    Sines,
-    /// Cosines of the joint positions.
-    Cosines,
-    /// Joint positions.
-    Positions,
-    /// Joint rates.
-    Rates,
-    /// Joint accelerations.
-    Accelerations,
-    /// Joint torques.
-    Torques,
-    /// Force and moment at the tip.
-    Wrench,
-    /// Mass, centre of mass and inertia of what is fixed to the tip.
-    Payload,
-    /// Motion of the base, and gravity.
-    Base,
-}
+use table::{SIGNATURES, TABLE};
 
 impl Capability {
-    /// The methods of its trait, which stand beside each other.
-    #[must_use]
-    pub fn functions(self) -> &'static [Function] {
-        static ALL: [Function; TABLE.len()] = Function::ALL;
-        let of_others = |function: &Function| function.capability() != self;
-        ALL.split(of_others).find(|functions| !functions.is_empty()).unwrap_or_default()
+    /// The methods of its trait.
+    pub fn functions(self) -> impl Iterator<Item = Function> {
+        Function::ALL.into_iter().filter(move |function| function.capability() == self)
     }
 }
 
@@ -72,13 +49,13 @@ impl Function {
     /// What it computes, for the first line of its documentation.
     #[must_use]
     pub const fn summary(self) -> &'static str {
-        self.entry().summary
+        SIGNATURES[self as usize].summary
     }
 
     /// Its arguments, in order.
     #[must_use]
     pub const fn arguments(self) -> &'static [Argument] {
-        self.entry().arguments
+        SIGNATURES[self as usize].arguments
     }
 
     /// Whether it has an argument.
@@ -96,14 +73,7 @@ impl Function {
     /// Whether rotors that belong to the arm change what it returns.
     #[must_use]
     pub fn feels_rotors(self) -> bool {
-        match self {
-            Self::MassMatrix
-            | Self::ForwardDynamics
-            | Self::KineticEnergy
-            | Self::MomentumAndRate
-            | Self::ActuatorTorques => true,
-            _ => self.returns_torques() && self.takes(Argument::Accelerations),
-        }
+        self.entry().feels_rotors || self.returns_torques() && self.takes(Argument::Accelerations)
     }
 
     /// Whether what it returns are the accelerations of the joints.
@@ -115,7 +85,7 @@ impl Function {
     /// The shape of what it returns, for any number of joints.
     #[must_use]
     pub const fn shape(self) -> &'static Shape {
-        &self.entry().shape
+        SIGNATURES[self as usize].returned.shape()
     }
 
     /// The shape of what it returns for so many joints.

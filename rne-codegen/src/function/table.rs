@@ -1,65 +1,97 @@
 //! One entry per function: all that is told of it elsewhere than in its formulas.
 //!
-//! A function is added by a variant and an entry here, its formulas in `formulate`, and the runtime's own
-//! implementation. The entries stand in the order of the variants, those of a capability beside each other.
+//! A function is added by a line of `functions!` and an entry here, its formulas in `formulate`, and the runtime's own
+//! implementation. The entries stand in the order of the variants. A new function is the last one, whatever its
+//! capability, so that the others keep their places, which are the ids of the C library.
 
-use super::Argument::{Accelerations, Base, Cosines, Payload, Positions, Rates, Sines, Torques, Wrench};
-use super::Length::{Fixed, Joints};
-use super::{Answer, AnswerTable, Entry, Labels, MatrixUnit, Own, Record, Shape};
+use super::{Answer, AnswerTable, Argument, Entry, Labels, MatrixUnit, Own, Returned, Signature};
 use crate::ir::quantity::Quantity;
 use crate::named::named;
 
-named! {
-    /// A function of a robot, named as its trait method.
-    Function, "function" {
-        /// τ(q, q̇, q̈).
-        InverseDynamics = "inverse_dynamics",
-        /// τ(q, q̇, q̈) when the last link exerts a wrench on its environment.
-        InverseDynamicsWithWrench = "inverse_dynamics_with_wrench",
-        /// τ(q, q̇, q̈) when a payload is fixed to the tip.
-        InverseDynamicsWithPayload = "inverse_dynamics_with_payload",
-        /// τ(q, q̇, q̈) from the sines and cosines of the positions.
-        InverseDynamicsFromSinCos = "inverse_dynamics_from_sin_cos",
-        /// τ(q, 0, 0).
-        GravityTorques = "gravity_torques",
-        /// τ(q, q̇, 0).
-        BiasTorques = "bias_torques",
-        /// M(q).
-        MassMatrix = "mass_matrix",
-        /// C(q, q̇).
-        CoriolisMatrix = "coriolis_matrix",
-        /// q̈(q, q̇, τ).
-        ForwardDynamics = "forward_dynamics",
-        /// The tip in the world.
-        ForwardKinematics = "forward_kinematics",
-        /// The frame of every link in the world.
-        LinkPoses = "link_poses",
-        /// J(q) of the tip.
-        Jacobian = "jacobian",
-        /// J̇ q̇ of the tip.
-        JacobianRateTimesVelocity = "jacobian_rate_times_velocity",
-        /// T(q, q̇).
-        KineticEnergy = "kinetic_energy",
-        /// V(q).
-        PotentialEnergy = "potential_energy",
-        /// Where the centre of mass of the arm is.
-        CentreOfMass = "centre_of_mass",
-        /// How fast it gets there.
-        CentreOfMassJacobian = "centre_of_mass_jacobian",
-        /// Y(q, q̇, q̈), torques per inertial parameter.
-        Regressor = "regressor",
-        /// ∂τ/∂q and ∂τ/∂q̇.
-        InverseDynamicsDerivatives = "inverse_dynamics_derivatives",
-        /// f_{i-1,i} and n_{i-1,i} of every joint.
-        JointWrenches = "joint_wrenches",
-        /// M(q) q̇, and how it would change without external torques.
-        MomentumAndRate = "momentum_and_rate",
-        /// τ(q, q̇, q̈) on a base that moves.
-        InverseDynamicsOnMovingBase = "inverse_dynamics_on_moving_base",
-        /// What the motors add.
-        ActuatorTorques = "actuator_torques",
-    }
+/// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
+/// what it returns, and what it computes. `$callback!` is given the list, so that each door makes its methods of it.
+#[macro_export]
+macro_rules! functions {
+    ($callback:ident) => {
+        $callback! {
+            InverseDynamics = inverse_dynamics(q: Positions, qd: Rates, qdd: Accelerations) -> Vector:
+                "Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip.";
+            InverseDynamicsWithWrench =
+                inverse_dynamics_with_wrench(q: Positions, qd: Rates, qdd: Accelerations, wrench: Wrench) -> Vector:
+                "Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes.";
+            InverseDynamicsWithPayload =
+                inverse_dynamics_with_payload(q: Positions, qd: Rates, qdd: Accelerations, payload: Payload) -> Vector:
+                "Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes.";
+            InverseDynamicsFromSinCos = inverse_dynamics_from_sin_cos(
+                sin: Sines, cos: Cosines, q: Positions, qd: Rates, qdd: Accelerations
+            ) -> Vector:
+                "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.";
+            GravityTorques = gravity_torques(q: Positions) -> Vector:
+                "Torques that hold the arm still against gravity, τ(q, 0, 0).";
+            BiasTorques = bias_torques(q: Positions, qd: Rates) -> Vector:
+                "Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).";
+            MassMatrix = mass_matrix(q: Positions) -> Matrix:
+                "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.";
+            CoriolisMatrix = coriolis_matrix(q: Positions, qd: Rates) -> Matrix:
+                "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.";
+            ForwardDynamics = forward_dynamics(q: Positions, qd: Rates, tau: Torques) -> Vector:
+                "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.";
+            ForwardKinematics = forward_kinematics(q: Positions) -> Pose:
+                "The tip in the world, base and tool included.";
+            LinkPoses = link_poses(q: Positions) -> Poses:
+                "The frame of every row of the table in the world.";
+            Jacobian = jacobian(q: Positions) -> SpatialRows:
+                "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.";
+            JacobianRateTimesVelocity = jacobian_rate_times_velocity(q: Positions, qd: Rates) -> Spatial:
+                "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.";
+            KineticEnergy = kinetic_energy(q: Positions, qd: Rates) -> Number:
+                "Kinetic energy, J.";
+            PotentialEnergy = potential_energy(q: Positions) -> Number:
+                "Potential energy in gravity, J; zero where a mass is at the origin of frame 0.";
+            CentreOfMass = centre_of_mass(q: Positions) -> Point:
+                "The centre of mass of all links in the world, base included.";
+            CentreOfMassJacobian = centre_of_mass_jacobian(q: Positions) -> PointRows:
+                "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.";
+            Regressor = regressor(q: Positions, qd: Rates, qdd: Accelerations) -> Regressor:
+                "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).";
+            InverseDynamicsDerivatives =
+                inverse_dynamics_derivatives(q: Positions, qd: Rates, qdd: Accelerations) -> TorqueDerivatives:
+                "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.";
+            JointWrenches = joint_wrenches(q: Positions, qd: Rates, qdd: Accelerations) -> Wrenches:
+                "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.";
+            MomentumAndRate = momentum_and_rate(q: Positions, qd: Rates, tau: Torques) -> MomentumAndRate:
+                "The momentum of the joints, M(q) q̇, and the rate it would have without external torques.";
+            InverseDynamicsOnMovingBase =
+                inverse_dynamics_on_moving_base(q: Positions, qd: Rates, qdd: Accelerations, base: Base) -> Vector:
+                "Torques on a base that moves as told, under gravity as told, with a free tip.";
+            ActuatorTorques = actuator_torques(qd: Rates, qdd: Accelerations) -> Vector:
+                "What rotors behind gears and friction add to the torques.";
+        }
+    };
 }
+
+/// The enum and the signatures.
+macro_rules! signatures {
+    ($(
+        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident: $summary:literal;
+    )*) => {
+        named! {
+            /// A function of a robot, named as its trait method.
+            Function, "function" {
+                $(#[doc = $summary] $variant = stringify!($name),)*
+            }
+        }
+
+        /// The signatures, in the order of the variants.
+        pub(super) const SIGNATURES: &[Signature] = &[$(Signature {
+            summary: $summary,
+            arguments: &[$(Argument::$kind),*],
+            returned: Returned::$returned,
+        }),*];
+    };
+}
+
+functions!(signatures);
 
 named! {
     /// What a robot can compute, named as the trait that a struct derives.
@@ -93,10 +125,6 @@ named! {
     }
 }
 
-pub(super) const VECTOR: Shape = Shape::Array(Joints, &Shape::Number);
-const MATRIX: Shape = Shape::Array(Joints, &VECTOR);
-const TRIPLE: Shape = Shape::Array(Fixed(3), &Shape::Number);
-const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Fixed(3), &TRIPLE), TRIPLE]);
 const AXES: Labels = Labels::Names(&["x", "y", "z"]);
 
 /// A row and a column per joint.
@@ -110,26 +138,20 @@ const WITHOUT_MASS: &str = "the centre of mass is not finite: the arm has no mas
 /// The functions.
 pub(crate) const TABLE: &[Entry] = &[
     Entry {
-        summary: "Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip.",
         details: "tau: what the actuators must deliver, M(q) q̈ + C(q, q̇) q̇ + g(q). No friction; rotor \
             inertia in an arm with its rotors only.",
-        arguments: &[Positions, Rates, Accelerations],
         ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics)
     },
     Entry {
-        summary: "Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes.",
         details: "force (N), moment (N m): exerted BY the last link ON its environment, about the origin of the tip \
             frame (tool included); what the environment exerts on the robot is the negative of them. tau: τ_free \
             + Jᵀ w.",
-        arguments: &[Positions, Rates, Accelerations, Wrench],
         ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics)
     },
     Entry {
-        summary: "Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes.",
         details: "payload: mass (kg); centre of mass x, y, z from the origin of the tip frame (m; tool included); \
             inertia about the centre of mass xx, yy, zz, xy, xz, yz (kg m²; xy is the tensor's element, -∫ x y \
             dm). tau: those of the arm whose last link has this payload too.",
-        arguments: &[Positions, Rates, Accelerations, Payload],
         own: &[
             Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1"),
             Own::names(
@@ -144,41 +166,24 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics)
     },
     Entry {
-        summary: "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.",
         details: "sine[i], cosine[i]: those of q[i], without the constant part of the joint's angle. Those of a \
             prismatic joint are not used, as q[i] of a revolute joint is not.",
-        arguments: &[Sines, Cosines, Positions, Rates, Accelerations],
         ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics)
     },
+    Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorques, Capability::InverseDynamics) },
+    Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorques, Capability::InverseDynamics) },
     Entry {
-        summary: "Torques that hold the arm still against gravity, τ(q, 0, 0).",
-        arguments: &[Positions],
-        is_of_motion: true,
-        ..Entry::torques(Function::GravityTorques, Capability::InverseDynamics)
-    },
-    Entry {
-        summary: "Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).",
-        arguments: &[Positions, Rates],
-        is_of_motion: true,
-        ..Entry::torques(Function::BiasTorques, Capability::InverseDynamics)
-    },
-    Entry {
-        summary: "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.",
         details: "mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and without gravity; kg \
             m², kg m or kg, as the kinds of joints i and j have it. Rotor inertia in an arm with its rotors only.",
-        arguments: &[Positions],
-        shape: MATRIX,
         output: "mass",
         listed: "returned: the rows of the matrix",
         answer: Answer::Tables(&[of_joints("", MatrixUnit::Mass)]),
         is_of_motion: true,
+        feels_rotors: true,
         ..Entry::of(Function::MassMatrix, Capability::MassMatrix)
     },
     Entry {
-        summary: "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.",
         details: "coriolis[i][j]: row i is torque i. Its product with q̇ are the Coriolis and centrifugal torques.",
-        arguments: &[Positions, Rates],
-        shape: MATRIX,
         output: "coriolis",
         listed: "returned: the rows of the matrix",
         own: &[Own::of(Quantity::CoriolisElement, |joint| {
@@ -189,47 +194,36 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::CoriolisMatrix, Capability::CoriolisMatrix)
     },
     Entry {
-        summary: "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
         details: "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
             numbers that are not finite.",
-        arguments: &[Positions, Rates, Torques],
-        shape: VECTOR,
         output: "qdd",
         answer: Answer::Accelerations,
         divides: Some(
             "the accelerations are not finite: the mass matrix is singular \
              (a joint moves no mass), or the state is too large",
         ),
+        feels_rotors: true,
         ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
     },
     Entry {
-        summary: "The tip in the world, base and tool included.",
         details: "tip->rotation: its columns are the axes of the tip frame, in world axes. tip->translation: its \
             origin in the world, m.",
-        arguments: &[Positions],
-        shape: POSE,
         output: "tip",
         listed: "returned: the rows of the rotation, then the translation",
         answer: Answer::Poses,
         ..Entry::of(Function::ForwardKinematics, Capability::Kinematics)
     },
     Entry {
-        summary: "The frame of every row of the table in the world.",
         details: "poses[i]: at the far end of link i + 1 in a standard table, on its joint in a modified one; axes as \
             columns, origin in m. The tool is not included.",
-        arguments: &[Positions],
-        shape: Shape::Array(Joints, &POSE),
         output: "poses",
         listed: "returned: rotation and translation of every link",
         answer: Answer::Poses,
         ..Entry::of(Function::LinkPoses, Capability::Kinematics)
     },
     Entry {
-        summary: "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.",
         details: "jacobian: its product with q̇ is the velocity of the origin of the tip frame (m/s) above the angular \
             velocity of the last link (rad/s).",
-        arguments: &[Positions],
-        shape: Shape::Array(Fixed(6), &VECTOR),
         output: "jacobian",
         listed: "returned: three linear rows, then three angular ones",
         own: &[
@@ -244,11 +238,8 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::Jacobian, Capability::Kinematics)
     },
     Entry {
-        summary: "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.",
         details: "acceleration: of the origin of the tip frame (m/s²), then angular (rad/s²). At any other q̈ they are \
             J q̈ + J̇ q̇.",
-        arguments: &[Positions, Rates],
-        shape: Shape::Array(Fixed(6), &Shape::Number),
         output: "acceleration",
         own: &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())],
         answer: Answer::Tables(&[AnswerTable::of(
@@ -259,20 +250,15 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::JacobianRateTimesVelocity, Capability::Kinematics)
     },
     Entry {
-        summary: "Kinetic energy, J.",
         details: "½ q̇ᵀ M(q) q̇ of the links, and of the rotors in an arm with its rotors.",
-        arguments: &[Positions, Rates],
-        shape: Shape::Number,
         output: "energy",
         own: &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())],
         answer: Answer::Number("J"),
+        feels_rotors: true,
         ..Entry::of(Function::KineticEnergy, Capability::Energy)
     },
     Entry {
-        summary: "Potential energy in gravity, J; zero where a mass is at the origin of frame 0.",
         details: "-Σ m g·c, with c from the origin of frame 0 to each centre of mass.",
-        arguments: &[Positions],
-        shape: Shape::Number,
         output: "energy",
         own: &[
             Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
@@ -282,11 +268,8 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::PotentialEnergy, Capability::Energy)
     },
     Entry {
-        summary: "The centre of mass of all links in the world, base included.",
         details: "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not \
             finite.",
-        arguments: &[Positions],
-        shape: TRIPLE,
         output: "centre",
         listed: "returned: x, y, z",
         own: &[Own::meaning(
@@ -306,11 +289,8 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::CentreOfMass, Capability::CentreOfMass)
     },
     Entry {
-        summary: "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.",
         details: "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives \
             numbers that are not finite.",
-        arguments: &[Positions],
-        shape: Shape::Array(Fixed(3), &VECTOR),
         output: "jacobian",
         listed: "returned: the rows of the Jacobian",
         own: &[
@@ -332,12 +312,9 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::CentreOfMassJacobian, Capability::CentreOfMass)
     },
     Entry {
-        summary: "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).",
         details: "regressor[i][j][k]: torque i per parameter k of link j, gravity included. The parameters refer to \
             the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫ x \
             y dm.",
-        arguments: &[Positions, Rates, Accelerations],
-        shape: Shape::Array(Joints, &Shape::Array(Joints, &Shape::Array(Fixed(10), &Shape::Number))),
         output: "regressor",
         listed: "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
         own: &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))],
@@ -345,10 +322,7 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::Regressor, Capability::Regressor)
     },
     Entry {
-        summary: "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.",
         details: "dq[i][j], dqd[i][j]: of torque i, by joint j. The derivative by q̈ is the mass matrix.",
-        arguments: &[Positions, Rates, Accelerations],
-        shape: Shape::Record(Record::TorqueDerivatives, &[MATRIX, MATRIX]),
         output: "derivatives",
         listed: "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
         answer: Answer::Tables(&[of_joints("∂τ/∂q", MatrixUnit::PerPosition), of_joints("∂τ/∂q̇", MatrixUnit::PerRate)]),
@@ -356,12 +330,9 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::InverseDynamicsDerivatives, Capability::InverseDynamicsDerivatives)
     },
     Entry {
-        summary: "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.",
         details: "wrenches[i]: exerted BY the link before joint i + 1 ON the link behind it, with a free tip; force in \
             N, moment in N m; axis z is that of the joint. The moment is about the origin of the frame before it \
             in a standard table, about the foot of the common normal on its axis in a modified one.",
-        arguments: &[Positions, Rates, Accelerations],
-        shape: Shape::Array(Joints, &Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE])),
         output: "wrenches",
         listed: "returned: force and moment of every joint",
         answer: Answer::Tables(&[AnswerTable::of(
@@ -374,12 +345,9 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::JointWrenches, Capability::JointWrenches)
     },
     Entry {
-        summary: "The momentum of the joints, M(q) q̇, and the rate it would have without external torques.",
         details: "momentum: row i of M(q) q̇ (N m s, or N s for a prismatic joint), rotors included in an arm with its \
             rotors. rate: τ + C(q, q̇)ᵀ q̇ - g(q) (N m or N); what the momentum changes faster than that is the \
             external torque, so an observer needs no accelerations. tau: of the actuators, without friction.",
-        arguments: &[Positions, Rates, Torques],
-        shape: Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
         output: "momentum",
         listed: "returned: the momenta of the joints, then their rates",
         own: &[
@@ -395,26 +363,23 @@ pub(crate) const TABLE: &[Entry] = &[
             Labels::Joints,
         )]),
         is_of_motion: true,
+        feels_rotors: true,
         ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
     },
     Entry {
-        summary: "Torques on a base that moves as told, under gravity as told, with a free tip.",
         details: "base_omega (rad/s), base_omega_dot (rad/s²): of frame 0. base_acceleration (m/s²): of its origin, \
             gravity not included. base_gravity (m/s²): points down, and replaces the robot's own. All in the \
             axes of frame 0.",
-        arguments: &[Positions, Rates, Accelerations, Base],
         ..Entry::torques(Function::InverseDynamicsOnMovingBase, Capability::MovingBase)
     },
     Entry {
-        summary: "What rotors behind gears and friction add to the torques.",
         details: "G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), to be added to the torques of the links. Friction of Coulomb \
             is zero at rest; a joint without a motor needs nothing.",
-        arguments: &[Rates, Accelerations],
-        shape: VECTOR,
         output: "tau",
         own: &[Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"))],
         answer: Answer::Torques,
         is_irreducible: true,
+        feels_rotors: true,
         ..Entry::of(Function::ActuatorTorques, Capability::Actuation)
     },
 ];

@@ -1,0 +1,102 @@
+//! The arguments of functions, and the arrays that they are passed in.
+
+use super::Length;
+use crate::ir::quantity::Quantity;
+
+/// An argument of a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// Sines of the joint positions.
+    Sines,
+    /// Cosines of the joint positions.
+    Cosines,
+    /// Joint positions.
+    Positions,
+    /// Joint rates.
+    Rates,
+    /// Joint accelerations.
+    Accelerations,
+    /// Joint torques.
+    Torques,
+    /// Force and moment at the tip.
+    Wrench,
+    /// Mass, centre of mass and inertia of what is fixed to the tip.
+    Payload,
+    /// Motion of the base, and gravity.
+    Base,
+}
+
+/// An array that an argument, or a part of it, is passed in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArgumentPart {
+    /// The argument.
+    pub argument: Argument,
+    /// The name of the array in emitted code and at run time: `q`, `qd`, `force`, ….
+    pub name: &'static str,
+    /// How many numbers it has for a state.
+    pub length: Length,
+    /// What its numbers are.
+    pub quantity: Quantity,
+}
+
+/// Every array: its name, its argument, its length, its quantity, and what it is with its unit. `$callback!` is given
+/// the list.
+#[macro_export]
+macro_rules! argument_parts {
+    ($callback:ident) => { $callback! {
+        q: Positions, Joints, Position, "Joint positions, rad or m.";
+        qd: Rates, Joints, Rate, "Joint velocities, rad/s or m/s.";
+        qdd: Accelerations, Joints, RateDot, "Joint accelerations, rad/s² or m/s².";
+        tau: Torques, Joints, AppliedTorque, "Joint torques, N m or N.";
+        sin: Sines, Joints, Sine, "Sines of the joint positions.";
+        cos: Cosines, Joints, Cosine, "Cosines of the joint positions.";
+        force: Wrench, Fixed(3), JointForce,
+            "Force that the last link exerts at the tip, in tip axes, N: three elements.";
+        moment: Wrench, Fixed(3), JointMoment,
+            "Moment that it exerts about the origin of the tip frame, N m: three elements.";
+        payload: Payload, Fixed(10), Mass,
+            "What is fixed to the tip: mass, kg; centre of mass x, y, z, m; inertia about it xx, yy, zz, xy, xz, yz, \
+             kg m²: ten elements, in tip axes.";
+        base_omega: Base, Fixed(3), Omega,
+            "Angular velocity of the base, rad/s, in the axes of frame 0: three elements.";
+        base_omega_dot: Base, Fixed(3), OmegaDot, "Angular acceleration of the base, rad/s²: three elements.";
+        base_acceleration: Base, Fixed(3), Acceleration,
+            "Acceleration of the base, gravity not included, m/s²: three elements.";
+        base_gravity: Base, Fixed(3), Gravity,
+            "Acceleration of gravity, m/s², pointing down: three elements.";
+    } };
+}
+
+macro_rules! parts {
+    ($(
+        $name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;
+    )*) => {
+        /// All of them, those of an argument beside each other.
+        const PARTS: &[ArgumentPart] = &[$(ArgumentPart {
+            argument: Argument::$argument,
+            name: stringify!($name),
+            length: Length::$length $(($elements))?,
+            quantity: Quantity::$quantity,
+        }),*];
+    };
+}
+
+argument_parts!(parts);
+
+impl Argument {
+    /// The arrays that it is passed in, in order.
+    pub fn parts(self) -> impl Iterator<Item = &'static ArgumentPart> {
+        PARTS.iter().filter(move |part| part.argument == self)
+    }
+}
+
+impl Length {
+    /// The length for so many joints.
+    #[must_use]
+    pub const fn of(self, dof: usize) -> usize {
+        match self {
+            Self::Joints => dof,
+            Self::Fixed(length) => length,
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! What functions return for one state, by the names of the shapes in the table of functions.
+
+use core::array;
+
+use rne_codegen::Layout;
+pub use rne_runtime::Pose;
+use rne_runtime::Wrench;
+
+/// One number.
+pub type Number<T> = T;
+/// A number per joint.
+pub type Vector<T> = Vec<T>;
+/// Rows with a number per joint.
+pub type Matrix<T> = Vec<Vec<T>>;
+/// Three coordinates.
+pub type Point<T> = [T; 3];
+/// Three rows with a number per joint.
+pub type PointRows<T> = Matrix<T>;
+/// Three linear coordinates, then three angular ones.
+pub type Spatial<T> = [T; 6];
+/// Three linear rows, then three angular ones, with a number per joint.
+pub type SpatialRows<T> = Matrix<T>;
+/// A pose per joint.
+pub type Poses<T> = Vec<Pose<T>>;
+/// A wrench per joint.
+pub type Wrenches<T> = Vec<Wrench<T>>;
+/// Per torque and link: m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz.
+pub type Regressor<T> = Vec<Vec<[T; 10]>>;
+/// The momentum of each joint, and its rate.
+pub type MomentumAndRate<T> = [Vec<T>; 2];
+/// ∂τ/∂q and ∂τ/∂q̇.
+pub type TorqueDerivatives<T> = Derivatives<T>;
+
+/// ∂τ/∂q and ∂τ/∂q̇; row i is torque i.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derivatives<T> {
+    /// ∂τ_i/∂q_j.
+    pub dq: Matrix<T>,
+    /// ∂τ_i/∂q̇_j.
+    pub dqd: Matrix<T>,
+}
+
+/// What is made of the numbers of a function, in the order of its layout.
+pub(crate) trait Shaped<T> {
+    /// Takes as many numbers as the layout has.
+    fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self;
+}
+
+/// The layout of an element or a part.
+fn part(layout: &Layout, index: usize) -> &Layout {
+    match layout {
+        Layout::Number => layout,
+        Layout::Array(_, of) => of,
+        Layout::Record(_, parts) => parts.get(index).unwrap_or(layout),
+    }
+}
+
+impl<T: crate::Number> Shaped<T> for T {
+    fn take(_: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
+        numbers.next().unwrap_or_else(T::zero)
+    }
+}
+
+impl<T, E: Shaped<T>> Shaped<T> for Vec<E> {
+    fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
+        let count = if let Layout::Array(count, _) = layout { *count } else { 1 };
+        (0..count).map(|index| E::take(part(layout, index), numbers)).collect()
+    }
+}
+
+impl<T, E: Shaped<T>, const N: usize> Shaped<T> for [E; N] {
+    fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
+        array::from_fn(|index| E::take(part(layout, index), numbers))
+    }
+}
+
+macro_rules! records {
+    ($($record:ident { $first:ident, $second:ident })*) => {$(
+        impl<T: crate::Number> Shaped<T> for $record<T> {
+            fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
+                let $first = Shaped::take(part(layout, 0), numbers);
+                Self { $first, $second: Shaped::take(part(layout, 1), numbers) }
+            }
+        }
+    )*};
+}
+
+records! { Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } }
