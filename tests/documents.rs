@@ -2,20 +2,21 @@
 //!
 //! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`)
 //! stays as it is: `cargo xtask performance` writes it. What a command prints (`<!-- begin: output … -->`) is for
-//! `rne-cli/tests/cli/documents.rs`, which runs it. And what the documents lead to is there: links, files, tests.
+//! `rne-cli/tests/cli/documents.rs`, which runs it. In the stubs of Python the markers are comments. And what the documents lead to is there: links, files, tests.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
-use rne_codegen::{Capability, Compiler, Form, Function, Operations, Program, Step};
+use rne_codegen::{Argument, Capability, Compiler, Form, Function, Operations, Program, Returned, Step};
 use rne_emit::{Selection, listing};
 use rne_model::{JointKind, Robot};
 
 /// The documents with blocks, and which blocks these are; what is measured or printed by a command does not count.
 const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/c-library.md", &["controller"]),
+    ("doors/python/package/rne/__init__.pyi", &["stubs"]),
     ("README.md", &["headline", "example", "twelve_lines"]),
     ("docs/firmware.md", &["torque", "config", "embedded"]),
     ("docs/functions.md", &["functions"]),
@@ -74,6 +75,7 @@ fn block(name: &str) -> String {
         "sources" => sources(),
         "robots" => robots(),
         "functions" => functions(),
+        "stubs" => stubs(),
         "operations" => operations(),
         "tricks" => tricks(),
         "embedded" => embedded(),
@@ -258,6 +260,44 @@ fn embedded() -> String {
     text
 }
 
+/// The methods of Python's class `Arm` that are functions of the compiler.
+fn stubs() -> String {
+    const BASE: &str = "base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        ";
+    let mut text = String::new();
+    let mut stub = |name: &str, arguments: &[(&str, Argument)], returned: Returned, summary: &str| {
+        let joints = arguments.iter().filter(|(_, kind)| *kind != Argument::Base);
+        let joints: String = joints.map(|(name, _)| format!("{name}: ArrayLike, ")).collect();
+        let base = if arguments.iter().any(|(_, kind)| *kind == Argument::Base) { BASE } else { "" };
+        let returned = match returned {
+            Returned::Number => "Floats | float",
+            Returned::TorqueDerivatives | Returned::MomentumAndRate => "tuple[Floats, Floats]",
+            _ => "Floats",
+        };
+        let _ = writeln!(
+            text,
+            "    def {name}(\n        self, {joints}*,\n        {base}parameters: Parameters = ..., out: Floats | None = \
+             ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
+        );
+    };
+    macro_rules! methods {
+        ($(
+            $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+                $summary:literal $(, $details:literal)?;
+        )*) => {
+            $(stub(
+                stringify!($name),
+                &[$((stringify!($argument), Argument::$kind)),*],
+                Returned::$returned,
+                $summary,
+            );)*
+        };
+    }
+    rne_codegen::functions!(methods);
+    text
+}
+
 /// What every function of the PUMA 560 costs in both forms.
 fn functions() -> String {
     let path = root().join("robots/puma560.yaml");
@@ -354,9 +394,11 @@ fn renewed(document: &str) -> (String, Vec<String>) {
     while let Some(line) = lines.next() {
         text.push_str(line);
         text.push('\n');
-        if let Some(heading) = line.strip_prefix("<!-- begin: ") {
+        let marker = line.trim_start_matches([' ', '#']);
+        if let Some(heading) = marker.strip_prefix("<!-- begin: ") {
             let name = heading.split([',', ' ']).next().unwrap_or_default();
-            let written: Vec<&str> = lines.by_ref().take_while(|line| *line != "<!-- end -->").collect();
+            let end = format!("{}<!-- end -->", line.strip_suffix(marker).unwrap_or_default());
+            let written: Vec<&str> = lines.by_ref().take_while(|line| *line != end).collect();
             match name {
                 "measured" | "output" => written.iter().for_each(|line| {
                     text.push_str(line);
@@ -367,7 +409,8 @@ fn renewed(document: &str) -> (String, Vec<String>) {
                     names.push(name.to_owned());
                 }
             }
-            text.push_str("<!-- end -->\n");
+            text.push_str(&end);
+            text.push('\n');
         }
     }
     (text, names)

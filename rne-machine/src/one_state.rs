@@ -77,7 +77,8 @@ macro_rules! with {
 
 macro_rules! methods {
     ($(
-        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident: $summary:literal;
+        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+            $summary:literal $(, $details:literal)?;
     )*) => {
         impl CompiledArm {$(
             #[doc = $summary]

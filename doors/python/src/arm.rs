@@ -113,27 +113,20 @@ impl Arm {
         }
     }
 
-    /// A function of joint arrays and whatever else it takes.
+    /// An argument with a number per joint.
+    pub(crate) fn of_joints<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> Given<'py> {
+        Given { name, parts: &[], elements: self.arm.dof(), value: value.clone() }
+    }
+
+    /// A function of joint arrays and whatever else it takes; of a pair of results a tuple.
     pub(crate) fn compute<'py>(
         &self,
         py: Python<'py>,
         function: Function,
-        given: Vec<(&'static str, &Bound<'py, PyAny>)>,
+        mut given: Vec<Given<'py>>,
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut all: Vec<Given<'py>> = given
-            .into_iter()
-            .map(|(name, value)| {
-                let elements = match name {
-                    "force" | "moment" | "base_omega" | "base_omega_dot" | "base_acceleration" | "base_gravity" => 3,
-                    "wrench" => 6,
-                    "payload" => 10,
-                    _ => self.arm.dof(),
-                };
-                Given { name, elements, value: value.clone() }
-            })
-            .collect();
         let run_time = &self.robot().run_time;
         if !run_time.is_empty() {
             let value = match parameters {
@@ -145,13 +138,13 @@ impl Arm {
                 // those of the file
                 None => pyo3::types::PyList::new(py, run_time.values(self.robot()))?.into_any(),
             };
-            all.push(Given { name: "parameters", elements: run_time.names.len(), value });
+            given.push(Given { name: "parameters", parts: &[], elements: run_time.names.len(), value });
         } else if parameters.is_some() {
             return Err(PyValueError::new_err(
                 "this arm has no run-time parameters; `rne.load(…, run_time=[…])` leaves some free",
             ));
         }
-        evaluate(py, &self.arm, function, &all, out)
+        evaluate(py, &self.arm, function, &given, out)
     }
 
     /// A program of a function, in a form.

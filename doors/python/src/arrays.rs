@@ -10,9 +10,11 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyFloat, PyList, PyTuple, PyType};
 use rne::compiled::{Array, Number};
 
-/// An argument: its name, how many elements it has for a state, and what was given.
+/// An argument: its name, the arrays of three that it is made of if it is no array of its own, how many elements it has
+/// for a state, and what was given.
 pub(crate) struct Given<'py> {
     pub(crate) name: &'static str,
+    pub(crate) parts: &'static [&'static str],
     pub(crate) elements: usize,
     pub(crate) value: Bound<'py, PyAny>,
 }
@@ -52,7 +54,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
     /// Takes an array as it is where its layout allows, a copy where not; of columns of Polars and PyArrow likewise.
     /// It has no byte of the memory that is `written`.
     pub(crate) fn of(given: &Given<'py>, dtype: &str, written: &Range<usize>) -> PyResult<Self> {
-        let &Given { name, elements, ref value } = given;
+        let &Given { name, elements, ref value, .. } = given;
         let py = value.py();
         let value = match seen(given)? {
             None => value.clone(),
@@ -167,7 +169,7 @@ fn is_arrow(value: &Bound<'_, PyAny>) -> bool {
 
 /// What `rne.columns` sees of a column or a table; `None` of all else.
 fn seen<'py>(given: &Given<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let Given { name, elements, value } = given;
+    let Given { name, elements, value, .. } = given;
     if !is_arrow(value) {
         return Ok(None);
     }

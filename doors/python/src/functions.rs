@@ -3,6 +3,7 @@
 use numpy::{Element, PyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::{PyEllipsis, PySlice, PyTuple};
 use rne::compiled::{Arguments, CompiledArm, Destination, Function, Number};
 use rne_codegen::{Layout, Record};
 
@@ -69,19 +70,14 @@ fn evaluate_in<'py, T: Element + Number>(
     let count = many.unwrap_or(1);
     let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
     let mut arguments = Arguments::new();
-    for (held, columns) in held.iter().zip(&columns) {
+    for ((given, held), columns) in given.iter().zip(&held).zip(&columns) {
         let array = held.array(count, columns)?;
-        // one array for the two vectors of a wrench
-        let (name, parts): (_, &[&str]) = match held.name() {
-            "wrench" => ("wrench", &["force", "moment"]),
-            name => (name, &[]),
-        };
-        if parts.is_empty() {
-            arguments = arguments.with(name, array).ok_or_else(|| PyValueError::new_err(name))?;
+        if given.parts.is_empty() {
+            arguments = arguments.with(held.name(), array).ok_or_else(|| PyValueError::new_err(held.name()))?;
         }
-        for (index, part) in parts.iter().enumerate() {
+        for (index, part) in given.parts.iter().enumerate() {
             let array = array.part(held.elements(), 3 * index..3 * index + 3);
-            arguments = arguments.with(part, array).ok_or_else(|| PyValueError::new_err(name))?;
+            arguments = arguments.with(part, array).ok_or_else(|| PyValueError::new_err(*part))?;
         }
     }
     let of_state = shape(function, arm.dof());
@@ -109,7 +105,18 @@ fn evaluate_in<'py, T: Element + Number>(
         });
         computed.map_err(|error: rne::compiled::EvaluationError| of_evaluation(&error))?;
     }
-    finished(result, whole.is_empty())
+    match function.layout(arm.dof()) {
+        Layout::Record(Record::TorqueDerivatives | Record::MomentumAndRate, _) => {
+            let all = vec![PySlice::full(py).into_any(); of_state.len() - 1];
+            let of = |index: usize| {
+                let index = index.into_pyobject(py)?.into_any();
+                let places = [PyEllipsis::get(py).to_owned().into_any(), index].into_iter().chain(all.clone());
+                result.get_item(PyTuple::new(py, places.collect::<Vec<_>>())?)
+            };
+            Ok(PyTuple::new(py, [of(0)?, of(1)?])?.into_any())
+        }
+        _ => finished(result, whole.is_empty()),
+    }
 }
 
 /// A number for an array without axes.

@@ -109,7 +109,8 @@ impl State {
         }
         macro_rules! calls {
             ($(
-                $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident: $summary:literal;
+                $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+                    $summary:literal $(, $details:literal)?;
             )*) => {
                 match self.function {
                     $(Function::$variant => arm.$name($(argument!($argument)),*)?.tell(&mut numbers),)*

@@ -88,6 +88,12 @@ impl Argument {
     pub fn parts(self) -> impl Iterator<Item = &'static ArgumentPart> {
         PARTS.iter().filter(move |part| part.argument == self)
     }
+
+    /// How many numbers it has for a state of an arm with so many joints.
+    #[must_use]
+    pub fn elements(self, dof: usize) -> usize {
+        self.parts().map(|part| part.length.of(dof)).sum()
+    }
 }
 
 impl Length {

@@ -9,6 +9,8 @@ use crate::ir::quantity::Quantity;
 pub(super) struct Signature {
     /// What it computes, for the first line of its documentation.
     pub(super) summary: &'static str,
+    /// What else a caller must know: shapes, units, frames and signs that the names do not tell.
+    pub(super) details: &'static str,
     /// What it takes, in order.
     pub(super) arguments: &'static [Argument],
     /// What it returns.
@@ -22,8 +24,6 @@ pub struct Entry {
     pub function: Function,
     /// The trait.
     pub capability: Capability,
-    /// What else a caller of C must know: shapes, units, frames and signs that the names do not tell.
-    pub details: &'static str,
     /// The argument of C behind which the result is written. A single number is returned.
     pub output: &'static str,
     /// What a listing says above the returned numbers.
@@ -62,7 +62,6 @@ impl Entry {
         Self {
             function,
             capability,
-            details: "",
             output: "",
             listed: "returned",
             own: &[],

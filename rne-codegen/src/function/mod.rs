@@ -52,6 +52,12 @@ impl Function {
         SIGNATURES[self as usize].summary
     }
 
+    /// What else a caller must know: shapes, units, frames and signs that the names do not tell.
+    #[must_use]
+    pub const fn details(self) -> &'static str {
+        SIGNATURES[self as usize].details
+    }
+
     /// Its arguments, in order.
     #[must_use]
     pub const fn arguments(self) -> &'static [Argument] {

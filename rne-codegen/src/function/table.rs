@@ -15,57 +15,102 @@ macro_rules! functions {
     ($callback:ident) => {
         $callback! {
             InverseDynamics = inverse_dynamics(q: Positions, qd: Rates, qdd: Accelerations) -> Vector:
-                "Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip.";
+                "Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip.",
+                "tau: what the actuators must deliver, M(q) q̈ + C(q, q̇) q̇ + g(q). No friction; rotor inertia in an \
+ arm with its rotors only.";
             InverseDynamicsWithWrench =
                 inverse_dynamics_with_wrench(q: Positions, qd: Rates, qdd: Accelerations, wrench: Wrench) -> Vector:
-                "Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes.";
+                "Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes.",
+                "force (N), moment (N m): exerted BY the last link ON its environment, about the origin of the tip \
+ frame (tool included); what the environment exerts on the robot is the negative of them. tau: τ_free \
+ + Jᵀ w.";
             InverseDynamicsWithPayload =
                 inverse_dynamics_with_payload(q: Positions, qd: Rates, qdd: Accelerations, payload: Payload) -> Vector:
-                "Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes.";
+                "Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes.",
+                "payload: mass (kg); centre of mass x, y, z from the origin of the tip frame (m; tool included); \
+ inertia about the centre of mass xx, yy, zz, xy, xz, yz (kg m²; xy is the tensor's element, -∫ x y \
+ dm). tau: those of the arm whose last link has this payload too.";
             InverseDynamicsFromSinCos = inverse_dynamics_from_sin_cos(
                 sin: Sines, cos: Cosines, q: Positions, qd: Rates, qdd: Accelerations
             ) -> Vector:
-                "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.";
+                "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.",
+                "sine[i], cosine[i]: those of q[i], without the constant part of the joint's angle. Those of a \
+ prismatic joint are not used, as q[i] of a revolute joint is not.";
             GravityTorques = gravity_torques(q: Positions) -> Vector:
                 "Torques that hold the arm still against gravity, τ(q, 0, 0).";
             BiasTorques = bias_torques(q: Positions, qd: Rates) -> Vector:
                 "Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).";
             MassMatrix = mass_matrix(q: Positions) -> Matrix:
-                "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.";
+                "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.",
+                "mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and without gravity; kg \
+ m², kg m or kg, as the kinds of joints i and j have it. Rotor inertia in an arm with its rotors \
+ only.";
             CoriolisMatrix = coriolis_matrix(q: Positions, qd: Rates) -> Matrix:
-                "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.";
+                "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.",
+                "coriolis[i][j]: row i is torque i. Its product with q̇ are the Coriolis and centrifugal torques.";
             ForwardDynamics = forward_dynamics(q: Positions, qd: Rates, tau: Torques) -> Vector:
-                "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.";
+                "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
+                "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
+ numbers that are not finite.";
             ForwardKinematics = forward_kinematics(q: Positions) -> Pose:
-                "The tip in the world, base and tool included.";
+                "The tip in the world, base and tool included.",
+                "tip->rotation: its columns are the axes of the tip frame, in world axes. tip->translation: its \
+ origin in the world, m.";
             LinkPoses = link_poses(q: Positions) -> Poses:
-                "The frame of every row of the table in the world.";
+                "The frame of every row of the table in the world.",
+                "poses[i]: at the far end of link i + 1 in a standard table, on its joint in a modified one; axes as \
+ columns, origin in m. The tool is not included.";
             Jacobian = jacobian(q: Positions) -> SpatialRows:
-                "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.";
+                "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.",
+                "jacobian: its product with q̇ is the velocity of the origin of the tip frame (m/s) above the angular \
+ velocity of the last link (rad/s).";
             JacobianRateTimesVelocity = jacobian_rate_times_velocity(q: Positions, qd: Rates) -> Spatial:
-                "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.";
+                "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.",
+                "acceleration: of the origin of the tip frame (m/s²), then angular (rad/s²). At any other q̈ they are \
+ J q̈ + J̇ q̇.";
             KineticEnergy = kinetic_energy(q: Positions, qd: Rates) -> Number:
-                "Kinetic energy, J.";
+                "Kinetic energy, J.",
+                "½ q̇ᵀ M(q) q̇ of the links, and of the rotors in an arm with its rotors.";
             PotentialEnergy = potential_energy(q: Positions) -> Number:
-                "Potential energy in gravity, J; zero where a mass is at the origin of frame 0.";
+                "Potential energy in gravity, J; zero where a mass is at the origin of frame 0.",
+                "-Σ m g·c, with c from the origin of frame 0 to each centre of mass.";
             CentreOfMass = centre_of_mass(q: Positions) -> Point:
-                "The centre of mass of all links in the world, base included.";
+                "The centre of mass of all links in the world, base included.",
+                "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not \
+ finite.";
             CentreOfMassJacobian = centre_of_mass_jacobian(q: Positions) -> PointRows:
-                "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.";
+                "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.",
+                "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives \
+ numbers that are not finite.";
             Regressor = regressor(q: Positions, qd: Rates, qdd: Accelerations) -> Regressor:
-                "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).";
+                "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).",
+                "regressor[i][j][k]: torque i per parameter k of link j, gravity included. The parameters refer to \
+ the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫ x \
+ y dm.";
             InverseDynamicsDerivatives =
                 inverse_dynamics_derivatives(q: Positions, qd: Rates, qdd: Accelerations) -> TorqueDerivatives:
-                "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.";
+                "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.",
+                "dq[i][j], dqd[i][j]: of torque i, by joint j. The derivative by q̈ is the mass matrix.";
             JointWrenches = joint_wrenches(q: Positions, qd: Rates, qdd: Accelerations) -> Wrenches:
-                "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.";
+                "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.",
+                "wrenches[i]: exerted BY the link before joint i + 1 ON the link behind it, with a free tip; force in \
+ N, moment in N m; axis z is that of the joint. The moment is about the origin of the frame before it \
+ in a standard table, about the foot of the common normal on its axis in a modified one.";
             MomentumAndRate = momentum_and_rate(q: Positions, qd: Rates, tau: Torques) -> MomentumAndRate:
-                "The momentum of the joints, M(q) q̇, and the rate it would have without external torques.";
+                "The momentum of the joints, M(q) q̇, and the rate it would have without external torques.",
+                "momentum: row i of M(q) q̇ (N m s, or N s for a prismatic joint), rotors included in an arm with its \
+ rotors. rate: τ + C(q, q̇)ᵀ q̇ - g(q) (N m or N); what the momentum changes faster than that is the \
+ external torque, so an observer needs no accelerations. tau: of the actuators, without friction.";
             InverseDynamicsOnMovingBase =
                 inverse_dynamics_on_moving_base(q: Positions, qd: Rates, qdd: Accelerations, base: Base) -> Vector:
-                "Torques on a base that moves as told, under gravity as told, with a free tip.";
+                "Torques on a base that moves as told, under gravity as told, with a free tip.",
+                "base_omega (rad/s), base_omega_dot (rad/s²): of frame 0. base_acceleration (m/s²): of its origin, \
+ gravity not included. base_gravity (m/s²): points down, and replaces the robot's own. All in the axes \
+ of frame 0.";
             ActuatorTorques = actuator_torques(qd: Rates, qdd: Accelerations) -> Vector:
-                "What rotors behind gears and friction add to the torques.";
+                "What rotors behind gears and friction add to the torques.",
+                "G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), to be added to the torques of the links. Friction of Coulomb \
+ is zero at rest; a joint without a motor needs nothing.";
         }
     };
 }
@@ -73,7 +118,8 @@ macro_rules! functions {
 /// The enum and the signatures.
 macro_rules! signatures {
     ($(
-        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident: $summary:literal;
+        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+            $summary:literal $(, $details:literal)?;
     )*) => {
         named! {
             /// A function of a robot, named as its trait method.
@@ -85,6 +131,7 @@ macro_rules! signatures {
         /// The signatures, in the order of the variants.
         pub(super) const SIGNATURES: &[Signature] = &[$(Signature {
             summary: $summary,
+            details: concat!("" $(, $details)?),
             arguments: &[$(Argument::$kind),*],
             returned: Returned::$returned,
         }),*];
@@ -137,21 +184,9 @@ const WITHOUT_MASS: &str = "the centre of mass is not finite: the arm has no mas
 
 /// The functions.
 pub(crate) const TABLE: &[Entry] = &[
+    Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
+    Entry { ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics) },
     Entry {
-        details: "tau: what the actuators must deliver, M(q) q̈ + C(q, q̇) q̇ + g(q). No friction; rotor \
-            inertia in an arm with its rotors only.",
-        ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics)
-    },
-    Entry {
-        details: "force (N), moment (N m): exerted BY the last link ON its environment, about the origin of the tip \
-            frame (tool included); what the environment exerts on the robot is the negative of them. tau: τ_free \
-            + Jᵀ w.",
-        ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics)
-    },
-    Entry {
-        details: "payload: mass (kg); centre of mass x, y, z from the origin of the tip frame (m; tool included); \
-            inertia about the centre of mass xx, yy, zz, xy, xz, yz (kg m²; xy is the tensor's element, -∫ x y \
-            dm). tau: those of the arm whose last link has this payload too.",
         own: &[
             Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1"),
             Own::names(
@@ -165,16 +200,10 @@ pub(crate) const TABLE: &[Entry] = &[
         ],
         ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics)
     },
-    Entry {
-        details: "sine[i], cosine[i]: those of q[i], without the constant part of the joint's angle. Those of a \
-            prismatic joint are not used, as q[i] of a revolute joint is not.",
-        ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics)
-    },
+    Entry { ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics) },
     Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorques, Capability::InverseDynamics) },
     Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorques, Capability::InverseDynamics) },
     Entry {
-        details: "mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and without gravity; kg \
-            m², kg m or kg, as the kinds of joints i and j have it. Rotor inertia in an arm with its rotors only.",
         output: "mass",
         listed: "returned: the rows of the matrix",
         answer: Answer::Tables(&[of_joints("", MatrixUnit::Mass)]),
@@ -183,7 +212,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::MassMatrix, Capability::MassMatrix)
     },
     Entry {
-        details: "coriolis[i][j]: row i is torque i. Its product with q̇ are the Coriolis and centrifugal torques.",
         output: "coriolis",
         listed: "returned: the rows of the matrix",
         own: &[Own::of(Quantity::CoriolisElement, |joint| {
@@ -194,8 +222,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::CoriolisMatrix, Capability::CoriolisMatrix)
     },
     Entry {
-        details: "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
-            numbers that are not finite.",
         output: "qdd",
         answer: Answer::Accelerations,
         divides: Some(
@@ -206,24 +232,18 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
     },
     Entry {
-        details: "tip->rotation: its columns are the axes of the tip frame, in world axes. tip->translation: its \
-            origin in the world, m.",
         output: "tip",
         listed: "returned: the rows of the rotation, then the translation",
         answer: Answer::Poses,
         ..Entry::of(Function::ForwardKinematics, Capability::Kinematics)
     },
     Entry {
-        details: "poses[i]: at the far end of link i + 1 in a standard table, on its joint in a modified one; axes as \
-            columns, origin in m. The tool is not included.",
         output: "poses",
         listed: "returned: rotation and translation of every link",
         answer: Answer::Poses,
         ..Entry::of(Function::LinkPoses, Capability::Kinematics)
     },
     Entry {
-        details: "jacobian: its product with q̇ is the velocity of the origin of the tip frame (m/s) above the angular \
-            velocity of the last link (rad/s).",
         output: "jacobian",
         listed: "returned: three linear rows, then three angular ones",
         own: &[
@@ -238,8 +258,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::Jacobian, Capability::Kinematics)
     },
     Entry {
-        details: "acceleration: of the origin of the tip frame (m/s²), then angular (rad/s²). At any other q̈ they are \
-            J q̈ + J̇ q̇.",
         output: "acceleration",
         own: &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())],
         answer: Answer::Tables(&[AnswerTable::of(
@@ -250,7 +268,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::JacobianRateTimesVelocity, Capability::Kinematics)
     },
     Entry {
-        details: "½ q̇ᵀ M(q) q̇ of the links, and of the rotors in an arm with its rotors.",
         output: "energy",
         own: &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())],
         answer: Answer::Number("J"),
@@ -258,7 +275,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::KineticEnergy, Capability::Energy)
     },
     Entry {
-        details: "-Σ m g·c, with c from the origin of frame 0 to each centre of mass.",
         output: "energy",
         own: &[
             Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
@@ -268,8 +284,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::PotentialEnergy, Capability::Energy)
     },
     Entry {
-        details: "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not \
-            finite.",
         output: "centre",
         listed: "returned: x, y, z",
         own: &[Own::meaning(
@@ -289,8 +303,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::CentreOfMass, Capability::CentreOfMass)
     },
     Entry {
-        details: "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives \
-            numbers that are not finite.",
         output: "jacobian",
         listed: "returned: the rows of the Jacobian",
         own: &[
@@ -312,9 +324,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::CentreOfMassJacobian, Capability::CentreOfMass)
     },
     Entry {
-        details: "regressor[i][j][k]: torque i per parameter k of link j, gravity included. The parameters refer to \
-            the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫ x \
-            y dm.",
         output: "regressor",
         listed: "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
         own: &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))],
@@ -322,7 +331,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::Regressor, Capability::Regressor)
     },
     Entry {
-        details: "dq[i][j], dqd[i][j]: of torque i, by joint j. The derivative by q̈ is the mass matrix.",
         output: "derivatives",
         listed: "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
         answer: Answer::Tables(&[of_joints("∂τ/∂q", MatrixUnit::PerPosition), of_joints("∂τ/∂q̇", MatrixUnit::PerRate)]),
@@ -330,9 +338,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::InverseDynamicsDerivatives, Capability::InverseDynamicsDerivatives)
     },
     Entry {
-        details: "wrenches[i]: exerted BY the link before joint i + 1 ON the link behind it, with a free tip; force in \
-            N, moment in N m; axis z is that of the joint. The moment is about the origin of the frame before it \
-            in a standard table, about the foot of the common normal on its axis in a modified one.",
         output: "wrenches",
         listed: "returned: force and moment of every joint",
         answer: Answer::Tables(&[AnswerTable::of(
@@ -345,9 +350,6 @@ pub(crate) const TABLE: &[Entry] = &[
         ..Entry::of(Function::JointWrenches, Capability::JointWrenches)
     },
     Entry {
-        details: "momentum: row i of M(q) q̇ (N m s, or N s for a prismatic joint), rotors included in an arm with its \
-            rotors. rate: τ + C(q, q̇)ᵀ q̇ - g(q) (N m or N); what the momentum changes faster than that is the \
-            external torque, so an observer needs no accelerations. tau: of the actuators, without friction.",
         output: "momentum",
         listed: "returned: the momenta of the joints, then their rates",
         own: &[
@@ -366,15 +368,8 @@ pub(crate) const TABLE: &[Entry] = &[
         feels_rotors: true,
         ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
     },
+    Entry { ..Entry::torques(Function::InverseDynamicsOnMovingBase, Capability::MovingBase) },
     Entry {
-        details: "base_omega (rad/s), base_omega_dot (rad/s²): of frame 0. base_acceleration (m/s²): of its origin, \
-            gravity not included. base_gravity (m/s²): points down, and replaces the robot's own. All in the \
-            axes of frame 0.",
-        ..Entry::torques(Function::InverseDynamicsOnMovingBase, Capability::MovingBase)
-    },
-    Entry {
-        details: "G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), to be added to the torques of the links. Friction of Coulomb \
-            is zero at rest; a joint without a motor needs nothing.",
         output: "tau",
         own: &[Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"))],
         answer: Answer::Torques,

@@ -45,7 +45,7 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
     for program in file.programs {
         text.push('\n');
         text.push_str(&comment("///", program.function.summary()));
-        let details = program.function.entry().details;
+        let details = program.function.details();
         if !details.is_empty() {
             text.push_str(&comment("///", details));
         }

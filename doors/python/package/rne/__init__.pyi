@@ -61,80 +61,125 @@ class Arm:
     def held(self) -> dict[str, float]: ...
     @property
     def parameters(self) -> list[str]: ...
+    # <!-- begin: stubs, of the list of functions; written by: RNE_WRITE_DOCUMENTS=1 cargo test --test documents -->
     def inverse_dynamics(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip."""
     def inverse_dynamics_with_wrench(
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, wrench: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
-    ) -> Floats: ...
+    ) -> Floats:
+        """Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes."""
     def inverse_dynamics_with_payload(
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
-    ) -> Floats: ...
+    ) -> Floats:
+        """Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes."""
     def inverse_dynamics_from_sin_cos(
         self, sin: ArrayLike, cos: ArrayLike, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
-    ) -> Floats: ...
-    def inverse_dynamics_on_moving_base(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, base_omega: ArrayLike | None = ...,
-        base_omega_dot: ArrayLike | None = ..., base_acceleration: ArrayLike | None = ...,
-        base_gravity: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
-    ) -> Floats: ...
+    ) -> Floats:
+        """Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone."""
     def gravity_torques(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques that hold the arm still against gravity, τ(q, 0, 0)."""
     def bias_torques(
-        self, q: ArrayLike, qd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, qd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Coriolis, centrifugal and gravity torques, τ(q, q̇, 0)."""
     def mass_matrix(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest."""
     def coriolis_matrix(
-        self, q: ArrayLike, qd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, qd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇."""
     def forward_dynamics(
-        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip."""
     def forward_kinematics(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The tip in the world, base and tool included."""
     def link_poses(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The frame of every row of the table in the world."""
     def jacobian(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones."""
     def jacobian_rate_times_velocity(
-        self, q: ArrayLike, qd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, qd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular."""
     def kinetic_energy(
-        self, q: ArrayLike, qd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats | float: ...
+        self, q: ArrayLike, qd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats | float:
+        """Kinetic energy, J."""
     def potential_energy(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats | float: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats | float:
+        """Potential energy in gravity, J; zero where a mass is at the origin of frame 0."""
     def centre_of_mass(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The centre of mass of all links in the world, base included."""
     def centre_of_mass_jacobian(
-        self, q: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The Jacobian of the centre of mass in world axes: its velocity per joint velocity."""
     def regressor(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)."""
     def inverse_dynamics_derivatives(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> tuple[Floats, Floats]: ...
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i."""
     def joint_wrenches(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i."""
     def momentum_and_rate(
-        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> tuple[Floats, Floats]: ...
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """The momentum of the joints, M(q) q̇, and the rate it would have without external torques."""
+    def inverse_dynamics_on_moving_base(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques on a base that moves as told, under gravity as told, with a free tip."""
     def actuator_torques(
-        self, qd: ArrayLike, qdd: ArrayLike, *, parameters: Parameters = ..., out: Floats | None = ...
-    ) -> Floats: ...
+        self, qd: ArrayLike, qdd: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """What rotors behind gears and friction add to the torques."""
+    # <!-- end -->
     def inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
     def operations(self, function: str = ..., form: Form | None = ...) -> dict[str, int]: ...
