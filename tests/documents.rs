@@ -2,7 +2,8 @@
 //!
 //! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`)
 //! stays as it is: `cargo xtask performance` writes it. What a command prints (`<!-- begin: output … -->`) is for
-//! `rne-cli/tests/cli/documents.rs`, which runs it. In the stubs of Python the markers are comments. And what the documents lead to is there: links, files, tests.
+//! `rne-cli/tests/cli/documents.rs`, which runs it. In the stubs of Python the markers are comments. And what the
+//! documents lead to is there: links, files, tests.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -277,8 +278,8 @@ fn stubs() -> String {
         };
         let _ = writeln!(
             text,
-            "    def {name}(\n        self, {joints}*,\n        {base}parameters: Parameters = ..., out: Floats | None = \
-             ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
+            "    def {name}(\n        self, {joints}*,\n        {base}parameters: Parameters = ..., out: Floats | None \
+             = ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
         );
     };
     macro_rules! methods {

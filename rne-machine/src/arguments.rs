@@ -41,6 +41,15 @@ impl<'a, T> Array<'a, T> {
         }
     }
 
+    /// Whether it has so many elements of so many states.
+    pub(crate) fn has(&self, elements: usize, states: usize) -> bool {
+        match *self {
+            Array::Columns(columns) => columns.len() == elements && columns.iter().all(|column| column.len() == states),
+            // all elements are as far as one
+            _ => elements == 0 || self.source(0, elements, states).is_some(),
+        }
+    }
+
     /// One element of so many states, of an array that has so many elements; `None` when it does not reach as far.
     pub(crate) fn source(&self, element: usize, elements: usize, states: usize) -> Option<Source<'a, T>> {
         match *self {
@@ -90,45 +99,24 @@ macro_rules! arguments {
         /// ```
         #[derive(Clone, Copy, Debug)]
         pub struct Arguments<'a, T> {
-            $($name: Option<Array<'a, T>>,)*
-            parameters: Option<Array<'a, T>>,
+            arrays: [Option<Array<'a, T>>; ARGUMENTS.len()],
         }
 
-        impl<'a, T> Arguments<'a, T> {
-            /// None yet.
-            #[must_use]
-            pub const fn new() -> Self {
-                Self { $($name: None,)* parameters: None }
-            }
+        /// The places of the arguments.
+        #[allow(non_camel_case_types)] // they are called as the arguments
+        enum Place { $($name,)* parameters }
 
+        impl<'a, T> Arguments<'a, T> {
             $(#[doc = $about]
             #[must_use]
             pub fn $name(self, $name: Array<'a, T>) -> Self {
-                Self { $name: Some($name), ..self }
+                self.with_array(Place::$name as usize, $name)
             })*
 
             /// The parameters of the robot file that are known at run time only, in their order.
             #[must_use]
             pub fn parameters(self, parameters: Array<'a, T>) -> Self {
-                Self { parameters: Some(parameters), ..self }
-            }
-
-            /// The argument of a name; `None` when there is no such argument, and nothing has changed then.
-            #[must_use]
-            pub fn with(self, name: &str, array: Array<'a, T>) -> Option<Self> {
-                match name {
-                    $(stringify!($name) => Some(self.$name(array)),)*
-                    "parameters" => Some(self.parameters(array)),
-                    _ => None,
-                }
-            }
-
-            pub(crate) fn get(&self, name: &str) -> Option<&Array<'a, T>> {
-                match name {
-                    $(stringify!($name) => self.$name.as_ref(),)*
-                    "parameters" => self.parameters.as_ref(),
-                    _ => None,
-                }
+                self.with_array(Place::parameters as usize, parameters)
             }
         }
 
@@ -138,6 +126,35 @@ macro_rules! arguments {
 }
 
 rne_codegen::argument_parts!(arguments);
+
+impl<'a, T> Arguments<'a, T> {
+    /// None yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { arrays: [const { None }; ARGUMENTS.len()] }
+    }
+
+    fn with_array(mut self, place: usize, array: Array<'a, T>) -> Self {
+        self.arrays[place] = Some(array);
+        self
+    }
+
+    /// The argument of a name; `None` when there is no such argument, and nothing has changed then.
+    #[must_use]
+    pub fn with(self, name: &str, array: Array<'a, T>) -> Option<Self> {
+        place(name).map(|place| self.with_array(place, array))
+    }
+
+    /// The argument at a place.
+    pub(crate) fn at(&self, place: usize) -> Option<&Array<'a, T>> {
+        self.arrays.get(place)?.as_ref()
+    }
+}
+
+/// Where the argument of a name is among all.
+pub(crate) fn place(name: &str) -> Option<usize> {
+    ARGUMENTS.iter().position(|argument| *argument == name)
+}
 
 impl<T> Default for Arguments<'_, T> {
     fn default() -> Self {

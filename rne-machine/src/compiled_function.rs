@@ -4,7 +4,7 @@ use rne_codegen::{CompileError, Program};
 use rne_runtime::machine::{Destination, Source};
 use rne_runtime::{NegativeMass, VectorUnit};
 
-use crate::{Arguments, EvaluationError, Machine, Number};
+use crate::{Arguments, EvaluationError, Machine, Number, arguments};
 
 /// As many inputs find room on the stack: those of an arm of twenty joints, of most functions.
 const FEW: usize = 64;
@@ -15,6 +15,8 @@ pub struct CompiledFunction {
     program: Program,
     machine: Machine,
     arrays: Vec<(&'static str, usize)>,
+    /// The places of the arrays among all arguments.
+    places: Vec<usize>,
     /// Of each input of the machine: which array, and which element of it.
     inputs: Vec<(usize, usize)>,
     #[cfg(feature = "native")]
@@ -36,11 +38,14 @@ impl CompiledFunction {
             places.next()
         };
         let inputs = machine.inputs().iter().map(|name| place(*name)).collect::<Option<_>>().ok_or_else(too_large)?;
-        let arrays = arrays.iter().map(|array| (array.name, array.elements.len())).collect();
+        let arrays: Vec<_> = arrays.iter().map(|array| (array.name, array.elements.len())).collect();
+        let places =
+            arrays.iter().map(|(name, _)| arguments::place(name)).collect::<Option<_>>().ok_or_else(too_large)?;
         Ok(Self {
             program,
             machine,
             arrays,
+            places,
             inputs,
             #[cfg(feature = "native")]
             natives: std::sync::Arc::default(),
@@ -71,6 +76,13 @@ impl CompiledFunction {
         self.program.outputs.len()
     }
 
+    /// Makes ready what [`run_one`](Self::run_one) needs in this precision, which its first call does otherwise: with
+    /// the feature `native` the instructions of the processor, in a millisecond or two for the torques of an arm.
+    pub fn prepare<T: Number>(&self) {
+        #[cfg(feature = "native")]
+        T::prepare(&self.natives, &self.program);
+    }
+
     /// Computes so many states, on all cores with the feature `rayon`.
     ///
     /// # Errors
@@ -88,8 +100,7 @@ impl CompiledFunction {
             .inputs
             .iter()
             .filter_map(|&(array, element)| {
-                let (name, elements) = self.arrays[array];
-                arguments.get(name)?.source(element, elements, states)
+                arguments.at(self.places[array])?.source(element, self.arrays[array].1, states)
             })
             .collect();
         let room = EvaluationError::Room { outputs: self.outputs(), states };
@@ -121,7 +132,7 @@ impl CompiledFunction {
         };
         for (input, &(array, element)) in inputs.iter_mut().zip(&self.inputs) {
             let (name, elements) = self.arrays[array];
-            let number = arguments.get(name).and_then(|array| array.number(element, elements, 0, 1));
+            let number = arguments.at(self.places[array]).and_then(|array| array.number(element, elements, 0, 1));
             let wrong = EvaluationError::Argument { argument: name, elements, states: 1 };
             *input = *number.ok_or(wrong)?;
         }
@@ -139,10 +150,10 @@ impl CompiledFunction {
     /// # Errors
     /// When an argument is missing or has another size, or when the payload of a state has a mass below zero.
     pub fn check<T: Number>(&self, states: usize, arguments: &Arguments<'_, T>) -> Result<(), EvaluationError> {
-        for &(argument, elements) in &self.arrays {
+        for (&(argument, elements), &place) in self.arrays.iter().zip(&self.places) {
             let function = self.program.function;
-            let array = arguments.get(argument).ok_or(EvaluationError::Missing { function, argument })?;
-            if (0..elements).any(|element| array.source(element, elements, states).is_none()) {
+            let array = arguments.at(place).ok_or(EvaluationError::Missing { function, argument })?;
+            if !array.has(elements, states) {
                 return Err(EvaluationError::Argument { argument, elements, states });
             }
             if argument == "payload" {

@@ -33,6 +33,9 @@ pub(crate) mod natively {
 
     /// What has a precision of its own.
     pub trait Natively: Sized {
+        /// Compiles a function, unless it has been before.
+        fn prepare(natives: &Natives, program: &Program);
+
         /// Computes a state on the widest unit, with the bits of the machine there; false when nothing was computed.
         fn call(natives: &Natives, unit: VectorUnit, program: &Program, inputs: &[Self], outputs: &mut [Self]) -> bool;
     }
@@ -40,6 +43,10 @@ pub(crate) mod natively {
     macro_rules! natively {
         ($type:ident, $precision:ident) => {
             impl Natively for $type {
+                fn prepare(natives: &Natives, program: &Program) {
+                    natives.$precision.get_or_init(|| Native::new(program).ok());
+                }
+
                 fn call(
                     natives: &Natives,
                     unit: VectorUnit,

@@ -227,7 +227,7 @@ pub extern "C" fn rne_function_count() -> u32 {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_function_prepare(arm: *const Arm, id: u32) -> Status {
     // SAFETY: the caller's promise of the arm.
-    status::status(|| unsafe { reference(arm, "arm") }?.function(id).map(|_| ()))
+    status::status(|| unsafe { reference(arm, "arm") }?.prepare(id))
 }
 
 /// How many numbers a function returns for a state: a matrix row by row, a pose as the rotation row by row and then the

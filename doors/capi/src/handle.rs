@@ -124,6 +124,14 @@ impl Arm {
         Ok(self.compiled.function(function(id)?)?)
     }
 
+    /// Makes a function ready for single states.
+    pub(crate) fn prepare(&self, id: u32) -> Result<(), Failure> {
+        let function = self.function(id)?;
+        function.prepare::<f64>();
+        function.prepare::<f32>();
+        Ok(())
+    }
+
     /// The name of an argument of a function, and how many elements it has for a state.
     pub(crate) fn argument(&self, id: u32, argument: usize) -> Result<(&'static CStr, usize), Failure> {
         let arguments = self.function(id)?.arguments();

@@ -95,7 +95,7 @@ macro_rules! method {
             #[doc = $summary]
             ///
             #[doc = $details]
-            /// Each of the base's has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the robot's own.
+            /// Each of them has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the robot's own.
             ///
             #[doc = concat!("Returns ", returned!($returned))]
             #[pyo3(signature = (q, qd, qdd, *, base_omega=None, base_omega_dot=None, base_acceleration=None,

@@ -90,7 +90,11 @@ fn evaluate_in<'py, T: Element + Number>(
             Function::ForwardKinematics | Function::LinkPoses => {
                 let compiled = arm.function(function)?.outputs();
                 let mut rows = vec![T::zero(); compiled * count];
-                arm.run(function, count, &arguments, Destination::Rows(&mut rows))?;
+                if count == 1 {
+                    arm.run_one(function, &arguments, &mut rows)?;
+                } else {
+                    arm.run(function, count, &arguments, Destination::Rows(&mut rows))?;
+                }
                 for (matrix, pose) in numbers.chunks_exact_mut(16).zip(rows.chunks_exact(12)) {
                     for row in 0..3 {
                         matrix[4 * row..][..3].copy_from_slice(&pose[3 * row..][..3]);

@@ -19,6 +19,7 @@ pub(super) struct Signature {
 
 /// What else there is to know of a function.
 #[derive(Debug)]
+#[allow(clippy::struct_excessive_bools)] // each is a property by itself
 pub struct Entry {
     /// The variant, which is at this place.
     pub function: Function,

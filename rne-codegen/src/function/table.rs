@@ -11,31 +11,32 @@ use crate::named::named;
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
 /// what it returns, and what it computes. `$callback!` is given the list, so that each door makes its methods of it.
 #[macro_export]
+#[rustfmt::skip]
 macro_rules! functions {
     ($callback:ident) => {
         $callback! {
             InverseDynamics = inverse_dynamics(q: Positions, qd: Rates, qdd: Accelerations) -> Vector:
                 "Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip.",
                 "tau: what the actuators must deliver, M(q) q̈ + C(q, q̇) q̇ + g(q). No friction; rotor inertia in an \
- arm with its rotors only.";
+                 arm with its rotors only.";
             InverseDynamicsWithWrench =
                 inverse_dynamics_with_wrench(q: Positions, qd: Rates, qdd: Accelerations, wrench: Wrench) -> Vector:
                 "Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes.",
                 "force (N), moment (N m): exerted BY the last link ON its environment, about the origin of the tip \
- frame (tool included); what the environment exerts on the robot is the negative of them. tau: τ_free \
- + Jᵀ w.";
+                 frame (tool included); what the environment exerts on the robot is the negative of them. tau: τ_free \
+                 + Jᵀ w.";
             InverseDynamicsWithPayload =
                 inverse_dynamics_with_payload(q: Positions, qd: Rates, qdd: Accelerations, payload: Payload) -> Vector:
                 "Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes.",
                 "payload: mass (kg); centre of mass x, y, z from the origin of the tip frame (m; tool included); \
- inertia about the centre of mass xx, yy, zz, xy, xz, yz (kg m²; xy is the tensor's element, -∫ x y \
- dm). tau: those of the arm whose last link has this payload too.";
+                 inertia about the centre of mass xx, yy, zz, xy, xz, yz (kg m²; xy is the tensor's element, -∫ x y \
+                 dm). tau: those of the arm whose last link has this payload too.";
             InverseDynamicsFromSinCos = inverse_dynamics_from_sin_cos(
                 sin: Sines, cos: Cosines, q: Positions, qd: Rates, qdd: Accelerations
             ) -> Vector:
                 "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.",
                 "sine[i], cosine[i]: those of q[i], without the constant part of the joint's angle. Those of a \
- prismatic joint are not used, as q[i] of a revolute joint is not.";
+                 prismatic joint are not used, as q[i] of a revolute joint is not.";
             GravityTorques = gravity_torques(q: Positions) -> Vector:
                 "Torques that hold the arm still against gravity, τ(q, 0, 0).";
             BiasTorques = bias_torques(q: Positions, qd: Rates) -> Vector:
@@ -43,31 +44,31 @@ macro_rules! functions {
             MassMatrix = mass_matrix(q: Positions) -> Matrix:
                 "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.",
                 "mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and without gravity; kg \
- m², kg m or kg, as the kinds of joints i and j have it. Rotor inertia in an arm with its rotors \
- only.";
+                 m², kg m or kg, as the kinds of joints i and j have it. Rotor inertia in an arm with its rotors \
+                 only.";
             CoriolisMatrix = coriolis_matrix(q: Positions, qd: Rates) -> Matrix:
                 "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.",
                 "coriolis[i][j]: row i is torque i. Its product with q̇ are the Coriolis and centrifugal torques.";
             ForwardDynamics = forward_dynamics(q: Positions, qd: Rates, tau: Torques) -> Vector:
                 "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
                 "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
- numbers that are not finite.";
+                 numbers that are not finite.";
             ForwardKinematics = forward_kinematics(q: Positions) -> Pose:
                 "The tip in the world, base and tool included.",
                 "tip->rotation: its columns are the axes of the tip frame, in world axes. tip->translation: its \
- origin in the world, m.";
+                 origin in the world, m.";
             LinkPoses = link_poses(q: Positions) -> Poses:
                 "The frame of every row of the table in the world.",
                 "poses[i]: at the far end of link i + 1 in a standard table, on its joint in a modified one; axes as \
- columns, origin in m. The tool is not included.";
+                 columns, origin in m. The tool is not included.";
             Jacobian = jacobian(q: Positions) -> SpatialRows:
                 "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.",
                 "jacobian: its product with q̇ is the velocity of the origin of the tip frame (m/s) above the angular \
- velocity of the last link (rad/s).";
+                 velocity of the last link (rad/s).";
             JacobianRateTimesVelocity = jacobian_rate_times_velocity(q: Positions, qd: Rates) -> Spatial:
                 "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.",
                 "acceleration: of the origin of the tip frame (m/s²), then angular (rad/s²). At any other q̈ they are \
- J q̈ + J̇ q̇.";
+                 J q̈ + J̇ q̇.";
             KineticEnergy = kinetic_energy(q: Positions, qd: Rates) -> Number:
                 "Kinetic energy, J.",
                 "½ q̇ᵀ M(q) q̇ of the links, and of the rotors in an arm with its rotors.";
@@ -77,16 +78,16 @@ macro_rules! functions {
             CentreOfMass = centre_of_mass(q: Positions) -> Point:
                 "The centre of mass of all links in the world, base included.",
                 "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not \
- finite.";
+                 finite.";
             CentreOfMassJacobian = centre_of_mass_jacobian(q: Positions) -> PointRows:
                 "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.",
                 "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives \
- numbers that are not finite.";
+                 numbers that are not finite.";
             Regressor = regressor(q: Positions, qd: Rates, qdd: Accelerations) -> Regressor:
                 "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).",
                 "regressor[i][j][k]: torque i per parameter k of link j, gravity included. The parameters refer to \
- the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫ x \
- y dm.";
+                 the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫ x \
+                 y dm.";
             InverseDynamicsDerivatives =
                 inverse_dynamics_derivatives(q: Positions, qd: Rates, qdd: Accelerations) -> TorqueDerivatives:
                 "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.",
@@ -94,23 +95,23 @@ macro_rules! functions {
             JointWrenches = joint_wrenches(q: Positions, qd: Rates, qdd: Accelerations) -> Wrenches:
                 "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.",
                 "wrenches[i]: exerted BY the link before joint i + 1 ON the link behind it, with a free tip; force in \
- N, moment in N m; axis z is that of the joint. The moment is about the origin of the frame before it \
- in a standard table, about the foot of the common normal on its axis in a modified one.";
+                 N, moment in N m; axis z is that of the joint. The moment is about the origin of the frame before it \
+                 in a standard table, about the foot of the common normal on its axis in a modified one.";
             MomentumAndRate = momentum_and_rate(q: Positions, qd: Rates, tau: Torques) -> MomentumAndRate:
                 "The momentum of the joints, M(q) q̇, and the rate it would have without external torques.",
                 "momentum: row i of M(q) q̇ (N m s, or N s for a prismatic joint), rotors included in an arm with its \
- rotors. rate: τ + C(q, q̇)ᵀ q̇ - g(q) (N m or N); what the momentum changes faster than that is the \
- external torque, so an observer needs no accelerations. tau: of the actuators, without friction.";
+                 rotors. rate: τ + C(q, q̇)ᵀ q̇ - g(q) (N m or N); what the momentum changes faster than that is the \
+                 external torque, so an observer needs no accelerations. tau: of the actuators, without friction.";
             InverseDynamicsOnMovingBase =
                 inverse_dynamics_on_moving_base(q: Positions, qd: Rates, qdd: Accelerations, base: Base) -> Vector:
                 "Torques on a base that moves as told, under gravity as told, with a free tip.",
                 "base_omega (rad/s), base_omega_dot (rad/s²): of frame 0. base_acceleration (m/s²): of its origin, \
- gravity not included. base_gravity (m/s²): points down, and replaces the robot's own. All in the axes \
- of frame 0.";
+                 gravity not included. base_gravity (m/s²): points down, and replaces the robot's own. All in the axes \
+                 of frame 0.";
             ActuatorTorques = actuator_torques(qd: Rates, qdd: Accelerations) -> Vector:
                 "What rotors behind gears and friction add to the torques.",
                 "G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), to be added to the torques of the links. Friction of Coulomb \
- is zero at rest; a joint without a motor needs nothing.";
+                 is zero at rest; a joint without a motor needs nothing.";
         }
     };
 }
