@@ -26,16 +26,17 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let zeros = self.zeros();
         let bias = self.torques(JointMotions::new(q, qd, zeros.as_ref()), &self.fixed_base());
         let mut x = self.per_joint.of(|i| tau[i] - bias.as_ref()[i]);
-        solve(self.mass_matrix(q).as_mut(), zeros, x.as_mut());
+        let (mut m, mut inverse) = (self.mass_matrix(q), zeros);
+        factor(m.as_mut(), inverse.as_mut());
+        solve(m.as_ref(), inverse.as_ref(), x.as_mut());
         x
     }
 }
 
-/// Makes the solution x of M x = b from b. M keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse`
-/// is a place for the reciprocals of D.
-fn solve<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], mut inverse: impl AsMut<[T]>, x: &mut [T]) {
-    let n = x.len();
-    let inverse = inverse.as_mut();
+/// Makes L and D of M, which keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse` is a place for
+/// the reciprocals of D.
+fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse: &mut [T]) {
+    let n = m.len();
     for j in 0..n {
         // What is left of column j, M being symmetric: c_ij for i ≥ j, of which the first is D_j.
         for i in j..n {
@@ -50,12 +51,17 @@ fn solve<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], mut inverse: impl A
             m[i].as_mut()[j] = m[j].as_ref()[i] * inverse[j];
         }
     }
+}
+
+/// Makes the solution x of M x = b from b.
+fn solve<T: Scalar, R: AsRef<[T]>>(m: &[R], inverse: &[T], x: &mut [T]) {
+    let n = x.len();
     for i in 0..n {
         for k in 0..i {
             x[i] -= m[i].as_ref()[k] * x[k];
         }
     }
-    for (x, &inverse) in x.iter_mut().zip(&*inverse) {
+    for (x, &inverse) in x.iter_mut().zip(inverse) {
         *x *= inverse;
     }
     for i in (0..n).rev() {
