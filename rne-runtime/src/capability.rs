@@ -1,5 +1,8 @@
 //! What a robot can compute: one trait per capability, implemented by generated code and by [`Arm`](crate::Arm) alike.
 //!
+//! The traits are for calling: a derive or [`Arm`](crate::Arm) implements them. A minor version may add a method to a
+//! trait, so a type of your own that implements one by hand may need that method then; wrap an arm instead.
+//!
 //! Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
 
 use crate::smooth_sign::SmoothSign;

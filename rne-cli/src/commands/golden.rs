@@ -29,7 +29,7 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
             let results = programs.iter().map(|program| {
                 let numbers = state.of(program.function).numbers(&arm).map_err(Failure::usage)?;
                 let is_finite = numbers.iter().all(|number| number.is_finite());
-                let is_left_out = program.function == Function::ForwardDynamics
+                let is_left_out = program.function.inverts_mass()
                     && precision == Precision::Single
                     && !is_well_conditioned(&state, &arm);
                 Ok(if is_finite && !is_left_out { numbers } else { Vec::new() })

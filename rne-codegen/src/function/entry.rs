@@ -42,6 +42,8 @@ pub struct Entry {
     /// Whether it has the seven steps as its only form: bearings feel what regrouping moves from link to link, and
     /// motors have nothing to reduce.
     pub is_irreducible: bool,
+    /// Whether it solves by the mass matrix, so that its numbers are worth nothing where that is nearly singular.
+    pub inverts_mass: bool,
     /// What it means that its numbers are not finite, for a function that divides.
     pub divides: Option<&'static str>,
 }
@@ -71,6 +73,7 @@ impl Entry {
             is_of_motion: false,
             feels_rotors: false,
             is_irreducible: false,
+            inverts_mass: false,
             divides: None,
         }
     }

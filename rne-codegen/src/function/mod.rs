@@ -117,6 +117,12 @@ impl Function {
         !self.entry().is_irreducible
     }
 
+    /// Whether it solves by the mass matrix, so that its numbers are worth nothing where that is nearly singular.
+    #[must_use]
+    pub const fn inverts_mass(self) -> bool {
+        self.entry().inverts_mass
+    }
+
     /// What it means that its numbers are not finite, for a function that divides.
     #[must_use]
     pub const fn divides(self) -> Option<&'static str> {

@@ -229,6 +229,7 @@ pub(crate) const TABLE: &[Entry] = &[
             "the accelerations are not finite: the mass matrix is singular \
              (a joint moves no mass), or the state is too large",
         ),
+        inverts_mass: true,
         feels_rotors: true,
         ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
     },
