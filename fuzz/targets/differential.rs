@@ -119,13 +119,15 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
     let arm = DynArm::from_robot(&robot);
     let expected = runtime(&arm, function, &state).expect("arrays of the right length");
     assert_eq!(interpreted.len(), expected.len(), "{function} of\n{text}");
-    let is_equal = if function == Function::ForwardDynamics {
-        accelerate(&arm, &state, &interpreted).expect("arrays of the right length")
-    } else {
-        let scale = scale(&expected);
-        // an arm without mass has no centre
-        let is_close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-11 * scale || !(a.is_finite() || b.is_finite());
-        interpreted.iter().zip(&expected).all(is_close)
+    let is_equal = match function {
+        Function::ForwardDynamics => accelerate(&arm, &state, &interpreted).expect("arrays of the right length"),
+        Function::InverseMassMatrix => inverts(&arm, &state, &interpreted).expect("arrays of the right length"),
+        _ => {
+            let scale = scale(&expected);
+            // an arm without mass has no centre
+            let is_close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-11 * scale || !(a.is_finite() || b.is_finite());
+            interpreted.iter().zip(&expected).all(is_close)
+        }
     };
     assert!(is_equal, "{function}, {form:?}, rotors {}: {interpreted:?} {expected:?} of\n{text}", robot.rotors);
     Ok(())
@@ -151,6 +153,22 @@ fn accelerate(arm: &DynArm, State { q, qd, tau, .. }: &State, qdd: &[f64]) -> st
     let misses = mass.iter().zip(&bias).zip(tau).map(|((row, bias), tau)| {
         let torque: f64 = row.iter().zip(qdd).map(|(m, qdd)| m * qdd).sum();
         (torque + bias - tau).abs()
+    });
+    Ok(misses.fold(0.0, f64::max) <= 1e-11 * largest)
+}
+
+/// Whether a matrix is the inverse of M: its columns are compared as accelerations are.
+fn inverts(arm: &DynArm, State { q, .. }: &State, inverse: &[f64]) -> std::result::Result<bool, WrongLength> {
+    if !inverse.iter().all(|element| element.is_finite()) {
+        return Ok(true);
+    }
+    let mass = arm.mass_matrix(q)?;
+    let largest = scale(&mass.concat()) * scale(inverse);
+    let misses = mass.iter().enumerate().flat_map(|(i, row)| {
+        (0..q.len()).map(move |j| {
+            let element: f64 = row.iter().zip(inverse.chunks(q.len())).map(|(m, column)| m * column[j]).sum();
+            (element - if i == j { 1.0 } else { 0.0 }).abs()
+        })
     });
     Ok(misses.fold(0.0, f64::max) <= 1e-11 * largest)
 }
@@ -185,6 +203,7 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::GravityTorques => arm.gravity_torques(q)?,
         Function::BiasTorques => arm.bias_torques(q, qd)?,
         Function::MassMatrix => arm.mass_matrix(q)?.concat(),
+        Function::InverseMassMatrix => arm.inverse_mass_matrix(q)?.concat(),
         Function::CoriolisMatrix => arm.coriolis_matrix(q, qd)?.concat(),
         Function::ForwardDynamics => arm.forward_dynamics(q, qd, tau)?,
         Function::ForwardKinematics => pose(&arm.forward_kinematics(q)?).collect(),

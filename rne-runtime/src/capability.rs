@@ -1,10 +1,10 @@
 //! What a robot can compute: one trait per capability, implemented by generated code and by [`Arm`](crate::Arm) alike.
 //!
-//! The traits are for calling: a derive or [`Arm`](crate::Arm) implements them. A minor version may add a method to a
-//! trait, so a type of your own that implements one by hand may need that method then; wrap an arm instead.
+//! A trait gets a new method only with a default, or in a breaking version: who implements one by hand is not surprised.
 //!
 //! Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
 
+use crate::mass_matrix::inverse_of;
 use crate::smooth_sign::SmoothSign;
 use crate::{BaseMotion, Payload, Pose, Scalar, Wrench};
 
@@ -73,6 +73,16 @@ pub trait MassMatrix<const DOF: usize> {
     /// unless the arm is taken with its rotors (`#[robot(rotors)]`, `with_rotors`): then G² Jm stands on the diagonal.
     #[must_use]
     fn mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF];
+
+    /// M(q)⁻¹: element (i, j) is the acceleration of joint i for a unit torque at joint j, from rest and without
+    /// gravity.
+    ///
+    /// Symmetric to the last bit. A singular mass matrix (a joint that moves nothing) gives numbers that are not
+    /// finite, and never panics.
+    #[must_use]
+    fn inverse_mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF] {
+        inverse_of(self.mass_matrix(q), &[T::zero(); DOF])
+    }
 }
 
 /// The matrix C(q, q̇) of τ = M(q) q̈ + C(q, q̇) q̇ + g(q), by Christoffel's symbols.

@@ -69,6 +69,7 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
         Function::GravityTorques => robot.gravity_torques(q).to_vec(),
         Function::BiasTorques => robot.bias_torques(q, qd).to_vec(),
         Function::MassMatrix => flat(robot.mass_matrix(q)),
+        Function::InverseMassMatrix => flat(robot.inverse_mass_matrix(q)),
         Function::CoriolisMatrix => flat(robot.coriolis_matrix(q, qd)),
         Function::ForwardDynamics => robot.forward_dynamics(q, qd, tau).to_vec(),
         Function::ForwardKinematics => pose(&robot.forward_kinematics(q)),

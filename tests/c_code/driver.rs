@@ -136,6 +136,7 @@ impl Driver<'_> {
                 Function::InverseDynamicsFromSinCos => "sine, cosine, q, qd, qdd",
                 Function::GravityTorques
                 | Function::MassMatrix
+                | Function::InverseMassMatrix
                 | Function::ForwardKinematics
                 | Function::LinkPoses
                 | Function::Jacobian
@@ -156,7 +157,9 @@ impl Driver<'_> {
                         writeln!(text, "    {{ {real} x = {prefix}_{function}({arguments}); print_{real}(&x, 1u); }}");
                     continue;
                 }
-                Function::MassMatrix | Function::CoriolisMatrix => (format!("{real} x[{n}][{n}]"), "x"),
+                Function::MassMatrix | Function::InverseMassMatrix | Function::CoriolisMatrix => {
+                    (format!("{real} x[{n}][{n}]"), "x")
+                }
                 Function::ForwardKinematics => (format!("{prefix}_pose x"), "&x"),
                 Function::LinkPoses => (format!("{prefix}_pose x[{n}]"), "x"),
                 Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),

@@ -241,6 +241,10 @@ impl Arm {
         self.rows(&self.numbers(Function::MassMatrix, &Given::of_joints(q, &[], &[])))
     }
 
+    pub(crate) fn inverse_mass_matrix<T: Scalar>(&self, q: &[T]) -> Vec<Vec<T>> {
+        self.rows(&self.numbers(Function::InverseMassMatrix, &Given::of_joints(q, &[], &[])))
+    }
+
     pub(crate) fn coriolis_matrix<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<Vec<T>> {
         self.rows(&self.numbers(Function::CoriolisMatrix, &Given::of_joints(q, qd, &[])))
     }
@@ -365,6 +369,7 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau).map(|numbers| numbers.concat()),
         Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
+        Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
     };
     numbers.expect("one per joint")
 }

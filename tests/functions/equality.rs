@@ -14,7 +14,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 15] = [
+const SAME_BITS: [Function; 16] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -30,6 +30,7 @@ const SAME_BITS: [Function; 15] = [
     Function::MomentumAndRate,
     Function::InverseDynamicsOnMovingBase,
     Function::ActuatorTorques,
+    Function::InverseMassMatrix,
 ];
 
 /// Of the largest number of the result.
@@ -94,7 +95,7 @@ pub(crate) fn error(
     let has_bits = maker == Maker::Code(Form::SevenSteps) && SAME_BITS.contains(&function);
     let error = match function {
         // of a matrix that is singular, where the runtime divided by zero
-        Function::ForwardDynamics if !is_finite => return 0.0,
+        _ if function.inverts_mass() && !is_finite => return 0.0,
         // of an arm without mass
         Function::CentreOfMass | Function::CentreOfMassJacobian if !is_finite => {
             assert!(found.iter().all(|x| !x.is_finite()), "{}, {function}: {found:?}", arm.robot.name);
@@ -104,7 +105,7 @@ pub(crate) fn error(
             assert_eq!(found, expected, "{}, {function}", arm.robot.name);
             return 0.0;
         }
-        Function::ForwardDynamics => {
+        Function::ForwardDynamics | Function::InverseMassMatrix => {
             let matrix = arm.runtime.mass_matrix(given.q).expect("one per joint");
             let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
             if number >= 1e12 {
@@ -112,6 +113,9 @@ pub(crate) fn error(
             }
             // Rounding of a matrix changes the solution by the condition number times as much, relative to the
             // solution; rounding of the torques and of the bias that they are compared with by M⁻¹, of 1/λ at most.
+            if function == Function::InverseMassMatrix {
+                return error_on_scale(found, &expected, number / of_matrix) / number;
+            }
             let bias = arm.runtime.bias_torques(given.q, given.qd).expect("one per joint");
             let scale = largest(given.tau).max(largest(&bias)) / of_matrix;
             error_on_scale(found, &expected, scale) / number

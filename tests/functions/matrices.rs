@@ -1,5 +1,7 @@
 //! Mass matrix, Coriolis matrix, forward dynamics, regressor and derivatives of random arms.
 
+use nalgebra::DMatrix;
+
 use crate::arm::Maker;
 use crate::case::{Case, cases, holds, largest, sum, transposed};
 use crate::check::{Conditioning, Worst, conditioning, eigenvalues, error_on_scale, flat, product, relative_error};
@@ -39,6 +41,33 @@ fn forward_dynamics_undoes_inverse_dynamics() {
         println!("{compared} arms");
         assert!(6 * compared > cases(maker).len(), "{compared}");
         worst.at_most(1e-14, &format!("forward dynamics, {maker}"));
+    }
+}
+
+#[test]
+fn the_inverse_of_the_mass_matrix_is_that_of_nalgebra() {
+    for maker in Maker::ALL {
+        let mut compared = 0;
+        let mut worst = Worst::default();
+        for case in cases(maker) {
+            let (mass, inverse) = (case.mass(), case.arm.inverse_mass_matrix(&case.q));
+            let Some(Conditioning { number, .. }) = conditioning(&mass) else { continue };
+            // A matrix near singularity multiplies rounding; a singular one has no inverse.
+            if number > 1e4 {
+                continue;
+            }
+            compared += 1;
+            assert_eq!(inverse, transposed(&inverse), "to the last bit");
+            let dof = mass.len();
+            let one = DMatrix::from_fn(dof, dof, |i, j| f64::from(u8::from(i == j)));
+            let [mass, inverse] = [mass, inverse].map(|rows| DMatrix::from_row_iterator(dof, dof, flat(rows)));
+            worst.see("M M⁻¹", (&mass * &inverse - one).amax() / number);
+            let expected = mass.lu().try_inverse().expect("a regular matrix");
+            worst.see("by LU", (&inverse - &expected).amax() / expected.amax() / number);
+        }
+        println!("{compared} arms");
+        assert!(6 * compared > cases(maker).len(), "{compared}");
+        worst.at_most(1e-14, &format!("inverse mass matrix, {maker}"));
     }
 }
 

@@ -88,6 +88,7 @@ fn seven_steps_are_the_runtime_in_every_bit() {
             Function::InverseDynamicsOnMovingBase,
             Function::MassMatrix,
             Function::ForwardDynamics,
+            Function::InverseMassMatrix,
             Function::KineticEnergy,
             Function::ActuatorTorques,
         ] {

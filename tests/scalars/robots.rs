@@ -109,6 +109,7 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
         ("gravity_torques", robot.gravity_torques(q).to_vec()),
         ("bias_torques", robot.bias_torques(q, qd).to_vec()),
         ("mass_matrix", robot.mass_matrix(q).concat()),
+        ("inverse_mass_matrix", robot.inverse_mass_matrix(q).concat()),
         ("coriolis_matrix", robot.coriolis_matrix(q, qd).concat()),
         ("forward_dynamics", robot.forward_dynamics(q, qd, qdd).to_vec()),
         ("forward_kinematics", of_pose(&robot.forward_kinematics(q))),

@@ -13,6 +13,7 @@ SHAPES = {
     "gravity_torques": ("q", lambda n: (n,)),
     "bias_torques": ("q qd", lambda n: (n,)),
     "mass_matrix": ("q", lambda n: (n, n)),
+    "inverse_mass_matrix": ("q", lambda n: (n, n)),
     "coriolis_matrix": ("q qd", lambda n: (n, n)),
     "forward_dynamics": ("q qd tau", lambda n: (n,)),
     "forward_kinematics": ("q", lambda n: (4, 4)),
@@ -61,6 +62,10 @@ def test_laws(name):
     tau = arm.inverse_dynamics(q, qd, qdd)
     scale = np.abs(tau).max()
     mass = arm.mass_matrix(q)
+    regular = np.linalg.cond(mass) < 1e4
+    expected = np.linalg.inv(mass[regular])
+    inverse = arm.inverse_mass_matrix(q)[regular]
+    assert regular.any() and np.allclose(inverse, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
     momentum, rate = arm.momentum_and_rate(q, qd, tau)
     size = np.abs(mass).max() * np.abs(qd).max()
     assert np.allclose(momentum, np.einsum("nij,nj->ni", mass, qd), rtol=0, atol=1e-12 * size)

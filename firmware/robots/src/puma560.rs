@@ -123,6 +123,7 @@ methods! {
     InverseDynamics: gravity_torques(q: [f32; 6]) -> [f32; 6];
     InverseDynamics: bias_torques(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
     MassMatrix: mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
+    MassMatrix: inverse_mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
     CoriolisMatrix: coriolis_matrix(q: [f32; 6], qd: [f32; 6]) -> [[f32; 6]; 6];
     ForwardDynamics: forward_dynamics(q: [f32; 6], qd: [f32; 6], tau: [f32; 6]) -> [f32; 6];
     Kinematics: forward_kinematics(q: [f32; 6]) -> Pose<f32>;

@@ -207,6 +207,7 @@ fn all_functions_compile_and_compute_the_same() {
         ("gravity_torques", &[positions], "q"),
         ("bias_torques", &[rates], "q, qd"),
         ("mass_matrix", &[positions], "q"),
+        ("inverse_mass_matrix", &[positions], "q"),
         ("coriolis_matrix", &[rates], "q, qd"),
         ("forward_dynamics", &[rates, &["--tau", tau]], "q, qd, &[1., 30., 5., 0.1, -0.2, 0.3]"),
         ("forward_kinematics", &[positions], "q"),

@@ -54,6 +54,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::MomentumAndRate => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
+        Function::InverseMassMatrix => {
+            inverse_mass_matrix(builder, &mass_matrix::upper_half(&derivation.arm, &derivation.states))
+        }
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
@@ -255,6 +258,24 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn actuator_torques(&self) -> Outputs<'s> {
         by_joint(Quantity::ActuatorTorque, actuation::torques(self.builder, self.robot, &self.states))
     }
+}
+
+/// M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹: column j is solved from row j on, and the rest is its mirror. Row i of `upper` holds the elements
+/// (i, i) to (i, n) of M.
+pub(crate) fn inverse_mass_matrix<'s>(builder: &'s Builder, upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
+    let factors = ldlt::Factors::of(builder, upper);
+    let (zero, one) = (builder.constant(0.0, Cause::Arithmetic), builder.constant(1.0, Cause::Arithmetic));
+    let name = |quantity, row: usize, column: usize| Name::indexed(quantity, row + 1, column + 1);
+    let columns: Vec<Vec<Symbol<'s>>> = (0..upper.len())
+        .map(|column| {
+            let unit: Vec<_> = (0..upper.len()).map(|row| if row == column { one } else { zero }).collect();
+            factors.solved(column, &unit, |quantity, row| name(quantity, row, column))
+        })
+        .collect();
+    square(upper.len(), |row, column| {
+        let (row, column) = (row.max(column), row.min(column));
+        (name(Quantity::RateDot, row, column), columns[column][row - column])
+    })
 }
 
 /// Elements of an n × n matrix by rows.

@@ -112,6 +112,11 @@ macro_rules! functions {
                 "What rotors behind gears and friction add to the torques.",
                 "G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), to be added to the torques of the links. Friction of Coulomb \
                  is zero at rest; a joint without a motor needs nothing.";
+            InverseMassMatrix = inverse_mass_matrix(q: Positions) -> Matrix:
+                "The inverse of the mass matrix, M(q)⁻¹, symmetric: column j holds the accelerations for τ = e_j.",
+                "inverse[i][j]: acceleration of joint i for a unit torque at joint j, from rest and without gravity. \
+                 Rotor inertia in an arm with its rotors only. A singular mass matrix (a joint that moves nothing) \
+                 gives numbers that are not finite.";
         }
     };
 }
@@ -378,6 +383,36 @@ pub(crate) const TABLE: &[Entry] = &[
         is_irreducible: true,
         feels_rotors: true,
         ..Entry::of(Function::ActuatorTorques, Capability::Actuation)
+    },
+    Entry {
+        output: "inverse",
+        listed: "returned: the rows of the matrix",
+        own: &[
+            Own::meaning(Quantity::RateDot, "element (i, j) of M⁻¹", |joint| {
+                format!("row {joint} of the inverse: L⁻ᵀ D⁻¹ L⁻¹")
+            }),
+            Own::of(Quantity::LowerFactor, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::ScaledFactor, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::Pivot, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::InversePivot, |_| "M = L D Lᵀ".to_owned()),
+            Own::meaning(Quantity::Reduced, "element (i, j) of L⁻¹", |joint| format!("row {joint} of L⁻¹")),
+            Own::meaning(Quantity::Scaled, "element (i, j) of D⁻¹ L⁻¹", |joint| {
+                format!("row {joint} of D⁻¹ L⁻¹")
+            }),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "acceleration of the row's joint per torque of the column's: 1/(kg m²), prismatic 1/kg, mixed 1/(kg m)",
+            Labels::Joints,
+            Labels::Joints,
+        )]),
+        feels_rotors: true,
+        is_of_motion: true,
+        inverts_mass: true,
+        divides: Some(
+            "the inverse is not finite: the mass matrix is singular \
+             (a joint moves no mass), or the positions are too large",
+        ),
+        ..Entry::of(Function::InverseMassMatrix, Capability::MassMatrix)
     },
 ];
 

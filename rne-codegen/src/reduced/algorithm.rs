@@ -9,6 +9,7 @@ use crate::reduced::momentum;
 use crate::reduced::payload::Load;
 use crate::reduced::rnea_derivatives::sensitivity;
 
+use crate::formulate::inverse_mass_matrix;
 use crate::formulate::ldlt;
 use crate::formulate::payload::Payload;
 use crate::formulate::square;
@@ -63,7 +64,7 @@ impl Algorithm {
             Function::InverseDynamicsWithPayload => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
             Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea],
             Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
-            Function::MassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
+            Function::MassMatrix | Function::InverseMassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
             // where the first moments behind the joints are gathered
             Function::MomentumAndRate => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamics => &[
@@ -142,6 +143,7 @@ pub(crate) fn write<'s>(
                 (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, upper[row][column - row])
             })
         }
+        (Function::InverseMassMatrix, _) => inverse_mass_matrix(builder, &mass_matrix(builder, arm, algorithm)),
         (Function::ForwardDynamics, Algorithm::Aba(bodies_per)) => {
             by_joint(Quantity::RateDot, aba::forward_dynamics(builder, arm, bodies_per))
         }

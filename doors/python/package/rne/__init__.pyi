@@ -179,6 +179,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """What rotors behind gears and friction add to the torques."""
+    def inverse_mass_matrix(
+        self, q: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The inverse of the mass matrix, M(q)⁻¹, symmetric: column j holds the accelerations for τ = e_j."""
     # <!-- end -->
     def inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
