@@ -1,6 +1,6 @@
 //! What a robot can compute: one trait per capability, implemented by generated code and by [`Arm`](crate::Arm) alike.
 //!
-//! A trait gets a new method only with a default, or in a breaking version: who implements one by hand is not surprised.
+//! A trait gets a new method only with a default, or in a breaking version.
 //!
 //! Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
 

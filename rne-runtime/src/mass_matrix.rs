@@ -2,8 +2,8 @@
 //!
 //! Column j is τ(q, 0, e_j) without gravity: q̈ = e_j is 1 at j and 0 elsewhere. The rows i ≤ j of column j are taken,
 //! and mirrored, so the matrix is symmetric to the last bit. The order of the operations is that of the seven steps;
-//! generated code repeats it. The inverse is L⁻ᵀ D⁻¹ L⁻¹ by the factors of [forward dynamics](crate::ForwardDynamics): column
-//! j from row j on, mirrored too.
+//! generated code repeats it. The inverse is L⁻ᵀ D⁻¹ L⁻¹ by the factors of
+//! [forward dynamics](crate::ForwardDynamics): column j from row j on, mirrored too.
 
 use crate::forward_dynamics::factor;
 use crate::link_state::JointMotions;
