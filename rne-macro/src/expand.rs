@@ -220,7 +220,7 @@ pub(crate) fn compiler<'r>(
     errors: &mut Errors,
 ) -> Option<Compiler<'r>> {
     let compiler = Compiler::new(robot);
-    let is_planned = capability.functions().any(|function| plan::is_planned(function));
+    let is_planned = capability.functions().any(plan::is_planned);
     match (form, plan) {
         (Form::Reduced, None) if is_planned => Some(compiler.with_plans(default_plans(robot))),
         // nothing is chosen
