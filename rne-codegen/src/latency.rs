@@ -32,8 +32,8 @@ pub(crate) const fn cycles(operator: Operator) -> usize {
     }
 }
 
-/// Cycles from the operands of a value to the value. Arguments are there from the beginning, and angles count with their
-/// sines.
+/// Cycles from the operands of a value to the value. Arguments are there from the beginning, and angles count with
+/// their sines.
 pub(crate) const fn cycles_of(value: Value) -> usize {
     match value {
         Value::Argument | Value::Constant(_) | Value::Same(_) | Value::Negative(_) => 0,

@@ -28,8 +28,8 @@ pub struct Program {
     pub function: Function,
     /// How it is computed.
     pub form: Form,
-    /// All values, in the order in which they are computed: arguments, constants, angles, sines and cosines, statements,
-    /// what is returned without a statement.
+    /// All values, in the order in which they are computed: arguments, constants, angles, sines and cosines,
+    /// statements, what is returned without a statement.
     pub values: Values,
     /// Angles that are sums.
     pub angles: Vec<Statement>,

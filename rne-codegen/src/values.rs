@@ -1,7 +1,8 @@
 //! The values of a program in one list, in the order in which they are computed.
 //!
-//! Every pass and every renderer reads this list: the target's arrangement and fusing write it anew, machines and native
-//! code take it as it is, text nests a value without a name where it is used ([`Expression`](crate::Expression)).
+//! Every pass and every renderer reads this list: the target's arrangement and fusing write it anew, machines and
+//! native code take it as it is, text nests a value without a name where it is used
+//! ([`Expression`](crate::Expression)).
 
 use crate::ir::name::Name;
 

@@ -135,13 +135,17 @@ impl Told for f64 {
 
 impl<E: Told> Told for Vec<E> {
     fn tell(&self, numbers: &mut Vec<f64>) {
-        self.iter().for_each(|element| element.tell(numbers));
+        for element in self {
+            element.tell(numbers);
+        }
     }
 }
 
 impl<E: Told, const N: usize> Told for [E; N] {
     fn tell(&self, numbers: &mut Vec<f64>) {
-        self.iter().for_each(|element| element.tell(numbers));
+        for element in self {
+            element.tell(numbers);
+        }
     }
 }
 

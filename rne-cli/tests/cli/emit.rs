@@ -191,7 +191,7 @@ fn all_functions_compile_and_compute_the_same() {
         let call = [&["eval", PUMA, "--json", "--function", function], &arguments.concat()[..]].concat();
         evaluated(&call)
     };
-    let calls: [(&str, &[&[&str]], &str); 23] = [
+    let calls: [(&str, &[&[&str]], &str); 24] = [
         ("inverse_dynamics", &[full], "q, qd, qdd"),
         (
             "inverse_dynamics_with_wrench",
