@@ -20,7 +20,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use rne::{BatchInverseDynamics, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, VectorUnit};
-use rne_codegen::plan::PlanFile;
+use rne_search::PlanFile;
 use rne_codegen::{Compiler, Form, Function, Program, Target};
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Machine, Native, Source};
 use rne_model::Robot;

@@ -168,8 +168,8 @@ pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, SearchOptions,
-        SearchProgress,
+        EvaluationError, Form, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, SearchError,
+        SearchOptions, SearchProgress,
     };
 }
 

@@ -9,10 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
+use rne_codegen::plan::{PlanSet, Trick};
 use rne_codegen::{Argument, Capability, Compiler, Form, Function, Operations, Program, Returned, Step};
 use rne_emit::{Selection, listing};
 use rne_model::{JointKind, Robot};
+use rne_search::PlanFile;
 
 /// The documents with blocks, and which blocks these are; what is measured or printed by a command does not count.
 const DOCUMENTS: &[(&str, &[&str])] = &[
@@ -222,7 +223,7 @@ fn robots() -> String {
         let counts = inverse_dynamics(&robot).operations();
         let (plans, _) = plans(&path, &robot);
         let (planned, reduced) =
-            (reduced(&robot, &plans.without(&robot, &[Trick::Rewriting])), reduced(&robot, &plans));
+            (reduced(&robot, &rne_search::without(&robot, &plans, &[Trick::Rewriting])), reduced(&robot, &plans));
         let joints = kinds(&robot);
         let title = robot.title.as_deref().unwrap_or(&robot.name);
         let file = &robot.name;
@@ -362,7 +363,7 @@ fn operations() -> String {
             if has_plan { "file" } else { "of the build" },
             products + sums,
             cell(seven_steps.operations()),
-            cell(reduced(&robot, &plans.without(&robot, &[Trick::Rewriting]))),
+            cell(reduced(&robot, &rne_search::without(&robot, &plans, &[Trick::Rewriting]))),
             cell(reduced(&robot, &plans)),
         );
     }
@@ -375,7 +376,7 @@ fn tricks() -> String {
     let savings = robots.map(|name| {
         let path = root().join("robots").join(name).with_extension("yaml");
         let robot = robot(&path);
-        plan::savings(&robot, &plans(&path, &robot).0)
+        rne_search::savings(&robot, &plans(&path, &robot).0)
     });
     let mut text = format!("| trick | {} | what it is |\n|---|---:|---:|---|\n", robots.join(" | "));
     for trick in Trick::ALL {

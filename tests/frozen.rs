@@ -11,11 +11,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use rne_codegen::plan::PlanFile;
 use rne_codegen::{Compiler, Form, Function};
 use rne_emit::{Precision, Prefix};
 use rne_model::Robot;
 use rne_robots::{ROBOTS, RobotFile};
+use rne_search::PlanFile;
 use sha2::{Digest, Sha256};
 
 /// From what is emitted, as `ROBOT FORM FUNCTION`, to its hash.

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use rne_codegen::plan::PlanFile;
+use rne_search::PlanFile;
 use rne_codegen::{Compiler, Form};
 use rne_model::Robot;
 

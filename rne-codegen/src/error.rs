@@ -50,8 +50,11 @@ pub enum CompileError {
         /// The most operations that are compiled.
         most: usize,
     },
-    /// A plan that does not fit the robot.
-    Plan(String),
+    /// A plan with a choice that the robot does not offer.
+    PlanDoesNotFit {
+        /// The robot's name.
+        robot: String,
+    },
     /// A rewritten graph that cannot be read.
     Graph {
         /// The robot's name.
@@ -131,7 +134,8 @@ impl CompileError {
     }
 
     /// The error with what may be the cause.
-    pub(crate) fn suspecting(mut self, robot: &Robot, is_planned: bool) -> Self {
+    #[must_use]
+    pub fn suspecting(mut self, robot: &Robot, is_planned: bool) -> Self {
         if let Self::NotIdentical { suspect, .. } | Self::Imprecise { suspect, .. } = &mut self {
             *suspect = Suspect { planned: is_planned, number: Extreme::of(robot) };
         }
@@ -192,7 +196,11 @@ impl fmt::Display for CompileError {
                 compiler takes in \
                  reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
             ),
-            Self::Plan(why) => f.write_str(why),
+            Self::PlanDoesNotFit { robot } => write!(
+                f,
+                "the plan does not fit `{robot}`: one of its choices is not offered by this robot; `rne search \
+                 ROBOT.yaml --fresh` finds another"
+            ),
             Self::Graph { robot, function, line, message } => write!(
                 f,
                 "line {line} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}; `rne search \

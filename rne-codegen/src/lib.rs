@@ -62,7 +62,7 @@ pub use reduced::inward::BodiesPer;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
 pub use values::{Contraction, Negated, Operator, Sign, Value, ValueId, Values};
 
-use crate::pipeline::{Formulation, LARGEST, reference, seven_steps_within};
+use crate::pipeline::{Formulation, LARGEST, seven_steps_within};
 use crate::plan::PlanSet;
 use crate::prove::Reference;
 
@@ -141,11 +141,11 @@ impl<'r> Compiler<'r> {
             return seven_steps_within(LARGEST, robot, function, &[], false);
         }
         // then there is nothing to be held against
-        if function.divides().is_some() && prove::divides_by_zero(robot, function) {
+        if prove::divides_by_zero(robot, function) {
             let refusals = vec![Refusal::new(Attempt::Any, Reason::DividesByZero)];
             return Ok(Program { refusals, ..seven_steps_within(LARGEST, robot, function, &[], false)? });
         }
-        let reference = reference(robot, function)?;
+        let reference = Reference::of(robot, function)?;
         // numbers that are not known cannot be regrouped
         if !robot.run_time.is_empty() {
             return Ok(self.numbered(function, reference, Vec::new()));
@@ -160,7 +160,7 @@ impl<'r> Compiler<'r> {
             let (algorithm, choices) = (rewritten.algorithm, rewritten.choices());
             return Ok(Program { algorithm, choices, is_rewritten: true, ..program });
         }
-        if !plan::is_planned(function) {
+        if !Algorithm::is_planned(function) {
             return Ok(self.numbered(function, reference, Vec::new()));
         }
         let plans = self.plans();
@@ -186,7 +186,7 @@ impl<'r> Compiler<'r> {
     /// By the plan, with the algorithm that takes the fewest operations.
     fn planned(&self, plans: &PlanSet, function: Function, reference: &Reference<'_>) -> Result<Program, CompileError> {
         let (plan, algorithm) = plans.cheapest(self.robot, function);
-        let formulation = plan::formulation(self.robot, &plan, function, algorithm)?;
+        let formulation = Formulation::by_plan(self.robot, &plan, function, algorithm)?;
         let program = formulation.proved(function, self.target, reference)?;
         let choices = algorithm.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
         Ok(Program { algorithm, choices, ..program })

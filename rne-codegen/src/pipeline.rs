@@ -5,13 +5,15 @@ use rne_model::Robot;
 use crate::error::CompileError;
 use crate::fma;
 use crate::formulate;
-use crate::function::{Form, Function};
+use crate::function::{Argument, Form, Function};
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Cost, Embedding, Policy, Traced};
 use crate::lower::{Heading, lower};
-use crate::program::{Exactly, Program};
+use crate::plan::{self, Plan};
+use crate::program::{Exactly, Program, Proof};
 use crate::prove::{self, Reference};
+use crate::reduced::algorithm::Algorithm;
 
 /// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
 /// nothing folds. Its text is some 15 MB.
@@ -38,7 +40,8 @@ impl Target {
 }
 
 /// A function as a graph that has not been lowered: what it returns, by name, and the graph of that with its trace.
-pub(crate) struct Formulation {
+#[allow(missing_debug_implementations)] // a graph of thousands of nodes
+pub struct Formulation {
     pub(crate) names: Vec<Name>,
     pub(crate) traced: Traced,
 }
@@ -61,9 +64,21 @@ impl Formulation {
 
     /// The plain formulas with every value computed once, however often and in whatever way they compute it: the
     /// reduced form of what has no recursion of its own.
-    pub(crate) fn numbered(robot: &Robot, function: Function) -> Self {
+    #[must_use]
+    pub fn numbered(robot: &Robot, function: Function) -> Self {
         let Self { names, traced } = Self::plain(Policy::Value, robot, function);
         Self { names, traced: traced.numbered() }
+    }
+
+    /// A function written by one algorithm under a plan, every value once.
+    ///
+    /// # Errors
+    /// When the plan does not fit the robot.
+    pub fn by_plan(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Result<Self, CompileError> {
+        let sphere = plan.gyrostat && !function.takes(Argument::Payload);
+        let plan = &Plan { gyrostat: sphere, ..plan.clone() };
+        let written = plan::frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
+        written.ok_or_else(|| CompileError::PlanDoesNotFit { robot: robot.name.clone() })
     }
 
     /// How its constants are read in the fields of the proof.
@@ -72,7 +87,8 @@ impl Formulation {
     }
 
     /// Its operations.
-    pub(crate) fn cost(&self) -> Cost {
+    #[must_use]
+    pub fn cost(&self) -> Cost {
         self.traced.graph.cost(&mut Vec::new())
     }
 
@@ -93,6 +109,42 @@ impl Formulation {
         let mut program = target.arranged(&program);
         program.proof = Some(prove::prove(reference, &program, &exactly, embedding)?);
         Ok(program)
+    }
+}
+
+impl<'r> Reference<'r> {
+    /// The seven steps of a function of a robot.
+    ///
+    /// # Errors
+    /// When they cannot be compiled.
+    pub fn of(robot: &'r Robot, function: Function) -> Result<Self, CompileError> {
+        Self::new(robot, function, |function| seven_steps_within(LARGEST, robot, function, &[], false))
+    }
+
+    /// The evidence that a formulation, arranged as a build arranges it, is that of the seven steps.
+    ///
+    /// # Errors
+    /// When it is another function, or rounds too badly.
+    pub fn proof(&self, function: Function, formulation: Formulation) -> Result<Proof, CompileError> {
+        // a program that was proved has its proof
+        Ok(formulation.proved(function, Target::Latency, self)?.proof.unwrap_or_default())
+    }
+
+    /// Whether a formulation can be proved, and how many times less precise than the seven steps it is in single
+    /// precision, on the average of so many states; `None` when it is another function.
+    ///
+    /// # Errors
+    /// When it cannot be lowered.
+    pub fn loss_of_precision(
+        &self,
+        function: Function,
+        formulation: Formulation,
+        states: usize,
+    ) -> Result<Option<f64>, CompileError> {
+        let embedding = formulation.embedding();
+        let (program, exactly) = formulation.lowered(self.robot(), function)?;
+        let is_identical = prove::identical(self.robot(), &program, &exactly, embedding).is_ok();
+        Ok(is_identical.then(|| prove::loss_of_precision(self, &program, states)))
     }
 }
 
@@ -120,11 +172,6 @@ pub(crate) fn seven_steps_within(
         }
     }
     Ok(lower(&Heading { robot, function, form: Form::SevenSteps }, traced, &names)?.0)
-}
-
-/// A function by the seven steps, to be held against.
-pub(crate) fn reference(robot: &Robot, function: Function) -> Result<Reference<'_>, CompileError> {
-    Reference::new(robot, function, |function| seven_steps_within(LARGEST, robot, function, &[], false))
 }
 
 #[cfg(test)]

@@ -59,7 +59,7 @@ pub struct Program {
 }
 
 /// The evidence that a program computes what the seven steps compute.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Proof {
     /// At how many random points of two prime fields all torques are identical.
     pub points: usize,

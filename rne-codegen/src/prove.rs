@@ -29,7 +29,8 @@ const SINGULAR: f64 = 0.1;
 const LEAST_SCALE: f64 = 1e-2;
 
 /// What programs are held against: the seven steps, compiled.
-pub(crate) struct Reference<'r> {
+#[derive(Debug)]
+pub struct Reference<'r> {
     robot: &'r Robot,
     faithful: Program,
     /// The torques of motion, of which what the function returns are parts.
@@ -114,7 +115,11 @@ pub(crate) fn identical(
 
 /// Whether the plain formulas of a function divide by what is zero in every state: no inverse of a mass matrix that is
 /// always singular is the same function as another.
-pub(crate) fn divides_by_zero(robot: &Robot, function: Function) -> bool {
+#[must_use]
+pub fn divides_by_zero(robot: &Robot, function: Function) -> bool {
+    if function.divides().is_none() {
+        return false;
+    }
     let embedding = Embedding::default();
     ExactFunction::with(robot, function, embedding).divides_by_zero(&SamplePoint::new(embedding, 1))
 }

@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::plan::PlanSet;
 use rne_codegen::{CompileError, Compiler, Form, Function, Target};
 use rne_model::{Reader, Robot, plan_of, read_file};
 use rne_runtime::VectorUnit;
 use rne_runtime::machine::Destination;
+use rne_search::PlanFile;
 
 use crate::{Arguments, ArmError, CompiledFunction, EvaluationError, Number};
 

@@ -44,8 +44,8 @@ pub use compiled_arm::{CompiledArm, RobotFiles};
 pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use results::Derivatives;
-pub use rne_codegen::plan::{PlanFile, SearchOptions};
 pub use rne_codegen::{Argument, Form, Function, Layout, Record};
+pub use rne_search::{PlanFile, SearchError, SearchOptions};
 pub use search::SearchProgress;
 
 use rne_codegen::{Name, Program};

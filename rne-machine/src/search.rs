@@ -3,10 +3,9 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use rne_codegen::CompileError;
-use rne_codegen::plan::{SearchOptions, search};
+use rne_search::{SearchError, SearchOptions, search};
 
-use crate::{CompiledArm, EvaluationError};
+use crate::CompiledArm;
 
 /// How far a search has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,11 +50,7 @@ impl CompiledArm {
         time: Duration,
         options: &SearchOptions,
         mut progress: impl FnMut(SearchProgress) -> ControlFlow<()>,
-    ) -> Result<Self, EvaluationError> {
-        if !self.robot().run_time.is_empty() {
-            let why = "an arm with run-time parameters has no plan; search for the arm with their values".to_owned();
-            return Err(CompileError::Plan(why).into());
-        }
+    ) -> Result<Self, SearchError> {
         let start = Instant::now();
         let mut is_over = false;
         let plan = search(self.robot(), self.plan(), options, &mut |so_far| {

@@ -2,11 +2,11 @@
 //! function, both forms. On a unit without fused multiply-add to the bit.
 
 use fastrand::Rng;
-use rne_codegen::plan::PlanFile;
 use rne_codegen::{Arguments as Numbers, Compiler, Interpreter, Target};
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function};
 use rne_model::Robot;
 use rne_runtime::{Payload, Scalar, VectorUnit};
+use rne_search::PlanFile;
 
 /// States: some blocks, and some that fill none.
 const STATES: usize = 150;

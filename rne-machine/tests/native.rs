@@ -1,10 +1,10 @@
 //! Native code has the bits of the machine: every shipped robot, every function, both forms, on every vector unit.
 
-use rne_codegen::plan::PlanFile;
 use rne_codegen::{Compiler, Form, Function, Program};
 use rne_machine::{Machine, Native, Number};
 use rne_robots::RobotFile;
 use rne_runtime::VectorUnit;
+use rne_search::PlanFile;
 
 /// Inputs of a state: ordinary ones, and some that the kernel of sines and cosines is not made for.
 fn states<T: Number>(inputs: usize, random: &mut fastrand::Rng, number: impl Fn(f64) -> T) -> Vec<Vec<T>> {

@@ -5,9 +5,10 @@ use std::sync::{Mutex, PoisonError};
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use rne_codegen::plan::{self, Fingerprint, PlanFile, PlanSet};
-use rne_codegen::{Capability, Compiler, Form, Program};
+use rne_codegen::plan::PlanSet;
+use rne_codegen::{Algorithm, Capability, Compiler, Form, Program};
 use rne_model::{Checked, Reader, Report, Robot};
+use rne_search::{Fingerprint, PlanFile};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
@@ -220,7 +221,7 @@ pub(crate) fn compiler<'r>(
     errors: &mut Errors,
 ) -> Option<Compiler<'r>> {
     let compiler = Compiler::new(robot);
-    let is_planned = capability.functions().any(plan::is_planned);
+    let is_planned = capability.functions().any(Algorithm::is_planned);
     match (form, plan) {
         (Form::Reduced, None) if is_planned => Some(compiler.with_plans(default_plans(robot))),
         // nothing is chosen
@@ -240,7 +241,7 @@ pub(crate) fn compiler<'r>(
 /// once per robot.
 fn default_plans(robot: &Robot) -> PlanSet {
     static KNOWN: Mutex<Vec<(Fingerprint, PlanSet)>> = Mutex::new(Vec::new());
-    let print = plan::fingerprint(robot);
+    let print = rne_search::fingerprint(robot);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, plans)) = known.iter().find(|(other, _)| *other == print) {
         return plans.clone();

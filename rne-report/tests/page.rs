@@ -1,8 +1,8 @@
 //! Pages as texts: complete in themselves, small, and inert whatever a robot file says.
 
-use rne_codegen::plan::PlanFile;
 use rne_codegen::{Compiler, Form, Function};
 use rne_model::Robot;
+use rne_search::PlanFile;
 use serde_json::Value;
 
 fn robot(yaml: &str) -> Robot {

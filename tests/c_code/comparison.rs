@@ -3,10 +3,11 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::plan::PlanSet;
 use rne_codegen::{Form, Function, Program};
 use rne_emit::Precision;
 use rne_model::Robot;
+use rne_search::PlanFile;
 
 use crate::compiler::Compiler;
 use crate::derived::{Derived, Forms};

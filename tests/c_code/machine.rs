@@ -13,9 +13,9 @@ use fastrand::Rng;
 use rne::Scalar;
 use rne::VectorUnit;
 use rne::compiled::{Arguments, Array, CompiledArm, Destination};
-use rne_codegen::plan::PlanFile;
 use rne_codegen::{Arguments as Numbers, Compiler, Form, Function, Interpreter, Target};
 use rne_model::Robot;
+use rne_search::PlanFile;
 
 use crate::comparison::{ROOT, read};
 use crate::derived::{Derived, Forms};

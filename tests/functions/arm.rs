@@ -6,9 +6,10 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Mutex, OnceLock};
 
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Scalar, Wrench};
-use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::plan::PlanSet;
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program, Real};
 use rne_model::Robot;
+use rne_search::PlanFile;
 
 use crate::check::{ROOT, flat};
 

@@ -1,8 +1,9 @@
 //! Operation counts against an independent count of a faithful unrolling.
 
-use rne_codegen::plan::{PlanFile, PlanSet, Trick, savings};
+use rne_codegen::plan::{PlanSet, Trick};
 use rne_codegen::{Compiler, Form, Function};
 use rne_model::Robot;
+use rne_search::{PlanFile, savings, without};
 
 /// Products and sums of the seven steps with gravity carried from link to link, unrolled, folded and shared, counted by
 /// an experiment in another language on the same parameters.
@@ -95,7 +96,7 @@ fn plans_are_as_good_as_the_best_known() {
             let program = Compiler::new(&model).with_plans(plans).compile(Function::InverseDynamics, Form::Reduced);
             program.unwrap_or_else(|error| panic!("{robot}: {error}")).operations().total()
         };
-        let (planned, rewritten) = (total(plans.without(&model, &[Trick::Rewriting])), total(plans));
+        let (planned, rewritten) = (total(without(&model, &plans, &[Trick::Rewriting])), total(plans));
         println!("{robot:24} {planned:7}  {best:10}  {rewritten:9}  {best_rewritten:10}");
         let best = if robot == PRECISE.0 { PRECISE.1 } else { best };
         assert!(planned <= best, "{robot}: {planned}");

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rne::compiled::{CompiledArm, Form, Function};
 use rne_codegen::Compiler;
-use rne_codegen::plan::PlanFile;
+use rne_machine::PlanFile;
 use rne_model::{Convention, Robot};
 
 use crate::arrays::Given;

@@ -6,7 +6,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::plan::PlanSet;
+use rne_search::PlanFile;
 use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record};
 use rne_emit::{Precision, Prefix, c_code};
 use rne_model::Robot;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::plan::{self, PlanSet, Trick};
+use rne_codegen::plan::{PlanSet, Trick};
 use rne_codegen::{CompileError, Form, Function, Operations};
 use rne_model::Robot;
 use serde::Serialize;
@@ -140,7 +140,7 @@ pub(crate) fn counts(
 fn tricks(robot: &Robot, plans: &PlanSet, room: usize) -> String {
     let mut text = format!("{TITLE}{}{TITLE:#}\n", robot.name);
     let mut lines = vec![["trick", "saves", "what it is"].map(str::to_owned)];
-    for (trick, saved) in plan::savings(robot, plans) {
+    for (trick, saved) in rne_search::savings(robot, plans) {
         lines.push([format!(" {trick}"), saved.to_string(), trick.formula().to_owned()]);
     }
     let lines = columns(&[Align::Left, Align::Right, Align::Left], &lines);

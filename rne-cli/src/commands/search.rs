@@ -9,8 +9,9 @@ use std::time::{Duration, Instant, SystemTime};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rne_codegen::Function;
-use rne_codegen::plan::{self, Accuracy, Cost, PlanFile, Progress, SearchOptions};
+use rne_codegen::plan::{Accuracy, Cost};
 use rne_model::{Robot, plan_of};
+use rne_search::{PlanFile, Progress, SearchError, SearchOptions};
 
 use crate::files::input_file::is_stream;
 use crate::files::interruption;
@@ -87,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     interruption::expect();
     plan_file::is_writable(&path)?;
     let found = watched(&robot, known.plan.as_ref(), &options, arguments.seconds)
-        .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
+        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
     let searched = Searched { file: &arguments.file, robot: &robot, known, fresh: arguments.fresh };
     let Kept { plan, left_out, written } = searched.keep(found, || ())?;
     Ok(Outcome::text(summary(&plan, searched.known.plan.as_ref(), &left_out, &path, written)))
@@ -137,7 +138,7 @@ impl Searched<'_> {
 
     /// Whether what was found is of the robot as its file has it now; comments and names may have changed.
     fn is_unchanged(&self, found: &PlanFile) -> Result<(), Failure> {
-        let is_same = |now: Robot| now.name == found.robot && plan::fingerprint(&now) == found.fingerprint;
+        let is_same = |now: Robot| now.name == found.robot && rne_search::fingerprint(&now) == found.fingerprint;
         if robot_file::robot(self.file).is_ok_and(is_same) {
             return Ok(());
         }
@@ -197,7 +198,7 @@ fn watched(
     known: Option<&PlanFile>,
     options: &SearchOptions,
     seconds: f64,
-) -> Result<PlanFile, rne_codegen::CompileError> {
+) -> Result<PlanFile, SearchError> {
     const STEPS: u64 = 1000;
     let bar = ProgressBar::new(STEPS);
     let style = ProgressStyle::with_template("{prefix:>10} [{bar:30}] {msg}").map(|style| style.progress_chars("=> "));
@@ -206,7 +207,7 @@ fn watched(
     }
     let start = Instant::now();
     let mut shown = start;
-    let found = plan::search(robot, known, options, &mut |progress: &Progress| {
+    let found = rne_search::search(robot, known, options, &mut |progress: &Progress| {
         if interruption::is_wished() {
             return None;
         }

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::ProgressBar;
-use rne_codegen::plan::{PlanFile, PlanSet, Trick};
+use rne_codegen::plan::{PlanSet, Trick};
 use rne_codegen::{self as codegen, CompileError, Form, Function, Program};
 use rne_machine::CompiledArm;
 use rne_model::{Robot, plan_of, read_file, robot_of};
+use rne_search::PlanFile;
 
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, Replacement, unwritable};
@@ -198,7 +199,7 @@ impl<'a> Compiler<'a> {
             Some(read) => compiler.with_plans(self.read.get_or_init(|| read).plan.clone()),
             None => compiler,
         };
-        let plans = (!self.without.is_empty()).then(|| compiler.plans().without(self.robot, self.without));
+        let plans = (!self.without.is_empty()).then(|| rne_search::without(self.robot, compiler.plans(), self.without));
         let compiler = plans.map_or(compiler, |plans| codegen::Compiler::new(self.robot).with_plans(plans));
         Ok(self.planned.get_or_init(|| compiler))
     }

@@ -1,15 +1,15 @@
 //! What a plan costs: the form is written, equal values are merged, and what is left is counted.
 
-use rne_model::Robot;
+use rne_model::{JointKind, Robot};
 
 use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
-use crate::plan::Plan;
+use crate::plan::{OriginShift, Plan, Scale};
 use crate::reduced::algorithm::{self, Algorithm};
 use crate::reduced::forward::Arm;
 use crate::reduced::joint_frames::{FrameChoice, JointFrames};
-use crate::reduced::regrouping::{Offers, Parameters, parameters};
+use crate::reduced::regrouping::{Offers, Parameters, is_parallel, parameters};
 
 /// A table and what it offers.
 #[derive(Clone, Debug)]
@@ -17,6 +17,42 @@ pub(crate) struct FramedRobot {
     frames: FrameChoice,
     pub(crate) joint_frames: JointFrames,
     pub(crate) offers: Offers,
+}
+
+/// The choices that a robot leaves open.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OpenChoices {
+    /// Those of each joint, base to tip.
+    pub joints: Vec<OpenJoint>,
+    /// The different lengths of the robot, in which lengths and forces can be measured.
+    pub lengths: Vec<Scale>,
+    /// Whether the last link can be a spinning sphere without mass.
+    pub gyrostat: bool,
+    /// Whether the last frame can be turned.
+    pub turned_last_frame: bool,
+    /// Whether prismatic links can keep the axes of the revolute link before.
+    pub carried_prismatics: bool,
+}
+
+/// The choices that one joint leaves open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenJoint {
+    /// Revolute or prismatic.
+    pub kind: JointKind,
+    /// Whether its axis is parallel to the one before, both revolute.
+    pub is_parallel: bool,
+    /// Whether the twist between the axes is no multiple of a right angle.
+    pub is_twisted: bool,
+    /// The rules that give different slides of the origin.
+    pub origin_shifts: Vec<OriginShift>,
+}
+
+impl OpenChoices {
+    /// Whether a rule for a slide gives something of its own at a joint.
+    #[must_use]
+    pub fn offers(&self, index: usize, rule: OriginShift) -> bool {
+        self.joints.get(index).is_some_and(|joint| joint.origin_shifts.contains(&rule))
+    }
 }
 
 /// Counts plans of one robot, as many as a search wants.
@@ -53,14 +89,6 @@ pub(crate) fn frame(robot: &Robot, plan: &Plan) -> Option<FramedRobot> {
 impl FramedRobot {
     pub(crate) fn is_of(&self, plan: &Plan) -> bool {
         self.frames == plan.frames()
-    }
-
-    pub(crate) fn turns_last(&self) -> bool {
-        self.frames.turned_last
-    }
-
-    pub(crate) fn carries(&self) -> bool {
-        self.frames.carried
     }
 
     pub(crate) fn parameters(&self, plan: &Plan) -> Option<Parameters> {
@@ -101,8 +129,24 @@ impl Evaluator {
         }
     }
 
-    pub(crate) fn frames(&self) -> &[FramedRobot] {
-        &self.frames
+    /// The choices that the robot leaves open.
+    pub(crate) fn open_choices(&self) -> OpenChoices {
+        let has = |test: fn(&FrameChoice) -> bool| self.frames.iter().any(|frame| test(&frame.frames));
+        let Some(FramedRobot { joint_frames, offers, .. }) = self.frames.first() else { return OpenChoices::default() };
+        let rows = &joint_frames.rows;
+        let joints = rows.iter().zip(&offers.origin_shifts).enumerate().map(|(index, (row, shifts))| OpenJoint {
+            kind: row.kind,
+            is_parallel: is_parallel(rows, index),
+            is_twisted: row.alpha.quarters().is_none(),
+            origin_shifts: shifts.iter().map(|(rule, _)| *rule).collect(),
+        });
+        OpenChoices {
+            joints: joints.collect(),
+            lengths: offers.lengths.clone(),
+            gyrostat: offers.gyrostat,
+            turned_last_frame: has(|frames| frames.turned_last),
+            carried_prismatics: has(|frames| frames.carried),
+        }
     }
 
     /// What a plan costs; `None` when it does not apply to the robot.

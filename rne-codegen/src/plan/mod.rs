@@ -1,26 +1,24 @@
-//! Plans: which choices the reduced form makes for a robot, what they cost, where they are kept, and the search for
-//! better ones.
+//! Plans: which choices the reduced form makes for a robot, what they cost, and the short search of a build that finds
+//! no plan file. A long search and plan files are the crate `rne-search`.
 
 mod cost;
-mod exploration;
-mod file;
+mod descent;
 mod graph_text;
-mod neighbourhood;
 mod plan_set;
 mod rewriting;
-mod schema;
-mod search;
-mod shapes;
+mod rewritten;
 #[cfg(test)]
 mod tests;
 mod trick;
-mod yaml;
 
 pub use crate::ir::Cost;
+pub use crate::pipeline::Formulation;
+pub use crate::prove::{Reference, divides_by_zero};
 pub use crate::reduced::choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
-pub use exploration::{Clock, Progress};
-pub use file::{Accuracy, Fingerprint, PlanFile, Reduced, Rewritten, fingerprint};
-pub(crate) use plan_set::formulation;
-pub use plan_set::{PlanSet, cost, is_planned, savings};
-pub use search::{SearchOptions, search};
+pub(crate) use cost::frame;
+pub use cost::{OpenChoices, OpenJoint};
+pub use descent::Descent;
+pub use plan_set::PlanSet;
+pub use rewriting::Rewriting;
+pub use rewritten::{Accuracy, Rewritten};
 pub use trick::Trick;

@@ -3,14 +3,68 @@
 //! What comes out no longer resembles a recursion. Every move is an identity of real numbers, and equal values stay one
 //! node whatever their history.
 
+use std::ops::ControlFlow;
+
+use rne_model::Robot;
+
+use crate::CompileError;
+use crate::function::Function;
 use crate::ir::{Cost, Graph, Op, Ref, mark_live, mark_live_outside_angles};
-use crate::plan::exploration::{Clock, Over, Progress};
+use crate::plan::graph_text;
+use crate::plan::rewritten::Rewritten;
 
 /// Factors that a move introduces stay within these bounds.
 const FACTORS: std::ops::Range<f64> = 1e-4..1e4;
 
-/// A graph that is being made smaller.
-pub(crate) struct Rewriting<C> {
+/// The graph of a function while algebra makes it smaller.
+#[derive(Clone, Debug)]
+pub struct Rewriting {
+    /// What will stand in the plan file, but for the graph as text.
+    of: Rewritten,
+    graph: Graph,
+    /// Places of the numbers of the graph as the plan gives it.
+    given: Vec<u32>,
+}
+
+impl Rewriting {
+    /// Goes on from a graph that has been rewritten, or starts from the graph of a plan where there is no text of one.
+    ///
+    /// # Errors
+    /// When the plan does not fit the robot.
+    pub fn of(robot: &Robot, function: Function, of: Rewritten) -> Result<Self, CompileError> {
+        let before = of.before(robot, function)?.traced.graph;
+        let given = before.factors();
+        // the graph's own constants follow those of the plan, as in a graph that has just been rewritten
+        let read = graph_text::read(&of.graph, &before, function).ok();
+        let graph = read.map(|read| graph_text::on_numbers_of(&read.graph, &before)).unwrap_or(before);
+        Ok(Self { of: Rewritten { operations: graph.cost(&mut Vec::new()), ..of }, graph, given })
+    }
+
+    /// What the graph costs.
+    #[must_use]
+    pub const fn cost(&self) -> Cost {
+        self.of.operations
+    }
+
+    /// Anneals from a temperature downwards until the clock says that all of its time is over, and keeps the smallest
+    /// graph. The clock is told the smallest cost so far and returns the part of the time that is over; `None` breaks
+    /// off.
+    pub fn anneal(&mut self, seed: u64, hottest: f64, clock: &mut dyn FnMut(Cost) -> Option<f64>) -> ControlFlow<()> {
+        let mut annealing = Annealing::new(self.graph.clone(), seed, Graph::cost);
+        let ended = annealing.anneal(hottest, clock);
+        (self.of.operations, self.graph) = annealing.best;
+        ended
+    }
+
+    /// The graph as a plan file keeps it.
+    #[must_use]
+    pub fn written(self) -> Rewritten {
+        Rewritten { graph: graph_text::written(&self.graph, &self.given), ..self.of }
+    }
+}
+
+/// A graph under annealing.
+pub(super) struct Annealing<C> {
     current: Graph,
     next: Graph,
     live: Vec<bool>,
@@ -19,12 +73,13 @@ pub(crate) struct Rewriting<C> {
     map: Vec<Ref>,
     cost: C,
     rng: fastrand::Rng,
-    best: (Cost, Graph),
+    /// The smallest graph seen.
+    pub(super) best: (Cost, Graph),
 }
 
-impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Rewriting<C> {
+impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Annealing<C> {
     /// Starts from a numbered graph.
-    pub(crate) fn new(graph: Graph, seed: u64, cost: C) -> Self {
+    pub(super) fn new(graph: Graph, seed: u64, cost: C) -> Self {
         let mut live = Vec::new();
         let best = (cost(&graph, &mut live), graph.clone());
         let next = graph.clone();
@@ -40,23 +95,14 @@ impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Rewriting<C> {
         }
     }
 
-    /// The smallest graph seen.
-    pub(crate) fn best(self) -> (Cost, Graph) {
-        self.best
-    }
-
     /// Anneals until the clock says that all of its time is over.
-    pub(crate) fn anneal(
-        &mut self,
-        hottest: f64,
-        mut progress: impl FnMut(Cost) -> Progress,
-        clock: Clock<'_>,
-    ) -> Result<(), Over> {
+    pub(super) fn anneal(&mut self, hottest: f64, clock: &mut dyn FnMut(Cost) -> Option<f64>) -> ControlFlow<()> {
         let mut weight = (self.cost)(&self.current, &mut self.live).weight();
         let mut over = 0.0;
         for step in 0_u64.. {
             if step % 512 == 0 {
-                over = clock(&progress(self.best.0)).ok_or(Over)?;
+                let Some(part) = clock(self.best.0) else { return ControlFlow::Break(()) };
+                over = part;
                 if over >= 1.0 {
                     break;
                 }
@@ -79,7 +125,7 @@ impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Rewriting<C> {
                 std::mem::swap(&mut self.current.numbers, &mut self.next.numbers);
             }
         }
-        Ok(())
+        ControlFlow::Continue(())
     }
 
     /// Writes the current graph once more with one node rewritten; false when nothing came of it. The constants move

@@ -36,7 +36,7 @@ pub enum Algorithm {
 
 impl Algorithm {
     /// All of them, with their names in plan files.
-    pub(crate) const NAMES: [(Self, &'static str); 7] = [
+    pub const NAMES: [(Self, &'static str); 7] = [
         (Self::Rnea, "rnea"),
         (Self::Crba(BodiesPer::Group), "crba_by_groups"),
         (Self::Crba(BodiesPer::Joint), "crba_by_joints"),
@@ -52,8 +52,15 @@ impl Algorithm {
         Self::NAMES.into_iter().find(|(other, _)| *other == self).map_or("", |(_, name)| name)
     }
 
+    /// Whether the choices of a plan matter to a function.
+    #[must_use]
+    pub const fn is_planned(function: Function) -> bool {
+        !Self::of(function).is_empty()
+    }
+
     /// The ways of a function; none for what has no reduced recursion.
-    pub(crate) const fn of(function: Function) -> &'static [Self] {
+    #[must_use]
+    pub const fn of(function: Function) -> &'static [Self] {
         const BY_GROUPS: Algorithm = Algorithm::Crba(BodiesPer::Group);
         const BY_JOINTS: Algorithm = Algorithm::Crba(BodiesPer::Joint);
         match function {

@@ -55,12 +55,13 @@ macro_rules! switches {
             pub const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
 
             /// Each with its name.
-            pub(crate) fn list(&self) -> [(&'static str, bool); Self::NAMES.len()] {
+            #[must_use]
+            pub fn list(&self) -> [(&'static str, bool); Self::NAMES.len()] {
                 [$((stringify!($name), self.$name)),*]
             }
 
             /// One of them by its place in `NAMES`.
-            pub(crate) fn at(&mut self, index: usize) -> Option<&mut bool> {
+            pub fn at(&mut self, index: usize) -> Option<&mut bool> {
                 [$(&mut self.$name),*].into_iter().nth(index)
             }
         }

@@ -3,9 +3,10 @@
 
 use std::sync::OnceLock;
 
-use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::plan::PlanSet;
 use rne_codegen::{Compiler, Form, Function, Program};
 use rne_model::Robot;
+use rne_search::PlanFile;
 
 /// A shipped robot.
 pub(crate) fn robot(name: &str) -> Robot {

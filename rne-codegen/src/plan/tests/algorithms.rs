@@ -34,30 +34,6 @@ fn all_algorithms_are_the_seven_steps() {
     }
 }
 
-#[test]
-fn all_algorithms_under_random_plans_are_the_seven_steps() {
-    for name in ["puma560", "scara_cobra600", "stanford", "ur5", "dense6_2p"] {
-        let robot = robot(name);
-        let neighbourhood = Neighbourhood::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
-        let mut rng = fastrand::Rng::with_seed(11);
-        let mut plan = Plan::new(robot.dof());
-        let mut tried = 0;
-        for round in 0..40 {
-            let other = neighbourhood.random(&plan, &mut rng);
-            let function = FUNCTIONS[round % FUNCTIONS.len()];
-            let algorithms = Algorithm::of(function);
-            let algorithm = algorithms[(round / FUNCTIONS.len()) % algorithms.len()];
-            let Some(program) = written(&robot, &other, function, algorithm) else { continue };
-            if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2) {
-                panic!("the proof refuses {name}, {algorithm:?}: {error}\n{:#?}", other.choices());
-            }
-            plan = other;
-            tried += 1;
-        }
-        assert!(tried > 20, "{name}: {tried}");
-    }
-}
-
 /// Articulated bodies take as many operations per joint however many there are; a mass matrix takes more and more.
 #[test]
 fn long_arms_are_articulated() {

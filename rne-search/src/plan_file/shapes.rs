@@ -8,8 +8,6 @@ use std::str::FromStr;
 use rne_model::did_you_mean;
 use rne_model::document::{Content, Node, Style};
 
-use crate::reduced::choices::count;
-
 /// What is wrong, and where.
 #[derive(Debug)]
 pub(super) struct Mistake {
@@ -125,7 +123,9 @@ pub(super) fn switch(node: &Node) -> Result<bool, Mistake> {
 
 /// A whole number, not negative.
 pub(super) fn whole<T: TryFrom<usize>>(node: &Node) -> Result<T, Mistake> {
-    let number = plain(node).and_then(count).and_then(|number| T::try_from(number).ok());
+    // the same digits, and nothing else: no sign, no zero before them
+    let whole = |digits: &str| digits.parse().ok().filter(|number: &usize| number.to_string() == digits);
+    let number = plain(node).and_then(whole).and_then(|number| T::try_from(number).ok());
     number.ok_or_else(|| Mistake::wrong_shape(node, "a whole number"))
 }
 

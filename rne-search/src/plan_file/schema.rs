@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use rne_codegen::plan::{
+    Accuracy, Cost, JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Rewritten, Scale, Side, Switches,
+};
+use rne_codegen::{Algorithm, Function};
 use rne_model::Robot;
 use rne_model::document::{Content, Node};
 
-use super::file::{Accuracy, FORMAT, Fingerprint, PlanFile, Reduced, Rewritten, fingerprint};
 use super::shapes::{Fields, Mistake, array, list, number, parsed, switch, text, whole, word};
 use super::yaml::Value;
-use crate::Function;
-use crate::ir::Cost;
-use crate::reduced::algorithm::Algorithm;
-use crate::reduced::choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
+use super::{FORMAT, Fingerprint, PlanFile, Reduced, fingerprint};
 
 /// Reads a plan file that must be one of `robot` as it is.
 pub(super) fn read(root: &Node, robot: &Robot) -> Result<PlanFile, Mistake> {

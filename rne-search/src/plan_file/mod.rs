@@ -1,23 +1,21 @@
 //! Plan files: the choices for one robot, replayed by every build.
 
+mod schema;
+mod shapes;
+mod yaml;
+
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
+use rne_codegen::plan::{Accuracy, Cost, Plan, PlanSet, Rewritten, divides_by_zero};
+use rne_codegen::{Algorithm, CompileError, Function, Program};
 use rne_model::document::{self, Content, Node, Style};
 use rne_model::{Convention, JointKind, Report, Robot, robot_of};
 
-use super::plan_set::PlanSet;
-use super::schema;
-use super::shapes::Mistake;
-use crate::ir::Cost;
-use crate::program::{Program, Proof};
-use crate::prove;
-use crate::reduced::algorithm::Algorithm;
-use crate::reduced::choices::Plan;
-use crate::{CompileError, Function};
+use self::shapes::Mistake;
 
 /// A plan file, as it stands on disk.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,43 +41,6 @@ pub struct Reduced {
     pub plan: Plan,
 }
 
-/// The rewritten graph of a function.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rewritten {
-    /// Operations of the function.
-    pub operations: Cost,
-    /// How precise it is.
-    pub accuracy: Accuracy,
-    /// How the function was written under the plan.
-    pub(crate) algorithm: Algorithm,
-    /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
-    pub plan: Option<Plan>,
-    /// One operation per line.
-    pub graph: String,
-}
-
-/// Largest differences from the seven steps, in parts of the largest torque, with two digits: for people.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Accuracy {
-    /// In double precision.
-    pub double: f64,
-    /// In single precision.
-    pub single: f64,
-    /// Of the seven steps themselves in single precision.
-    pub single_of_seven_steps: f64,
-}
-
-impl From<&Proof> for Accuracy {
-    fn from(proof: &Proof) -> Self {
-        let rounded = |value: f64| format!("{value:.1e}").parse().unwrap_or(value);
-        Self {
-            double: rounded(proof.rounding),
-            single: rounded(proof.single),
-            single_of_seven_steps: rounded(proof.single_of_seven_steps),
-        }
-    }
-}
-
 /// A number that stands for all numbers of a robot that its torques depend on: 16 hexadecimal digits in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint(u64);
@@ -103,7 +64,7 @@ impl FromStr for Fingerprint {
 }
 
 /// The format of plan files.
-pub(super) const FORMAT: u32 = 2;
+const FORMAT: u32 = 2;
 
 const KIND: document::Kind = document::Kind { name: "a plan file", format: FORMAT };
 
@@ -141,9 +102,17 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
     Fingerprint(hash)
 }
 
+impl From<PlanFile> for PlanSet {
+    fn from(file: PlanFile) -> Self {
+        let mut plans = Self::from(file.reduced.plan);
+        plans.rewritten = file.rewritten;
+        plans
+    }
+}
+
 impl PlanFile {
     /// What a search found for a robot.
-    pub(super) fn new(robot: &Robot, reduced: Reduced, rewritten: BTreeMap<Function, Rewritten>) -> Self {
+    pub(crate) fn new(robot: &Robot, reduced: Reduced, rewritten: BTreeMap<Function, Rewritten>) -> Self {
         Self { robot: robot.name.clone(), fingerprint: fingerprint(robot), reduced, rewritten }
     }
 
@@ -184,7 +153,7 @@ impl PlanFile {
                 _ if function.entry().is_irreducible => {
                     (None, format!("`{function}` has no reduced form that could be rewritten"))
                 }
-                _ if function.divides().is_some() && prove::divides_by_zero(robot, *function) => {
+                _ if divides_by_zero(robot, *function) => {
                     (None, format!("`{function}` divides by zero for every q: it has the seven steps only"))
                 }
                 Some(_) if known.is_empty() => {
@@ -306,7 +275,7 @@ fn with_help(mut report: Report, name: &str) -> Report {
 }
 
 /// The value of a key in a key …, or the key itself where the value stands below it, as far as the keys are found.
-pub(super) fn place(root: &Node, keys: &[&str]) -> Range<usize> {
+fn place(root: &Node, keys: &[&str]) -> Range<usize> {
     let (mut found, mut node) = (0..0, root);
     for key in keys {
         let Content::Mapping(entries) = &node.content else { break };

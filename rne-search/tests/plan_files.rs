@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use common::robot;
 use rne_model::Reader;
+use rne_search::{PlanFile, Progress, SearchOptions, fingerprint, search};
 
-use super::*;
+mod common;
 
 #[test]
 fn plans_survive_as_files_and_belong_to_one_robot() {
@@ -99,7 +101,7 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
 #[test]
 fn a_slip_in_a_plan_file_is_told() {
     let robot = robot("puma560");
-    let text = include_str!("../../../../robots/puma560.plan.yaml");
+    let text = include_str!("../../robots/puma560.plan.yaml");
     for (from, to, meant) in [
         ("fingerprint:", "fingerprnt:", "fingerprint"),
         ("    mul: ", "    mull: ", "mul"),

@@ -1,51 +1,27 @@
 //! What can be changed in a plan, in a fixed order.
 
+use rne_codegen::plan::{Descent, Moment, OpenChoices, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
 use rne_model::JointKind::Revolute;
+use rne_model::Robot;
 
-use crate::plan::cost::FramedRobot;
-use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
-use crate::reduced::joint_frames::JointFrame;
-use crate::reduced::regrouping::{group_end, is_parallel};
-
-/// The choices that a robot leaves open.
-pub(crate) struct Neighbourhood {
-    rows: Vec<JointFrame>,
-    origin_shifts: Vec<Vec<OriginShift>>,
-    lengths: Vec<Scale>,
-    gyrostat: bool,
-    turned_last: bool,
-    carried: bool,
-}
+/// The plans beside a plan, of one robot.
+#[derive(Clone, Debug)]
+pub struct Neighbourhood(OpenChoices);
 
 impl Neighbourhood {
-    /// From the frames of a robot, the plain ones first.
-    pub(crate) fn new(frames: &[FramedRobot]) -> Self {
-        let plain = frames.first();
-        let rules = |offers: &[(OriginShift, crate::ir::Number)]| offers.iter().map(|(rule, _)| *rule).collect();
-        let origin_shifts =
-            plain.map_or_else(Vec::new, |frame| frame.offers.origin_shifts.iter().map(|s| rules(s)).collect());
-        let has = |test: fn(&FramedRobot) -> bool| frames.iter().any(test);
-        Self {
-            rows: plain.map_or_else(Vec::new, |frame| frame.joint_frames.rows.clone()),
-            origin_shifts,
-            lengths: plain.map_or_else(Vec::new, |frame| frame.offers.lengths.clone()),
-            gyrostat: plain.is_some_and(|frame| frame.offers.gyrostat),
-            turned_last: has(FramedRobot::turns_last),
-            carried: has(FramedRobot::carries),
-        }
-    }
-
-    /// Whether a rule for a slide gives something of its own at a joint.
-    pub(crate) fn offers(&self, index: usize, rule: OriginShift) -> bool {
-        self.origin_shifts.get(index).is_some_and(|rules| rules.contains(&rule))
+    /// From the choices that a robot leaves open.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        Self(Descent::new(robot, &[]).open_choices().clone())
     }
 
     /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group
     /// of parallel axes shares.
-    pub(crate) fn neighbours(&self, plan: &Plan) -> Vec<Plan> {
+    #[must_use]
+    pub fn neighbours(&self, plan: &Plan) -> Vec<Plan> {
         let mut list = Vec::new();
         self.of_the_arm(plan, &mut list);
-        for index in 0..self.rows.len() {
+        for index in 0..self.0.joints.len() {
             self.of_joint(plan, index, &mut list);
             self.of_unturned_frame(plan, index, &mut list);
             self.of_group(plan, index, &mut list);
@@ -62,21 +38,21 @@ impl Neighbourhood {
                 list.push(other);
             }
         };
-        if self.gyrostat {
+        if self.0.gyrostat {
             put(&|plan| plan.gyrostat = !plan.gyrostat);
         }
-        if self.turned_last {
+        if self.0.turned_last_frame {
             put(&|plan| plan.turned_last_frame = !plan.turned_last_frame);
         }
-        if self.carried {
+        if self.0.carried_prismatics {
             put(&|plan| plan.carried_prismatics = !plan.carried_prismatics);
         }
-        for &length in self.lengths.iter().chain(&[Scale::Default, Scale::One]) {
+        for &length in self.0.lengths.iter().chain(&[Scale::Default, Scale::One]) {
             put(&|plan| (plan.length_scale, plan.force_scale) = (length, Scale::Default));
             put(&|plan| plan.length_scale = length);
             put(&|plan| plan.force_scale = length);
         }
-        for joint in 1..=self.rows.len() {
+        for joint in 1..=self.0.joints.len() {
             for axis in 0..3 {
                 put(&|plan| plan.length_scale = Scale::FirstMoment(joint, axis));
                 put(&|plan| plan.force_scale = Scale::FirstMoment(joint, axis));
@@ -86,7 +62,7 @@ impl Neighbourhood {
     }
 
     fn of_joint(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
-        let row = &self.rows[index];
+        let row = &self.0.joints[index];
         let mut put = |change: &dyn Fn(&mut Plan)| {
             let mut other = plan.clone();
             change(&mut other);
@@ -94,7 +70,7 @@ impl Neighbourhood {
                 list.push(other);
             }
         };
-        for &origin_shift in &self.origin_shifts[index] {
+        for &origin_shift in &self.0.joints[index].origin_shifts {
             put(&|plan| plan.joints[index].origin_shift = origin_shift);
         }
         if row.kind != Revolute {
@@ -124,16 +100,16 @@ impl Neighbourhood {
     fn is_open(&self, index: usize, switch: usize) -> bool {
         let name = Switches::NAMES[switch];
         if name.starts_with("group") {
-            return is_parallel(&self.rows, index);
+            return self.0.joints[index].is_parallel;
         }
         if name.starts_with("scaled") {
-            return self.rows[index].alpha.quarters().is_none();
+            return self.0.joints[index].is_twisted;
         }
         index > 0 || name != "axis_column"
     }
 
     fn of_unturned_frame(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
-        if self.rows[index].kind != Revolute {
+        if self.0.joints[index].kind != Revolute {
             return;
         }
         for bits in 0..32_u32 {
@@ -150,14 +126,21 @@ impl Neighbourhood {
         }
     }
 
+    /// The last joint of the group of parallel axes that begins at a joint.
+    fn group_end(&self, index: usize) -> usize {
+        let joints = &self.0.joints;
+        (index + 1..joints.len()).find(|&next| !joints[next].is_parallel).unwrap_or(joints.len()) - 1
+    }
+
     /// All that a group of parallel axes can share, with its offsets as they are, innermost or outermost.
     fn of_group(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
-        let starts =
-            index + 1 < self.rows.len() && !is_parallel(&self.rows, index) && is_parallel(&self.rows, index + 1);
+        let starts = index + 1 < self.0.joints.len()
+            && !self.0.joints[index].is_parallel
+            && self.0.joints[index + 1].is_parallel;
         if !starts {
             return;
         }
-        let end = group_end(&self.rows, index);
+        let end = self.group_end(index);
         for shared in 0..16_u32 {
             for offsets in 0..3 {
                 for frames in 0..4_u32 {
@@ -172,7 +155,7 @@ impl Neighbourhood {
                     if offsets > 0 {
                         for at in index..=end {
                             let rule = if offsets == 1 { OriginShift::GroupInward } else { OriginShift::GroupOutward };
-                            let rule = if self.offers(at, rule) { rule } else { OriginShift::None };
+                            let rule = if self.0.offers(at, rule) { rule } else { OriginShift::None };
                             if at > 0 {
                                 other.joints[at].origin_shift = rule;
                             }
@@ -195,7 +178,7 @@ impl Neighbourhood {
     }
 
     fn of_gauge(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
-        if index == 0 || self.rows[index].kind != Revolute {
+        if index == 0 || self.0.joints[index].kind != Revolute {
             return;
         }
         for &first in RegroupingTarget::CHOICES[0] {
@@ -212,7 +195,8 @@ impl Neighbourhood {
     }
 
     /// One to three random changes.
-    pub(crate) fn random(&self, plan: &Plan, rng: &mut fastrand::Rng) -> Plan {
+    #[must_use]
+    pub fn random(&self, plan: &Plan, rng: &mut fastrand::Rng) -> Plan {
         let mut other = plan.clone();
         let mut left = [1, 1, 1, 2, 3][rng.usize(..5)];
         while left > 0 {
@@ -225,13 +209,13 @@ impl Neighbourhood {
 
     /// Makes one random change; false when it came to nothing.
     fn change(&self, plan: &mut Plan, rng: &mut fastrand::Rng) -> bool {
-        let index = rng.usize(..self.rows.len());
-        let row = &self.rows[index];
+        let index = rng.usize(..self.0.joints.len());
+        let row = &self.0.joints[index];
         let joint = &mut plan.joints[index];
         match rng.u32(..100) {
-            0..4 if self.gyrostat => plan.gyrostat = !plan.gyrostat,
-            4..6 if self.turned_last => plan.turned_last_frame = !plan.turned_last_frame,
-            6..8 if self.carried => plan.carried_prismatics = !plan.carried_prismatics,
+            0..4 if self.0.gyrostat => plan.gyrostat = !plan.gyrostat,
+            4..6 if self.0.turned_last_frame => plan.turned_last_frame = !plan.turned_last_frame,
+            6..8 if self.0.carried_prismatics => plan.carried_prismatics = !plan.carried_prismatics,
             8..34 if row.kind == Revolute && index > 0 => {
                 for (target, choices) in joint.targets.iter_mut().zip(RegroupingTarget::CHOICES) {
                     *target = if rng.bool() { RegroupingTarget::Own } else { choices[rng.usize(..choices.len())] };
@@ -240,12 +224,15 @@ impl Neighbourhood {
                     joint.targets = [RegroupingTarget::Own; 3];
                 }
             }
-            34..46 => joint.origin_shift = self.origin_shifts[index][rng.usize(..self.origin_shifts[index].len())],
+            34..46 => {
+                joint.origin_shift =
+                    self.0.joints[index].origin_shifts[rng.usize(..self.0.joints[index].origin_shifts.len())]
+            }
             46..50 => {
                 let length = *[Scale::One, Scale::Default]
                     .iter()
-                    .chain(&self.lengths)
-                    .nth(rng.usize(..self.lengths.len() + 2))
+                    .chain(&self.0.lengths)
+                    .nth(rng.usize(..self.0.lengths.len() + 2))
                     .unwrap_or(&Scale::One);
                 match rng.u32(..5) {
                     0 => (plan.length_scale, plan.force_scale) = (length, Scale::Default),

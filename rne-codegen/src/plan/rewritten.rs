@@ -1,0 +1,77 @@
+//! Rewritten graphs as a plan file keeps them.
+
+use rne_model::Robot;
+
+use crate::CompileError;
+use crate::function::Function;
+use crate::ir::Cost;
+use crate::pipeline::Formulation;
+use crate::plan::{Plan, graph_text};
+use crate::program::Proof;
+use crate::reduced::algorithm::Algorithm;
+
+/// The rewritten graph of a function.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rewritten {
+    /// Operations of the function.
+    pub operations: Cost,
+    /// How precise it is.
+    pub accuracy: Accuracy,
+    /// How the function was written under the plan.
+    pub algorithm: Algorithm,
+    /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
+    pub plan: Option<Plan>,
+    /// One operation per line.
+    pub graph: String,
+}
+
+/// Largest differences from the seven steps, in parts of the largest torque, with two digits: for people.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accuracy {
+    /// In double precision.
+    pub double: f64,
+    /// In single precision.
+    pub single: f64,
+    /// Of the seven steps themselves in single precision.
+    pub single_of_seven_steps: f64,
+}
+
+impl From<&Proof> for Accuracy {
+    fn from(proof: &Proof) -> Self {
+        let rounded = |value: f64| format!("{value:.1e}").parse().unwrap_or(value);
+        Self {
+            double: rounded(proof.rounding),
+            single: rounded(proof.single),
+            single_of_seven_steps: rounded(proof.single_of_seven_steps),
+        }
+    }
+}
+
+impl Rewritten {
+    /// The graph that was rewritten.
+    pub(crate) fn before(&self, robot: &Robot, function: Function) -> Result<Formulation, CompileError> {
+        match &self.plan {
+            Some(plan) => Formulation::by_plan(robot, plan, function, self.algorithm),
+            None => Ok(Formulation::numbered(robot, function)),
+        }
+    }
+
+    /// The rewritten graph: values keep the names that they have in the graph before.
+    ///
+    /// # Errors
+    /// When the plan does not fit the robot, or the graph cannot be read.
+    pub fn formulation(&self, robot: &Robot, function: Function) -> Result<Formulation, CompileError> {
+        let before = self.before(robot, function)?;
+        let read = graph_text::read(&self.graph, &before.traced.graph, function)
+            .map_err(|(line, message)| CompileError::Graph { robot: robot.name.clone(), function, line, message })?;
+        Ok(Formulation { traced: read.told_by(&before.traced), ..before })
+    }
+
+    /// The choices behind it, in words.
+    pub(crate) fn choices(&self) -> Vec<String> {
+        let rewriting = "rewriting: the graph that the choices below give, made smaller by exact algebra";
+        let algorithm = self.algorithm.words().filter(|_| self.plan.is_some());
+        let choices = self.plan.iter().flat_map(Plan::choices);
+        [rewriting].into_iter().chain(algorithm).map(str::to_owned).chain(choices).collect()
+    }
+}

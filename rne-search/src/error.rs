@@ -1,0 +1,41 @@
+//! Why a search has no result.
+
+use std::fmt;
+
+use rne_codegen::CompileError;
+use rne_model::Report;
+
+/// Why a search has no result.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum SearchError {
+    /// An arm with run-time parameters has no plan.
+    RunTimeParameters,
+    /// What was found, or what was known before, cannot be compiled or proved.
+    Compile(CompileError),
+    /// The plan that was found is another one when it is read again.
+    NotWritten,
+    /// The plan that was found cannot be read again.
+    NotRead(Report),
+}
+
+impl From<CompileError> for SearchError {
+    fn from(error: CompileError) -> Self {
+        Self::Compile(error)
+    }
+}
+
+impl fmt::Display for SearchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::RunTimeParameters => {
+                f.write_str("an arm with run-time parameters has no plan; search for the arm with their values")
+            }
+            Self::Compile(error) => error.fmt(f),
+            Self::NotWritten => f.write_str("the plan that was found cannot be written. Please report this robot"),
+            Self::NotRead(report) => report.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for SearchError {}

@@ -1,0 +1,137 @@
+//! The search for a cheap plan: by descent, then by annealing. The caller's clock decides how long.
+
+use rne_codegen::plan::{Cost, Descent, Plan};
+use rne_model::Robot;
+
+use crate::neighbourhood::Neighbourhood;
+
+/// How far a search has come.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Progress {
+    /// Plans counted so far.
+    pub plans: usize,
+    /// What the best of them costs.
+    pub best: Cost,
+    /// What the search is doing.
+    pub phase: &'static str,
+}
+
+/// Asked now and then how much of the time is over, 0 to 1; `None` ends the search with what it has.
+pub type Clock<'a> = &'a mut dyn FnMut(&Progress) -> Option<f64>;
+
+/// A search over the plans of one robot.
+pub(crate) struct Exploration<'v> {
+    pub(crate) plans: Descent<'v>,
+    neighbourhood: Neighbourhood,
+    /// Cheap plans that differ in cost or structure, for rewriting.
+    pub(crate) pool: Vec<(usize, Plan)>,
+}
+
+/// The end of a search: out of time.
+pub(crate) struct Over;
+
+impl<'v> Exploration<'v> {
+    /// With the choices that a build makes by itself tried first; no plan becomes the best that `veto` is true of.
+    pub(crate) fn new(robot: &Robot, veto: impl Fn(&Plan) -> bool + 'v) -> Self {
+        let mut plans = Descent::new(robot, &[]);
+        plans.refuse(veto);
+        plans.greedy(usize::MAX);
+        Self { plans, neighbourhood: Neighbourhood::of(robot), pool: Vec::new() }
+    }
+
+    pub(crate) fn progress(&self, phase: &'static str) -> Progress {
+        Progress { plans: self.plans.counted(), best: self.plans.best().0, phase }
+    }
+
+    /// Coordinate descent: the best of all neighbours, again and again; when none is better, neighbours of those that
+    /// cost little more. No random numbers.
+    pub(crate) fn descend(&mut self, clock: Clock<'_>) -> Result<(), Over> {
+        let mut plan = self.plans.best().1.clone();
+        let Some(mut weight) = self.plans.cost(&plan).map(|cost| cost.weight()) else { return Ok(()) };
+        loop {
+            let mut weighed = self.weigh(&plan, clock)?;
+            weighed.sort_by_key(|(weight, _)| *weight);
+            let Some((least, best)) = weighed.first() else { return Ok(()) };
+            if *least < weight {
+                (weight, plan) = (*least, best.clone());
+                continue;
+            }
+            // A first step that costs something, and a second one that gains more.
+            let limit = weight + 6;
+            let mut found = None;
+            'first: for (_, first) in weighed.iter().take_while(|(cost, _)| *cost <= limit) {
+                self.tick(clock, "descent")?;
+                for second in self.neighbourhood.neighbours(first) {
+                    if let Some(cost) = self.plans.cost(&second)
+                        && cost.weight() < weight
+                    {
+                        found = Some((cost.weight(), second));
+                        break 'first;
+                    }
+                }
+            }
+            match found {
+                Some((least, best)) => (weight, plan) = (least, best),
+                None => return Ok(()),
+            }
+        }
+    }
+
+    /// All neighbours of a plan with what they weigh.
+    fn weigh(&mut self, plan: &Plan, clock: Clock<'_>) -> Result<Vec<(usize, Plan)>, Over> {
+        let mut weighed = Vec::new();
+        for (index, other) in self.neighbourhood.neighbours(plan).into_iter().enumerate() {
+            if index % 64 == 0 {
+                self.tick(clock, "descent")?;
+            }
+            if let Some(cost) = self.plans.cost(&other) {
+                weighed.push((cost.weight(), other));
+            }
+        }
+        Ok(weighed)
+    }
+
+    fn tick(&self, clock: Clock<'_>, phase: &'static str) -> Result<f64, Over> {
+        clock(&self.progress(phase)).ok_or(Over)
+    }
+
+    /// Annealing: random changes, dearer ones accepted ever more rarely. The clock says how hot it is.
+    pub(crate) fn anneal(&mut self, seed: u64, hottest: f64, clock: Clock<'_>) -> Result<(), Over> {
+        let mut rng = fastrand::Rng::with_seed(seed);
+        let mut plan = self.plans.best().1.clone();
+        let Some(mut weight) = self.plans.cost(&plan).map(|cost| cost.weight()) else { return Ok(()) };
+        let mut over = 0.0;
+        for step in 0_u64.. {
+            if step % 64 == 0 {
+                over = self.tick(clock, "annealing")?;
+                if over >= 1.0 {
+                    return Ok(());
+                }
+            }
+            let other = self.neighbourhood.random(&plan, &mut rng);
+            let Some(cost) = self.plans.cost(&other) else { continue };
+            let temperature = hottest * (1.0 - over).powf(1.5) + 0.05;
+            #[allow(clippy::cast_precision_loss)] // small integers
+            let worse = cost.weight() as f64 - weight as f64;
+            if worse <= 0.0 || rng.f64() < (-worse / temperature).exp() {
+                (weight, plan) = (cost.weight(), other);
+                self.keep_in_pool(weight, &plan);
+            }
+        }
+        Ok(())
+    }
+
+    fn keep_in_pool(&mut self, weight: usize, plan: &Plan) {
+        const MOST: usize = 28;
+        if weight > self.plans.best().0.weight() + 9 || self.pool.iter().any(|(_, other)| other == plan) {
+            return;
+        }
+        let alike = self.pool.iter().filter(|(other, _)| *other == weight).count();
+        if alike < 8 {
+            self.pool.push((weight, plan.clone()));
+            self.pool.sort_by_key(|(weight, _)| *weight);
+            self.pool.truncate(MOST);
+        }
+    }
+}

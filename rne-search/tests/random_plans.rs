@@ -1,0 +1,154 @@
+//! Whatever a search may find is the function of the seven steps.
+
+use std::collections::HashMap;
+
+use common::robot;
+use rne_codegen::plan::{Formulation, Plan, PlanSet, Reference};
+use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Reason, Target};
+use rne_model::Robot;
+use rne_search::Neighbourhood;
+
+mod common;
+
+/// The functions of one robot by the seven steps, each compiled when it is first needed.
+struct SevenSteps<'r> {
+    robot: &'r Robot,
+    of: HashMap<Function, Reference<'r>>,
+}
+
+impl<'r> SevenSteps<'r> {
+    fn new(robot: &'r Robot) -> Self {
+        Self { robot, of: HashMap::new() }
+    }
+
+    /// Whether a plan applies to the robot. Fails where what it gives is another function, with these words, by which
+    /// `cargo xtask mutate` knows that it was the proof that refused.
+    fn must_be_given_by(&mut self, plan: &Plan, function: Function, algorithm: Algorithm) -> bool {
+        let robot = self.robot;
+        let formulation = match Formulation::by_plan(robot, plan, function, algorithm) {
+            Err(CompileError::PlanDoesNotFit { .. }) => return false,
+            other => other.expect("no other error"),
+        };
+        let reference = self.of.entry(function).or_insert_with(|| Reference::of(robot, function).expect("finite"));
+        if reference.loss_of_precision(function, formulation, 1).expect("it can be lowered").is_none() {
+            panic!("the proof refuses {}, {function}, {algorithm:?}\n{:#?}", robot.name, plan.choices());
+        }
+        true
+    }
+}
+
+/// The same of what a build gives by the plan, arranged for both targets.
+fn must_be_compiled(robot: &Robot, plan: &Plan, function: Function) {
+    for target in [Target::Latency, Target::Throughput] {
+        let compiler = Compiler::new(robot).with_plans(plan.clone()).for_target(target);
+        let refused = match compiler.compile(function, Form::Reduced) {
+            Ok(program) => program.refusals.into_iter().find_map(|refusal| match refusal.reason {
+                Reason::Error(error @ CompileError::NotIdentical { .. }) => Some(error),
+                _ => None,
+            }),
+            Err(error) => Some(error).filter(|error| matches!(error, CompileError::NotIdentical { .. })),
+        };
+        if let Some(error) = refused {
+            panic!("the proof refuses {}, {function}, {target:?}: {error}\n{:#?}", robot.name, plan.choices());
+        }
+    }
+}
+
+const SEVERAL: [&str; 8] =
+    ["puma560", "stanford", "ur5", "scara_cobra600", "planar3", "panda", "cylindrical_rpp", "dense6_2p"];
+
+#[test]
+fn random_plans_are_the_seven_steps() {
+    for name in SEVERAL {
+        let robot = robot(name);
+        let (neighbourhood, mut steps) = (Neighbourhood::of(&robot), SevenSteps::new(&robot));
+        let mut rng = fastrand::Rng::with_seed(7);
+        let mut plan = Plan::new(robot.dof());
+        let mut tried = 0;
+        for round in 0..60 {
+            let other = neighbourhood.random(&plan, &mut rng);
+            let function = Function::TORQUES[round % Function::TORQUES.len()];
+            if steps.must_be_given_by(&other, function, Algorithm::Rnea) {
+                must_be_compiled(&robot, &other, function);
+                plan = other;
+                tried += 1;
+            }
+        }
+        assert!(tried > 30, "{name}: {tried}");
+    }
+}
+
+#[test]
+fn every_single_choice_is_the_seven_steps() {
+    for name in ["ur5", "dense6_2p"] {
+        let robot = robot(name);
+        let (neighbourhood, mut steps) = (Neighbourhood::of(&robot), SevenSteps::new(&robot));
+        let plan = PlanSet::default_of(&robot).plan;
+        for other in neighbourhood.neighbours(&plan).iter().step_by(9) {
+            if steps.must_be_given_by(other, Function::InverseDynamics, Algorithm::Rnea) {
+                must_be_compiled(&robot, other, Function::InverseDynamics);
+            }
+        }
+    }
+}
+
+#[test]
+fn all_algorithms_under_random_plans_are_the_seven_steps() {
+    const FUNCTIONS: [Function; 5] = [
+        Function::GravityTorques,
+        Function::MassMatrix,
+        Function::ForwardDynamics,
+        Function::CoriolisMatrix,
+        Function::InverseDynamicsDerivatives,
+    ];
+    for name in ["puma560", "scara_cobra600", "stanford", "ur5", "dense6_2p"] {
+        let robot = robot(name);
+        let (neighbourhood, mut steps) = (Neighbourhood::of(&robot), SevenSteps::new(&robot));
+        let mut rng = fastrand::Rng::with_seed(11);
+        let mut plan = Plan::new(robot.dof());
+        let mut tried = 0;
+        for round in 0..40 {
+            let other = neighbourhood.random(&plan, &mut rng);
+            let function = FUNCTIONS[round % FUNCTIONS.len()];
+            let algorithms = Algorithm::of(function);
+            let algorithm = algorithms[(round / FUNCTIONS.len()) % algorithms.len()];
+            if steps.must_be_given_by(&other, function, algorithm) {
+                plan = other;
+                tried += 1;
+            }
+        }
+        assert!(tried > 20, "{name}: {tried}");
+    }
+}
+
+/// Some rounds of random changes, every plan that applies proved for a function in turn.
+fn wander(robot: &Robot, rounds: usize, seed: u64) {
+    let (neighbourhood, mut steps) = (Neighbourhood::of(robot), SevenSteps::new(robot));
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut plan = Plan::new(robot.dof());
+    for function in Function::TORQUES {
+        assert!(steps.must_be_given_by(&plan, function, Algorithm::Rnea), "the plain plan applies to {}", robot.name);
+        must_be_compiled(robot, &plan, function);
+    }
+    for frames in 1..4 {
+        let framed =
+            Plan { turned_last_frame: frames & 1 != 0, carried_prismatics: frames & 2 != 0, ..Plan::new(robot.dof()) };
+        steps.must_be_given_by(&framed, Function::InverseDynamicsWithWrench, Algorithm::Rnea);
+    }
+    for round in 0..rounds {
+        let other = neighbourhood.random(&plan, &mut rng);
+        let function = Function::TORQUES[round % Function::TORQUES.len()];
+        if steps.must_be_given_by(&other, function, Algorithm::Rnea) {
+            plan = other;
+        }
+    }
+}
+
+#[test]
+fn unusual_robots_are_the_seven_steps() {
+    wander(&robot("spindle"), 90, 1);
+    wander(&robot("dense6_2p"), 0, 0);
+    for name in (0..20).map(|seed| seed.to_string()) {
+        wander(&robot(&name), 8, 2);
+    }
+}
