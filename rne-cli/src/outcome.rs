@@ -1,10 +1,11 @@
 //! What a command returns: text for the reader, or why there is none.
 
-use rne_codegen::CompileError;
+use rne_codegen::{CompileError, Remedy};
 use rne_model::Report;
 use serde::Serialize;
 
 use crate::palette::{ERROR, coloured};
+use crate::render::plan_remedy;
 
 /// Exit status when the input is at fault.
 pub(crate) const INPUT: u8 = 1;
@@ -70,7 +71,12 @@ impl Failure {
 
     /// The robot is valid but cannot be compiled.
     pub(crate) fn compile(file: &str, error: &CompileError) -> Self {
-        Self::input(format_args!("{file}: {error}"))
+        Self::input(format_args!("{file}: {}", plan_remedy::sentence(error)))
+    }
+
+    /// A mistake of a plan file, with what helps.
+    pub(crate) fn plan(report: Report, remedy: Remedy) -> Self {
+        Self::from(&plan_remedy::helped(report, remedy))
     }
 }
 

@@ -68,6 +68,18 @@ pub enum CompileError {
     },
 }
 
+/// What helps against an error of a plan. Each interface says it in its own words: the command line names its options.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// A search that leaves out what is wrong in the plan and finds the rest anew.
+    SearchAfresh,
+    /// The same with rewriting, so that the graph is written anew too.
+    RewriteAfresh,
+    /// A search from the plan at hand on, which counts the operations anew.
+    CountAnew,
+}
+
 /// What may be the cause when a form is refused.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
@@ -133,6 +145,21 @@ impl CompileError {
         matches!(self, Self::NotIdentical { .. } | Self::Imprecise { .. })
     }
 
+    /// What helps, where that is another plan.
+    #[must_use]
+    pub const fn remedy(&self) -> Option<Remedy> {
+        match self {
+            Self::NotIdentical { suspect, .. } | Self::Imprecise { suspect, .. }
+                if suspect.planned && suspect.number.is_none() =>
+            {
+                Some(Remedy::SearchAfresh)
+            }
+            Self::PlanDoesNotFit { .. } => Some(Remedy::SearchAfresh),
+            Self::Graph { .. } => Some(Remedy::RewriteAfresh),
+            _ => None,
+        }
+    }
+
     /// The error with what may be the cause.
     #[must_use]
     pub fn suspecting(mut self, robot: &Robot, is_planned: bool) -> Self {
@@ -160,9 +187,9 @@ impl fmt::Display for CompileError {
                 )?;
                 match suspect {
                     Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => f.write_str(
-                        "A graph in a plan file that has been edited does that; `rne search --fresh` writes it anew",
-                    ),
+                    Suspect { planned: true, .. } => {
+                        f.write_str("A graph in a plan file that has been edited does that")
+                    }
                     Suspect { planned: false, .. } => f.write_str("Please report this robot"),
                 }
             }
@@ -179,9 +206,7 @@ impl fmt::Display for CompileError {
                 )?;
                 match suspect {
                     Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => {
-                        f.write_str("`rne search --fresh` finds another plan, `form = \"seven_steps\"` needs none")
-                    }
+                    Suspect { planned: true, .. } => f.write_str("`form = \"seven_steps\"` needs no plan"),
                     Suspect { planned: false, .. } => f.write_str("`form = \"seven_steps\"` does not"),
                 }
             }
@@ -196,16 +221,12 @@ impl fmt::Display for CompileError {
                 compiler takes in \
                  reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
             ),
-            Self::PlanDoesNotFit { robot } => write!(
-                f,
-                "the plan does not fit `{robot}`: one of its choices is not offered by this robot; `rne search \
-                 ROBOT.yaml --fresh` finds another"
-            ),
-            Self::Graph { robot, function, line, message } => write!(
-                f,
-                "line {line} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}; `rne search \
-                 --rewrite --fresh` writes the plan anew"
-            ),
+            Self::PlanDoesNotFit { robot } => {
+                write!(f, "the plan does not fit `{robot}`: one of its choices is not offered by this robot")
+            }
+            Self::Graph { robot, function, line, message } => {
+                write!(f, "line {line} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}")
+            }
         }
     }
 }

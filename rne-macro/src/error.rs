@@ -5,6 +5,7 @@ use std::path::Path;
 
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
+use rne_codegen::{CompileError, Remedy};
 use rne_model::{Report, Severity, robot_of};
 
 /// The mistakes found so far, in order.
@@ -38,6 +39,16 @@ impl Errors {
     }
 }
 
+/// Why a function cannot be compiled, with the command that helps.
+pub(crate) fn not_compiled(robot: &str, error: &CompileError) -> String {
+    let remedy = match error.remedy() {
+        Some(Remedy::RewriteAfresh) => "; `rne search ROBOT.yaml --rewrite --fresh` writes the plan anew",
+        Some(_) => "; `rne search ROBOT.yaml --fresh` finds another plan",
+        None => "",
+    };
+    format!("{robot}: {error}{remedy}")
+}
+
 /// What is wrong with a robot file or a plan, for the message of a compiler: without the lints, which stop no build.
 pub(crate) fn describe(mut report: Report) -> String {
     report.diagnostics.retain(|found| found.severity == Severity::Error);
@@ -48,6 +59,14 @@ pub(crate) fn describe(mut report: Report) -> String {
         "golden file of this robot"
     } else {
         "robot file"
+    };
+    let report = match (what, robot_of(Path::new(&report.name))) {
+        ("plan of this robot", Some(robot)) => report.with_remedy(&format!(
+            "`rne search {} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a build \
+             chooses by itself",
+            robot.display()
+        )),
+        _ => report,
     };
     format!("`{}` is no valid {what}\n\n{}\n", report.name, report.render(false))
 }

@@ -12,7 +12,7 @@ use rne_search::{Fingerprint, PlanFile};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
-use crate::error::{Errors, describe};
+use crate::error::{Errors, describe, not_compiled};
 use crate::implementation::Target;
 use crate::inspection;
 use crate::location::{self, RobotFile};
@@ -260,7 +260,7 @@ fn programs(
     errors: &mut Errors,
 ) -> Option<Vec<Program>> {
     let programs: Result<Vec<_>, _> = capability.functions().map(|function| compiler.compile(function, form)).collect();
-    programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
+    programs.map_err(|error| errors.at_span(span, not_compiled(&robot.name, &error))).ok()
 }
 
 impl Source {

@@ -95,6 +95,19 @@ impl Report {
         problems.finish(name, text)
     }
 
+    /// The same with a remedy added to the help of each diagnostic.
+    #[must_use]
+    pub fn with_remedy(mut self, remedy: &str) -> Self {
+        for found in &mut self.diagnostics {
+            found.help = Some(match found.help.take() {
+                Some(question) if question.ends_with('?') => format!("{question} {remedy}"),
+                Some(help) => format!("{help}; {remedy}"),
+                None => remedy.to_owned(),
+            });
+        }
+        self
+    }
+
     /// Whether nothing was found.
     pub fn is_empty(&self) -> bool {
         self.diagnostics.is_empty()

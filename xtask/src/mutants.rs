@@ -50,9 +50,17 @@ impl Check {
     pub(crate) fn tests(self) -> &'static [&'static str] {
         match self {
             Self::Compare => &["--test", "robots", "--test", "random"],
-            Self::Prove => {
-                &["-p", "rne-codegen", "-p", "rne-search", "--lib", "--test", "random_plans", "--", "are_the_seven_steps"]
-            }
+            Self::Prove => &[
+                "-p",
+                "rne-codegen",
+                "-p",
+                "rne-search",
+                "--lib",
+                "--test",
+                "random_plans",
+                "--",
+                "are_the_seven_steps",
+            ],
             Self::Functions => &["--test", "functions", "--", "equality::", "golden::"],
             Self::Code => &["--test", "c_code"],
             Self::Views => &[

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 use rne_codegen::plan::{PlanSet, Trick};
-use rne_codegen::{self as codegen, CompileError, Form, Function, Program};
+use rne_codegen::{self as codegen, CompileError, Form, Function, Program, Remedy};
 use rne_machine::CompiledArm;
 use rne_model::{Robot, plan_of, read_file, robot_of};
 use rne_search::PlanFile;
@@ -47,7 +47,7 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     if let Some(shipped) = of_a_name(robot_file) {
         let Some(text) = shipped.plan else { return Ok(None) };
         let name = format!("the plan of {} (shipped)", shipped.name);
-        let plan = PlanFile::read(&name, text, robot).map_err(|report| Failure::from(&report))?;
+        let plan = PlanFile::read(&name, text, robot).map_err(|report| Failure::plan(report, Remedy::SearchAfresh))?;
         return Ok(Some(Read { name, text: text.to_owned(), plan }));
     }
     let path = plan_of(robot_file);
@@ -58,7 +58,7 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
         Err(error) => return Err(Failure::input(format_args!("{name} cannot be read: {error}"))),
     };
     let text = String::from_utf8(bytes).map_err(|_| Failure::input(format_args!("{name} is no text in UTF-8")))?;
-    let plan = PlanFile::read(&name, &text, robot).map_err(|report| Failure::from(&report))?;
+    let plan = PlanFile::read(&name, &text, robot).map_err(|report| Failure::plan(report, Remedy::SearchAfresh))?;
     Ok(Some(Read { name, text, plan }))
 }
 
@@ -129,11 +129,16 @@ fn compiled(robot: &Robot, function: Function, plans: PlanSet) -> Result<Program
     codegen::Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced)
 }
 
+/// An error of the compiler at its place in the plan file, with what helps.
+fn located(name: &str, text: &str, described: (Function, &PlanSet), error: &CompileError) -> Failure {
+    Failure::plan(PlanFile::located(name, text, described, error), Remedy::SearchAfresh)
+}
+
 /// Whether all programs that a plan file describes can be proved; an error is at its place in the plan file.
 pub(crate) fn is_proved(robot: &Robot, Read { name, text, plan }: &Read) -> Result<(), Failure> {
     plan.described().into_iter().try_for_each(|(function, plans)| {
         let program = compiled(robot, function, plans.clone());
-        program.map(drop).map_err(|error| Failure::from(&PlanFile::located(name, text, (function, &plans), &error)))
+        program.map(drop).map_err(|error| located(name, text, (function, &plans), &error))
     })
 }
 
@@ -142,8 +147,8 @@ pub(crate) fn is_proved(robot: &Robot, Read { name, text, plan }: &Read) -> Resu
 pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Function, bool, usize)>, Failure> {
     let count = |(function, plans): (Function, PlanSet)| {
         let program = compiled(robot, function, plans.clone())
-            .map_err(|error| Failure::from(&PlanFile::located(name, text, (function, &plans), &error)))?;
-        plan.counts(name, text, &program).map_err(|report| Failure::from(&report))?;
+            .map_err(|error| located(name, text, (function, &plans), &error))?;
+        plan.counts(name, text, &program).map_err(|report| Failure::plan(report, Remedy::CountAnew))?;
         Ok((function, program.is_rewritten, program.operations().total()))
     };
     plan.described().into_iter().map(count).collect()
@@ -176,7 +181,7 @@ impl<'a> Compiler<'a> {
     /// For a robot that is part of this program, with the text of its plan.
     pub(crate) fn built_in(file: &'a Path, robot: &'a Robot, plan: &str) -> Result<Self, Failure> {
         let name = plan_of(file).display().to_string();
-        let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::from(&report))?;
+        let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::plan(report, Remedy::SearchAfresh))?;
         Ok(Self { planned: OnceCell::from(codegen::Compiler::new(robot).with_plans(plan)), ..Self::new(file, robot) })
     }
 
@@ -213,7 +218,7 @@ impl<'a> Compiler<'a> {
         match (form, self.read.get(), self.planned.get()) {
             (Form::Reduced, Some(read), Some(compiler)) if !matches!(error, CompileError::TooLarge { .. }) => {
                 let described = (function, compiler.plans());
-                Failure::from(&PlanFile::located(&read.name, &read.text, described, error))
+                located(&read.name, &read.text, described, error)
             }
             _ => Failure::compile(&self.file.display().to_string(), error),
         }

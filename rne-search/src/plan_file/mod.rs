@@ -7,13 +7,14 @@ mod yaml;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
-use std::path::Path;
 use std::str::FromStr;
 
+#[cfg(doc)]
+use rne_codegen::Remedy;
 use rne_codegen::plan::{Accuracy, Cost, Plan, PlanSet, Rewritten, divides_by_zero};
 use rne_codegen::{Algorithm, CompileError, Function, Program};
 use rne_model::document::{self, Content, Node, Style};
-use rne_model::{Convention, JointKind, Report, Robot, robot_of};
+use rne_model::{Convention, JointKind, Report, Robot};
 
 use self::shapes::Mistake;
 
@@ -119,16 +120,15 @@ impl PlanFile {
     /// Reads a plan file and checks that it belongs to `robot`; `name` is what messages call it.
     ///
     /// # Errors
-    /// What is wrong with it, with line and column.
+    /// What is wrong with it, with line and column; against all of that [`Remedy::SearchAfresh`] helps.
     pub fn read(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-        let refused = |Mistake { place, message, help }: Mistake| {
-            Report::of_error(name, text, place, message, Some(&helping(help, name)))
-        };
+        let refused =
+            |Mistake { place, message, help }: Mistake| Report::of_error(name, text, place, message, help.as_deref());
         if text.trim().is_empty() {
             return Err(refused(Mistake::new(0..0, "the plan file is empty")));
         }
-        let root = document::read(name, text, KIND).map_err(|report| with_help(report, name))?;
+        let root = document::read(name, text, KIND)?;
         let file = schema::read(&root, robot).map_err(refused)?;
         file.fits(&root, robot).map_err(refused)?;
         Ok(file)
@@ -181,7 +181,7 @@ impl PlanFile {
     }
 
     /// Where in the text of a plan file the cause of an error is that the compiler found in one of the functions that
-    /// it describes.
+    /// it describes; what helps is [`Remedy::SearchAfresh`].
     #[must_use]
     pub fn located(name: &str, text: &str, (function, plans): (Function, &PlanSet), error: &CompileError) -> Report {
         let (place, message) = match error {
@@ -192,13 +192,13 @@ impl PlanFile {
             }
             _ => (value_of(text, &["rewritten", function.name()]), error.to_string()),
         };
-        Report::of_error(name, text, place, message, Some(&refresh(name)))
+        Report::of_error(name, text, place, message, None)
     }
 
     /// Checks that a function that it describes takes as many operations as the file says.
     ///
     /// # Errors
-    /// The operations that are not those of the program.
+    /// The operations that are not those of the program; [`Remedy::CountAnew`] helps.
     pub fn counts(&self, name: &str, text: &str, program: &Program) -> Result<(), Report> {
         let rewritten = self.rewritten.get(&program.function).filter(|_| program.is_rewritten);
         let written = rewritten.map_or(self.reduced.operations, |rewritten| rewritten.operations);
@@ -216,7 +216,7 @@ impl PlanFile {
         } else {
             &["reduced", "operations"]
         };
-        Err(Report::of_error(name, text, value_of(text, keys), message, Some("`rne search ROBOT.yaml` counts anew")))
+        Err(Report::of_error(name, text, value_of(text, keys), message, None))
     }
 
     /// Takes what is better in another file of the same robot, which has come about meanwhile.
@@ -246,33 +246,6 @@ const HEADING: &str = "\
 # `accuracy` the largest difference from the seven steps, in parts of the largest number returned: in double precision,
 # in single precision, and of the seven steps in single precision.
 ";
-
-/// What helps with a plan file of that name.
-fn refresh(name: &str) -> String {
-    let robot = robot_of(Path::new(name)).map_or_else(|| "ROBOT.yaml".to_owned(), |path| path.display().to_string());
-    format!(
-        "`rne search {robot} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a \
-         build chooses by itself"
-    )
-}
-
-/// What helps with a mistake, and what helps with each.
-fn helping(help: Option<String>, name: &str) -> String {
-    let otherwise = refresh(name);
-    match help {
-        Some(question) if question.ends_with('?') => format!("{question} {otherwise}"),
-        Some(help) => format!("{help}; {otherwise}"),
-        None => otherwise,
-    }
-}
-
-/// A report of mistakes of YAML, each with what helps.
-fn with_help(mut report: Report, name: &str) -> Report {
-    for mistake in &mut report.diagnostics {
-        mistake.help = Some(helping(mistake.help.take(), name));
-    }
-    report
-}
 
 /// The value of a key in a key …, or the key itself where the value stands below it, as far as the keys are found.
 fn place(root: &Node, keys: &[&str]) -> Range<usize> {
