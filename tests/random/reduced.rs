@@ -75,7 +75,7 @@ fn random_plan(rng: &mut Rng, dof: usize, rarity: usize) -> Plan {
 fn agrees(robot: &Robot, arm: &DynArm, plans: &PlanSet, function: Function, rng: &mut Rng) -> Option<Program> {
     let program = match Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced) {
         Ok(program) => program,
-        Err(CompileError::Plan(_)) => return None,
+        Err(CompileError::PlanDoesNotFit { .. }) => return None,
         Err(error) => panic!("{}: {error}\n{:#?}", robot.name, plans.plan.choices()),
     };
     let proof = program.proof.expect("a proof");

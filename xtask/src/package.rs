@@ -28,11 +28,12 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 18] = [
+const CRATES: [&str; 19] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
     "rne-codegen",
+    "rne-search",
     "rne-emit",
     "rne-macro",
     "rne-machine",

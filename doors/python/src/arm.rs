@@ -6,9 +6,8 @@ use std::path::PathBuf;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use rne::compiled::{CompiledArm, Form, Function};
+use rne::compiled::{CompiledArm, Form, Function, PlanFile};
 use rne_codegen::Compiler;
-use rne_machine::PlanFile;
 use rne_model::{Convention, Robot};
 
 use crate::arrays::Given;
