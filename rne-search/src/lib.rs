@@ -34,7 +34,6 @@ mod neighbourhood;
 mod plan_file;
 mod savings;
 mod search;
-mod worth;
 
 pub use error::SearchError;
 pub use exploration::{Clock, Progress};
@@ -42,4 +41,3 @@ pub use neighbourhood::Neighbourhood;
 pub use plan_file::{Fingerprint, PlanFile, Reduced, fingerprint};
 pub use savings::{savings, without};
 pub use search::{SearchOptions, search};
-pub use worth::REWRITTEN;

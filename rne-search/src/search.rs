@@ -9,12 +9,11 @@ use rne_model::Robot;
 use crate::error::SearchError;
 use crate::exploration::{Clock, Exploration, Over, Progress};
 use crate::plan_file::{PlanFile, Reduced};
-use crate::worth::{by_plan_alone, is_kept};
 
 /// What a search is asked to do.
 #[derive(Clone, Debug, Default)]
 pub struct SearchOptions {
-    /// The functions whose graphs are rewritten, of [`REWRITTEN`](crate::REWRITTEN); others are left out.
+    /// The functions whose graphs are rewritten.
     pub rewrite: Vec<Function>,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -22,8 +21,7 @@ pub struct SearchOptions {
 
 /// Looks for a cheaper plan, from the one at hand onwards, and rewrites the graphs that the best plans give. What it
 /// finds is not much less precise in single precision than the seven steps, and never worse than a plan at hand of
-/// which that is true. It keeps a rewritten graph of one of [`REWRITTEN`](crate::REWRITTEN) that takes at least
-/// 2.1 % fewer operations than the plan alone, and no other.
+/// which that is true. A rewritten graph is kept where it takes fewer operations than the one that the plan gives.
 ///
 /// `clock` is asked now and then how much of the time is over.
 ///
@@ -90,7 +88,7 @@ pub fn search(
             rewrite((robot, function, &reference), &mut search, &mut best, time, options.seed, clock)?;
         }
         if let Some(best) = best
-            && is_kept(function, by_plan_alone(robot, &reduced.plan, function)?, best.operations)
+            && best.operations.weight() < without_rewriting(robot, &reduced, function)?.weight()
         {
             let proof = reference.proof(function, best.formulation(robot, function)?).map_err(made_here)?;
             rewritten.insert(function, Rewritten { accuracy: Accuracy::from(&proof), ..best });
@@ -103,6 +101,15 @@ pub fn search(
         Ok(_) => Err(SearchError::NotWritten),
         Err(report) => Err(SearchError::NotRead(report)),
     }
+}
+
+/// What a function costs by the plan alone.
+fn without_rewriting(robot: &Robot, reduced: &Reduced, function: Function) -> Result<Cost, CompileError> {
+    if !Algorithm::is_planned(function) {
+        return Ok(Formulation::numbered(robot, function).cost());
+    }
+    let (plan, algorithm) = PlanSet::from(reduced.plan.clone()).cheapest(robot, function);
+    Ok(Formulation::by_plan(robot, &plan, function, algorithm)?.cost())
 }
 
 /// How much less precise than the seven steps a form may be in single precision, on the average.

@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rne_codegen::Function;
 use rne_codegen::plan::{Accuracy, Cost};
 use rne_model::{Robot, plan_of};
-use rne_search::{PlanFile, Progress, REWRITTEN, SearchError, SearchOptions};
+use rne_search::{PlanFile, Progress, SearchError, SearchOptions};
 
 use crate::files::input_file::is_stream;
 use crate::files::interruption;
@@ -45,10 +45,11 @@ pub(crate) struct Arguments {
     /// How long to search
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
     seconds: f64,
-    /// Rewrite the graphs of the best plans too; the plan file keeps a graph that takes at least 2.1 % fewer operations
+    /// Rewrite the graphs of the best plans too; a graph is kept where that saves operations
     #[arg(long)]
     rewrite: bool,
-    /// Rewrite these functions instead of inverse_dynamics, or `all` that are usually called in a loop; may be repeated
+    /// Rewrite these functions instead of inverse_dynamics, or `all` that have a reduced form; may be repeated:
+    /// `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true,
         requires = "rewrite")]
@@ -86,10 +87,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let path = plan_of(&arguments.file);
     interruption::expect();
     plan_file::is_writable(&path)?;
-    let found = watched(&robot, known.plan.as_ref(), &options, arguments.seconds).map_err(|error| match error {
-        SearchError::Compile(error) => Failure::compile(&arguments.file.display().to_string(), &error),
-        error => Failure::input(format_args!("{}: {error}", arguments.file.display())),
-    })?;
+    let found = watched(&robot, known.plan.as_ref(), &options, arguments.seconds)
+        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
     let searched = Searched { file: &arguments.file, robot: &robot, known, fresh: arguments.fresh };
     let Kept { plan, left_out, written } = searched.keep(found, || ())?;
     Ok(Outcome::text(summary(&plan, searched.known.plan.as_ref(), &left_out, &path, written)))
@@ -188,13 +187,7 @@ fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
         return Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")));
     }
     if asked.contains(&FunctionOrAll::All) {
-        return Ok(REWRITTEN.to_vec());
-    }
-    if let Some(function) = functions.iter().find(|function| !REWRITTEN.contains(function)) {
-        return Err(Failure::usage(format_args!(
-            "a plan file keeps no rewritten graph of `{function}`, only of {}",
-            REWRITTEN.map(|function| format!("`{function}`")).join(", ")
-        )));
+        return Ok(Function::ALL.into_iter().filter(|function| function.can_be_rewritten()).collect());
     }
     Ok(functions)
 }
