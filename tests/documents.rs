@@ -270,7 +270,8 @@ fn stubs() -> String {
     let mut text = String::new();
     let mut stub = |name: &str, arguments: &[(&str, Argument)], returned: Returned, summary: &str| {
         let joints = arguments.iter().filter(|(_, kind)| *kind != Argument::Base);
-        let joints: String = joints.map(|(name, _)| format!("{name}: ArrayLike, ")).collect();
+        let joints: Vec<String> = joints.map(|(name, _)| format!("{name}: ArrayLike, ")).collect();
+        let joints = joints.concat();
         let base = if arguments.iter().any(|(_, kind)| *kind == Argument::Base) { BASE } else { "" };
         let returned = match returned {
             Returned::Number => "Floats | float",

@@ -226,7 +226,7 @@ impl Neighbourhood {
             }
             34..46 => {
                 joint.origin_shift =
-                    self.0.joints[index].origin_shifts[rng.usize(..self.0.joints[index].origin_shifts.len())]
+                    self.0.joints[index].origin_shifts[rng.usize(..self.0.joints[index].origin_shifts.len())];
             }
             46..50 => {
                 let length = *[Scale::One, Scale::Default]
