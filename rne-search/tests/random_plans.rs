@@ -30,9 +30,9 @@ impl<'r> SevenSteps<'r> {
             other => other.expect("no other error"),
         };
         let reference = self.of.entry(function).or_insert_with(|| Reference::of(robot, function).expect("finite"));
-        if reference.loss_of_precision(function, formulation, 1).expect("it can be lowered").is_none() {
-            panic!("the proof refuses {}, {function}, {algorithm:?}\n{:#?}", robot.name, plan.choices());
-        }
+        let loss = reference.loss_of_precision(function, formulation, 1).expect("it can be lowered");
+        let choices = plan.choices();
+        assert!(loss.is_some(), "the proof refuses {}, {function}, {algorithm:?}\n{choices:#?}", robot.name);
         true
     }
 }
