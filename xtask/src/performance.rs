@@ -1,4 +1,4 @@
-//! docs/performance.md and docs/run-time.md measured anew: the blocks that name a machine and a date.
+//! Measures docs/performance.md again: the blocks that name a machine and a date.
 
 use std::fs;
 
@@ -10,8 +10,7 @@ use crate::Verdict;
 use crate::instructions::{self, Instructions};
 use crate::{batch_profile, growth, machine, plain_build, python, single_calls};
 
-/// Writes the measured blocks of docs/performance.md and docs/run-time.md, between `<!-- begin: measured NAME, … -->`
-/// and `<!-- end -->`
+/// Writes the measured blocks of docs/performance.md, between `<!-- begin: measured NAME, … -->` and `<!-- end -->`
 ///
 /// All blocks take about ten minutes on an idle machine. The blocks of operations do not depend on the machine:
 /// RNE_WRITE_DOCUMENTS=1 cargo test --test documents. CARGO_TARGET_DIR is obeyed.
@@ -30,6 +29,8 @@ pub(crate) struct Performance {
     print: bool,
 }
 
+const PAGE: &str = "docs/performance.md";
+
 /// A block of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
@@ -46,11 +47,11 @@ enum Block {
     BatchProfile,
     /// What grows with the number of joints
     Growth,
-    /// Nanoseconds of an arm at run time, of docs/run-time.md
+    /// Nanoseconds of an arm at run time
     RunTime,
-    /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched; of docs/run-time.md
+    /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched
     FromPython,
-    /// A plain build beside one for x86-64-v3, of docs/run-time.md
+    /// A plain build beside one for x86-64-v3
     PlainBuild,
 }
 
@@ -62,8 +63,7 @@ impl Performance {
             if self.print {
                 print!("{text}");
             } else {
-                let page = block.page();
-                machine::write(page, &replaced(&machine::read(page)?, block.name(), &text)?)?;
+                machine::write(PAGE, &replaced(&machine::read(PAGE)?, block.name(), &text)?)?;
                 println!("{}: written", block.name());
             }
         }
@@ -83,14 +83,6 @@ impl Block {
             Self::RunTime => "run_time",
             Self::FromPython => "from_python",
             Self::PlainBuild => "plain_build",
-        }
-    }
-
-    /// Where it stands.
-    fn page(self) -> &'static str {
-        match self {
-            Self::RunTime | Self::FromPython | Self::PlainBuild => "docs/run-time.md",
-            _ => "docs/performance.md",
         }
     }
 
@@ -212,7 +204,7 @@ mod tests {
     #[test]
     fn the_pages_have_every_block() {
         for block in Block::value_variants() {
-            let page = machine::read(block.page()).expect("the page");
+            let page = machine::read(PAGE).expect("the page");
             let value = block.to_possible_value().expect("no block is hidden");
             assert_eq!(block.name(), value.get_name());
             assert!(replaced(&page, block.name(), "").is_ok());
