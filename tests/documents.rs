@@ -159,8 +159,8 @@ fn headline() -> String {
          | ns, best peer, native build | {} |\n\
          | ns, Pinocchio | {} |\n\
          | instructions on a Cortex-M4F, `f32`, current version | {} |\n\n\
-         The times are older than the last pass of the form, which rewrites the graph, so the operations above are\n\
-         without that pass too. With it they are {rewritten_puma} and {rewritten_panda}; the instructions include it.\n",
+         The times are older than the last pass of the form, which rewrites the graph, so the operations above\n\
+         exclude it too. With it they are {rewritten_puma} and {rewritten_panda}; the instructions include it.\n",
         of(&operations, "rne, planned"),
         best(&operations).join(" | "),
         of(&times, "rne_reduced_native"),

@@ -65,7 +65,7 @@ fn with_blanks(command: &Command, words: &[String]) -> Option<String> {
         }
     }
     (!meant.is_empty())
-        .then(|| format!("a list has commas and no blanks between its numbers: write {}", meant.join(" ")))
+        .then(|| format!("separate the numbers of a list by commas without blanks: write {}", meant.join(" ")))
 }
 
 /// An option that takes numbers, and behind it another option or nothing: `--q --qd 1,1`.
@@ -78,7 +78,10 @@ fn without_value(command: &Command, words: &[String]) -> Option<String> {
     let arg = words.iter().enumerate().find_map(is_missing)?;
     let long = arg.get_long().unwrap_or_default();
     let example = if long == "payload" { "2,0,0,0.1" } else { "0.1,-0.2,pi/2" };
-    Some(format!("the numbers of {}\nare missing; write such as {TYPED}--{long} {example}{TYPED:#}", described(arg)))
+    Some(format!(
+        "the numbers of {}\nare missing; write for example {TYPED}--{long} {example}{TYPED:#}",
+        described(arg)
+    ))
 }
 
 /// A value that begins with a dash behind an option that takes none such: `--joint -1`.
@@ -89,7 +92,7 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
         let is_dashed = word.strip_prefix('-').is_some_and(|rest| !rest.is_empty() && !rest.starts_with('-'));
         let is_refused = is_dashed && value.is_none() && !arg.is_allow_hyphen_values_set();
         let is_refused = is_refused && !(arg.is_allow_negative_numbers_set() && word.parse::<f64>().is_ok());
-        is_refused.then(|| format!("`{word}` is no value of {}", described(arg)))
+        is_refused.then(|| format!("`{word}` is not a value of {}", described(arg)))
     })
 }
 

@@ -47,9 +47,9 @@ pub struct CompiledArm(Arc<Compiled>);
 struct Compiled {
     robot: Robot,
     form: Form,
-    /// That of which the plans are, where one was given.
+    /// The plan file, if one was given.
     file: Option<PlanFile>,
-    /// Those of a plan file, or those that are chosen when they are first needed.
+    /// Plans of the plan file, or plans that are chosen at the first use.
     plans: OnceLock<PlanSet>,
     functions: [OnceLock<Result<CompiledFunction, CompileError>>; Function::ALL.len()],
 }
@@ -175,7 +175,7 @@ impl CompiledArm {
         Self(Arc::new(Compiled { robot, form, file, plans, functions }))
     }
 
-    /// The same arm in another form: the default is the reduced one, with the fewest operations.
+    /// Returns this arm in another form. The default is the reduced form, with the fewest operations.
     #[must_use]
     pub fn in_form(&self, form: Form) -> Self {
         if form == self.0.form {
@@ -185,7 +185,7 @@ impl CompiledArm {
         Self::new(robot.clone(), form, file.clone(), plans.get().cloned())
     }
 
-    /// The same arm by the choices of a plan file, such as a search has found.
+    /// Returns this arm with the choices of a plan file, such as the result of a search.
     #[must_use]
     pub fn by_plan(&self, plan: PlanFile) -> Self {
         Self::new(self.0.robot.clone(), self.0.form, Some(plan), None)
@@ -197,7 +197,7 @@ impl CompiledArm {
         self.0.file.as_ref()
     }
 
-    /// The same arm with the rotors of its motors, in all that moves them.
+    /// Returns this arm with the rotors of its motors in every function that they affect.
     #[must_use]
     pub fn with_rotors(&self) -> Self {
         let Compiled { robot, form, file, plans, .. } = &*self.0;

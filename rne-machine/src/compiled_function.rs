@@ -24,7 +24,7 @@ pub struct CompiledFunction {
 }
 
 impl CompiledFunction {
-    /// Of a program.
+    /// Compiles a program.
     pub(crate) fn new(program: Program) -> Result<Self, CompileError> {
         let (function, dof) = (program.function, program.dof);
         let too_large = || CompileError::TooLarge { function, dof, most: u32::MAX as usize };
@@ -58,7 +58,7 @@ impl CompiledFunction {
         &self.program
     }
 
-    /// What the machine makes of the program.
+    /// Returns the machine code of the program.
     #[must_use]
     pub fn machine(&self) -> &Machine {
         &self.machine

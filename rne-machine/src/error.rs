@@ -1,4 +1,4 @@
-//! What can be wrong with an arm at run time, or with a call.
+//! Errors of an arm at run time, and of a call.
 
 use std::error::Error;
 use std::fmt;
@@ -17,7 +17,7 @@ pub enum ArmError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         error: io::Error,
     },
     /// The robot file or its plan is wrong; the report has line, column and what is allowed.
@@ -34,7 +34,7 @@ impl fmt::Display for ArmError {
 }
 
 impl Error for ArmError {
-    /// What the operating system says; a report is shown as it is, without words of this error.
+    /// Returns the error of the operating system; a report is shown as it is, without words of this error.
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match self {
             Self::Unreadable { error, .. } => Some(error),

@@ -74,13 +74,13 @@ impl Machine {
         Some(Self { code, inputs: dataflow.inputs })
     }
 
-    /// What it runs.
+    /// Returns the code that it runs.
     #[must_use]
     pub fn code(&self) -> &Code {
         &self.code
     }
 
-    /// What each input is, in order: those that the program uses.
+    /// Returns the names of the inputs that the program uses, in order.
     #[must_use]
     pub fn inputs(&self) -> &[Name] {
         &self.inputs

@@ -100,7 +100,7 @@ pub struct Native<T: Number = f64> {
     constants: Vec<T>,
     /// The memory of the function; the mutex, which nobody locks, makes it `Sync`.
     _pages: Mutex<Pages>,
-    /// What computes states with angles beyond the range of the kernel.
+    /// Code for states with angles beyond the range of the kernel.
     code: Code,
     unit: VectorUnit,
     inputs: Vec<Name>,
@@ -118,7 +118,7 @@ impl<T: Number> Native<T> {
         Self::on(VectorUnit::widest(), program)
     }
 
-    /// The same with the bits of a vector unit of your choice.
+    /// Compiles the program with the bits of a given vector unit.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -142,7 +142,7 @@ impl<T: Number> Native<T> {
         Ok(Self { function, constants, _pages: Mutex::new(pages), code, unit, inputs: dataflow.inputs, outputs })
     }
 
-    /// What each input is, in order: those that the program uses.
+    /// Returns the names of the inputs that the program uses, in order.
     #[must_use]
     pub fn inputs(&self) -> &[Name] {
         &self.inputs
@@ -282,7 +282,8 @@ mod tests {
         Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("it compiles")
     }
 
-    /// What every x86-64 has: vectors in memory are then read by instructions of their own, for they stand anywhere.
+    /// Tests the instructions of every x86-64: vectors in memory are then read by instructions of their own, for they
+    /// stand anywhere.
     #[test]
     fn the_oldest_processor_of_the_family_has_the_same_bits() {
         let program = program();

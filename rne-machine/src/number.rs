@@ -31,7 +31,7 @@ pub(crate) mod natively {
         single: OnceLock<Option<Native<f32>>>,
     }
 
-    /// What has a precision of its own.
+    /// A type with its own precision.
     pub trait Natively: Sized {
         /// Compiles a function, unless it has been before.
         fn prepare(natives: &Natives, program: &Program);

@@ -8,7 +8,7 @@ use rne_runtime::machine::{Code, Instruction, NOWHERE, Operation, Slot, Turn};
 use crate::dataflow::Dataflow;
 use crate::selection::{Place, constants, operation};
 
-/// What happens, one after the other.
+/// One action of the schedule.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     /// A value is computed, or an input or a constant is fetched, in the accumulator.

@@ -1,4 +1,4 @@
-//! Which operation of the machine computes a value, by where its operands are.
+//! Choice of the machine's operation for a value, by the places of its operands.
 
 use rne_codegen::{Contraction, Negated, Operator, Value, ValueId};
 use rne_runtime::machine::{Operation, Slot};

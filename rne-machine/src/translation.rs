@@ -110,7 +110,7 @@ struct Translation<'a, T> {
     inputs: ir::Value,
     outputs: ir::Value,
     table: ir::Value,
-    /// What stands in the table.
+    /// Contents of the table.
     constants: Vec<T>,
     /// Where a number of these bits stands so many times.
     places: HashMap<(u64, u8), usize>,
@@ -354,7 +354,7 @@ impl<T: Number> Translation<'_, T> {
         [kernel.sine, kernel.cosine].map(|step| results[step].unwrap_or(angles))
     }
 
-    /// Of a sine and a cosine one of the two, exchanged by the lowest bit of n, with the sign in the next bit of n or,
+    /// Selects the sine or the cosine, exchanged by the lowest bit of n, with the sign in the next bit of n or,
     /// for the cosine, of n + 1.
     fn in_quadrant(&mut self, operands: [ir::Value; 3], is_cosine: bool, lanes: u8) -> ir::Value {
         let (number, bits) = (of_lanes(T::TYPE, lanes), of_lanes(T::BITS, lanes));
@@ -377,7 +377,7 @@ impl<T: Number> Translation<'_, T> {
     }
 }
 
-/// Of memory that is there and stays as it is while the function runs. Registers stand at any number's place.
+/// Flags of memory that exists and does not change while the function runs. Registers may be unaligned.
 fn unchanging() -> MemFlags {
     MemFlags::new().with_notrap().with_readonly().with_can_move()
 }

@@ -5,14 +5,14 @@ use std::fmt::Debug;
 use rne_codegen::Program;
 use rne_model::Robot;
 
-/// Which arm this is, and its Denavit-Hartenberg table.
+/// Describes the arm and its Denavit-Hartenberg table.
 pub(crate) fn robot(robot: &Robot) -> String {
     let rne_emit::Heading { title, source, frames, table, .. } = rne_emit::Heading::of(robot);
     let text = format!("{title}\n{source}\n\n{frames}\n\n{table}");
     format!("The robot that this type stands for, at compile time.\n\n{}", rne_emit::verbatim(&text))
 }
 
-/// What folding made of each program.
+/// Describes the result of folding for each program.
 pub(crate) fn operations(programs: &[Program]) -> String {
     let table = rne_emit::operations_table(programs);
     format!("Straight-line code. Operations of one call, of the unfolded recursion -> of this code:\n\n{table}")

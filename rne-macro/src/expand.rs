@@ -109,7 +109,7 @@ fn is_within(limit: Limit, program: &Program, errors: &mut Errors) {
     }
 }
 
-/// What became of a robot file.
+/// Result of reading a robot file.
 #[derive(Default)]
 pub(crate) struct Loaded {
     /// The robot, if the file is valid.
@@ -126,7 +126,7 @@ pub(crate) struct Loaded {
     misnamed_golden: Option<(String, String)>,
     /// How many joints it has, or seems to have if it is invalid.
     joints: usize,
-    /// What is suspicious about a valid file.
+    /// Suspicious points of a valid file.
     lints: Option<Report>,
 }
 

@@ -62,7 +62,7 @@ impl Target<'_> {
         }
     }
 
-    /// What stands in for a robot that is not known: every use of it compiles, so that the mistake that is reported
+    /// Writes a stub for a robot that is not known: every use of it compiles, so that the mistake that is reported
     /// stays the only one. The trait is implemented for every number of joints.
     pub(crate) fn stub(&self, capability: Capability, joints: usize) -> TokenStream {
         let constants = if capability == Capability::InverseDynamics {
@@ -409,7 +409,7 @@ pub(crate) fn number(value: f64) -> TokenStream {
     quote!(#sign #magnitude)
 }
 
-/// The same tokens with every identifier `from` replaced.
+/// Replaces every identifier `from` in the tokens.
 fn renamed(tokens: TokenStream, from: &str, to: &Ident) -> TokenStream {
     tokens
         .into_iter()

@@ -13,9 +13,9 @@ use syn::LitStr;
 pub(crate) struct RobotFile {
     /// Where it is, from the root, for the compiler to watch; `None` of a shipped one, which is part of this macro.
     pub(crate) absolute: Option<PathBuf>,
-    /// What messages call it.
+    /// Name of the file in messages.
     pub(crate) shown: String,
-    /// What is in it.
+    /// Contents of the file.
     pub(crate) bytes: Vec<u8>,
 }
 
@@ -31,7 +31,7 @@ pub(crate) enum Missing {
 /// A place where the file may be.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
-    /// Which place that is, in words.
+    /// The place in words.
     what: &'static str,
     /// The file there.
     file: PathBuf,
@@ -190,7 +190,7 @@ fn guesses(written: &Path, package: &Path) -> Vec<PathBuf> {
     guesses
 }
 
-/// The same file name with its folders, in the folders above that of the source file, nearest first: what is meant
+/// Lists files of this name in the folders above the source file, nearest first: the intended file
 /// where one `..` too few or too many is written.
 fn neighbours(written: &Path, source_folder: &Path) -> impl Iterator<Item = PathBuf> {
     let named: PathBuf = written.components().filter(|part| matches!(part, Component::Normal(_))).collect();

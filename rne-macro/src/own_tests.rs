@@ -38,7 +38,7 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
     }
 }
 
-/// Those of batches.
+/// Names of the tests of batches.
 pub(crate) const OF_BATCHES: &[&str] = &["batches_are_those_of_the_runtime"];
 
 /// Says why a struct can have no tests: they need a value of it, and all its numbers.

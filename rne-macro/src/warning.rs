@@ -8,7 +8,7 @@ use quote::{quote, quote_spanned};
 use rne_model::{Diagnostic, Report};
 use syn::{Attribute, DeriveInput, Meta};
 
-/// So many are said; whoever has more deals with these first.
+/// Largest number of warnings to print.
 const SAID: usize = 8;
 
 /// One warning for each lint, at the place of the robot in the attribute.

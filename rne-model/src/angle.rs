@@ -47,7 +47,7 @@ pub struct Angle<S = f64> {
     pub sin: S,
     /// Its cosine; exactly 0 or ±1 for a right angle.
     pub cos: S,
-    /// Which right angle it is, if it is one.
+    /// Multiple of a right angle, if it is one.
     pub right: Option<QuarterTurns>,
 }
 

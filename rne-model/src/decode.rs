@@ -132,7 +132,7 @@ impl<'t> Context<'t> {
         self.problems.has_errors()
     }
 
-    /// Which run-time parameter a name is, if it is one.
+    /// Index of the run-time parameter with this name, if there is one.
     pub(crate) fn run_time_index(&self, name: &str) -> Option<usize> {
         self.run_time.borrow().names.iter().position(|known| known == name)
     }

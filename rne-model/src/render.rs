@@ -7,7 +7,7 @@ use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 
 use crate::{Diagnostic, Report, Severity, one_line};
 
-/// So many diagnostics are shown; whoever has more fixes these first.
+/// Largest number of diagnostics to show.
 const SHOWN: usize = 20;
 
 /// A longer line is named, not shown: nobody reads it, and laying it out takes long.

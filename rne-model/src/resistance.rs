@@ -1,4 +1,4 @@
-//! Which joints no inertia resists: where the mass matrix is singular in every state.
+//! Joints that no inertia resists: the mass matrix is singular in every state.
 
 use crate::{Convention, Joint, JointKind, Row, parent};
 
@@ -6,8 +6,8 @@ use crate::{Convention, Joint, JointKind, Row, parent};
 /// rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// So many states, at irrational parts of a turn, decide: a joint that none of them finds resisted never is, for the
-/// determinant of the mass matrix is analytic in the positions.
+/// Number of states, at irrational parts of a turn. A joint without resistance at all of them never has any, because
+/// the determinant of the mass matrix is analytic in the positions.
 const STATES: u32 = 3;
 
 /// A joint that no inertia resists.

@@ -2,7 +2,7 @@
 
 use crate::Angle;
 
-/// Which of the two Denavit-Hartenberg conventions a table follows. It is never guessed.
+/// The Denavit-Hartenberg convention of a table. It is never guessed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Convention {
     /// Distal (Denavit-Hartenberg-Paul): `Rz(theta) Tz(d) Tx(a) Rx(alpha)`, link frame i at the far end of link i.

@@ -1,4 +1,4 @@
-//! What a motor behind a gear adds to the torque of its joint.
+//! Torque that a geared motor adds to its joint.
 //!
 //! ```text
 //! G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)      (G G) Jm, (G G) B and |G| Tc are formed in the scalar of the constants;

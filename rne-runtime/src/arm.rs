@@ -67,7 +67,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         Self { model, links, tip, motors: [None; DOF], rotors: false }
     }
 
-    /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
+    /// Returns this robot with other motors, base to tip; `None` for a joint without a motor.
     #[must_use]
     pub const fn with_motors(mut self, motors: [Option<Motor<S>>; DOF]) -> Self {
         self.motors = motors;

@@ -1,4 +1,4 @@
-//! What the last link exerts at the tip: nothing, a wrench that is known, or what moves a payload.
+//! Wrench of the last link at the tip: none, a given wrench, or the wrench that moves a payload.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,8 +7,8 @@ use crate::mount::Mount;
 use crate::{Payload, Scalar, Wrench};
 
 impl<T: Scalar> Payload<T> {
-    /// What the last link exerts on it, at the tip, in tip axes: steps 1, 2, 4, 5 and 6 of one link more, whose joint
-    /// does not move. `last` is the motion of the last link, `tip` where the tip frame stands on it.
+    /// Wrench of the last link on the payload, at the tip, in tip axes: steps 1, 2, 4, 5 and 6 of one link more, whose
+    /// joint does not move. `last` is the motion of the last link, `tip` where the tip frame stands on it.
     ///
     /// - ω = Rᵀ ω_n, ω̇ = Rᵀ ω̇_n, g = Rᵀ g_n
     /// - c̈ = Rᵀ (c̈_n + ω̇_n × r + ω_n × (ω_n × r)) + ω̇ × c + ω × (ω × c)
@@ -27,14 +27,14 @@ impl<T: Scalar> Payload<T> {
     }
 }
 
-/// What the last link exerts at the tip.
+/// Wrench of the last link at the tip.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum AtTip<'a, T> {
     /// Nothing.
     Nothing,
     /// A force and a moment.
     Wrench(&'a Wrench<T>),
-    /// What moves a body.
+    /// The wrench that moves a payload.
     Payload(&'a Payload<T>),
 }
 

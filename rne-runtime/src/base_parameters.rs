@@ -50,7 +50,7 @@ pub struct BaseParameter {
     pub is_visible: bool,
 }
 
-/// What the torques of a robot can see of its links, without rotors and friction.
+/// Combinations of link parameters that determine the torques, without rotors and friction.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BaseParameters {
@@ -71,7 +71,7 @@ impl DynArm {
         self.rows().iter().map(|row| about_the_origin(&row.link)).collect()
     }
 
-    /// Which combinations of link parameters the torques can see.
+    /// Computes the combinations of link parameters that determine the torques.
     #[must_use]
     pub fn base_parameters(&self) -> BaseParameters {
         let columns = self.stacked_regressor();
@@ -207,7 +207,7 @@ impl Basis {
         None
     }
 
-    /// Which columns differ from every combination of the others by more than [`BaseParameters::VISIBLE`] of
+    /// Finds the columns that differ from every combination of the others by more than [`BaseParameters::VISIBLE`] of
     /// themselves. How far a column is from them is one over the length of its row of the inverse of the triangle.
     fn visible(&self) -> Vec<bool> {
         let mut rows = vec![0.0; self.triangle.len()];

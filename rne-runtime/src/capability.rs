@@ -1,4 +1,4 @@
-//! What a robot can compute: one trait per capability, implemented by generated code and by [`Arm`](crate::Arm) alike.
+//! The functions of a robot: one trait per capability, implemented by generated code and by [`Arm`](crate::Arm) alike.
 //!
 //! A trait gets a new method only with a default, or in a breaking version.
 //!
@@ -187,7 +187,7 @@ pub trait InverseDynamicsDerivatives<const DOF: usize> {
     ) -> TorqueDerivatives<DOF, T>;
 }
 
-/// What the joints carry: the load of their bearings.
+/// Loads of the joint bearings: the wrenches between links.
 pub trait JointWrenches<const DOF: usize> {
     /// f_{i-1,i} and n_{i-1,i} with a free tip: exerted BY link i-1 ON link i, about the joint's reference point J_i,
     /// in the axes of form P (fixed to link i, z along joint i). The z element of the moment of a revolute joint, of
@@ -233,7 +233,7 @@ pub trait MovingBase<const DOF: usize> {
     ) -> [T; DOF];
 }
 
-/// What the motors need for themselves: rotor inertia and friction, seen at the joints.
+/// Torques of rotor inertia and motor friction, at the joints.
 pub trait Actuation<const DOF: usize> {
     /// The motor terms alone, to be added to the torques of the links: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇) per joint, N m
     /// or N. A joint without a motor needs nothing, so a robot without motors gets zeros; Coulomb friction is zero at
@@ -243,9 +243,9 @@ pub trait Actuation<const DOF: usize> {
     #[must_use]
     fn actuator_torques<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF];
 
-    /// The same with friction that changes its sign gradually, for optimisers and integrators: s = q̇ / √(q̇² + width²)
-    /// in place of the sign, and |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) for the friction, which tends to |G| Tc⁺
-    /// and |G| Tc⁻ and is zero at rest.
+    /// Computes the actuator torques with friction that changes its sign gradually, for optimisers and integrators: s =
+    /// q̇ / √(q̇² + width²) in place of the sign, and |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) for the friction, which
+    /// tends to |G| Tc⁺ and |G| Tc⁻ and is zero at rest.
     ///
     /// `width` > 0 is the velocity (rad/s or m/s) at which s is 0.7. A scalar of your own must implement
     /// [`Scalar::sqrt`].

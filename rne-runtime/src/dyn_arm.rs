@@ -67,7 +67,7 @@ impl<S: Constant> DynArm<S> {
         Self { convention, gravity, base, tool, rows, links, tip, motors, rotors: false }
     }
 
-    /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
+    /// Returns this robot with other motors, base to tip; `None` for a joint without a motor.
     ///
     /// # Errors
     /// When `motors` does not have one element per joint.
@@ -246,7 +246,7 @@ impl<S: Constant> DynArm<S> {
         Ok(self.traced(self.joints(q, qd, qdd)?, base, wrench.into()))
     }
 
-    /// The same on the base at rest, when `payload` is fixed to the tip.
+    /// Traces the seven steps on a base at rest, with `payload` fixed to the tip.
     ///
     /// # Errors
     /// When a joint argument does not have one element per joint.
@@ -296,8 +296,8 @@ impl<S: Constant> DynArm<S> {
 }
 
 impl DynArm<f64> {
-    /// The same robot with its constants in single precision: each number of the table rounded once, then prepared in
-    /// single precision, as [`Model::to_f32`] does it.
+    /// Returns this robot with its constants in single precision: each number of the table rounded once, then prepared
+    /// in single precision, as [`Model::to_f32`] does it.
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
     pub fn to_f32(&self) -> DynArm<f32> {

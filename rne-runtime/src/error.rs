@@ -1,4 +1,4 @@
-//! What can be wrong with a robot file or a call at run time.
+//! Errors of a robot file or of a call at run time.
 
 use core::error::Error;
 use core::fmt;
@@ -15,7 +15,7 @@ pub enum LoadError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         error: io::Error,
     },
     /// The file describes no robot; the report has line, column and what is allowed.
@@ -35,7 +35,7 @@ impl fmt::Display for LoadError {
 }
 
 impl Error for LoadError {
-    /// What the operating system says; the other two are shown as they are, without words of this error.
+    /// Returns the error of the operating system; the other two are shown as they are, without words of this error.
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match self {
             Self::Unreadable { error, .. } => Some(error),
@@ -78,7 +78,7 @@ impl Error for WrongJointCount {}
 /// A joint argument of a [`DynArm`](crate::DynArm) does not have one element per joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongLength {
-    /// Which argument: `q`, `qd`, `qdd`, `sin`, `cos`, `tau` or `motors`.
+    /// Name of the argument: `q`, `qd`, `qdd`, `sin`, `cos`, `tau` or `motors`.
     pub argument: &'static str,
     /// Joints of the robot.
     pub expected: usize,

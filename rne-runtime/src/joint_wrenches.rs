@@ -1,4 +1,4 @@
-//! What each link exerts on the next, from step 6.
+//! Wrench of each link on the next, from step 6.
 
 use crate::at_tip::AtTip;
 use crate::link_state::JointMotions;

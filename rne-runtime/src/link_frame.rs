@@ -74,7 +74,7 @@ impl<S: Constant> LinkFrame<S> {
         Self { kind, parent, mount, theta: dh.theta, offset, com, d, inertia, mass: link.mass, first_moment }
     }
 
-    /// The same constants in the scalar of a computation.
+    /// Converts the constants to the scalar of a computation.
     #[inline]
     pub(crate) fn to<T: Scalar>(self) -> LinkFrame<T> {
         let Angle { radians, sin, cos, right } = self.theta;
@@ -100,7 +100,7 @@ impl<T: Scalar> LinkFrame<T> {
         self.mount.rotation * rotation_z(self.sin_cos(q))
     }
 
-    /// The same from the sine and cosine of q.
+    /// Computes the frame from the sine and cosine of q.
     #[inline]
     pub(crate) fn rotation_by(&self, turn: (T, T)) -> Matrix3<T> {
         let (s, c) = match (self.kind, self.theta.right) {
@@ -159,7 +159,7 @@ impl<'a, S: Constant> Chain<'a, S> {
         self.links.iter().map(|link| link.to())
     }
 
-    /// What is mounted on the link behind which there is no second joint: the next joint, or the tip.
+    /// Returns the mount on a link that carries one joint or the tip.
     pub(crate) fn mount_behind<T: Scalar>(self, link: usize) -> Mount<T> {
         self.links.iter().find(|other| other.parent == Some(link)).map_or(self.tip, |child| &child.mount).to()
     }

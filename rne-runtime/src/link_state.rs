@@ -1,4 +1,4 @@
-//! What the two passes of the recursion take and find, link by link, in the axes of form P.
+//! Inputs and results of the two passes of the recursion, link by link, in the axes of form P.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -35,7 +35,7 @@ pub(crate) struct Joint<T> {
     pub(crate) turn: Option<(T, T)>,
 }
 
-/// What the forward pass finds for link i.
+/// Results of the forward pass for link i.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkMotion<T> {
     /// R_i
@@ -59,7 +59,7 @@ pub(crate) struct ForceMoment<T> {
     pub(crate) moment: Vector3<T>,
 }
 
-/// What the backward pass finds for link i.
+/// Results of the backward pass for link i.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkLoad<T> {
     /// f_i, n_i
@@ -68,7 +68,7 @@ pub(crate) struct LinkLoad<T> {
     pub(crate) joint: ForceMoment<T>,
     /// τ_i
     pub(crate) tau: T,
-    /// What the joints and the tip that are mounted on the link ask of it; `None` if there are none.
+    /// Load of the joints and the tip mounted on the link; `None` if there are none.
     pub(crate) carried: Option<Carried<T>>,
 }
 

@@ -38,7 +38,7 @@ struct Body<T> {
     angular: Vector3<T>,
 }
 
-/// What the joints mounted on a link bring to it, in its axes: their sums, the levers r_k apart.
+/// Contributions of the joints mounted on a link, in its axes: their sums, and the levers r_k separately.
 #[derive(Clone, Copy, Debug)]
 struct Carried<T> {
     of_joints: Body<T>,
@@ -68,7 +68,7 @@ impl<T: Scalar> Body<T> {
         }
     }
 
-    /// The same in the axes of the parent.
+    /// Rotates the values into the axes of the parent.
     fn turned(&self, rotation: &Matrix3<T>) -> Self {
         Self {
             mass: self.mass,

@@ -30,7 +30,7 @@ pub(crate) struct Mount<S> {
 }
 
 impl<S: Constant> Mount<S> {
-    /// Of the joint of `rows[joint]`.
+    /// Returns the mount of the joint of `rows[joint]`.
     pub(crate) fn of_joint(convention: Convention, rows: &[Row<S>], joint: usize) -> Self {
         let (row, carrier) = (&rows[joint], parent(joint).map(|parent| &rows[parent]));
         let (rotation, lever) = match convention {
@@ -43,7 +43,7 @@ impl<S: Constant> Mount<S> {
         Self { rotation, lever, r: from_com(convention, carrier, lever) }
     }
 
-    /// Of the tip frame, on the last link.
+    /// Returns the mount of the tip frame, on the last link.
     pub(crate) fn of_tip(convention: Convention, rows: &[Row<S>], tool: &Transform<S>) -> Self {
         let (last, rotation, lever) = (rows.last(), rotation_of(tool), Vector3::from(tool.xyz));
         let (rotation, lever) = match (convention, last) {
@@ -56,7 +56,7 @@ impl<S: Constant> Mount<S> {
         Self { rotation, lever, r: from_com(convention, last, lever) }
     }
 
-    /// The same constants in the scalar of a computation.
+    /// Converts the constants to the scalar of a computation.
     #[inline]
     pub(crate) fn to<T: Scalar>(self) -> Mount<T> {
         Mount { rotation: self.rotation.map(S::to), r: self.r.map(S::to), lever: self.lever.map(S::to) }

@@ -1,4 +1,4 @@
-//! What one evaluation costs.
+//! Operation counts of one evaluation.
 
 /// Operations of one evaluation of a generated function. A subtraction counts as an addition, a negation is free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

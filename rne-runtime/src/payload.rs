@@ -1,4 +1,4 @@
-//! What is fixed to the tip: a gripper with what it holds.
+//! The body fixed to the tip: a gripper and its load.
 
 use core::error::Error;
 use core::fmt;

@@ -8,7 +8,7 @@ pub(crate) trait PerJoint: Copy {
     /// `value` of every joint's index.
     fn of<U: Clone>(self, value: impl FnMut(usize) -> U) -> Self::Of<U>;
 
-    /// The same value for every joint.
+    /// Returns a list with one value for every joint.
     fn all<U: Clone>(self, value: &U) -> Self::Of<U> {
         self.of(|_| value.clone())
     }

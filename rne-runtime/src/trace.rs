@@ -6,7 +6,7 @@ use crate::link_frame::{Chain, rotation_z};
 use crate::link_state::{ForceMoment, LinkLoad, LinkMotion};
 use crate::{Constant, Scalar};
 
-/// What the seven steps find for link i.
+/// Results of the seven steps for link i.
 ///
 /// The axes are those of form P when the entry comes from a [`Trace`]: fixed to link i, z along joint i. The
 /// conversions of a trace return the same quantities in other axes.
@@ -73,8 +73,8 @@ impl<const DOF: usize, T: Scalar> Trace<DOF, T> {
         self.links.map(|link| link.tau)
     }
 
-    /// The same in the lecture's axes: `[x]_L = Rz(θ_i) [x]_P`, fixed to link i-1, z along joint i. For a standard
-    /// table these are the axes of its frame i, and the rotations are Q_{i-1} (Q_0 = 1).
+    /// Converts the trace to the lecture's axes: `[x]_L = Rz(θ_i) [x]_P`, fixed to link i-1, z along joint i. For a
+    /// standard table these are the axes of its frame i, and the rotations are Q_{i-1} (Q_0 = 1).
     #[must_use]
     pub fn to_lecture(&self) -> [LinkTrace<T>; DOF] {
         let mut links = self.links;
@@ -82,7 +82,7 @@ impl<const DOF: usize, T: Scalar> Trace<DOF, T> {
         links
     }
 
-    /// The same in the axes of frame 0. The rotations between entries are then the identity.
+    /// Converts the trace to the axes of frame 0. The rotations between entries are then the identity.
     #[must_use]
     pub fn to_base(&self) -> [LinkTrace<T>; DOF] {
         let mut links = self.links;

@@ -17,7 +17,7 @@ use crate::render::layout::{left, width};
 use crate::render::physics;
 use crate::values::choice;
 
-/// Check robot files and plans: `ok` and lints, or every error
+/// Check robot files and plans; print `ok` and lints, or every error
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -25,16 +25,16 @@ Examples:
   rne check --physics robots/planar2.yaml
   rne check robots/puma560.plan.yaml   a plan is compiled and proved
 
-A plan beside a robot file is checked too. A note names each function with a
-reduced form that is refused, and why, where the arm has 8 joints at most. Exit
-status 1 when a file has errors, or when an arm misses a law of physics by more
-than rounding; lints, which are warnings and notes, leave it at 0.
+A plan next to a robot file is checked too. For arms of up to 8 joints a note
+names each function whose reduced form is refused, with the reason. The exit
+status is 1 if a file has errors, or if an arm violates a law of physics by more
+than rounding. Lints (warnings and notes) leave it at 0.
 docs/robot-file.md explains every key.")]
 pub(crate) struct Arguments {
     /// Robot files, or plans; - is standard input
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Compute laws that every arm obeys, and print by how much they are missed
+    /// Check laws that every arm obeys, and print the deviations
     #[arg(long)]
     physics: bool,
 }

@@ -15,13 +15,13 @@ use crate::render::letters::Letters;
 /// The dynamics in closed form, instead of code.
 #[derive(Args)]
 pub(crate) struct Wanted {
-    /// Instead of code: τ = M θ̈ + h + γ in closed form
+    /// Print the closed form, τ = M θ̈ + h + γ
     #[arg(long, conflicts_with_all = OTHERS)]
     symbolic: bool,
-    /// The closed form as LaTeX, with or without --symbolic
+    /// Print the closed form as LaTeX
     #[arg(long, conflicts_with_all = OTHERS)]
     latex: bool,
-    /// Its arm up to joint N alone
+    /// Closed form of the arm up to joint N only
     #[arg(long, value_name = "N", value_parser = crate::values::choice::joint, conflicts_with_all = OTHERS)]
     first: Option<usize>,
 }

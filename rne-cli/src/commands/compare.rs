@@ -165,13 +165,13 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
     }
     let is_state = matches!(line.quantity, Quantity::Q | Quantity::Qd | Quantity::Qdd);
     if is_state {
-        let _ = writeln!(text, "your worksheet is of another state than that of the command line");
+        let _ = writeln!(text, "your worksheet is for another state than the command line");
     } else if first.reasons.is_empty() {
         let check = if line.terms.len() > 1 { ": check each term above" } else { "" };
-        let _ = writeln!(text, "no usual slip gives this value{check}");
+        let _ = writeln!(text, "no usual mistake gives this value{check}");
     }
     let tally = format!(
-        "{} compared, {} {}{}; what depends on this one is to be computed again",
+        "{} compared, {} {}{}; compute again what depends on this value",
         values(comparison.compared),
         comparison.differing,
         if comparison.differing == 1 { "differs" } else { "differ" },
@@ -191,8 +191,8 @@ fn place(line: &Line) -> String {
 fn introduced(reach: Reach, previous: Option<Reach>) -> &'static str {
     match (reach, previous) {
         (_, Some(_)) => "or",
-        (Reach::Everything, None) => "all your values are right but for this:",
-        (Reach::Torques, None) => "your torques are those of this:",
+        (Reach::Everything, None) => "all your values are right except for this:",
+        (Reach::Torques, None) => "this mistake gives your torques:",
         (Reach::UpToHere, None) => "up to here it could be this:",
         (_, None) => "it looks as if",
     }

@@ -6,7 +6,7 @@ use clap_complete::Shell;
 use crate::commands;
 use crate::outcome::{Failure, Outcome};
 
-/// Print the script by which a shell completes commands and options
+/// Print a completion script for a shell
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -14,7 +14,7 @@ Examples:
   rne completions zsh > ~/.zfunc/_rne
   rne completions fish > ~/.config/fish/completions/rne.fish")]
 pub(crate) struct Arguments {
-    /// Which shell
+    /// The shell
     #[arg(value_enum, value_name = "SHELL")]
     shell: Shell,
 }

@@ -22,20 +22,20 @@ Examples:
   rne convert robots/panda.yaml --convention standard -o panda_standard.yaml
   rne convert robots/ur5.yaml --convention modified
 
-Torques, limits and motors stay; expressions of the file are written as their
-values. Where the first axis does not lie on z of frame 0, a standard table
-moves frame 0 there: base and gravity are turned with it.")]
+Torques, limits and motors do not change; expressions are replaced by their
+values. If the first axis is not z of frame 0, a standard table moves frame 0
+there and rotates base and gravity with it.")]
 pub(crate) struct Arguments {
     /// The robot file; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The rows of the new table
+    /// Convention of the new table
     #[arg(long, value_parser = convention())]
     convention: Convention,
-    /// Where to write the robot file; standard output, unless given, or where it is -
+    /// Robot file to write; - or no option: standard output
     #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Overwrite a file that is there
+    /// Overwrite an existing file
     #[arg(long, requires = "out")]
     force: bool,
 }

@@ -19,22 +19,22 @@ use crate::values::numbers::resolution;
 use crate::values::numbers::{List, rounded};
 use crate::values::state::{Given, State};
 
-/// Name the slips that explain another tool's torques
+/// Find the mistakes that explain another tool's torques
 #[derive(Args)]
 #[command(override_usage = "rne diagnose [OPTIONS] --q <Q> --qd <QD> --qdd <QDD> --tau <TAU> <FILE>")]
 #[command(after_help = "\
-Exit status: 1 when the torques differ and no slip explains them.
+Exit status: 1 if the torques differ and no mistake explains them.
 
 Examples:
   rne diagnose robots/planar1.yaml --q 0.3 --qd 0.5 --qdd -1 --tau -4.853
   rne diagnose puma560 --q 0,0.3,-0.5,0.1,0.2,0 --qd 1,1,1,1,1,1 \\
     --qdd 1,0,0,0,0,0 --tau=-0.28771,-37.706,-1.35305,0.0035967,0.003694,5.56e-5
 
-The usual slips are made one by one, then in pairs: convention, gravity,
-inertia and centre of mass from another point, units, offsets, signs, motors,
-wrench, and the misprints of the lecture; alone also the sign of one alpha, one
-theta, one component of a centre of mass. A state with speeds and accelerations
-of all joints tells the most apart.")]
+The usual mistakes are tried one by one, then in pairs: convention, gravity,
+inertia and centre of mass about another point, units, offsets, signs, motors,
+wrench, and the misprints of the lecture. Single mistakes also include the sign
+of one alpha, one theta, or one component of a centre of mass. Use a state with
+speeds and accelerations of all joints: it distinguishes most mistakes.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
@@ -47,16 +47,16 @@ pub(crate) struct Arguments {
     /// Joint accelerations, rad/s² or m/s²
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     qdd: List,
-    /// The torques that the other tool printed, with all of its digits
+    /// Torques of the other tool, with all their digits
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Printed,
-    /// fx,fy,fz,nx,ny,nz on the environment, at the tip, in tip axes: N, N m
+    /// Tip wrench on the environment: fx,fy,fz,nx,ny,nz in tip axes, N and N m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// How far a torque may be off, in parts of the largest; as its last digit tells, unless given
+    /// Accepted error of a torque, relative to the largest [default: by its last digit]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// {"agrees": …, "error": …, "explanations": […]}
+    /// Print JSON: {"agrees": …, "error": …, "explanations": […]}
     #[arg(long)]
     json: bool,
 }
@@ -120,14 +120,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let text = match diagnosis {
         Diagnosis::Agrees(error) => {
-            format!("{GOOD}ok{GOOD:#} the torques are those of {TITLE}{}{TITLE:#}, to {error:.0e}\n", robot.name)
+            format!("{GOOD}ok{GOOD:#} the torques agree with {TITLE}{}{TITLE:#} to {error:.0e}\n", robot.name)
         }
         Diagnosis::Explained(all) => table(&robot, &seen, &right) + "\n" + &explained(&robot, &all),
         Diagnosis::Unexplained(_) => {
             table(&robot, &seen, &right)
                 + &format!(
-                    "\n{ERROR}none of the usual slips{ERROR:#} gives these torques, nor does a pair of them\n\
-                     {QUIET}compare link by link: rne eval … --trace; fewer digits: --tolerance 1e-3{QUIET:#}\n"
+                    "\n{ERROR}no usual mistake{ERROR:#} gives these torques, and no pair of mistakes does\n\
+                     {QUIET}compare link by link with rne eval … --trace, or accept larger errors with --tolerance 1e-3{QUIET:#}\n"
                 )
         }
     };
@@ -191,7 +191,7 @@ fn closeness(error: f64) -> String {
 
 /// Torques beside the right ones.
 fn table(robot: &Robot, seen: &Observation, right: &[f64]) -> String {
-    let mut cells = vec![["  joint", "yours", "of the file", "difference"].map(str::to_owned)];
+    let mut cells = vec![["  joint", "yours", "robot file", "difference"].map(str::to_owned)];
     for ((joint, yours), right) in robot.joints.iter().zip(&seen.tau).zip(right) {
         let numbers = [*yours, *right, yours - right].map(|number| rounded(number, 6));
         let [yours, right, difference] = numbers;
@@ -209,8 +209,8 @@ fn explained(robot: &Robot, all: &[Explanation]) -> String {
     for (index, Explanation { slips, error }) in all.iter().take(SHOWN).enumerate() {
         let together = if slips.len() > 1 { " together" } else { "" };
         let _ = match index {
-            0 => writeln!(text, "{TITLE}your torques{TITLE:#} are those of this{together}, {}:", closeness(*error)),
-            _ => writeln!(text, "{QUIET}or, the same at this state:{QUIET:#}"),
+            0 => writeln!(text, "{TITLE}your torques{TITLE:#} result from this{together}, {}:", closeness(*error)),
+            _ => writeln!(text, "{QUIET}or from this, which is the same at this state:{QUIET:#}"),
         };
         for slip in slips {
             let _ = writeln!(text, "{}", wrap(&format!("  - {}", slip.says(robot)), width, "    "));
@@ -220,10 +220,10 @@ fn explained(robot: &Robot, all: &[Explanation]) -> String {
     }
     if all.len() > SHOWN {
         let more = all.len() - SHOWN;
-        let _ = writeln!(text, "{QUIET}and {more} more, which --json lists{QUIET:#}");
+        let _ = writeln!(text, "{QUIET}and {more} more; --json lists them{QUIET:#}");
     }
     if all.len() > 1 {
-        let hint = "a state in which every joint has a position, a speed and an acceleration tells them apart";
+        let hint = "use a state in which every joint has a position, a speed and an acceleration to distinguish them";
         let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(hint, width, ""));
     }
     text

@@ -20,21 +20,22 @@ use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
-/// Write the generated code as a file that compiles by itself
+/// Write the generated code as a file without dependencies
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne emit robots/puma560.yaml                               to the terminal
-  rne emit robots/puma560.yaml --function all -o puma.rs     all that it has
+  rne emit robots/puma560.yaml --function all -o puma.rs     all functions
   rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
   rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
   rne emit robots/puma560.yaml --lang c --real double --prefix arm
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
 
-The functions of the trait InverseDynamics are written unless --function names
-others; all is every function of the robot. --check exits with 1 when the file
-is stale, and says how to refresh it. C needs no library; on standard output
-header and source are one file; -DRNE_TEST makes its tests a program.")]
+By default the functions of the trait InverseDynamics are written; --function
+selects others, and `all` selects every function of the robot. --check exits
+with 1 if the file is out of date, and prints the command that updates it. C
+code needs no library; on standard output header and source are one file;
+-DRNE_TEST turns its tests into a program.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file
@@ -45,33 +46,33 @@ pub(crate) struct Arguments {
     /// Language of the code
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
-    /// Number type of C code: float, the default, or double
+    /// Number type of C code: float (default) or double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
     real: Option<Real>,
-    /// Names in C code begin with it, not with the robot's name
+    /// Prefix of names in C code [default: the robot's name]
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
-    /// These functions only, F,F,…: `rne explain functions`
+    /// Functions to write, F,F,…; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
-    /// seven_steps, where every intermediate is the lecture's, or reduced, with the fewest operations
+    /// seven_steps (every intermediate of the lecture) or reduced (fewest operations)
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true)]
     form: Form,
-    /// Parameters of the file that become arguments, N,N,…; the others are folded
+    /// Parameters that become arguments, N,N,…; others are constants
     #[arg(long, value_name = "N", value_delimiter = ',')]
     run_time: Vec<String>,
-    /// Bring sine and cosine along in Rust, as C code does
+    /// Include sine and cosine in Rust code, as in C code
     #[arg(long)]
     with_sin_cos: bool,
-    /// Tests beside the code: values of the runtime, laws of mechanics
+    /// Add tests: values of the runtime, laws of mechanics
     #[arg(long)]
     tests: bool,
-    /// Comments in ASCII alone: dw for ω̇, ^T for ᵀ
+    /// Write comments in ASCII: dw for ω̇, ^T for ᵀ
     #[arg(long)]
     ascii: bool,
-    /// Write into this file, the header of C code beside it; - is standard output
+    /// File to write, with a header for C; - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// Overwrite OUT even if rne did not generate it
@@ -147,7 +148,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let out = arguments.output.as_deref().filter(|out| !is_standard_output(out)).or(arguments.check.as_deref());
     if arguments.check.as_deref().is_some_and(is_standard_output) {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--check{TYPED:#} compares with a file, and standard output is none; name the file"
+            "{TYPED}--check{TYPED:#} compares with a file, so it needs the name of a file and not standard output"
         )));
     }
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
@@ -194,7 +195,7 @@ fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
         String::new()
     };
     Err(Failure::usage(format_args!(
-        "{} is no name for a file in {}; name it {TYPED}{}{TYPED:#}{instead}",
+        "{} is not a name for a file in {}; name it {TYPED}{}{TYPED:#}{instead}",
         out.display(),
         lang.title(),
         right.display()
@@ -246,13 +247,13 @@ fn header_beside(source: &Path) -> Result<Header, Failure> {
     let name = name.filter(|name| !name.contains(['"', '\\', '\n', '\r', char::REPLACEMENT_CHARACTER]));
     match name {
         _ if extension == "h" => Err(Failure::usage(format_args!(
-            "{} is the name of a header, which is written beside the source; name the source: {TYPED}{}{TYPED:#}",
+            "{} is the name of a header, which is written next to the source; name the source: {TYPED}{}{TYPED:#}",
             source.display(),
             source.with_extension("c").display()
         ))),
         Some(name) => Ok(Header { path, name }),
         None => Err(Failure::usage(format_args!(
-            "{} is no name of a source whose header could be included; name a file, such as {TYPED}robot.c{TYPED:#}",
+            "{} is not a name of a source file whose header can be included; name a file, such as {TYPED}robot.c{TYPED:#}",
             source.display()
         ))),
     }
@@ -338,7 +339,7 @@ fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
         Existing::Text(text) if is_ours(&text) || arguments.force => Ok(()),
         Existing::Other if arguments.force => Ok(()),
         Existing::Text(_) | Existing::Other => Err(Failure::usage(format_args!(
-            "{} was not generated by rne and stays as it is; {TYPED}--force{TYPED:#} overwrites it",
+            "{} was not generated by rne and is not changed; {TYPED}--force{TYPED:#} overwrites it",
             out.display()
         ))),
         Existing::Folder => Err(Failure::usage(format_args!(

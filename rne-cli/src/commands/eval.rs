@@ -26,7 +26,7 @@ use crate::values::limits;
 use crate::values::numbers::List;
 use crate::values::state::{Given, State};
 
-/// Compute a function at one state; --trace shows every vector
+/// Compute a function at one state; --trace prints every vector
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -37,7 +37,7 @@ Examples:
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
-    /// Which function: `rne explain functions`
+    /// Function; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true)]
     function: Option<Function>,
     /// Joint positions, base to tip, rad or m
@@ -49,67 +49,67 @@ pub(crate) struct Arguments {
     /// Joint accelerations, rad/s² or m/s²
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     qdd: Option<List>,
-    /// Joint torques, N m or N, of forward_dynamics
+    /// Joint torques for forward_dynamics, N m or N
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// fx,fy,fz,nx,ny,nz on the environment, tip axes
+    /// fx,fy,fz,nx,ny,nz on environment, in tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] fixed to the tip
+    /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] fixed to tip
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     payload: Option<List>,
-    /// Angular velocity x,y,z of a moving base, rad/s
+    /// Angular velocity x,y,z of moving base, rad/s
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
-    /// Its angular acceleration, rad/s²
+    /// Angular acceleration of the base, rad/s²
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
-    /// Acceleration of its origin, without gravity, m/s²
+    /// Acceleration of the base, no gravity, m/s²
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
-    /// Gravity in the moving frame 0; else the file's
+    /// Gravity in moving frame 0 [default: the file's]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
-    /// Instead: torques at N states, as a golden file
+    /// Print torques at N states as a golden file
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
         "gravity", "trace", "json", "csv", "compare",
     ])]
     golden: Option<u16>,
-    /// At each state of a CSV or npy file; - is a pipe
+    /// File of states: CSV, npy, or - for a pipe
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration", "gravity",
         "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
-    /// Where their results go: CSV, or npy by its name
+    /// File for the results: CSV, or npy by its name
     #[arg(short, long = "output", value_name = "TABLE", requires = "states")]
     out: Option<PathBuf>,
-    /// Overwrite a file that is there
+    /// Overwrite an existing file
     #[arg(long, requires = "out", hide = true)]
     force: bool,
-    /// The worksheet of the seven steps
+    /// Print the worksheet of the seven steps
     #[arg(long)]
     trace: bool,
-    /// Its axes: link, joint (the lecture's) or base
+    /// Axes: link, joint (as in the lecture) or base
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
-    /// Its lines of one joint, from 1
+    /// Only the lines of this joint, from 1
     #[arg(long, value_name = "I", value_parser = choice::joint, requires = "trace", conflicts_with = "compare")]
     joint: Option<usize>,
-    /// Its lines of one step, 1 to 7
+    /// Only the lines of this step, 1 to 7
     #[arg(long, value_name = "S", value_parser = choice::step, requires = "trace", conflicts_with = "compare")]
     step: Option<Step>,
-    /// It as CSV, a row for each component
+    /// Print the worksheet as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// Where your rows of it first differ, and why
+    /// Find the first mistake in your worksheet
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
-    /// Significant digits that agree; 4, unless given
+    /// Significant digits to compare [default: 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=15), requires = "compare")]
     digits: Option<u8>,
-    /// {"result": …}, with --trace also "trace"
+    /// Print JSON: {"result": …}, with --trace "trace"
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -133,7 +133,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.out.is_some() && arguments.states.is_none() {
-        return Err(Failure::usage("-o is where the results of --states go; those of one state are printed"));
+        return Err(Failure::usage("-o is for the results of --states; the result of one state is printed"));
     }
     let is_read_twice = |states: &PathBuf| is_standard_input(states) && is_standard_input(arguments.arm.file());
     if arguments.states.as_ref().is_some_and(is_read_twice) {

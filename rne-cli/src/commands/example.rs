@@ -5,14 +5,14 @@ use clap::Args;
 use crate::files::robot_file::shipped;
 use crate::outcome::{Failure, Outcome};
 
-/// Print the robot file of a shipped robot, to start from
+/// Print the robot file of a shipped robot, as a start
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne example puma560 > my_puma.yaml
   rne example puma560 --plan > my_puma.plan.yaml    its reduced form
 
-`rne list` has the names.")]
+`rne list` prints the names.")]
 pub(crate) struct Arguments {
     /// The robot's name
     #[arg(value_name = "NAME")]

@@ -34,47 +34,46 @@ const MOTIONS: u64 = 100_000_000;
 /// Samples of a picture.
 const DRAWN: u32 = 1000;
 
-/// Find a motion that excites an arm, for a log to identify it
+/// Find a motion that excites the parameters of an arm
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne excite docs/desk_arm.yaml --evaluations 200 -o trajectory.csv
   rne excite planar2 --evaluations 200 --velocity 1.5,2 --plot motion.svg
 
-A Fourier series from rest to rest within the limits, of least condition number.
-Collisions are not known: the trajectory is checked against limits alone, so
-look at it in a simulator or at low speed first. Ctrl-C ends the search and
-keeps the best. Columns: t, q1, …, qd1, …, qdd1, …: s, rad or m.")]
+The motion is a Fourier series from rest to rest within the limits, with the
+least condition number. Collisions are not checked, only limits, so try it in a
+simulator or at low speed first. Ctrl-C ends the search and keeps the best.
+Columns: t, q1, …, qd1, …, qdd1, … in s, rad or m.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// How long the motion lasts
+    /// Duration of the motion
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds, allow_negative_numbers = true)]
     seconds: f64,
-    /// How often it repeats in that time
+    /// Number of repetitions in this time
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     periods: u32,
     /// Harmonics of each joint's series, 2 or more
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = harmonics)]
     harmonics: usize,
-    /// How far to go from the middle of the limits, or from 0 where there are none; rad or m, a number for all joints
-    /// or a list
+    /// Largest distance from the middle of the limits, or from 0 without limits; rad or m, one number or a list
     #[arg(long, value_name = "LIST")]
     range: Option<List>,
-    /// Largest speed, or a list; the file's holds too
+    /// Largest speed, one number or a list; the limits of the file hold too
     #[arg(long, value_name = "LIST")]
     velocity: Option<List>,
-    /// Largest acceleration, or a list; unless given, what reaches the speed in 0.5 s
+    /// Largest acceleration, one number or a list [default: reaches the speed in 0.5 s]
     #[arg(long, value_name = "LIST")]
     acceleration: Option<List>,
-    /// No friction
+    /// Assume no friction
     #[arg(long)]
     no_friction: bool,
-    /// Inertia of the motors' rotors, too
+    /// Excite the rotor inertia of the motors, too
     #[arg(long)]
     rotors: bool,
-    /// How many motions are tried
+    /// Number of motions to try
     #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=MOTIONS))]
     evaluations: u64,
     /// Seed of the random numbers
@@ -83,13 +82,13 @@ pub(crate) struct Arguments {
     /// Samples per second in OUT
     #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate, allow_negative_numbers = true)]
     rate: f64,
-    /// Draw the positions, as SVG
+    /// Plot the positions (SVG)
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// The trajectory, as CSV; `-`: standard output
+    /// Trajectory to write (CSV); - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Overwrite files that are there
+    /// Overwrite existing files
     #[arg(long)]
     force: bool,
 }
@@ -113,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = robot_file::robot(&arguments.file)?;
     if arguments.seconds * arguments.rate > MOST {
         return Err(Failure::usage(format_args!(
-            "{} s at {} Hz are more than {MOST} samples; a lower --rate makes fewer",
+            "{} s at {} Hz are more than {MOST} samples; use a lower --rate",
             exact(arguments.seconds),
             exact(arguments.rate)
         )));
@@ -124,7 +123,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let (Some(out), Some(plot)) = (out, arguments.plot.as_deref())
         && will_be_same(out, plot)
     {
-        return Err(Failure::usage("the trajectory and its picture are two files: -o and --plot name the same"));
+        return Err(Failure::usage("-o and --plot name the same file; give the trajectory and its picture two names"));
     }
     check_picture(arguments.plot.as_deref())?;
     let trajectory = out.filter(|_| !is_shown);
@@ -182,18 +181,18 @@ fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError
     Failure::input(if least.part > 1.0 {
         let name = one_line(&robot.joints[least.joint].name);
         format!(
-            "{none}: {}, and at none of {POSITIONS} positions within the limits less than that, so {helps}: is the \
-             effort limit of {name} right, and are the masses that it carries?",
+            "{none}: {}, and no less at {POSITIONS} positions within the limits, so {helps}: are the effort limit of \
+             {name} and the masses that it carries right?",
             least.words(robot, limits)
         )
     } else if middle.part > 1.0 {
         format!(
-            "{none}: {}, the middle of the limits, so {helps}; position limits in the robot file, about where the arm \
-             is held with less, do",
+            "{none}: {}, the middle of the limits, so {helps}; set position limits in the robot file around a posture \
+             that needs less",
             middle.words(robot, limits)
         )
     } else if most.part > 1.0 {
-        format!("{error}; {}, which a smaller --range keeps away from", most.words(robot, limits))
+        format!("{error}; {}; use a smaller --range to avoid this posture", most.words(robot, limits))
     } else {
         return failure(error);
     })
@@ -327,7 +326,7 @@ fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     let _ = writeln!(text, "{all} base parameters, {mark}{excited}{mark:#} of them would be excited");
     let _ = writeln!(
         text,
-        "condition {GOOD}{}{GOOD:#}, the best of {} motions; {} of the first one, {friction}",
+        "condition number {GOOD}{}{GOOD:#}, the best of {} motions; the first one had {}; {friction}",
         condition(found.condition),
         found.evaluations,
         condition(found.first_condition)
@@ -336,8 +335,8 @@ fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     if excited < found.bases.len() {
         not_excited(&mut text, found);
     }
-    let note = "the arm must stand at `start` first. Collisions are not known: the trajectory is checked against \
-                these limits alone, so look at it in a simulator or at low speed first";
+    let note = "the arm must stand at `start` first. Collisions are not checked, only these limits \
+                are, so try the trajectory in a simulator or at low speed first";
     let _ = writeln!(text, "\n{TITLE}note{TITLE:#}: {}", wrap(note, PAGE - 6, "      "));
     text
 }
@@ -364,7 +363,7 @@ fn joints(text: &mut String, robot: &Robot, found: &Excitation) {
     }
     let mut align = [Align::Right; 9];
     (align[0], align[4]) = (Align::Left, Align::Left);
-    push_table(text, "where joints start and go, and how much of their limits they use", &align, &cells);
+    push_table(text, "start and range of the joints, and the share of their limits that is used", &align, &cells);
 }
 
 fn not_excited(text: &mut String, found: &Excitation) {
@@ -374,7 +373,7 @@ fn not_excited(text: &mut String, found: &Excitation) {
         cells.push([name, rounded(base.deviation, 4), rounded(base.plausible, 4), base.unit.to_owned()]);
     }
     let align = [Align::Left, Align::Right, Align::Right, Align::Left];
-    push_table(text, "not excited: a deviation of more than half of what is plausible", &align, &cells);
+    push_table(text, "not excited: the deviation is more than half of the plausible value", &align, &cells);
 }
 
 /// The states of the whole motion, its ends included.

@@ -22,28 +22,28 @@ use crate::terminal;
 use crate::values::choice;
 use crate::values::choice::Kept;
 
-/// Explain words of options, exit statuses, names in the code
+/// Explain functions, options, exit statuses, or names in the code
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne explain functions     what an arm can compute: --function
-  rne explain arguments     which function takes which options of `rne eval`
-  rne explain tricks        the tricks of the reduced form: --without
-  rne explain quantities    what `rne show --keep` keeps
-  rne explain exit-status   what a script can rely on
-  rne explain w2_z puma560  what that name in the code of a robot is")]
+  rne explain functions     values of --function
+  rne explain arguments     options of `rne eval` for each function
+  rne explain tricks        values of --without: tricks of the reduced form
+  rne explain quantities    values of `rne show --keep`
+  rne explain exit-status   meaning of the exit statuses
+  rne explain w2_z puma560  meaning of a name in the code of a robot")]
 pub(crate) struct Arguments {
-    /// What to explain: functions, arguments, tricks, quantities, exit-status, or a name in the code of FILE
+    /// Topic: functions, arguments, tricks, quantities, exit-status, or a name in the code of FILE
     #[arg(value_name = "TOPIC")]
     topic: String,
     /// Robot file
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
-    /// With FILE: in which function
+    /// Function in which the name occurs, with FILE
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true,
         default_value = Function::InverseDynamics.name(), requires = "file")]
     function: Function,
-    /// With FILE: in which form, seven_steps or reduced
+    /// Form of the function, seven_steps or reduced, with FILE
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true, requires = "file")]
     form: Form,
@@ -104,36 +104,35 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     let meant = did_you_mean(name, inspection.names.keys().map(String::as_str))
         .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
     Err(Failure::usage(format_args!(
-        "nothing is called `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
+        "there is no name `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
          code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",
         robot.name
     )))
 }
 
 const EXIT_STATUS: &str = "\
-0    fine. `rne check`: no file has an error, lints or not; `rne emit --check`:
-     the file is what rne would write
+0    success. `rne check`: no file has an error, with or without lints;
+     `rne emit --check`: the file is up to date
 1    the input is at fault: a robot file or a plan has an error, cannot be read
-     or changes during a search, the result of one state is not finite, a file
-     that is checked is stale, torques differ and `rne diagnose` cannot say why,
-     a value differs from that of `rne eval --trace --compare`, `rne watch` has
-     events, `rne log` cannot tell the units or the noise of a log, a log has
-     nothing that `rne identify` could find, or the output cannot be written
+     or changes during a search; the result of one state is not finite; a file
+     of `rne emit --check` is out of date; torques differ and `rne diagnose`
+     does not find the reason; a value differs from `rne eval --trace --compare`;
+     `rne watch` has events; `rne log` needs the units or the noise of a log; a
+     log has nothing that `rne identify` could find; the output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file or folder that
      rne does not overwrite
-130  Ctrl-C ended the command; of `rne search` and `rne excite` the second one
+130  Ctrl-C ended the command (`rne search` and `rne excite`: the second Ctrl-C)
 129, 143  SIGHUP or SIGTERM ended the command
 
-Where a signal ended the command, files are as they were, and no temporary file
-is left.
+If a signal ends a command, files do not change and no temporary file is left.
 
-Errors go to standard error, and nothing to standard output then; but what an
-answer of status 1 has to say, such as events, is on standard output, and what
-`rne eval --states` has printed of states before a mistake stays, while a file
-of -o appears whole or not at all. There a result that is not finite is NaN or
-inf in its row, with a note and status 0. A reader that goes away
-(`rne show … | head`) is no error.
+Errors go to standard error, and standard output is then empty. Exceptions: the
+results of an answer with status 1, such as events, are on standard output, and
+so are the states that `rne eval --states` has printed before a mistake. A file
+of -o is written completely or not at all. With --states, a result that is not
+finite is NaN or inf in its row, with a note and status 0. A reader that closes
+the pipe (`rne show … | head`) is not an error.
 ";
 
 /// Names, each with words below it.

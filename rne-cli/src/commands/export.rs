@@ -18,9 +18,9 @@ Examples:
   rne export puma560 --urdf
 
 Links are `world`, `base` (frame 0), `link_1` … and `tip`; the frame of a link
-stands on the axis of its joint. Friction is written at the joint: G² B and
-|G| Tc of its motor. Gravity that is not [0, 0, -9.81] in `world` is told, for a
-URDF cannot say it.")]
+is on the axis of its joint. Friction is written at the joint: G² B and |G| Tc
+of its motor. A URDF cannot store gravity, so a note reports it if it is not
+[0, 0, -9.81] in `world`.")]
 pub(crate) struct Arguments {
     /// The robot file; - is standard input
     #[arg(value_name = "FILE")]
@@ -28,10 +28,10 @@ pub(crate) struct Arguments {
     /// The format: URDF
     #[arg(long, required = true)]
     urdf: bool,
-    /// Where to write it; standard output, unless given, or where it is -
+    /// File to write; - or no option: standard output
     #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Overwrite a file that is there
+    /// Overwrite an existing file
     #[arg(long, requires = "out")]
     force: bool,
 }

@@ -34,18 +34,18 @@ Then, in the folder:
   sudo apt-get install --yes qemu-system-arm
   cargo run --release
 
-The folder must be empty or not there yet: nothing is overwritten.")]
+The folder must be empty or must not exist: nothing is overwritten.")]
 pub(crate) struct Arguments {
-    /// The firmware's name, as cargo takes it: letters, digits, - and _
+    /// Name of the firmware crate: letters, digits, - and _
     #[arg(value_name = "NAME", value_parser = name)]
     name: String,
     /// Robot file, or a shipped robot [default: the shipped robot NAME, else puma560]
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// The folder to write, instead of NAME
+    /// Folder to write [default: NAME]
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Take rne from this folder, a clone of its repository, and not from the registry
+    /// Folder with a clone of the rne repository, used instead of the registry
     #[arg(long, value_name = "PATH")]
     rne_path: Option<PathBuf>,
 }
@@ -75,7 +75,7 @@ fn name(text: &str) -> Result<String, String> {
         return Err("a crate's name has letters, digits, - and _, 64 at most, and starts with a letter".to_owned());
     }
     if TAKEN.contains(&text.replace('_', "-").as_str()) {
-        return Err("this name is taken; another will do, such as torque".to_owned());
+        return Err("this name is reserved; choose another, such as torque".to_owned());
     }
     Ok(text.to_owned())
 }
@@ -118,10 +118,10 @@ fn is_free(folder: &Path) -> Result<(), Failure> {
         Ok(true) => Ok(()),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
         Ok(false) => Err(Failure::usage(format_args!(
-            "{shown} is not empty and stays as it is; name another folder with {TYPED}-o FOLDER{TYPED:#}"
+            "{shown} is not empty and is not changed; name another folder with {TYPED}-o FOLDER{TYPED:#}"
         ))),
         Err(error) if error.kind() == ErrorKind::NotADirectory => Err(Failure::usage(format_args!(
-            "{shown} is no folder and stays as it is; name another with {TYPED}-o FOLDER{TYPED:#}"
+            "{shown} is not a folder and is not changed; name another with {TYPED}-o FOLDER{TYPED:#}"
         ))),
         Err(error) => Err(unreadable(folder, &error)),
     }
@@ -137,7 +137,7 @@ fn dependency(clone: Option<&Path>) -> Result<String, Failure> {
     let path = std::path::absolute(clone).ok().filter(|_| is_rne);
     let path = path.as_deref().and_then(Path::to_str).ok_or_else(|| {
         Failure::usage(format_args!(
-            "{} is no clone of rne's repository, whose Cargo.toml has the package rne; name the folder of one",
+            "{} is not a clone of the rne repository, whose Cargo.toml contains the package rne; name the folder of a clone",
             clone.display()
         ))
     })?;

@@ -23,7 +23,7 @@ use crate::values::numbers::rounded;
 /// States of a picture.
 const DRAWN: u64 = 4000;
 
-/// Identify links and friction of an arm from its logs
+/// Identify link parameters and friction of an arm from its logs
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -32,34 +32,34 @@ Examples:
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
-    /// Robot file: the geometry
+    /// Robot file with the geometry of the arm
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Logs: bags of ROS 2, MCAP, Parquet, CSV, npy
+    /// Logs: ROS 2 bags, MCAP, Parquet, CSV, npy
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
-    /// Inertia of the motors' rotors, too
+    /// Identify the rotor inertia of the motors, too
     #[arg(long)]
     rotors: bool,
-    /// No friction, also none of FILE in what is predicted
+    /// Assume no friction; ignore the friction of FILE
     #[arg(long)]
     no_friction: bool,
-    /// Pull to FILE's links, or to plausible ones
+    /// Regularization to FILE's links
     #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = pull)]
     pull: f64,
-    /// Judge on this last part of the logs: 0.3
+    /// Compute errors on this last part, such as 0.3
     #[arg(long, value_name = "PART", value_parser = part, conflicts_with = "judge")]
     hold_out: Option<f64>,
-    /// Identify nothing; judge FILE on the logs
+    /// Only compute the errors of FILE on the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
     judge: bool,
-    /// Draw measured and predicted torques, as SVG
+    /// Plot measured and predicted torques (SVG)
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// The robot file that is written; `-`: standard output
+    /// Robot file to write; - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Overwrite files that are there
+    /// Overwrite existing files
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff);
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
     if arguments.judge {
-        text += &judged(&robot, &log, Part::All, &Identification::not_excited(&robot), "prediction of the log")?;
+        text += &judged(&robot, &log, Part::All, &Identification::not_excited(&robot), "errors on the log")?;
         draw(arguments, &robot, &log, Part::All, &sources, &mut remark)?;
         return Ok(Outcome { text, remark, ..Outcome::default() });
     }
@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let found = identify(&robot, options, arguments.pull, |take| log.pass(training, take))?;
     text += &account(&found, &log);
     if let Some(part) = held {
-        text += &judged(&found.robot, &log, part, &unknown(&found), "held-out part of the log")?;
+        text += &judged(&found.robot, &log, part, &unknown(&found), "errors on the held-out part of the log")?;
     }
     draw(arguments, &found.robot, &log, held.unwrap_or(Part::All), &sources, &mut remark)?;
     for what in warnings(&found) {
@@ -107,10 +107,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     if !found.is_anything_excited() {
         let not_written = match &arguments.output {
-            Some(path) => format!(", and {} is not written", one_line(&path.display().to_string())),
+            Some(path) => format!(", so {} is not written", one_line(&path.display().to_string())),
             None => String::new(),
         };
-        let what = format!("nothing is excited: the log tells no link and no friction of this arm{not_written}");
+        let what = format!("nothing is excited: the log determines no link and no friction of this arm{not_written}");
         let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, PAGE - 9, "         "));
         return Ok(Outcome { text, remark, at_fault: true });
     }
@@ -132,20 +132,20 @@ fn warnings(found: &Identification) -> Vec<String> {
         let (name, unit) = (one_line(&joint.name), joint.row.kind.effort_unit());
         if let Some(rejected) = report.rejected {
             said.push(format!(
-                "{} of {} rows of {name} are far from all others and do not count, the first at {:.2} s: did somebody \
-                 push the arm, or did a sensor fail?",
+                "{} of {} rows of {name} are outliers and are ignored, the first at {:.2} s: did somebody push the arm, \
+                 or did a sensor fail?",
                 rejected.rows, found.rows, rejected.time
             ));
         }
         if report.is_unexplained() {
             said.push(format!(
-                "no model of the arm explains the efforts of {name}: are they noise, of another sign, or those of \
-                 another joint, and is FILE of this arm?"
+                "no model of the arm explains the efforts of {name}: are they noise, of opposite sign, or of another \
+                 joint, and does FILE describe this arm?"
             ));
         } else if let Some((offset, coulomb)) = report.offset {
             said.push(format!(
-                "{name} has an offset of {} {unit}, a spring, a counterweight or a sensor: a robot file holds none \
-                 above Coulomb friction, which is {}, so what it predicts is off by the rest",
+                "{name} has an offset of {} {unit} (a spring, a counterweight or a sensor): a robot file cannot store more \
+                 than Coulomb friction, which is {}, so predictions are wrong by the rest",
                 rounded(offset, 3),
                 rounded(coulomb, 3)
             ));
@@ -199,24 +199,24 @@ fn account(found: &Identification, log: &MotionLog) -> String {
     };
     let _ = writeln!(
         text,
-        "{of_links} base parameters of the links{rotors}, {excited} of them excited; condition {}",
+        "{of_links} base parameters of the links{rotors}, {excited} of them excited; condition number {}",
         rounded(found.least_squares.condition, 0)
     );
     let certificate = &found.feasible.certificate;
     let _ = writeln!(
         text,
-        "{QUIET}{} rows a joint of {:.1} s, {} stretches; every link is a body, margin {:.1e}{QUIET:#}",
+        "{QUIET}{} rows per joint over {:.1} s, {} segments; every link is a physical body, margin {:.1e}{QUIET:#}",
         found.rows, found.duration, found.least_squares.segments, certificate.margin
     );
     if let Some((delay, deviation)) = found.delay {
         let _ = writeln!(
             text,
-            "{QUIET}torques lag by {:.1} ± {:.1} ms behind the positions{QUIET:#}",
+            "{QUIET}torques lag {:.1} ± {:.1} ms behind the positions{QUIET:#}",
             1e3 * delay,
             1e3 * deviation
         );
     }
-    let mut cells = vec![["  parameter", "value", "", "deviation", "", "in the file", "unit"].map(str::to_owned)];
+    let mut cells = vec![["  parameter", "value", "", "deviation", "", "written", "unit"].map(str::to_owned)];
     for (base, report) in found.structure.parameters().bases.iter().zip(&found.bases) {
         let unit = found.structure.unit(base.kept).to_owned();
         let (value, deviation, percent) = if report.is_excited() {
@@ -230,16 +230,16 @@ fn account(found: &Identification, log: &MotionLog) -> String {
         cells.push([name, value, "±".to_owned(), deviation, percent, rounded(report.written, 4), unit]);
     }
     let align = [Align::Left, Align::Right, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
-    push_table(&mut text, "base parameters, by least squares and as the links are written", &align, &cells);
+    push_table(&mut text, "base parameters: by least squares, and as written to the robot file", &align, &cells);
     friction(&mut text, found);
     inertia_of_rotors(&mut text, found);
     let errors: Vec<JointError> = found.joints.iter().map(|joint| joint.error).collect();
-    text += &errors_table(&found.robot, log, &errors, &unknown(found), "what is left of the log");
+    text += &errors_table(&found.robot, log, &errors, &unknown(found), "errors on the log");
     text
 }
 
 fn friction(text: &mut String, found: &Identification) {
-    let heading = ["  joint", "viscous", "Coulomb +", "Coulomb -", "turns in"].map(str::to_owned);
+    let heading = ["  joint", "viscous", "Coulomb +", "Coulomb -", "transition"].map(str::to_owned);
     let mut cells = vec![heading];
     for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
         let Some(friction) = report.friction else { return };
@@ -268,7 +268,7 @@ fn friction(text: &mut String, found: &Identification) {
         (false, true) => "N s/m, N",
         (true, true) => "N m s/rad, N m or N s/m, N",
     };
-    let title = format!("friction at the joint, {units}; turns in a speed or a way");
+    let title = format!("friction at the joint, {units}; transition: speed or displacement");
     push_table(text, &title, &align, &cells);
 }
 
@@ -293,7 +293,7 @@ fn inertia_of_rotors(text: &mut String, found: &Identification) {
         };
         let known = bases().find(|(base, _)| base.kept == rne_identify::Parameter::Rotor(at)).map(|(_, of)| of);
         let said = match known {
-            None => format!("one with {link} of links: any part of their sum"),
+            None => format!("not separable from the {link} of links"),
             Some(base) if base.is_excited() => String::new(),
             Some(_) => "not excited".to_owned(),
         };
@@ -340,7 +340,7 @@ fn draw(
     let side = |of: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
         pairs.iter().map(|pairs: &Vec<(f64, f64)>| pairs.iter().map(of).collect()).collect()
     };
-    let about = format!("{}, both sides behind a low-pass of {:.1} Hz", log.words(), log.cutoff);
+    let about = format!("{}, both low-passed at {:.1} Hz", log.words(), log.cutoff);
     let svg = comparison_svg(robot, &time, &side(|pair| pair.0), &side(|pair| pair.1), &about);
     *remark += &output_file::write_new(path, &svg, sources, arguments.force)?;
     Ok(())

@@ -16,7 +16,7 @@ use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
 use crate::values::choice::{convention, robot_name};
 
-/// Make a robot file of an arm in a URDF
+/// Convert an arm in a URDF to a robot file
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -24,45 +24,45 @@ Examples:
   rne import puma.urdf --convention modified     to the terminal
   rne import puma.urdf --name puma -o puma.yaml
 
-An arm with more than one end: --base torso_lift_link --tip arm_tool_link; with
-joints beside the chain: --lock torso_lift_joint=0.1 --lock-others.
+For an arm with several ends: --base torso_lift_link --tip arm_tool_link; with
+joints outside the chain: --lock torso_lift_joint=0.1 --lock-others.
 
-What is fixed to a link is lumped into it. Angles within 2e-4 rad of a multiple
-of pi/12 are taken for it, and what that changes is told. The robot file goes to
-standard output, the account to standard error, unless -o names a file.")]
+Links fixed to a link become part of it. Angles within 2e-4 rad of a multiple of
+pi/12 are replaced by it, and the resulting change is reported. Without -o the
+robot file goes to standard output and the report to standard error.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// The URDF; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The link that stands still; the root, unless given
+    /// Fixed link at the base [default: the root]
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
-    /// The link at the end of the arm; needed where there are several
+    /// Link at the end of the arm; required if there are several
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
-    /// The rows of the table, standard or modified
+    /// Convention of the table, standard or modified
     #[arg(long, value_name = "C", value_parser = convention(), default_value = "standard", hide_possible_values = true)]
     convention: Convention,
-    /// Hold a movable joint still, at rad or m, such as finger=0.04
+    /// Lock a movable joint at this position, rad or m, such as finger=0.04
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
     lock: Vec<(String, f64)>,
-    /// Hold every other movable joint off the chain at zero
+    /// Lock all other joints outside the chain at zero
     #[arg(long)]
     lock_others: bool,
-    /// Take angles as they are, 1.5708 as 1.5708
+    /// Keep rounded angles: 1.5708 stays 1.5708
     #[arg(long)]
     no_snap: bool,
-    /// Take inertias that no body has
+    /// Accept inertias that no physical body has
     #[arg(long)]
     keep_unphysical: bool,
-    /// The name of the robot; that of the URDF, unless given
+    /// Name of the robot [default: as in the URDF]
     #[arg(long, value_parser = robot_name)]
     name: Option<String>,
-    /// Where to write the robot file; standard output, unless given
+    /// Robot file to write [default: standard output]
     #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Overwrite a file that is there
+    /// Overwrite an existing file
     #[arg(long, requires = "out")]
     force: bool,
 }
@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
 fn lock(text: &str) -> Result<(String, f64), String> {
     let (joint, value) = text.rsplit_once('=').ok_or("write JOINT=VALUE, such as finger=0.04")?;
     let value = rne_model::number(value.trim())
-        .map_err(|mistake| format!("`{value}` is no number: {}; write such as {joint}=0.04", mistake.message))?;
+        .map_err(|mistake| format!("`{value}` is not a number: {}; write for example {joint}=0.04", mistake.message))?;
     Ok((joint.to_owned(), value))
 }
 

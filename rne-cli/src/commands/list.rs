@@ -10,7 +10,7 @@ use crate::render::heading::about;
 use crate::render::layout::{left, shortened, width};
 use crate::terminal;
 
-/// List the shipped robots, which every command knows by name
+/// List the shipped robots; every command accepts their names
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -18,7 +18,7 @@ Examples:
   rne show panda                       a robot of the list, by its name
   rne example panda > my_panda.yaml    its file, to change it
 
-A file of that name comes first. In a crate: #[robot(builtin = \"panda\")].")]
+A file with the same name takes precedence. In a crate: #[robot(builtin = \"panda\")].")]
 pub(crate) struct Arguments {}
 
 pub(crate) fn run(_: &Arguments) -> Result<Outcome, Failure> {

@@ -19,7 +19,7 @@ use crate::palette::GOOD;
 use crate::render::log_report::{self, Reply};
 use crate::values::log_arguments::{LogArguments, failure};
 
-/// Say what a log of an arm has; filter it, with accelerations
+/// Describe a log of an arm; filter it and add accelerations
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -27,23 +27,23 @@ Examples:
   rne log docs/desk_arm_log.csv --cutoff 4 -o motion.csv
   rne log docs/desk_arm_log.csv --robot docs/desk_arm.yaml --json
 
-CSV, npy; with their features bags of ROS 2 (*.db3, *.mcap) and Parquet. Their
-columns: docs/logs.md.")]
+Formats: CSV and npy; ROS 2 bags (*.db3, *.mcap) and Parquet if rne was built
+with these features. docs/logs.md describes the columns.")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
-    /// Files, one behind another; of a folder the bags inside
+    /// Files in order of time, or folders of bags
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The joints of this robot file, by name
+    /// Select the joints of this robot file
     #[arg(long, value_name = "FILE", conflicts_with = "joints")]
     robot: Option<PathBuf>,
-    /// Write the filtered motion as CSV; `-`: standard output
+    /// Filtered motion (CSV); - is standard output
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Overwrite a file that is there
+    /// Overwrite an existing file
     #[arg(long, requires = "out")]
     force: bool,
-    /// What the log has, as JSON
+    /// Print the description as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -104,7 +104,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         write_file(&log, &survey, path)?
     };
     if states == 0 {
-        let what = format!("{}: nothing is left behind the filter", arguments.files[0].display());
+        let what = format!("{}: no sample is left after the filter", arguments.files[0].display());
         return Err(Failure::input(what));
     }
     let remark = if is_result_shown {

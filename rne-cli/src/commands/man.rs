@@ -15,10 +15,10 @@ use crate::palette::TYPED;
 #[command(after_help = "\
 Examples:
   rne man | man -l -                     read it
-  rne man eval | man -l -                that of a command
+  rne man eval | man -l -                the page of a command
   rne man -o ~/.local/share/man/man1     all pages, for `man rne-eval`")]
 pub(crate) struct Arguments {
-    /// The command whose page it is, instead of rne itself
+    /// Command to describe, instead of rne itself
     #[arg(value_name = "COMMAND", conflicts_with = "output")]
     command: Option<String>,
     /// Write the pages of rne and of every command into this folder

@@ -44,12 +44,12 @@ use crate::palette::{HELP_STYLES, TITLE, TYPED};
 #[command(max_term_width = 80, help_template = page())]
 #[command(after_help = "\
 Examples:
-  rne check robots/*.yaml                   are the files in order?
+  rne check robots/*.yaml                   check files
   rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
-  rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
+  rne emit robots/puma560.yaml --lang c     C99 that needs no library
 
-FILE: a robot file or a name of `rne list`. Exits: `rne explain exit-status`.
-Without a command, a tour: the PUMA 560 from its table to its torques.")]
+FILE is a robot file or a name from `rne list`. Exit statuses: `rne explain
+exit-status`. Without a command rne prints a tour of the PUMA 560.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,

@@ -17,25 +17,25 @@ use crate::values::choice::{convention, robot_name};
 #[command(after_help = "\
 Examples:
   rne new elbow --dof 6                      writes elbow.yaml
-  rne new scara --dof 4 --prismatic 3 -o -   to the terminal; joint 3 slides
+  rne new scara --dof 4 --prismatic 3 -o -   to the terminal; joint 3 prismatic
   rne new wrist --dof 3 --convention modified
 
-The file is valid as it stands: slender links of 0.3 m and 1 kg. Put your
-numbers in their place.")]
+The file is valid: its links are slender, 0.3 m long, with 1 kg each. Replace
+their numbers by yours.")]
 pub(crate) struct Arguments {
     /// The robot's name: small letters, digits and underscores
     #[arg(value_name = "NAME", value_parser = robot_name)]
     name: String,
-    /// How many joints it has, 1 to 64
+    /// Number of joints, 1 to 64
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     dof: u8,
-    /// Joints that slide, counted from 1 at the base
+    /// Prismatic joints, counted from 1 at the base
     #[arg(long, value_name = "I,…", value_delimiter = ',')]
     prismatic: Vec<u8>,
-    /// Which Denavit-Hartenberg convention the table follows
+    /// Denavit-Hartenberg convention of the table
     #[arg(long, value_parser = convention(), default_value = "standard")]
     convention: Convention,
-    /// Where to write it, instead of NAME.yaml; - is standard output
+    /// File to write [default: NAME.yaml]; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Existing::Unreadable(error) => return Err(unreadable(&path, &error)),
         Existing::Folder | Existing::Special | Existing::Text(_) | Existing::Other => {
             return Err(Failure::usage(format_args!(
-                "{shown} is there already and stays as it is; name another file with {TYPED}-o FILE{TYPED:#}"
+                "{shown} exists and is not changed; name another file with {TYPED}-o FILE{TYPED:#}"
             )));
         }
     }

@@ -24,33 +24,33 @@ use crate::values::choice;
 Examples:
   rne ops robots/puma560.yaml robots/scara_cobra600.yaml
   rne ops robots/*.yaml --json --function mass_matrix,forward_dynamics
-  rne ops robots/puma560.yaml --tricks             what each trick saves
-  rne ops robots/puma560.yaml --without gyrostat   the reduced form without it
+  rne ops robots/puma560.yaml --tricks             savings of each trick
+  rne ops robots/puma560.yaml --without gyrostat   reduced form without it
 
 A subtraction counts as an addition, a negation is free, x·x is one
 multiplication, and sincos counts the angles whose sine or cosine is used;
-divisions have a column where there are any, and are not in the total. Before
-folding: as a loop over 3-vectors performs it. actuator_torques is listed where
-the robot has motors.")]
+divisions have a column if there are any, and are not in the total. `before
+folding` is a loop over 3-vectors. actuator_torques is listed if the robot has
+motors.")]
 pub(crate) struct Arguments {
     /// Robot files
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// These functions only; may be repeated: `rne explain functions`
+    /// Functions to count; may be repeated; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function(),
         hide_possible_values = true,
         conflicts_with = "tricks")]
     functions: Vec<Function>,
     #[command(flatten)]
     rotors: Rotors,
-    /// A list of {robot, function, form, mul, add, div, sincos, statements}
+    /// Print JSON: a list of {robot, function, form, mul, add, div, sincos, statements}
     #[arg(long)]
     json: bool,
-    /// What each trick of the reduced form saves in `inverse_dynamics`, with its formula
+    /// Print what each trick of the reduced form saves in `inverse_dynamics`, and its formula
     #[arg(long, conflicts_with_all = ["json", "without"])]
     tricks: bool,
-    /// Leave these tricks out of the reduced form: `rne explain tricks`; the other choices of its plan stay, but a
-    /// graph that was rewritten with them is left out too
+    /// Leave these tricks out of the reduced form; see `rne explain tricks`. A rewritten graph of the plan is not used
+    /// then
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = choice::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,

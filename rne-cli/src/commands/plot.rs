@@ -16,7 +16,7 @@ use crate::palette::{QUIET, TYPED};
 use crate::render::layout::{Align, columns};
 use crate::values::numbers::{exact, rounded};
 
-/// Draw torques along a trajectory, with their parts
+/// Plot torques along a trajectory, with their parts
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -24,28 +24,28 @@ Examples:
   rne plot planar2 --duration 0.8 > planar2.svg
   rne plot planar2 --csv > torques.csv
 
-A trajectory is CSV with columns t, q1, …, qd1, …, qdd1, …: s; rad or m, and
-per second. Without qd and qdd each joint moves on the parabola through a
-sample and its neighbours. Without a trajectory all joints go from a quarter to
-three quarters of the way between their limits, from rest to rest, by a
-polynomial of fifth degree; in 2 s, or longer where speed limits ask for it.
-The tip is free; friction is no part of the torques, rotors are with --rotors.")]
+A trajectory is CSV with columns t, q1, …, qd1, …, qdd1, … in s, rad or m, and
+per second. Without qd and qdd they follow from the parabola through a sample
+and its neighbours. Without a trajectory all joints move from a quarter to three
+quarters of the way between their limits, from rest to rest, in 2 s, or longer
+if speed limits require it. The tip is free. Torques do not include friction;
+they include rotors with --rotors.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
-    /// The motion, as CSV; between two postures, unless given
+    /// Motion as CSV [default: between two postures]
     #[arg(long, value_name = "CSV", conflicts_with = "duration")]
     trajectory: Option<PathBuf>,
     /// Seconds from one posture to the other
     #[arg(long, value_name = "S", value_parser = duration)]
     duration: Option<f64>,
-    /// The numbers as CSV instead of a picture
+    /// Print numbers as CSV instead of a picture
     #[arg(long)]
     csv: bool,
-    /// The file that is written; standard output, unless given, or where it is -
+    /// File to write; - or no option: standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Overwrites a file that is there
+    /// Overwrite an existing file
     #[arg(long, requires = "output")]
     force: bool,
 }

@@ -27,7 +27,7 @@ pub(crate) fn errors_table(
     unknown: &[bool],
     title: &str,
 ) -> String {
-    let mut heading = ["  joint", "error", "unfiltered", "left", ""].map(str::to_owned).to_vec();
+    let mut heading = ["  joint", "error", "unfiltered", "residual", ""].map(str::to_owned).to_vec();
     heading.extend(SPEEDS.map(|speed| format!("≤ {speed}")));
     heading.push("faster".to_owned());
     let mut cells = vec![heading];
@@ -61,8 +61,8 @@ pub(crate) fn errors_table(
     align.push(Align::Left);
     let lines = columns(&align, &cells);
     let about = format!(
-        "root mean square of measured - predicted over the effort's deviation; error: both behind {:.1} Hz; \
-         unfiltered: efforts as the log has them, {} of {} states; left: by speed, too",
+        "error: RMS of measured - predicted over the effort's standard deviation, both low-passed at {:.1} Hz; \
+         unfiltered: the same with raw efforts, {} of {} states; residual: RMS, then by joint speed in rad/s or m/s",
         log.cutoff,
         errors.iter().map(|error| error.states).max().unwrap_or_default(),
         log.states()

@@ -18,20 +18,20 @@ Examples:
   rne report puma560 -o puma560.html
   rne report robots/planar2.yaml -o planar2.html --force
 
-One file of HTML for a browser, without a network: the arm in 3-D, the seven
-steps joint by joint, each component as equation, numbers, what folded away
-and why, and code, linked with the vector on the arm; torques over a motion;
-exercises. docs/teaching.md shows how to use it.")]
+The page is one HTML file that needs no network. It shows the arm in 3-D and the
+seven steps joint by joint: each component as equation, numbers and code, with
+the terms that vanish and why, linked with the vector on the arm; torques over a
+motion; exercises. docs/teaching.md describes how to use it.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Where to write the page; - is standard output
+    /// Page to write; - is standard output
     #[arg(short, long = "output", value_name = "OUT.html")]
     out: PathBuf,
-    /// Overwrite a file that is there
+    /// Overwrite an existing file
     #[arg(long)]
     force: bool,
 }

@@ -24,7 +24,7 @@ use crate::palette::{FOUND, GOOD, QUIET, TYPED};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
-/// Look for a reduced form with fewer operations; keep its plan
+/// Search for a reduced form with fewer operations; keep its plan
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -32,24 +32,23 @@ Examples:
   rne search robots/puma560.yaml --seconds 300 --rewrite   and rewrite the graph
   rne search robots/puma560.yaml --seconds 600 --rewrite --function all
 
-Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs
-no search. A search goes on from the plan that is there, and what it writes is
-never worse, but that a plan that has lost much precision in f32 may give way to
-a dearer one. Ctrl-C ends it and keeps the best; a second one ends it at once,
-with status 130. Every form that is found is proved identical to the seven steps
-before it is written.")]
+The result is NAME.plan.yaml next to NAME.yaml; every later build uses it
+without a search. A search continues from an existing plan and never writes a
+worse one, except that a plan with a large loss of precision in f32 may be
+replaced by one with more operations. Ctrl-C ends the search and keeps the best;
+a second Ctrl-C ends it at once, with status 130. Every form is proved identical
+to the seven steps before it is written.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// How long to search
+    /// Duration of the search
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
     seconds: f64,
-    /// Rewrite the graphs of the best plans too; a graph is kept where that saves operations
+    /// Also rewrite the graphs of the best plans; a graph that saves operations is kept
     #[arg(long)]
     rewrite: bool,
-    /// Rewrite these functions instead of inverse_dynamics, or `all` that have a reduced form; may be repeated:
-    /// `rne explain functions`
+    /// Rewrite these functions instead of inverse_dynamics, or `all`; may be repeated; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true,
         requires = "rewrite")]
@@ -57,8 +56,7 @@ pub(crate) struct Arguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Replace a plan that does not belong to the robot any more, or cannot be read; one that does is kept where it is
-    /// better
+    /// Replace a plan that cannot be read or belongs to another robot; a valid plan that is better is kept
     #[arg(long)]
     fresh: bool,
 }
@@ -72,12 +70,12 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if is_stream(&arguments.file) {
-        return Err(Failure::usage("a search writes its plan beside the robot file, so it needs a file"));
+        return Err(Failure::usage("a search writes its plan next to the robot file, so it needs a file"));
     }
     if let Some(shipped) = robot_file::of_a_name(&arguments.file) {
         let name = shipped.name;
         return Err(Failure::usage(format_args!(
-            "a search writes its plan beside the robot file, so it needs a file: {TYPED}rne example {name} > \
+            "a search writes its plan next to the robot file, so it needs a file: {TYPED}rne example {name} > \
              {name}.yaml{TYPED:#}"
         )));
     }
@@ -143,8 +141,7 @@ impl Searched<'_> {
             return Ok(());
         }
         Err(Failure::input(format_args!(
-            "{} has changed during the search: what was found is of the arm as it was, so {} is not written. Search \
-             again",
+            "{} has changed during the search: the result is for the old file, so {} is not written. Search again",
             self.file.display(),
             plan_of(self.file).display()
         )))
@@ -154,7 +151,7 @@ impl Searched<'_> {
 /// Why nothing is written in the place of a plan that has appeared or changed during the search.
 fn meanwhile(path: &Path, failure: &Failure) -> Failure {
     let text = format!(
-        "{}\n\n{} has changed during the search, and stays as it is; what was found is not written",
+        "{}\n\n{} has changed during the search and is kept; the result is not written",
         failure.text.trim_end(),
         path.display()
     );

@@ -24,21 +24,21 @@ use crate::render::layout::PAGE;
 use crate::render::letters::Letters;
 use crate::values::choice::{self, Kept};
 
-/// Show the generated code step by step, what was folded, and why
+/// Show the generated code step by step, and the terms that vanish
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne show robots/puma560.yaml --joint 2 --step 4
-  rne show robots/planar2.yaml --step 3            what no torque needs
+  rne show robots/planar2.yaml --step 3            not used by torques
   rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
   rne show robots/puma560.yaml --function mass_matrix --form reduced
-  rne show robots/puma560.yaml --base-parameters   what the torques can see
-  rne show puma560 --joint 2 --step 1 --equations  of what the code is left
-  rne show puma560 --json                          all of it, for programs
-  rne show robots/planar2.yaml --symbolic          τ = M θ̈ + h + γ in letters
+  rne show robots/puma560.yaml --base-parameters   link parameters that count
+  rne show puma560 --joint 2 --step 1 --equations  equations before folding
+  rne show puma560 --json                          data for programs
+  rne show robots/planar2.yaml --symbolic          τ = M θ̈ + h + γ in symbols
   rne show robots/stanford.yaml --first 3 --latex > stanford.tex
 
-`rne explain w2_z puma560` tells what a name in the code is.")]
+`rne explain w2_z puma560` explains a name in the code.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -51,28 +51,28 @@ pub(crate) struct Arguments {
     /// One of the seven steps only
     #[arg(long, value_name = "S", value_parser = choice::step)]
     step: Option<Step>,
-    /// seven_steps, unless given, or reduced, the shortest
+    /// seven_steps (default) or reduced, the shortest
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true, hide_default_value = true)]
     form: Form,
-    /// Torques, unless given; others: `rne explain functions`
+    /// Function; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true,
         default_value = Function::InverseDynamics.name(), hide_default_value = true)]
     function: Function,
-    /// Compute these, needed or not: `rne explain quantities`
+    /// Keep unused quantities: `rne explain quantities`
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',', hide_possible_values = true)]
     keep: Vec<Kept>,
-    /// Leave tricks out of reduced: `rne explain tricks`
+    /// Leave these tricks out: `rne explain tricks`
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = choice::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,
-    /// By component: equation, what is gone and why, code
+    /// Show equation, vanished terms and code
     #[arg(long, conflicts_with_all = ["keep", "without"])]
     equations: bool,
-    /// The same as JSON: docs/inspection.md
+    /// Print JSON, described in docs/inspection.md
     #[arg(long, conflicts_with_all = ["joint", "step", "keep", "without", "equations"])]
     json: bool,
-    /// Instead of code: what of the links the torques can see
+    /// List the link parameters that torques depend on
     #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without", "equations",
         "json"])]
     base_parameters: bool,
@@ -139,7 +139,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let _ = writeln!(
             text,
             "{QUIET}a rewritten graph has no steps; {QUIET:#}{TYPED}--without rewriting{TYPED:#}{QUIET} shows the \
-             recursion behind it{QUIET:#}"
+             recursion instead{QUIET:#}"
         );
     }
     if let Some(proof) = &program.proof {
@@ -158,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     text.push('\n');
     let listing = rne_emit::listing(&robot, &program, what);
     if listing.is_empty() {
-        let _ = writeln!(text, "{QUIET}nothing of {} stands there{QUIET:#}", program.function);
+        let _ = writeln!(text, "{QUIET}no code of {} is there{QUIET:#}", program.function);
     }
     text.push_str(&highlight::listing(&listing, letters));
     Ok(Outcome::text(text))
@@ -176,7 +176,7 @@ fn inspected(arguments: &Arguments, robot: &Robot) -> Result<Outcome, Failure> {
         Form::Reduced if arguments.json => Compiler::new(&arguments.file, robot).compile(function, form)?,
         Form::Reduced => {
             return Err(Failure::usage(format_args!(
-                "only the seven steps have equations to fold; `rne explain tricks` tells what the form {form} does"
+                "only the seven steps have equations to fold; `rne explain tricks` explains the form {form}"
             )));
         }
     };

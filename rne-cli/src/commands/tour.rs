@@ -50,8 +50,8 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
         &mut text,
         4,
         "What the whole robot costs",
-        "On the left the recursion as a loop over 3-vectors performs it; on the right the generated code. \
-         The functions that leave velocities or accelerations out are compiled for themselves.",
+        "Left: the recursion as a loop over 3-vectors. Right: the generated code. Functions without velocities \
+         or accelerations are compiled separately.",
     );
     let path = Path::new(NAME);
     let compiler = Compiler::built_in(path, &robot, file.plan.unwrap_or_default())?;
@@ -70,10 +70,10 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
 }
 
 fn opening() -> String {
-    let about = "A robot's Denavit-Hartenberg table and the masses of its links go in. Out comes recursive \
-                 Newton-Euler, the seven steps of the lecture, written out for this one robot: straight-line Rust \
-                 without loops, branches or matrices, and without a single product by zero. All that follows is \
-                 computed as you read it.";
+    let about = "The input is a robot's Denavit-Hartenberg table with the masses of its links. The output is recursive \
+                 Newton-Euler, the seven steps of the lecture, written for this one robot: straight-line Rust without \
+                 loops, branches or matrices, and without a single product by zero. This command computes all that \
+                 follows.";
     format!("{TITLE}rne, the dynamics compiler for robot arms{TITLE:#}\n\n{}\n", wrap(about, terminal::width(PAGE), ""))
 }
 
@@ -94,10 +94,10 @@ fn joints(text: &mut String, robot: &Robot, program: &Program) {
     chapter(
         text,
         2,
-        "Joint 1: nearly everything folds",
+        "Joint 1: nearly every term vanishes",
         &format!(
             "The base does not move and joint 1 is vertical: of {operations} operations {statements} statements \
-             remain. What became of the rest stands below each formula."
+             remain. Below each formula is what became of the rest."
         ),
     );
     code(text, robot, program, 1, &Step::ALL);
@@ -108,7 +108,7 @@ fn joints(text: &mut String, robot: &Robot, program: &Program) {
         "Joint 2: the seven steps, component by component",
         &format!(
             "{operations} operations, {statements} statements: w is ω, dw is ω̇, ddc is c̈, f1_2 and n1_2 are what \
-             link 1 exerts on link 2. Step 3, the velocity, is gone: no torque needs it."
+             link 1 exerts on link 2. Step 3, the velocity, is left out: no torque needs it."
         ),
     );
     let steps: Vec<Step> = Step::ALL.into_iter().filter(|&step| step != Step::Velocity).collect();
@@ -161,12 +161,12 @@ fn torques(robot: &Robot, generated: &[f64], runtime: &[f64]) -> String {
 
 fn next() -> String {
     let lines = [
-        ("show puma560 --joint 3", "any joint, every reason"),
+        ("show puma560 --joint 3", "any joint, with every reason"),
         ("show planar2", "a robot for the blackboard"),
-        ("eval planar1 --q 0.6 --qd 1 --qdd 0 --trace", "its worksheet"),
-        ("ops ur5", "what every function costs"),
-        ("emit puma560", "a file that stands alone"),
-        ("list", "the robots that are known by name"),
+        ("eval planar1 --q 0.6 --qd 1 --qdd 0 --trace", "a worksheet of numbers"),
+        ("ops ur5", "operations of every function"),
+        ("emit puma560", "a file without dependencies"),
+        ("list", "the shipped robots"),
         ("--help", "all commands"),
     ];
     // in the repository, `cargo run` starts it; cargo tells what it runs which package that is

@@ -26,40 +26,41 @@ const SHOWN: usize = 40;
 /// States of a picture.
 const DRAWN: u64 = 20_000;
 
-/// Watch an arm by its logs: torques that its file does not explain
+/// Find torques in logs that the robot file does not explain
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv --json
 
-Exit status 1: there are events, or the model explains nothing: docs/watch.md.")]
+Exit status 1: there are events, or the model explains nothing of some joint.
+docs/watch.md explains the tests.")]
 pub(crate) struct Arguments {
-    /// Robot file, with friction: what `rne identify` wrote
+    /// Robot file with friction, from `rne identify`
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Logs: bags of ROS 2, MCAP, Parquet, CSV, npy
+    /// Logs: ROS 2 bags, MCAP, Parquet, CSV, npy
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
-    /// A log in which nothing happens: what is usual
+    /// Log without disturbances; sets the thresholds
     #[arg(long, value_name = "LOG")]
     quiet: Vec<PathBuf>,
-    /// Of the momentum observer, Hz
+    /// Gain of the momentum observer, Hz
     #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero)]
     gain: f64,
-    /// How long an external torque lasts at least, s
+    /// Shortest external torque to report, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero)]
     hold: f64,
-    /// False alarms in an hour, of all joints together
+    /// Permitted false alarms per hour, all joints
     #[arg(long, value_name = "RATE", default_value_t = 0.01, value_parser = above_zero)]
     false_alarms: f64,
-    /// Draw residuals, external torques and events, as SVG
+    /// Plot residuals and events (SVG)
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// Overwrite a file that is there
+    /// Overwrite an existing file
     #[arg(long, requires = "plot")]
     force: bool,
-    /// Events and errors as JSON
+    /// Print events and errors as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -91,8 +92,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     if let Some(both) = arguments.quiet.iter().find(|quiet| arguments.logs.iter().any(|log| is_within(log, quiet))) {
         return Err(Failure::usage(format_args!(
-            "{} is also watched: what is usual comes from a log in which nothing happens, so name another log after \
-             {TYPED}--quiet{TYPED:#}, or leave the option out",
+            "{} is also watched: {TYPED}--quiet{TYPED:#} needs another log, without disturbances, so name one or leave \
+             the option out",
             one_line(&both.display().to_string())
         )));
     }
@@ -118,7 +119,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let picture = svg(&robot, signals, &baseline, report, &log.words());
         remark += &output_file::write_new(path, &picture, &sources, arguments.force)?;
         if watched.is_cut {
-            let _ = writeln!(remark, "{TITLE}note{TITLE:#}: the picture ends where the times of the logs go back");
+            let _ = writeln!(remark, "{TITLE}note{TITLE:#}: the picture ends where the time of the logs goes back");
         }
     }
     // behind the filter that `rne identify --judge` has, so that its errors are these
@@ -133,22 +134,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let what = format!("the model explains nothing of the torques of {}{where_}", names.join(", "));
         let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, PAGE - 9, "         "));
     };
-    warn(&unexplained(&robot, &errors), ": is FILE of this arm, with its friction?");
+    warn(&unexplained(&robot, &errors), ": does FILE describe this arm, with its friction?");
     if let Some(quiet) = &quiet {
         let names = unexplained(&robot, &prediction(&robot, quiet, Part::All)?);
-        warn(&names, " in the log of --quiet, which tells what is usual: is it of this arm?");
+        warn(&names, " in the log of --quiet, which sets the thresholds: is it a log of this arm?");
     }
     let at_fault = !(watched.events.is_empty() && is_explained);
     if arguments.json {
         let reply = Reply::of(&robot, &log, &watched.events, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
     }
-    let about = format!("{} from {}, read up to {:.1} Hz", one_line(&robot.name), log.words(), log.read_to);
+    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.read_to);
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
-    let usual = quiet.map_or("the log itself, by medians".to_owned(), |quiet| quiet.words());
-    let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("what is usual: {usual}"), PAGE, "  "));
+    let usual = quiet.map_or("medians of the log itself".to_owned(), |quiet| quiet.words());
+    let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("thresholds from: {usual}"), PAGE, "  "));
     text += &events_table(&robot, &watched.events, log.runs() > 1);
-    text += &errors_table(&robot, &judged, &errors, &Identification::not_excited(&robot), "prediction of the log");
+    text += &errors_table(&robot, &judged, &errors, &Identification::not_excited(&robot), "errors on the log");
     Ok(Outcome { text, remark, at_fault })
 }
 
@@ -181,7 +182,7 @@ fn levels(robot: &Robot, log: &MotionLog, gain: f64) -> Result<Vec<Baseline>, Fa
 }
 
 fn too_short(log: &MotionLog) -> Failure {
-    Failure::input(format_args!("{} is too short to tell what is usual", log.words()))
+    Failure::input(format_args!("{} is too short to derive thresholds", log.words()))
 }
 
 /// What is usual in a log in which something may happen.
@@ -261,7 +262,7 @@ impl Watched {
             Ok(Some(()))
         })?;
         if taken == 0 {
-            return Err(Failure::input(format_args!("{} is too short to be watched", log.words())));
+            return Err(Failure::input(format_args!("{} is too short to watch", log.words())));
         }
         let joined = |(run, events)| Event::joined(events, JOINED).into_iter().map(move |event| (run, event));
         let events: Vec<(u64, Event)> = found.into_iter().flat_map(joined).collect();
@@ -280,7 +281,7 @@ fn events_table(robot: &Robot, events: &[(u64, Event)], has_runs: bool) -> Strin
     if events.is_empty() {
         return format!("\n{GOOD}no events{GOOD:#}\n");
     }
-    let mut cells = vec![["  from, s", "to, s", "joint", "", "peak", "", "what it is like"].map(str::to_owned)];
+    let mut cells = vec![["  from, s", "to, s", "joint", "", "peak", "", "possible cause"].map(str::to_owned)];
     for (run, event) in events.iter().take(SHOWN) {
         let joint = &robot.joints[event.joint];
         cells.push([
@@ -301,7 +302,7 @@ fn events_table(robot: &Robot, events: &[(u64, Event)], has_runs: bool) -> Strin
         let _ = writeln!(text, "{line}");
     }
     if events.len() > SHOWN {
-        let _ = writeln!(text, "  and {} more; --json has them all", events.len() - SHOWN);
+        let _ = writeln!(text, "  and {} more; --json prints all of them", events.len() - SHOWN);
     }
     text
 }

@@ -14,7 +14,7 @@ use crate::values::numbers::List;
 /// Rotors belong to the arm.
 #[derive(Args, Clone, Copy, Default)]
 pub(crate) struct Rotors {
-    /// The arm with its motors' rotors: G² Jm q̈
+    /// Include the inertia of the motors' rotors
     #[arg(long)]
     pub(crate) rotors: bool,
 }
@@ -52,7 +52,7 @@ impl FromStr for Setting {
         }
         let value = rne_model::number(value).map_err(|mistake| {
             let hint = mistake.help.as_deref().unwrap_or("write a number or an expression, such as 0.5 or pi/2");
-            format!("`{value}` is no number: {}; {hint}", mistake.message)
+            format!("`{value}` is not a number: {}; {hint}", mistake.message)
         })?;
         Ok(Self { name: name.to_owned(), value })
     }
@@ -66,7 +66,7 @@ pub(crate) struct ChosenArm {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Another value of a parameter; may be repeated
+    /// Replace a parameter's value; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub(crate) set: Vec<Setting>,
 }
@@ -81,8 +81,8 @@ impl ChosenArm {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
-                "`{shown}` stands where FILE, the robot, is meant; a list has commas and no blanks between its \
-                 numbers, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
+                "`{shown}` is in the place of FILE, the robot; write the numbers of a list with commas and without \
+                 blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
         Ok(self.rotors.of(with_settings(&self.file, &self.set)?))

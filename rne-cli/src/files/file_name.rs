@@ -68,7 +68,7 @@ pub(crate) fn check(path: &Path, written: Format) -> Result<(), Failure> {
     }
     let right = path.with_extension(written.ends()[0]);
     Err(Failure::usage(format_args!(
-        "{} ends with .{end}, and what is written is .{}; name it {TYPED}{}{TYPED:#}",
+        "{} ends with .{end}, but the file is written as .{}; name it {TYPED}{}{TYPED:#}",
         path.display(),
         written.ends()[0],
         right.display()

@@ -285,7 +285,7 @@ fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64)
         *(if is_left(middle) { &mut lowest } else { &mut too_low }) = middle;
     }
     let said = format!(
-        "{} Hz is no low-pass for samples at {rate:.4} Hz in runs of {} s at most",
+        "{} Hz is not possible as a low-pass for samples at {rate:.4} Hz in runs of {} s at most",
         rounded(cutoff, 3),
         rounded(longest, 2)
     );

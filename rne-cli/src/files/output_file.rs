@@ -244,7 +244,7 @@ pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], forc
         Existing::Text(old) if Some(old.as_str()) == text => {}
         Existing::Text(_) | Existing::Other if !force => {
             return Err(Failure::usage(format_args!(
-                "{shown} is there already and stays as it is; {TYPED}--force{TYPED:#} overwrites it"
+                "{shown} exists and is not changed; {TYPED}--force{TYPED:#} overwrites it"
             )));
         }
         Existing::Nothing | Existing::Text(_) | Existing::Other => {}
@@ -307,7 +307,8 @@ pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
 fn beside(path: &Path) -> io::Result<NamedTempFile> {
     // of a long name the beginning, for the name of the temporary file is longer
     const LONGEST_NAME: usize = 40;
-    let name = path.file_name().ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "this is no name of a file"))?;
+    let name =
+        path.file_name().ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "this is not a name of a file"))?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name: String = name.to_string_lossy().chars().take(LONGEST_NAME).collect();
     let mut builder = tempfile::Builder::new();

@@ -57,7 +57,7 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(Failure::input(format_args!("{name} cannot be read: {error}"))),
     };
-    let text = String::from_utf8(bytes).map_err(|_| Failure::input(format_args!("{name} is no text in UTF-8")))?;
+    let text = String::from_utf8(bytes).map_err(|_| Failure::input(format_args!("{name} is not text in UTF-8")))?;
     let plan = PlanFile::read(&name, &text, robot).map_err(|report| Failure::plan(report, Remedy::SearchAfresh))?;
     Ok(Some(Read { name, text, plan }))
 }
@@ -111,7 +111,7 @@ fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec
             Ok((Some(plan), wrong))
         }
         _ => Err(Failure::usage(format_args!(
-            "{} is no plan that rne has written, and stays as it is; move it out of the way",
+            "{} is not a plan written by rne and is not changed; move it away",
             path.display()
         ))),
     }

@@ -119,12 +119,12 @@ impl Table {
                     let near = instead(column, &header);
                     let needed = wanted.join(", ");
                     return Err(Failure::input(format_args!(
-                        "{name}: the header has no column `{column}`{near}; needed are {needed}, others are \
-                         passed over"
+                        "{name}: the header has no column `{column}`{near}; needed are {needed}; others are \
+                         ignored"
                     )));
                 }
                 _ => {
-                    return Err(Failure::input(format_args!("{name}: the column `{column}` is there twice")));
+                    return Err(Failure::input(format_args!("{name}: the column `{column}` occurs twice")));
                 }
             }
         }
@@ -184,7 +184,7 @@ impl Table {
                             let what = match (cell, misfit) {
                                 ([], _) => "empty".to_owned(),
                                 (_, Some(misfit)) => format!("{shown}, which is too {misfit} for a 64-bit float"),
-                                _ => format!("{shown}, which is no number"),
+                                _ => format!("{shown}, which is not a number"),
                             };
                             Failure::input(format_args!("{name}:{line}: `{column}` is {what}"))
                         })?);

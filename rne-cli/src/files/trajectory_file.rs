@@ -40,10 +40,8 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     let text = text_of(&name, &bytes)?;
     let mut mistakes = Mistakes::new(&name, text);
     let dof = robot.dof();
-    let help = format!(
-        "the header is t,{}; columns qd and qdd may be left out, others are passed over",
-        names("q", dof).join(",")
-    );
+    let help =
+        format!("the header is t,{}; columns qd and qdd are optional, others are ignored", names("q", dof).join(","));
     let mut rows = Vec::new();
     let mut table = lines(text).filter_map(|line| match line {
         Line::Row(row) => Some(Ok(row)),
@@ -119,7 +117,7 @@ fn columns(header: &Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>
         std::iter::once("t".to_owned()).chain(["q", "qd", "qdd"].into_iter().flat_map(|q| names(q, dof))).collect();
     for (index, cell) in header.cells.iter().enumerate() {
         if header.cells[..index].iter().any(|other| other.text == cell.text && !cell.text.is_empty()) {
-            mistakes.push(cell.span.clone(), format!("the column {} is there twice", quoted(&cell.text)), None);
+            mistakes.push(cell.span.clone(), format!("the column {} occurs twice", quoted(&cell.text)), None);
         }
         let is_of_another_joint = ["qdd", "qd", "q"].iter().find_map(|start| cell.text.strip_prefix(start));
         let joint = is_of_another_joint.and_then(|digits| digits.parse::<usize>().ok());
@@ -127,7 +125,7 @@ fn columns(header: &Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>
             let joints = if dof == 1 { "is 1 joint".to_owned() } else { format!("are joints 1 to {dof}") };
             mistakes.push(
                 cell.span.clone(),
-                format!("{} is of no joint: there {joints}", quoted(&cell.text)),
+                format!("{} belongs to no joint: there {joints}", quoted(&cell.text)),
                 Some(help),
             );
         }
@@ -177,7 +175,7 @@ impl Columns {
 fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mistakes<'_>) -> Vec<f64> {
     if row.cells.len() != header.cells.len() {
         let message = format!("{} cells, and {} columns in the header", row.cells.len(), header.cells.len());
-        mistakes.push(row.span.clone(), message, Some("numbers have a decimal point, no comma"));
+        mistakes.push(row.span.clone(), message, Some("write numbers with a decimal point, not with a comma"));
         return Vec::new();
     }
     let mut number = |(cell, name): (&Cell<'_>, &Cell<'_>)| {
@@ -186,7 +184,7 @@ fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mista
             let message = if cell.text.is_empty() {
                 format!("a number of column `{}` is missing", name.text)
             } else {
-                format!("{} of column `{}` is no finite number", quoted(&cell.text), name.text)
+                format!("{} of column `{}` is not a finite number", quoted(&cell.text), name.text)
             };
             mistakes.push(cell.span.clone(), message, None);
             0.0

@@ -150,7 +150,7 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
     for cell in &first.cells {
         let column = COLUMNS.into_iter().find(|column| column.eq_ignore_ascii_case(&cell.text));
         if column.is_some() && columns.contains(&column) {
-            mistakes.push(cell.span.clone(), format!("the column {} is there twice", quoted(&cell.text)), None);
+            mistakes.push(cell.span.clone(), format!("the column {} occurs twice", quoted(&cell.text)), None);
         }
         // a column of somebody's own is nobody's mistake, one that is nearly ours is
         if let Some(near) = did_you_mean(&cell.text, COLUMNS).filter(|_| column.is_none()) {
@@ -172,7 +172,7 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
     for row in rest {
         if row.cells.len() > columns.len() {
             let message = format!("{} cells, and {} columns in the header", row.cells.len(), columns.len());
-            let help = "a number has a decimal point, no comma; a text with a comma stands in quotes";
+            let help = "write a number with a decimal point, not with a comma; put a text with a comma in quotes";
             mistakes.push(row.span.clone(), message, Some(help));
         }
         let cells = columns.iter().zip(&row.cells).filter_map(|(column, cell)| Some(((*column)?, cell.clone())));
@@ -193,7 +193,7 @@ fn is_ours(format: Option<&str>, name: Option<&str>, span: &Range<usize>, robot:
         mistakes.push(span.clone(), message, None);
     }
     if let Some(name) = name.filter(|name| *name != robot.name) {
-        let message = format!("this worksheet is of {}, and the robot file of {}", quoted(name), robot.name);
+        let message = format!("this worksheet is for {}, and the robot file is for {}", quoted(name), robot.name);
         mistakes.push(span.clone(), message, Some("compare it with the file of its own robot"));
     }
 }
@@ -220,8 +220,14 @@ fn json_rows<'a>(
         let message = error.to_string();
         let message = message.split(" at line ").next().unwrap_or_default();
         let help = "a worksheet is an object with `rows`, as `rne eval … --trace --json` prints it, or a list of rows; \
-                    JSON has no NaN and no comma behind the last element";
-        Failure::from(&Report::of_error(name, text, at..at + 1, format!("this is no worksheet: {message}"), Some(help)))
+                    JSON has no NaN and no comma after the last element";
+        Failure::from(&Report::of_error(
+            name,
+            text,
+            at..at + 1,
+            format!("this is not a worksheet: {message}"),
+            Some(help),
+        ))
     };
     let mut list = text.trim();
     if list.starts_with('{') {
@@ -297,7 +303,7 @@ impl Reading<'_> {
         }
         if self.values.is_empty() && !self.mistakes.are_there() {
             let help = "each row has a joint, a quantity, its component and a value; empty values are left out";
-            self.mistakes.push(0..0, "no value is given: there is nothing to compare", Some(help));
+            self.mistakes.push(0..0, "the worksheet has no value to compare", Some(help));
         }
         let filled = Filled { values: self.values, axes: self.axes };
         self.mistakes.finish(filled)
@@ -314,7 +320,7 @@ impl Reading<'_> {
         let kind = self.robot.joints[joint - 1].row.kind;
         if let Some(step) = cell("step").filter(|step| step.text.trim() != quantity.step().to_string()) {
             let message =
-                format!("{quantity} is found by step {}, not by step {}", quantity.step(), quoted(&step.text));
+                format!("{quantity} is computed by step {}, not by step {}", quantity.step(), quoted(&step.text));
             self.mistakes.push(step.span.clone(), message, None);
         }
         let unit = quantity.unit(kind);
@@ -354,7 +360,7 @@ impl Reading<'_> {
             return Some(joint);
         }
         let near = did_you_mean(&cell.text, names).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-        let message = format!("{} is no joint of {}{near}", quoted(&cell.text), self.robot.name);
+        let message = format!("{} is not a joint of {}{near}", quoted(&cell.text), self.robot.name);
         let help = format!("joints have the numbers 1 to {dof}, or their names");
         self.mistakes.push(cell.span.clone(), message, Some(&help));
         None
@@ -381,7 +387,7 @@ impl Reading<'_> {
         let axes = Axes::of_name(&cell.text);
         match (axes, self.axes) {
             (None, _) => {
-                let message = format!("{} names no axes", quoted(&cell.text));
+                let message = format!("{} is not a name of axes", quoted(&cell.text));
                 self.mistakes.push(
                     cell.span.clone(),
                     message,
@@ -424,7 +430,7 @@ impl Reading<'_> {
         let on_axes = !matches!(quantity, Quantity::Orientation | Quantity::Axis | Quantity::Rotation);
         let exists = on_axes || (quantity == Quantity::Rotation) != (self.axes == Some(Axes::Base));
         if !exists {
-            let help = "`rotation` is of link and joint axes, `orientation` and `axis` are of base axes";
+            let help = "`rotation` occurs in link and joint axes, `orientation` and `axis` in base axes";
             let message = format!("a worksheet in {} axes has no {quantity}", self.axes.unwrap_or(Axes::Link).name());
             self.mistakes.push(span.clone(), message, Some(help));
             return None;
@@ -438,7 +444,7 @@ impl Reading<'_> {
             Err(mistake) => {
                 let comma = cell.text.contains(',').then_some("write a decimal point: 0.5, not 0,5");
                 let help = mistake.help.as_deref().or(comma).unwrap_or("write a number, such as -0.25, 1.2e-3 or pi/2");
-                let message = format!("the value {} is no number: {}", quoted(&cell.text), mistake.message);
+                let message = format!("the value {} is not a number: {}", quoted(&cell.text), mistake.message);
                 self.mistakes.push(cell.span.clone(), message, Some(help));
                 None
             }

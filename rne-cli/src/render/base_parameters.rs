@@ -18,16 +18,15 @@ const DIGITS: usize = 8;
 
 /// How to read what is listed.
 const ABOUT: &str = "mcx2 is the mass of link 2 times x of its centre of mass; J is about the link frame's origin, in \
-    its axes. A parameter of which the regressor shows no more than of those before it (J, m c, m; base to tip) is \
-    regrouped into them (Gautier and Khalil, 1990). Numerically, at random states that are always the same.";
+    its axes. A parameter that the torques cannot distinguish from earlier ones (J, m c, m; base to tip) is \
+    combined with them (Gautier and Khalil, 1990). The computation is numerical, at fixed random states.";
 
 pub(crate) fn text(robot: &Robot) -> String {
     let columns = terminal::width(WIDTH);
     let base = DynArm::from_robot(robot).base_parameters();
     let mut text = String::new();
     let heading = format!(
-        "{TITLE}{} base parameters{TITLE:#}: so many combinations of the {} inertial parameters of the links enter the \
-         torques",
+        "{TITLE}{} base parameters{TITLE:#}: the torques depend on these combinations of the {} inertial parameters",
         base.rank(),
         10 * robot.dof()
     );
@@ -46,7 +45,7 @@ pub(crate) fn text(robot: &Robot) -> String {
     }
     if base.visible_rank < base.rank() {
         let hidden = format!(
-            "Torques in double precision see {} combinations only. Each one with a ? differs from a combination of the \
+            "Torques in double precision determine only {} combinations. Each one with a ? differs from a combination of the \
              others by less than {:e} of what it adds to the torques. Nearly right angles cause this, such as 1.5708 \
              for pi/2.",
             base.visible_rank,

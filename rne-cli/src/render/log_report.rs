@@ -120,10 +120,10 @@ pub(crate) fn text(log: &Log, survey: &Survey) -> String {
     let topic = layout.topic.as_ref().map_or(String::new(), |topic| format!(", {topic}"));
     let _ = writeln!(text, "{TITLE}{}{TITLE:#}  {}{topic}", files.join(" "), layout.format);
     let counts = &survey.counts;
-    let times = if layout.recorded { "of recording" } else { "of the messages" };
+    let times = if layout.recorded { "receive times" } else { "message stamps" };
     let _ = writeln!(
         text,
-        "{} of {} messages are states, at {} Hz; times are those {times}\n",
+        "{} of {} messages contain states, at {} Hz; times: {times}\n",
         counts.states,
         counts.messages,
         short(1.0 / layout.step)
@@ -146,7 +146,7 @@ pub(crate) fn text(log: &Log, survey: &Survey) -> String {
 
 fn joints(log: &Log, survey: &Survey) -> String {
     let range = |(least, most): &(f64, f64)| format!("{} … {}", short(*least), short(*most));
-    let mut lines = vec![["", "joint", "position", "velocity", "effort", "motion ends"].map(str::to_owned).to_vec()];
+    let mut lines = vec![["", "joint", "position", "velocity", "effort", "motion up to"].map(str::to_owned).to_vec()];
     let ends = ends(survey);
     for (joint, name) in log.layout().joints.iter().enumerate() {
         lines.push(vec![
@@ -199,18 +199,18 @@ fn titled(lines: &[String]) -> String {
 fn filter(log: &Log, survey: &Survey) -> String {
     let why = match &survey.cutoff {
         Cutoff::Unknown => {
-            return "no run is as long as a spectrum needs, a second and 64 states: --cutoff HZ says the filter\n"
+            return "no run is long enough for a spectrum (a second and 64 states): give the filter with --cutoff HZ\n"
                 .into();
         }
-        Cutoff::Given { .. } => "given".to_owned(),
-        Cutoff::Spectrum { bounded: false, .. } => "half as much again as where motion ends".to_owned(),
-        Cutoff::Spectrum { .. } => "the lowest or highest that is chosen, 2 Hz or a fifth of the rate".to_owned(),
+        Cutoff::Given { .. } => "as given".to_owned(),
+        Cutoff::Spectrum { bounded: false, .. } => "1.5 times the end of motion".to_owned(),
+        Cutoff::Spectrum { .. } => "a bound of the automatic choice, 2 Hz or a fifth of the rate".to_owned(),
     };
     let hertz = survey.cutoff.hertz().unwrap_or_default();
     let long_enough = survey.runs.iter().filter(|run| run.duration / log.layout().step > 2.0 * survey.dropped as f64);
     let text = format!(
         "cut-off {} Hz, {why}: passes below {} Hz, stops above {} Hz, drops {:.3} s at both ends of a run; {} of {} \
-         runs are longer than that",
+         runs long enough",
         short(hertz),
         short(hertz * 2.0 / 3.0),
         short(hertz * 4.0 / 3.0),
@@ -233,12 +233,12 @@ pub(crate) fn left_out(log: &Log, survey: &Survey) -> impl Iterator<Item = (u64,
         (counts.of_others, "of other joints"),
         (counts.without_joints, "without some of the joints"),
         (counts.without_positions, "without positions, or with another number of them"),
-        (counts.without_velocities, "without velocities, which others have"),
-        (counts.without_efforts, "without efforts, which others have"),
-        (counts.repeats, "that repeat the one before, with its time"),
+        (counts.without_velocities, "without velocities, which other messages contain"),
+        (counts.without_efforts, "without efforts, which other messages contain"),
+        (counts.repeats, "that repeat the message before, with its time"),
     ];
     let all = all.map(|(count, why)| (count, why.to_owned()));
-    let not_finite = format!("with a number that is none (NaN, infinite, empty, beyond 1e12){first}");
+    let not_finite = format!("with a value that is not a number (NaN, infinite, empty, beyond 1e12){first}");
     all.into_iter().chain([(counts.not_finite, not_finite)]).filter(|(count, _)| *count > 0)
 }
 
@@ -247,10 +247,9 @@ fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     let layout = log.layout();
     let mut notes = notes_of_motion(log, survey);
     if !layout.has_efforts {
-        notes.push(("there are no efforts: the motion has no torques".to_owned(), true));
+        notes.push(("the log has no efforts, so the motion has no torques".to_owned(), true));
     } else if log.unsaid_currents().is_empty() && takes_torques(log) {
-        let what =
-            "efforts are taken for torques, N m, or forces, N; if they are currents, --torque-constant says N m/A";
+        let what = "efforts are taken as torques, N m, or forces, N; if they are currents, give the N m/A with --torque-constant";
         notes.push((what.to_owned(), false));
     }
     notes
@@ -267,8 +266,8 @@ pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)>
     let mut notes: Vec<(String, bool)> = layout.notes.iter().map(|note| (note.clone(), false)).collect();
     if let Some((joint, range)) = survey.may_be_degrees(log) {
         let what = format!(
-            "positions of {} range over {range:.1}, more than 4π: --degrees if they are degrees, --radians if they are \
-             radians or metres",
+            "positions of {} range over {range:.1}, more than 4π: use --degrees if they are degrees, --radians if they \
+             are radians or metres",
             layout.joints[joint]
         );
         notes.push((what, true));
@@ -279,8 +278,8 @@ pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)>
     let worst = survey.disagreement.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     if let Some((joint, share)) = worst.filter(|(_, share)| **share > DISAGREEMENT) {
         let what = format!(
-            "velocities are not the derivative of positions by {:.0} % at {}: stamps are not those of the samples, or \
-             velocities are filtered or in another unit; --derive-velocities takes positions",
+            "measured velocities differ from the derivative of positions by {:.0} % at {}: stamps may be wrong, or \
+             velocities are filtered or in another unit; --derive-velocities ignores them",
             share * 100.0,
             layout.joints[joint]
         );
@@ -292,8 +291,8 @@ pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)>
     let currents = log.unsaid_currents();
     if !currents.is_empty() {
         let what = format!(
-            "efforts of {} are currents, by the names of columns: --torque-constant says the N m/A that make torques \
-             of them",
+            "efforts of {} are currents, by the names of columns: give the factor to torques in N m/A with \
+             --torque-constant",
             currents.join(", ")
         );
         notes.push((what, true));
@@ -301,11 +300,9 @@ pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)>
     if let Some(first) = survey.spikes.first() {
         let count = survey.spikes.len();
         let what = format!(
-            "{count} {} far out of those about {} for a sample or two, as no arm's {}: the first is {} of {} at {:.3} \
-             s; an identification leaves such samples out",
-            if count == 1 { "effort stands" } else { "efforts stand" },
-            if count == 1 { "it" } else { "them" },
-            if count == 1 { "does" } else { "do" },
+            "{count} {} of one or two samples: the first is {} of {} at {:.3} s; an identification leaves such samples \
+             out",
+            if count == 1 { "effort is a spike" } else { "efforts are spikes" },
             short(first.effort),
             layout.joints[first.joint],
             first.time

@@ -13,40 +13,40 @@ use crate::values::numbers::List;
 #[command(next_help_heading = "How the log is read")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct LogArguments {
-    /// The log's names of the joints, base to tip
+    /// Names of the joints in the log, base to tip
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) joints: Option<Vec<String>>,
-    /// A bag's topic, or how names of columns begin
+    /// Topic of a bag, or prefix of column names
     #[arg(long, value_name = "T")]
     topic: Option<String>,
-    /// Efforts are currents: N m/A, of all or of each
+    /// Efforts are currents in A; factor in N m/A
     #[arg(long, alias = "torque-constants", value_name = "LIST", allow_hyphen_values = true)]
     torque_constant: Option<List>,
-    /// In degrees: all but joints that slide in FILE
+    /// Angles are in degrees (revolute joints only)
     #[arg(long, conflicts_with = "radians")]
     degrees: bool,
-    /// They are not, however far they range
+    /// Angles are in radians; no check of their range
     #[arg(long)]
     radians: bool,
-    /// The low-pass; by the spectrum, unless given
+    /// Cut-off of the low-pass [default: automatic]
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     pub(crate) cutoff: Option<f64>,
-    /// A longer interval splits a run
+    /// Split runs at longer intervals
     #[arg(long, value_name = "STEPS", default_value_t = 3.5)]
     gap: f64,
-    /// Velocities from positions, measured or not
+    /// Ignore measured velocities; derive them
     #[arg(long)]
     derive_velocities: bool,
-    /// Take times of recording, not those of messages
+    /// Use the bag's receive time, not the stamps
     #[arg(long)]
     recorded: bool,
-    /// Of a table's times: s, ms, us, ns
+    /// Unit of the time column: s, ms, us, ns
     #[arg(long, value_name = "UNIT", value_parser = time_unit(), hide_possible_values = true)]
     time_unit: Option<TimeUnit>,
-    /// Rows per second of a table without times
+    /// Sampling rate of a table without times
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     rate: Option<f64>,
-    /// Of an array, in order [default: time,q,qd,tau]
+    /// Order in an array [default: time,q,qd,tau]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
 }

@@ -21,7 +21,7 @@ impl FromStr for List {
             rne_model::number(element).map_err(|mistake| {
                 let hint = "write numbers or expressions with commas between them, such as 0.1,-pi/2";
                 let hint = mistake.help.as_deref().unwrap_or(hint);
-                format!("number {place}, `{element}`, is none: {}; {hint}", mistake.message)
+                format!("number {place}, `{element}`, is not a number: {}; {hint}", mistake.message)
             })
         };
         text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(List)

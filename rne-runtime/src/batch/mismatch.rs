@@ -9,9 +9,9 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LengthMismatch {
-    /// Which of the arguments: `q`, `qd`, `qdd` or `tau`.
+    /// Name of the argument: `q`, `qd`, `qdd` or `tau`.
     pub argument: &'static str,
-    /// Which joint's array, from 0: the index into the argument.
+    /// Index of the joint's array in the argument, from 0.
     pub joint: usize,
     /// The length of that array.
     pub length: usize,

@@ -91,7 +91,7 @@ pub trait BatchInverseDynamics<const DOF: usize>: InverseDynamics<DOF> {
         self.inverse_dynamics_batch_on(VectorUnit::widest(), q, qd, qdd, tau)
     }
 
-    /// The same on a vector unit of your choice: for comparisons, or for the same bits on every processor.
+    /// Computes the batch on a given vector unit: for comparisons, or for the same bits on every processor.
     ///
     /// # Errors
     ///
@@ -121,7 +121,7 @@ impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF
     }
 }
 
-/// What the derive writes: [`InverseDynamics::inverse_dynamics`] once more, in two parts and `#[inline(always)]` for
+/// Code of the derive: [`InverseDynamics::inverse_dynamics`] once more, in two parts and `#[inline(always)]` for
 /// [`run`].
 #[doc(hidden)]
 pub trait Torques<const DOF: usize, const ANGLES: usize>: Sync {
@@ -137,7 +137,7 @@ pub trait Torques<const DOF: usize, const ANGLES: usize>: Sync {
     ) -> [T; DOF];
 }
 
-/// What the derived method calls.
+/// Runs a batch; the derived method calls it.
 #[doc(hidden)]
 pub fn run<R: Torques<DOF, ANGLES>, T: BatchScalar, const DOF: usize, const ANGLES: usize>(
     robot: &R,

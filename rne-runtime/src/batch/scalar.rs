@@ -98,9 +98,9 @@ mod sealed {
 
     /// The registers of a number.
     pub trait Machine: Float {
-        /// Those of the compiled target.
+        /// Registers of the compiled target.
         type Compiled: Vector<Element = Self, Unit = ()>;
-        /// Those of units that were looked for.
+        /// Registers of units that are detected at run time.
         #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
         type Avx2: Vector<Element = Self, Unit = registers::Avx2>;
         #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]

@@ -3,7 +3,7 @@
 use super::BatchScalar;
 use super::vector::Work;
 
-/// None.
+/// No unit is detected at run time on this target.
 #[derive(Clone, Copy)]
 pub(super) enum Detected {}
 

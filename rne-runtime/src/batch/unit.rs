@@ -21,10 +21,10 @@ pub struct VectorUnit(Unit);
 
 #[derive(Clone, Copy)]
 enum Unit {
-    /// What every processor has that the program is compiled for: SSE2 on x86-64, NEON on AArch64, more with
+    /// Instructions of the compiled target: SSE2 on x86-64, NEON on AArch64, more with
     /// `-C target-cpu`.
     Target,
-    /// What this one has beyond that.
+    /// Instructions of this processor beyond the compiled target.
     Detected(Detected),
 }
 

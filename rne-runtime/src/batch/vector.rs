@@ -31,7 +31,7 @@ pub trait Vector: Lanes + Debug + PartialEq + 'static {
     fn store(self) -> Self::Numbers;
 }
 
-/// What is computed in registers, on a unit that is chosen when the program runs.
+/// A computation in registers, on a unit that is chosen when the program runs.
 pub(crate) trait Work<T: BatchScalar> {
     /// Does it in registers `V`, `#[inline(always)]`.
     fn run<V: Vector<Element = T>>(self, unit: V::Unit);

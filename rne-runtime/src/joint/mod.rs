@@ -1,4 +1,4 @@
-//! What each kind of joint adds to the seven steps: one file per kind.
+//! Terms of each kind of joint in the seven steps: one file per kind.
 //!
 //! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Every law takes what the link would
 //! have if the joint were rigid and returns what it has.

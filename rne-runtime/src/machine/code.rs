@@ -1,4 +1,4 @@
-//! What the machine runs: three-address instructions on slots and an accumulator.
+//! Code of the machine: three-address instructions on slots and an accumulator.
 
 use core::fmt;
 
@@ -11,7 +11,7 @@ pub const NOWHERE: Slot = Slot::MAX;
 /// One instruction: what the accumulator becomes, and where it is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruction {
-    /// What is computed.
+    /// The operation to perform.
     pub operation: Operation,
     /// Where the accumulator is stored afterwards; [`NOWHERE`] when the next instruction alone needs it.
     pub store: Slot,
@@ -19,7 +19,7 @@ pub struct Instruction {
 
 macro_rules! operations {
     ($($(#[$about:meta])* $Operation:ident($($slot:ident),*; $($number:ident)?) $text:literal,)*) => {
-        /// What the accumulator becomes. In the names stands what an operand is, from left to right: `A` the
+        /// New value of the accumulator. The names list the operands from left to right: `A` is the
         /// accumulator, `S` a slot, `K` a constant. A factor and an addend are one operation, rounded once where the
         /// vector unit rounds it once.
         #[derive(Clone, Copy, Debug, PartialEq)]

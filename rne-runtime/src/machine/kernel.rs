@@ -9,8 +9,8 @@ use crate::batch::BatchScalar;
 use crate::batch::vector::{Vector, Work};
 use crate::sin_cos::{Lanes, SQUARE_LIMIT, kernel};
 
-/// What the machine does with an angle on some vector unit to have its sine and its cosine, for one number as for many.
-/// Who does the same operations has the same bits.
+/// Steps by which the machine computes sine and cosine of an angle on a vector unit, for one number as for many.
+/// A program that performs the same operations gets the same bits.
 ///
 /// ```
 /// use rne_runtime::VectorUnit;
@@ -23,9 +23,9 @@ use crate::sin_cos::{Lanes, SQUARE_LIMIT, kernel};
 pub struct Kernel {
     /// The operations, each on results of earlier ones.
     pub steps: Vec<Step>,
-    /// Which step has the sine.
+    /// Index of the step whose result is the sine.
     pub sine: usize,
-    /// Which step has the cosine.
+    /// Index of the step whose result is the cosine.
     pub cosine: usize,
     /// Whether the unit rounds [`Step::Plus`] and [`Step::Minus`] once, here and in the machine's instructions; else
     /// the product is rounded by itself.
@@ -64,7 +64,7 @@ pub enum Step {
 }
 
 impl Kernel {
-    /// That of a vector unit.
+    /// Returns the kernel of a vector unit.
     #[must_use]
     pub fn of<T: BatchScalar + Into<f64>>(unit: VectorUnit) -> Self {
         let mut kernel =
@@ -92,7 +92,7 @@ impl<T: BatchScalar + Into<f64>> Work<T> for Tracing<'_, T> {
 }
 
 std::thread_local! {
-    /// What has been computed so far: a constant is made from nothing, so it cannot bring the list along.
+    /// Steps recorded so far: a constant is made from nothing, so it cannot bring the list along.
     static STEPS: RefCell<Vec<Step>> = const { RefCell::new(Vec::new()) };
 }
 

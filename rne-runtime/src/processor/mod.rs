@@ -31,7 +31,7 @@ use core::any::Any;
 
 use crate::Scalar;
 
-/// What derived code computes with, beside the four operations of its scalar.
+/// Operations of derived code beyond the four operations of its scalar.
 pub trait Arithmetic<T> {
     /// `a * b + c`, as [`Scalar::mul_add`] has it.
     fn mul_add(a: T, b: T, c: T) -> T;
@@ -69,14 +69,14 @@ pub trait Call {
     /// A tuple of references.
     type Arguments<'a, T: Scalar>: Copy + OfType<Self::Arguments<'a, f64>> + OfType<Self::Arguments<'a, f32>>;
 
-    /// What it returns.
+    /// Result of the method.
     type Result<T: Scalar>: Copy + 'static;
 
     /// Computes it, `#[inline(always)]`.
     fn run<T: Scalar, A: Arithmetic<T>>(arguments: Self::Arguments<'_, T>) -> Self::Result<T>;
 }
 
-/// What a derived method does: its body, by the instructions that the processor has.
+/// Runs the body of a derived method with the instructions of the processor.
 #[inline(always)]
 pub fn run<C: Call, T: Scalar>(arguments: C::Arguments<'_, T>) -> C::Result<T> {
     detected::run::<C, T>(arguments)

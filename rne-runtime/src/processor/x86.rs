@@ -48,7 +48,7 @@ where
     }
 }
 
-/// What the processor was found to have; nothing but a [`Body`] computes with it.
+/// Instructions detected on the processor; only a [`Body`] computes with them.
 enum Avx2 {}
 
 macro_rules! detected {
@@ -157,7 +157,7 @@ mod tests {
         }
     }
 
-    /// What a target with fused multiply-add computes.
+    /// Computes sine and cosine as a target with fused multiply-add does.
     fn of_target<T: Float>(angle: T) -> (T, T)
     where
         Fused<T>: Lanes<Element = T>,

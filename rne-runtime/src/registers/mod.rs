@@ -71,7 +71,7 @@ pub(crate) mod compiled {
     )))]
     pub(crate) use numbers::{Doubles, Singles};
 
-    /// What their unit is called.
+    /// Name of the unit.
     pub(crate) const NAME: &str = match size_of::<Doubles>() {
         8 => "one by one",
         16 if cfg!(target_arch = "aarch64") => "NEON",

@@ -3,7 +3,7 @@
 use core::mem::{ManuallyDrop, MaybeUninit};
 use core::sync::atomic::{AtomicU8, Ordering};
 
-/// What a unit computes. Not a closure: this can be inlined always.
+/// A computation on a unit. It is not a closure, so it can always be inlined.
 pub(crate) trait Computation {
     type Result;
 
@@ -14,7 +14,7 @@ pub(crate) trait Computation {
 /// A computation of no more words is handed on in registers: as many as take arguments.
 const WORDS: usize = 6;
 
-/// What is not known yet, of whether the processor has a unit.
+/// State before the processor was asked for a unit.
 const UNKNOWN: u8 = 2;
 
 macro_rules! unit {

@@ -5,7 +5,7 @@ use core::arch::x86 as intrinsics;
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64 as intrinsics;
 
-/// What the table of a unit is written with.
+/// Names used by the table of a unit.
 mod prelude {
     pub(super) use core::fmt;
     pub(super) use core::mem::transmute;

@@ -26,7 +26,7 @@ macro_rules! one_by_one {
     )*};
 }
 
-/// The same one by one, for a single angle and where there are no registers.
+/// Evaluates angles one by one, for a single angle and for targets without registers.
 #[inline(always)]
 pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T; N], cosines: &mut [T; N]) {
     let mut start = 0;
@@ -40,7 +40,7 @@ pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(angles: &[T; N], sines: &m
     }
 }
 
-/// The same in registers `V`; the last one may be filled up with zeros.
+/// Evaluates angles in registers `V`; the last register may be filled up with zeros.
 #[cfg(feature = "std")]
 #[inline(always)]
 pub(crate) fn in_registers<V: Register, const N: usize>(
@@ -86,7 +86,7 @@ pub(crate) fn in_registers<V: Register, const N: usize>(
     }
 }
 
-/// The same when some angle is beyond the limit, infinite or NaN: `std` for those. The others keep what the kernel
+/// Evaluates angles beyond the limit, infinite or NaN with `std`. The other angles keep the results that the kernel
 /// found, which may have had more instructions than this is compiled with.
 #[cfg(feature = "std")]
 #[cold]

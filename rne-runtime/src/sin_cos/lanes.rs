@@ -17,7 +17,7 @@ pub trait Lanes:
     /// chain; only of what is [fused](Self::FUSED).
     const MANY: bool = false;
 
-    /// The same number in every lane.
+    /// Returns lanes that all contain one number.
     fn splat(element: Self::Element) -> Self;
 
     /// `self + a * b`

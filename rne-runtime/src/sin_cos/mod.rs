@@ -52,7 +52,7 @@ pub(crate) const FUSED_F32: bool = FUSED_F64
             all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "f"),
         ));
 
-/// The same for `f64`.
+/// Whether `f64` is computed with fused multiply-add.
 pub(crate) const FUSED_F64: bool = IS_THERE
     && cfg!(any(
         all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"),
@@ -146,7 +146,7 @@ pub(crate) fn kernel<V: Lanes>(angle: V) -> (V, V) {
     V::in_quadrant(rounded, sine, cosine)
 }
 
-/// The same where the call waits for it, even in a register that is made for [many](Lanes::MANY).
+/// Evaluates an angle whose result the call waits for, even in a register that is made for [many](Lanes::MANY).
 #[cfg(feature = "std")]
 #[inline(always)]
 fn kernel_of_one_call<V: Lanes>(angle: V) -> (V, V) {

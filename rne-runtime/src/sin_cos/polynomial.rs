@@ -84,7 +84,7 @@ fn two_by_two<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) ->
     }
 }
 
-/// The same, one coefficient at a time for fewer operations.
+/// Evaluates the polynomial one coefficient at a time, with fewer operations.
 #[inline(always)]
 fn one_by_one<V: Lanes>(coefficients: &'static [V::Element], z: V) -> V {
     let mut sum = None;

@@ -2,13 +2,13 @@
 
 use super::state::State;
 
-/// Of the largest number of the result.
+/// Tolerance relative to the largest number of the result.
 const TOLERANCE: f64 = 1e-12;
 
 /// How far two results may be from each other.
 #[derive(Clone, Copy)]
 pub(super) enum Allowed {
-    /// The same bits, but for the sign of zero.
+    /// The bits are equal except for the sign of zero.
     Nothing,
     /// Rounding, relative to the largest number of the result or, if that is smaller, to `scale`: numbers that vanish
     /// but for rounding are measured by those that they are parts of.

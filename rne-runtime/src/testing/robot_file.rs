@@ -17,7 +17,7 @@ pub struct RobotFile {
 }
 
 impl RobotFile {
-    /// The same robot at run time.
+    /// Reads the robot at run time.
     pub(super) fn arm<const DOF: usize>(&self) -> Arm<DOF> {
         let robot = Robot::from_yaml(self.text).unwrap_or_else(|report| panic!("{report}"));
         let robot = Robot { rotors: self.rotors, ..robot };

@@ -4,7 +4,7 @@ use core::{array, fmt};
 
 use crate::{BaseMotion, Payload, Wrench};
 
-/// So many states are tried.
+/// Number of states to try.
 const STATES: usize = 48;
 
 /// A state of an arm, and what acts on it.

@@ -13,7 +13,7 @@ use crate::{
 /// Torques that vanish but for rounding are measured by this part of the forces and moments at the joints.
 const LEAST: f64 = 1e-2;
 
-/// What the torques of an arm at a state are small against, if they are.
+/// Returns the scale of the torques of an arm at a state, which may be larger than the torques.
 pub(super) fn scale<const DOF: usize>(arm: &Arm<DOF>, state: &State<DOF>) -> f64 {
     LEAST * largest(flat(&arm.joint_wrenches(&state.q, &state.qd, &state.qdd)).iter())
 }
