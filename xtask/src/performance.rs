@@ -189,7 +189,7 @@ fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
 mod tests {
     use clap::ValueEnum;
 
-    use super::{Block, replaced, without_empty_lines, without_load};
+    use super::{Block, PAGE, replaced, without_empty_lines, without_load};
     use crate::machine;
 
     #[test]
