@@ -253,7 +253,8 @@ fn header_beside(source: &Path) -> Result<Header, Failure> {
         ))),
         Some(name) => Ok(Header { path, name }),
         None => Err(Failure::usage(format_args!(
-            "{} is not a name of a source file whose header can be included; name a file, such as {TYPED}robot.c{TYPED:#}",
+            "{} is not a name of a source file whose header can be included; name a file, such as \
+             {TYPED}robot.c{TYPED:#}",
             source.display()
         ))),
     }

@@ -132,8 +132,8 @@ fn warnings(found: &Identification) -> Vec<String> {
         let (name, unit) = (one_line(&joint.name), joint.row.kind.effort_unit());
         if let Some(rejected) = report.rejected {
             said.push(format!(
-                "{} of {} rows of {name} are outliers and are ignored, the first at {:.2} s: did somebody push the arm, \
-                 or did a sensor fail?",
+                "{} of {} rows of {name} are outliers and are ignored, the first at {:.2} s: did somebody push the \
+                 arm, or did a sensor fail?",
                 rejected.rows, found.rows, rejected.time
             ));
         }
@@ -144,8 +144,8 @@ fn warnings(found: &Identification) -> Vec<String> {
             ));
         } else if let Some((offset, coulomb)) = report.offset {
             said.push(format!(
-                "{name} has an offset of {} {unit} (a spring, a counterweight or a sensor): a robot file cannot store more \
-                 than Coulomb friction, which is {}, so predictions are wrong by the rest",
+                "{name} has an offset of {} {unit} (a spring, a counterweight or a sensor): a robot file cannot store \
+                 more than Coulomb friction, which is {}, so predictions are wrong by the rest",
                 rounded(offset, 3),
                 rounded(coulomb, 3)
             ));

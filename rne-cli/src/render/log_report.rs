@@ -249,7 +249,8 @@ fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     if !layout.has_efforts {
         notes.push(("the log has no efforts, so the motion has no torques".to_owned(), true));
     } else if log.unsaid_currents().is_empty() && takes_torques(log) {
-        let what = "efforts are taken as torques, N m, or forces, N; if they are currents, give the N m/A with --torque-constant";
+        let what = "efforts are taken as torques, N m, or forces, N; if they are currents, give the N m/A with \
+                    --torque-constant";
         notes.push((what.to_owned(), false));
     }
     notes
