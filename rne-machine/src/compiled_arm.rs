@@ -238,7 +238,7 @@ impl CompiledArm {
         compiled.as_ref().map_err(|error| error.clone().into())
     }
 
-    /// Computes a function for so many states on the widest vector unit.
+    /// Computes a function for a number of states on the widest vector unit.
     ///
     /// The numbers of a result stand in the order of the function's [layout](Function::layout), matrices row by row.
     ///

@@ -112,7 +112,7 @@ struct Translation<'a, T> {
     table: ir::Value,
     /// Contents of the table.
     constants: Vec<T>,
-    /// Where a number of these bits stands so many times.
+    /// Place in the table of a number with these bits, repeated for this many lanes.
     places: HashMap<(u64, u8), usize>,
     computed: Vec<Option<ir::Value>>,
 }
@@ -209,7 +209,7 @@ impl<T: Number> Translation<'_, T> {
         }
     }
 
-    /// A number of the table, in so many lanes.
+    /// Loads a number of the table into all lanes.
     fn constant(&mut self, number: T, lanes: u8) -> ir::Value {
         let bits = number.into().to_bits();
         let index = *self.places.entry((bits, lanes)).or_insert_with(|| {
@@ -382,7 +382,7 @@ fn unchanging() -> MemFlags {
     MemFlags::new().with_notrap().with_readonly().with_can_move()
 }
 
-/// Registers of so many lanes, and numbers by themselves.
+/// Type of a register with this number of lanes, or of a single number.
 fn of_lanes(number: Type, lanes: u8) -> Type {
     number.by(lanes.into()).unwrap_or(number)
 }

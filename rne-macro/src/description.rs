@@ -25,7 +25,7 @@ pub(crate) fn evidence(programs: &[Program]) -> Vec<String> {
     proved.into_iter().chain(refusals).map(|lines| rne_emit::verbatim(&lines.join("\n"))).collect()
 }
 
-/// The documentation of one method: what it costs, its steps, and where more is told. `of_trait` is the trait's path.
+/// The documentation of one method: its cost, its steps, and links. `of_trait` is the trait's path.
 pub(crate) fn method(robot: &Robot, program: &Program, of_trait: &str) -> String {
     let (products, sums) = program.before();
     let after = program.operations();

@@ -124,7 +124,7 @@ fn beside(file: &RobotFile, name: fn(&Path) -> PathBuf) -> Result<Option<RobotFi
     }
 }
 
-/// A shipped robot and its plan; the words that name those that there are, when there is none of this name.
+/// Finds a shipped robot and its plan; if there is no robot of this name, the error lists all names.
 pub(crate) fn shipped(name: &str) -> Result<(RobotFile, Option<RobotFile>), String> {
     let Some(robot) = rne_robots::find(name) else {
         let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();

@@ -78,7 +78,7 @@ impl Operator {
         }
     }
 
-    /// The result; `None` for a power that is none of products of a run-time parameter.
+    /// Returns the result; `None` for a power of a run-time parameter that products cannot express.
     fn apply(self, a: Quantity, b: Quantity) -> Option<Quantity> {
         Some(match self {
             Self::Add => a + b,
@@ -302,7 +302,7 @@ impl Expression {
         .help("check the exponents and the factors, or write 0")
     }
 
-    /// The result, unless it is none or too long.
+    /// Returns the result, unless it is not finite or too long.
     fn finite(&self, quantity: Quantity, divides_by_zero: bool, text: &str) -> Result<Quantity, Mistake> {
         if quantity.varying().is_some_and(|formula| formula.parts() > MAX_RUN_TIME_PARTS) {
             let message = format!(

@@ -48,14 +48,14 @@ pub struct GoldenState {
 }
 
 impl GoldenFile {
-    /// The names of the columns for so many joints.
+    /// Returns the names of the columns for a number of joints.
     #[must_use]
     pub fn header(joints: usize) -> Vec<String> {
         let of = |name: &'static str| (1..=joints).map(move |joint| format!("{name}{joint}"));
         ["q", "qd", "qdd", "tau"].into_iter().flat_map(of).collect()
     }
 
-    /// Reads the file of a robot with so many joints; `name` is what messages call it.
+    /// Reads the file of a robot with `dof` joints; `name` is the file's name in messages.
     ///
     /// # Errors
     /// Everything that is wrong, with line and column: bytes that are no text, another header, another number of
@@ -174,7 +174,7 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
     values.into_iter().collect()
 }
 
-/// Whether a comment begins with the word, or with one like it, and a number behind it.
+/// Whether a comment begins with the word, or with a similar one, followed by a number.
 fn is_nearly_a_tolerance(comment: &str) -> bool {
     let mut words = comment.trim_start().split([':', '=', ' ']).filter(|word| !word.is_empty());
     let word = words.next().unwrap_or_default().to_lowercase();

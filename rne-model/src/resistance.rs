@@ -15,7 +15,7 @@ const STATES: u32 = 3;
 pub(crate) enum Unresisted {
     /// It moves no mass and turns no inertia.
     Alone,
-    /// It moves without resistance where the joints behind it move against it.
+    /// It moves without resistance if later joints move against it.
     WithOthers,
 }
 
@@ -67,7 +67,7 @@ fn in_state(convention: Convention, joints: &[Joint], state: u32) -> Vec<Option<
 
 type Vector = [f64; 3];
 
-/// The mass matrix, and beside it for each joint the moment that the links behind it could have at their distance from
+/// The mass matrix, and for each joint the moment that the links after it could have at their distance from
 /// the base: what rounding is relative to.
 fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec<f64>>, Vec<f64>) {
     let dof = joints.len();

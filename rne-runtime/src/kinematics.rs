@@ -113,7 +113,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         Some(links[i].rotation * Vector3::from(self.rows[i].link.first_moment).map(S::to))
     }
 
-    /// The tip frame behind the last of `links`.
+    /// Returns the tip frame, after the last of `links`.
     fn tip<T: Scalar>(self, links: &[Placement<T>]) -> Placement<T> {
         let last = links.last().copied().unwrap_or_else(|| Placement::constant(self.base));
         last.then(&Placement::constant(self.tool))

@@ -142,7 +142,7 @@ impl<T: Scalar> LinkFrame<T> {
     }
 }
 
-/// Sine and cosine of an angle that is so many right angles larger.
+/// Sine and cosine of an angle increased by a number of right angles.
 fn by_quarters<T: Scalar>((sin, cos): (T, T), turns: QuarterTurns) -> (T, T) {
     match turns {
         QuarterTurns::Zero => (sin, cos),

@@ -68,7 +68,7 @@ pub(crate) struct LinkLoad<T> {
     pub(crate) joint: ForceMoment<T>,
     /// τ_i
     pub(crate) tau: T,
-    /// Load of the joints and the tip mounted on the link; `None` if there are none.
+    /// Load of the joints and the tip mounted on the link; `None` without any.
     pub(crate) carried: Option<Carried<T>>,
 }
 

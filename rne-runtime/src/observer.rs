@@ -149,7 +149,7 @@ pub struct DynObserverState<T> {
 
 #[cfg(all(feature = "arm", feature = "std"))]
 impl<T: Scalar> DynObserverState<T> {
-    /// As [`ObserverState::new`], for so many joints.
+    /// Creates an observer as [`ObserverState::new`] does, for a number of joints.
     #[must_use]
     pub fn new(dof: usize, gain: f64, period: f64) -> Self {
         let ObserverState { next, weight, frequency, .. } = ObserverState::<0, T>::new(gain, period);

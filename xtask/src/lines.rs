@@ -8,7 +8,7 @@ use clap::Args;
 use unicode_width::UnicodeWidthStr;
 
 use crate::Verdict;
-use crate::{machine, prose};
+use crate::{machine, wrapping};
 
 /// Tells lines of more than 120 columns in *.rs; `--wrap` breaks those of comments and of *.md
 ///
@@ -64,8 +64,8 @@ impl Lines {
             return Ok(());
         }
         let (long, wrapped): (Long, Wrapped) = match path.extension().and_then(|extension| extension.to_str()) {
-            Some("rs") => (long_in_rust, prose::wrapped_comments),
-            Some("md") => (long_in_markdown, prose::wrapped_markdown),
+            Some("rs") => (long_in_rust, wrapping::wrapped_comments),
+            Some("md") => (long_in_markdown, wrapping::wrapped_markdown),
             _ => return Ok(()),
         };
         let mut text = fs::read_to_string(path).with_context(|| path.display().to_string())?;

@@ -30,6 +30,7 @@ mod single_calls;
 mod tool;
 mod urdf;
 mod verify;
+mod wrapping;
 
 use std::process::ExitCode;
 
@@ -67,6 +68,7 @@ enum Task {
     Verify(verify::Verify),
     Light(light::Light),
     Lines(lines::Lines),
+    Prose(prose::Prose),
     Package(package::Package),
     Tool(tool::Tool),
     Features(features::Features),
@@ -109,6 +111,7 @@ impl Task {
             Self::Verify(task) => ("verify", false, task.run()),
             Self::Light(_) => ("light", false, light::Light::run()),
             Self::Lines(task) => ("lines", false, task.run()),
+            Self::Prose(task) => ("prose", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
             Self::Fleet(_) => ("fleet", false, fleet::Fleet::run()),

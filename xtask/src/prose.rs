@@ -1,209 +1,394 @@
-//! Prose wrapped anew: paragraphs of Markdown and of comments that have a line which is too long.
+//! Patterns of prose that a reader has to translate back into plain English.
 
-use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm, wrap};
-use unicode_width::UnicodeWidthStr;
+use std::fs;
+use std::path::Path;
 
-/// A blank at which no line may end. Private use, and as wide as a blank.
-const GLUE: char = '\u{E000}';
+use anyhow::{Context, Result};
+use clap::Args;
+use regex_lite::Regex;
 
-/// Comments of a Rust file. Code stays as it is.
-pub(crate) fn wrapped_comments(text: &str, columns: usize) -> String {
-    let mut wrapped = String::new();
-    let mut lines = text.lines().peekable();
-    while let Some(line) = lines.next() {
-        let Some(marker) = marker(line) else {
-            push(&mut wrapped, line);
-            continue;
-        };
-        let mut bodies = vec![body(line, marker)];
-        while let Some(next) = lines.next_if(|next| self::marker(next) == Some(marker)) {
-            bodies.push(body(next, marker));
-        }
-        for body in paragraphs(&bodies, columns - marker.width() - 1) {
-            push(&mut wrapped, format!("{marker} {body}").trim_end());
-        }
-    }
-    wrapped
+use crate::{Verdict, machine};
+
+/// Finds patterns of prose that are hard to read: in documents, helps of rne and first sentences of documentation
+///
+/// A pattern holds anywhere in a text, or at the beginning of a sentence. Code, and blocks of documents that a program
+/// writes, are not searched.
+#[derive(Args)]
+#[command(after_help = "\
+Exit status: 1 if there are such patterns.
+
+Examples:
+  cargo xtask prose                      all that is checked
+  cargo xtask prose docs/logs.md         one file")]
+pub(crate) struct Prose {
+    /// Files to search, from the root of the repository [default: all that is checked]
+    paths: Vec<String>,
 }
 
-/// A file of Markdown. What is written between `<!-- begin: … -->` and `<!-- end -->` stays as it is.
-pub(crate) fn wrapped_markdown(text: &str, columns: usize) -> String {
-    let lines: Vec<&str> = text.lines().collect();
-    let mut wrapped = String::new();
-    for line in paragraphs(&lines, columns) {
-        push(&mut wrapped, &line);
-    }
-    wrapped
+/// Documents that are not written by a program. Lengthen this list with a page after it is rewritten.
+const DOCUMENTS: &[&str] = &[
+    "CONTRIBUTING.md",
+    "README.md",
+    "docs/accuracy.md",
+    "docs/c-library.md",
+    "docs/capabilities.md",
+    "docs/command-line.md",
+    "docs/crate.md",
+    "docs/firmware.md",
+    "docs/fleet.md",
+    "docs/functions.md",
+    "docs/identify.md",
+    "docs/inspection.md",
+    "docs/lecture/README.md",
+    "docs/lecture/errata.md",
+    "docs/lecture/exercises.md",
+    "docs/lecture/folding.md",
+    "docs/lecture/frames.md",
+    "docs/lecture/one-link.md",
+    "docs/lecture/prismatic.md",
+    "docs/lecture/reduced.md",
+    "docs/lecture/results.md",
+    "docs/lecture/two-links.md",
+    "docs/logs.md",
+    "docs/performance.md",
+    "docs/reduced-form.md",
+    "docs/robot-file.md",
+    "docs/run-time.md",
+    "docs/teaching.md",
+    "docs/urdf.md",
+    "docs/watch.md",
+];
+
+/// Folders of sources whose first sentences are checked. Lengthen this list with a crate after it is rewritten.
+const SOURCES: &[&str] = &["src", "rne-machine/src", "rne-macro/src", "rne-model/src", "rne-runtime/src"];
+
+/// Folders of sources whose helps are checked.
+const HELPS: &[&str] = &["rne-cli/src"];
+
+struct Rule {
+    /// What is refused.
+    pattern: &'static str,
+    /// Whether a sentence has to begin with it.
+    begins: bool,
+    /// What to write instead.
+    instead: &'static str,
+    /// A text that the rule finds, for the test.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the test of the rules reads it"))]
+    example: &'static str,
 }
 
-fn push(text: &mut String, line: &str) {
-    text.push_str(line);
-    text.push('\n');
+const fn anywhere(pattern: &'static str, instead: &'static str, example: &'static str) -> Rule {
+    Rule { pattern, begins: false, instead, example }
 }
 
-/// Indentation and slashes of a line that is a comment and nothing else.
-fn marker(line: &str) -> Option<&str> {
-    let start = line.len() - line.trim_start().len();
-    let slashes = ["///", "//!", "//"].into_iter().find(|slashes| line[start..].starts_with(slashes))?;
-    let end = start + slashes.len();
-    (line.len() == end || line[end..].starts_with(' ')).then_some(&line[..end])
+const fn at_the_beginning(pattern: &'static str, instead: &'static str, example: &'static str) -> Rule {
+    Rule { pattern, begins: true, instead, example }
 }
 
-fn body<'a>(line: &'a str, marker: &str) -> &'a str {
-    let rest = &line[marker.len()..];
-    rest.strip_prefix(' ').unwrap_or(rest)
-}
+const RULES: &[Rule] = &[
+    at_the_beginning(r"Of\b", "name the subject: \"gain of …\", \"for a … the …\"", "Of the momentum observer, Hz"),
+    at_the_beginning(r"What\b", "begin with the noun or the verb", "What a motor adds to the torque of its joint."),
+    at_the_beginning(
+        r"(The same[.,]|The same (as|but|in|on|for|with|when|where|from|of|by)\b)",
+        "say what it is or does",
+        "The same in the axes of the base.",
+    ),
+    at_the_beginning(r"None( yet)?\.", "say what is absent", "None yet."),
+    at_the_beginning(r"So many\b", "\"number of …\"", "So many states are tried."),
+    at_the_beginning(r"Which\b", "begin with the noun", "Which step has the sine."),
+    at_the_beginning(r"(Those|That) (of|which|that)\b", "repeat the noun", "Those of the compiled target."),
+    at_the_beginning(r"Nor\b", "a sentence with \"no\" or \"not\"", "Nor is one excited that only joints feel."),
+    anywhere(r"\b(take|takes|taken|taking|took) (it|them|this|that|one|all) away\b", "remove", "take it away"),
+    anywhere(r"\b(is|are) none\b", "\"there is no …\", \"is not a …\"", "numbers that are none"),
+    anywhere(r"\bso many\b", "number of …", "so many blocks at least"),
+    anywhere(r"\b(those|that) of (those|that)\b", "repeat the noun", "those of those before"),
+    anywhere(r"\b(is|are) of no\b", "\"belongs to no …\"", "a row is of no free motion"),
+    anywhere(r"\b(stays|stay) as (it is|they are)\b", "is not changed", "the file stays as it is"),
+    anywhere(r"\bpassed over\b", "ignored", "others are passed over"),
+    anywhere(r"\b(is|are) there already\b", "exists", "out.yaml is there already"),
+    anywhere(r"\b(is|are) (said|told)\b", "is reported", "which is said, with its time"),
+    anywhere(r"\b(hold|holds|held) (it |them )?against\b", "compare with", "to be held against the log"),
+    anywhere(
+        r"\bbehind (the (filter|low-pass|last|point|name|first)|another|it\b|each other|[0-9])",
+        "after",
+        "both behind 1.6 Hz",
+    ),
+    anywhere(r"\bhalf as much again\b", "1.5 times", "half as much again as where motion ends"),
+    anywhere(r"\bunless given\b", "[default: …]", "the low-pass; by the spectrum, unless given"),
+];
 
-/// The lines with each paragraph wrapped that is too wide.
-fn paragraphs(lines: &[&str], columns: usize) -> Vec<String> {
-    let mut wrapped = Vec::new();
-    let mut kept = Kept::default();
-    let mut rest = lines;
-    while let Some((first, after)) = rest.split_first() {
-        rest = after;
-        if kept.has(first) {
-            wrapped.push((*first).to_owned());
-            continue;
-        }
-        let count = rest.iter().take_while(|line| continues(line)).count();
-        let (more, after) = rest.split_at(count);
-        rest = after;
-        let is_long = |line: &&str| line.width() > columns;
-        if is_long(first) || more.iter().any(is_long) {
-            wrapped.extend(paragraph(first, more, columns));
-        } else {
-            wrapped.extend([first].into_iter().chain(more).map(|line| (*line).to_owned()));
-        }
-    }
-    wrapped
-}
-
-/// Lines that are no prose.
+/// A text without breaks of lines, and where its lines begin.
 #[derive(Default)]
-struct Kept {
-    is_code: bool,
-    is_generated: bool,
+struct Paragraph {
+    text: String,
+    lines: Vec<(usize, usize)>,
 }
 
-impl Kept {
-    fn has(&mut self, line: &str) -> bool {
-        let text = line.trim_start();
-        if text.starts_with("```") {
-            self.is_code = !self.is_code;
-            return true;
+impl Paragraph {
+    fn push(&mut self, number: usize, line: &str) {
+        if !self.text.is_empty() {
+            self.text.push(' ');
         }
-        self.is_generated |= text.starts_with("<!-- begin");
-        self.is_generated &= !text.starts_with("<!-- end");
-        self.is_code || self.is_generated || stands_alone(line)
+        self.lines.push((self.text.len(), number));
+        self.text.push_str(line.trim());
+    }
+
+    fn line(&self, at: usize) -> usize {
+        self.lines.iter().rev().find(|(start, _)| *start <= at).map_or(0, |(_, number)| *number)
     }
 }
 
-/// Empty lines, headings, rows of tables, HTML, indented code, names of links.
-fn stands_alone(line: &str) -> bool {
-    let text = line.trim_start();
-    let indent = line.len() - text.len();
-    text.is_empty()
-        || indent >= 4
-        || ["#", "|", "<", "[", "```"].iter().any(|start| {
-            text.starts_with(start) && {
-                // a link may begin a paragraph
-                *start != "[" || text.contains("]: ")
-            }
-        })
+/// A text with its code replaced by as many letters.
+fn without_code(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    let plain = parts.map(|(index, part)| if index % 2 == 0 { part.to_owned() } else { "x".repeat(part.len()) });
+    plain.collect::<Vec<_>>().join("`")
 }
 
-/// Whether a line goes on with the paragraph before it.
-fn continues(line: &str) -> bool {
-    !stands_alone(line) && item(line.trim_start()).is_none()
-}
-
-/// The length of a list's mark at the beginning of a text.
-fn item(text: &str) -> Option<usize> {
-    let word = text.split(' ').next()?;
-    let number = word.strip_suffix('.').is_some_and(|number| number.parse::<u32>().is_ok());
-    (number || ["-", "*", ">"].contains(&word)).then_some(word.len() + 1)
-}
-
-fn paragraph(first: &str, more: &[&str], columns: usize) -> Vec<String> {
-    let indent = first.len() - first.trim_start().len();
-    let of_item = item(first.trim_start()).unwrap_or_default();
-    let (head, start) = first.split_at(indent + of_item);
-    let following = more.first().map_or(indent + of_item, |line| line.len() - line.trim_start().len());
-    let words = [start].into_iter().chain(more.iter().copied()).flat_map(str::split_whitespace);
-    let text = glued(&words.collect::<Vec<_>>());
-    let indents = (head.to_owned(), " ".repeat(following));
-    let options = Options::new(columns)
-        .initial_indent(&indents.0)
-        .subsequent_indent(&indents.1)
-        .break_words(false)
-        .word_separator(WordSeparator::AsciiSpace)
-        .word_splitter(WordSplitter::NoHyphenation)
-        .wrap_algorithm(WrapAlgorithm::FirstFit);
-    wrap(&text, options).into_iter().map(|line| line.replace(GLUE, " ")).collect()
-}
-
-/// Words with blanks between them; where a line must not begin with the next word, or short code would be torn, with
-/// glue.
-fn glued(words: &[&str]) -> String {
-    const CODE: usize = 40;
-    let mut text = String::new();
-    // where code begins that has not ended
-    let mut code: Option<usize> = None;
-    for (index, word) in words.iter().enumerate() {
-        if index > 0 {
-            let is_mark = item(word).is_some() || ["+", "=", "|", "#", "<"].iter().any(|mark| word.starts_with(mark));
-            text.push(if is_mark { GLUE } else { ' ' });
+/// The paragraphs of a document: items of lists and cells of tables too.
+fn of_document(text: &str) -> Vec<Paragraph> {
+    let (mut found, mut paragraph) = (Vec::new(), Paragraph::default());
+    let (mut is_code, mut is_written) = (false, false);
+    for (index, line) in text.lines().enumerate() {
+        let number = index + 1;
+        let trimmed = line.trim_start();
+        is_written |= trimmed.starts_with("<!-- begin:");
+        let ends = trimmed.starts_with("<!-- end");
+        let fence = trimmed.starts_with("```");
+        let is_text = !(is_code || is_written || fence || ends || trimmed.starts_with("<!--"));
+        is_code ^= fence;
+        is_written &= !ends;
+        let item = ["- ", "* ", "> "].iter().find_map(|mark| trimmed.strip_prefix(mark));
+        let begins = !is_text || trimmed.is_empty() || item.is_some() || trimmed.starts_with(['#', '|']);
+        if begins && !paragraph.text.is_empty() {
+            found.push(std::mem::take(&mut paragraph));
         }
-        let start = text.len();
-        text.push_str(word);
-        if word.matches('`').count() % 2 == 1 {
-            match code.take() {
-                None => code = Some(start),
-                Some(begin) if text[begin..].width() <= CODE => {
-                    let joined = text[begin..].replace(' ', &GLUE.to_string());
-                    text.replace_range(begin.., &joined);
+        if !is_text || trimmed.is_empty() || trimmed.starts_with('#') {
+            continue;
+        }
+        if trimmed.starts_with('|') {
+            for cell in without_code(trimmed).split('|') {
+                let mut of_cell = Paragraph::default();
+                of_cell.push(number, cell);
+                found.push(of_cell);
+            }
+        } else {
+            paragraph.push(number, item.unwrap_or(trimmed));
+        }
+    }
+    found.push(paragraph);
+    found
+}
+
+/// The first paragraphs of the documentation in a source; `is_wanted` decides by the line below a comment.
+fn of_source(text: &str, is_wanted: impl Fn(&str) -> bool) -> Vec<Paragraph> {
+    let (mut found, mut paragraph) = (Vec::new(), Paragraph::default());
+    let mut is_first = true;
+    for (index, line) in text.lines().enumerate() {
+        let code = line.trim_start();
+        match ["///", "//!"].iter().find_map(|mark| code.strip_prefix(mark)) {
+            Some(words) => {
+                is_first &= !words.trim().is_empty();
+                if is_first {
+                    paragraph.push(index + 1, words);
                 }
-                Some(_) => {}
+            }
+            None => {
+                let of_comment = std::mem::take(&mut paragraph);
+                if !of_comment.text.is_empty() && is_wanted(code) {
+                    found.push(of_comment);
+                }
+                is_first = true;
             }
         }
     }
-    text
+    found
+}
+
+/// The helps of a source: comments of arguments and commands, and what follows the options.
+fn of_helps(text: &str) -> Vec<Paragraph> {
+    let is_help = |below: &str| {
+        let derives = ["Args", "Parser", "Subcommand", "ValueEnum"];
+        below.starts_with("#[arg")
+            || below.starts_with("#[command")
+            || below.starts_with("#[derive") && derives.iter().any(|name| below.contains(name))
+    };
+    let mut found = of_source(text, is_help);
+    let mut paragraph = None::<Paragraph>;
+    for (index, line) in text.lines().enumerate() {
+        if let Some(below) = &mut paragraph {
+            let (words, ends) = line.split_once("\")]").map_or((line, false), |(words, _)| (words, true));
+            if words.trim().is_empty() {
+                found.push(std::mem::take(below));
+            } else {
+                below.push(index + 1, words);
+            }
+            if ends {
+                found.extend(paragraph.take());
+            }
+        } else if line.contains("after_help = \"\\") {
+            paragraph = Some(Paragraph::default());
+        }
+    }
+    found
+}
+
+/// The rules that a paragraph breaks: line, words, and what to write instead. Questions may begin as they like.
+fn broken(paragraph: &Paragraph, rules: &[(Regex, &'static Rule)]) -> Vec<(usize, String, &'static str)> {
+    let text = without_code(&paragraph.text);
+    let is_question =
+        |end: usize| text[end..].find(['.', '?', '!']).is_some_and(|at| text[end + at..].starts_with('?'));
+    let found = rules.iter().flat_map(|(pattern, rule)| {
+        let places = pattern.find_iter(&text).filter(|place| !(rule.begins && is_question(place.end())));
+        let of = |place: regex_lite::Match<'_>| (place.start(), place.as_str().to_owned(), rule.instead);
+        places.map(of).collect::<Vec<_>>()
+    });
+    found.map(|(at, words, instead)| (paragraph.line(at), words, instead)).collect()
+}
+
+/// The rules, to be searched for. A sentence begins with the text, or after a full stop, a mark of emphasis between.
+fn rules() -> Result<Vec<(Regex, &'static Rule)>> {
+    let of = |rule: &'static Rule| {
+        let pattern = match rule.begins {
+            true => format!(r"(?:^|[.!?:] )[*\[]*{}", rule.pattern),
+            false => format!("(?i){}", rule.pattern),
+        };
+        Ok((Regex::new(&pattern).with_context(|| rule.pattern)?, rule))
+    };
+    RULES.iter().map(of).collect()
+}
+
+impl Prose {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let rules = rules()?;
+        let mut count = 0;
+        let mut tell = |path: &str, paragraphs: Vec<Paragraph>| {
+            for paragraph in &paragraphs {
+                for (line, words, instead) in broken(paragraph, &rules) {
+                    println!("{path}:{line}: \"{}\": {instead}", words.trim_start_matches(['.', ' ', '!', '?', ':']));
+                    count += 1;
+                }
+            }
+        };
+        for path in DOCUMENTS.iter().filter(|path| self.names(path)) {
+            tell(path, of_document(&machine::read(path)?));
+        }
+        for (folders, paragraphs) in [(SOURCES, first_sentences as Paragraphs), (HELPS, of_helps)] {
+            for path in sources(folders)?.iter().filter(|path| self.names(path)) {
+                tell(path, paragraphs(&machine::read(path)?));
+            }
+        }
+        if count > 0 {
+            println!("prose: {count} patterns");
+        }
+        Ok(Verdict::from(count == 0))
+    }
+
+    fn names(&self, path: &str) -> bool {
+        self.paths.is_empty() || self.paths.iter().any(|of| path == of || Path::new(path).starts_with(of))
+    }
+}
+
+type Paragraphs = fn(&str) -> Vec<Paragraph>;
+
+/// The first sentences of all documentation in a source.
+fn first_sentences(text: &str) -> Vec<Paragraph> {
+    let mut found = of_source(text, |_| true);
+    for paragraph in &mut found {
+        let end = paragraph.text.find(". ").map_or(paragraph.text.len(), |at| at + 1);
+        paragraph.text.truncate(end);
+    }
+    found
+}
+
+/// The Rust files below folders, from the root of the repository.
+fn sources(folders: &[&str]) -> Result<Vec<String>> {
+    let (mut found, mut open) = (Vec::new(), folders.iter().map(|folder| (*folder).to_owned()).collect::<Vec<_>>());
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(machine::root().join(&folder)).with_context(|| folder.clone())? {
+            let entry = entry?;
+            let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
+            if entry.file_type()?.is_dir() {
+                open.push(path);
+            } else if Path::new(&path).extension().is_some_and(|extension| extension == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{wrapped_comments, wrapped_markdown};
+    use super::{Paragraph, RULES, broken, first_sentences, of_document, of_helps, rules};
 
-    #[test]
-    fn a_paragraph_that_is_too_wide_is_wrapped_and_others_are_not() {
-        let rest = "\n    indented as code it is\n| a | table | that is wide |\n";
-        let text = &format!("short\nlines\n\none two three four five\nsix\n{rest}");
-        let expected = &format!("short\nlines\n\none two three\nfour five six\n{rest}");
-        assert_eq!(wrapped_markdown(text, 14), *expected);
-        assert_eq!(wrapped_markdown(expected, 14), *expected);
-        let kept = "```text\none two three four five\n```\n<!-- begin: x -->\none two three four five\n<!-- end -->\n";
-        assert_eq!(wrapped_markdown(kept, 14), kept);
+    fn found(paragraphs: &[Paragraph]) -> Vec<(usize, String)> {
+        let rules = rules().expect("patterns");
+        let of = |paragraph| broken(paragraph, &rules).into_iter().map(|(line, words, _)| (line, words));
+        paragraphs.iter().flat_map(of).collect()
     }
 
     #[test]
-    fn items_keep_their_indentation() {
-        let text = "- one two three four\n- five\n  six\n1. seven eight nine ten\n";
-        assert_eq!(wrapped_markdown(text, 14), "- one two\n  three four\n- five\n  six\n1. seven eight\n   nine ten\n");
+    fn every_rule_finds_its_example() {
+        let rules = rules().expect("patterns");
+        assert_eq!(rules.len(), RULES.len());
+        for (pattern, rule) in &rules {
+            assert!(pattern.is_match(rule.example), "{}: {}", rule.pattern, rule.example);
+        }
     }
 
     #[test]
-    fn no_line_begins_with_a_mark_and_short_code_stays_together() {
-        assert_eq!(wrapped_markdown("abcdef abcdef - x yz\n", 14), "abcdef\nabcdef - x yz\n");
-        assert_eq!(wrapped_markdown("abcdefgh `a b c` d e\n", 14), "abcdefgh\n`a b c` d e\n");
+    fn a_document_is_read_by_paragraphs_items_and_cells() {
+        let text = [
+            "# Of no heading",
+            "",
+            "A line that",
+            "is good. Of",
+            "no log.",
+            "",
+            "- What it is",
+            "",
+            "| key | Of a joint |",
+            "|---|---|",
+            "```text",
+            "Of code",
+            "```",
+            "<!-- begin: x -->",
+            "What a program prints",
+            "<!-- end -->",
+            "so",
+            "many `so many`",
+            "",
+        ];
+        let text = &text.join("\n");
+        let places: Vec<usize> = found(&of_document(text)).into_iter().map(|(line, _)| line).collect();
+        assert_eq!(places, [4, 7, 9, 17]);
+        assert_eq!(found(&of_document("The gain of the observer. It is of use. What did it do? Which one?\n")), []);
     }
 
     #[test]
-    fn comments_keep_their_slashes_and_code_is_not_touched() {
-        let rest = "    ///\n    /// - seven\n    let x = \"one two three four five\";\n}\n";
-        let text = format!("fn main() {{\n    /// one two three four five\n    /// six\n{rest}");
-        let expected = format!("fn main() {{\n    /// one two three\n    /// four five six\n{rest}");
-        assert_eq!(wrapped_comments(&text, 22), expected);
-        let rule = "//------------------------------\n#!/shebang of many many words\n";
-        assert_eq!(wrapped_comments(rule, 14), rule);
+    fn first_sentences_are_read_of_a_source_and_helps_of_arguments() {
+        let text = [
+            "//! What it is.",
+            "",
+            "/// A good one. What follows is free.",
+            "///",
+            "/// What is below, too.",
+            "fn a() {}",
+            "",
+            "/// The same in",
+            "/// other axes.",
+            "fn b() {}",
+            "    /// None.",
+            "    #[arg(long)]",
+            "    c: bool,",
+        ];
+        let text = &text.join("\n");
+        let places = |paragraphs: &[Paragraph]| found(paragraphs).into_iter().map(|(line, _)| line).collect::<Vec<_>>();
+        assert_eq!(places(&first_sentences(text)), [1, 8, 11]);
+        assert_eq!(places(&of_helps(text)), [11]);
+        let help = "#[command(after_help = \"\\\nExamples:\n  rne log\n\nWhat is missing is\nsaid.\")]\nstruct A;\n";
+        assert_eq!(places(&of_helps(help)), [5, 5]);
     }
 }

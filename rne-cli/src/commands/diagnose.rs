@@ -127,8 +127,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             table(&robot, &seen, &right)
                 + &format!(
                     "\n{ERROR}no usual mistake{ERROR:#} gives these torques, and no pair of mistakes does\n\
-                     {QUIET}compare link by link with rne eval … --trace, or accept larger errors with --tolerance \
-                     1e-3{QUIET:#}\n"
+                     {QUIET}compare link by link: rne eval … --trace; accept larger errors: --tolerance 1e-3{QUIET:#}\n"
                 )
         }
     };

@@ -326,7 +326,7 @@ fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     let _ = writeln!(text, "{all} base parameters, {mark}{excited}{mark:#} of them would be excited");
     let _ = writeln!(
         text,
-        "condition number {GOOD}{}{GOOD:#}, the best of {} motions; the first one had {}; {friction}",
+        "condition number {GOOD}{}{GOOD:#}, the best of {} motions (first: {}), {friction}",
         condition(found.condition),
         found.evaluations,
         condition(found.first_condition)

@@ -116,9 +116,9 @@ const EXIT_STATUS: &str = "\
 1    the input is at fault: a robot file or a plan has an error, cannot be read
      or changes during a search; the result of one state is not finite; a file
      of `rne emit --check` is out of date; torques differ and `rne diagnose`
-     does not find the reason; a value differs from `rne eval --trace --compare`;
-     `rne watch` has events; `rne log` needs the units or the noise of a log; a
-     log has nothing that `rne identify` could find; the output cannot be written
+     does not find the reason; `rne eval --trace --compare` finds a difference;
+     `rne watch` has events; `rne log` cannot find the units or the noise of a
+     log; `rne identify` finds nothing in a log; the output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file or folder that
      rne does not overwrite

@@ -137,8 +137,8 @@ fn dependency(clone: Option<&Path>) -> Result<String, Failure> {
     let path = std::path::absolute(clone).ok().filter(|_| is_rne);
     let path = path.as_deref().and_then(Path::to_str).ok_or_else(|| {
         Failure::usage(format_args!(
-            "{} is not a clone of the rne repository, whose Cargo.toml contains the package rne; name the folder of a \
-             clone",
+            "{} is not a clone of the rne repository, whose Cargo.toml contains the package rne; name the \
+             folder of a clone",
             clone.display()
         ))
     })?;

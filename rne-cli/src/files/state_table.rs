@@ -119,8 +119,8 @@ impl Table {
                     let near = instead(column, &header);
                     let needed = wanted.join(", ");
                     return Err(Failure::input(format_args!(
-                        "{name}: the header has no column `{column}`{near}; needed are {needed}; others are \
-                         ignored"
+                        "{name}: the header has no column `{column}`{near}; the required columns are {needed}; \
+                         others are ignored"
                     )));
                 }
                 _ => {

@@ -45,9 +45,9 @@ pub(crate) fn text(robot: &Robot) -> String {
     }
     if base.visible_rank < base.rank() {
         let hidden = format!(
-            "Torques in double precision determine only {} combinations. Each one with a ? differs from a combination \
-             of the others by less than {:e} of what it adds to the torques. Nearly right angles cause this, such as \
-             1.5708 for pi/2.",
+            "Torques in double precision determine only {} combinations. Each one with a ? differs from a \
+             combination of the others by less than {:e} of what it adds to the torques. Nearly right angles cause \
+             this, such as 1.5708 for pi/2.",
             base.visible_rank,
             BaseParameters::VISIBLE
         );

@@ -48,7 +48,7 @@ fn a_slip_in_the_file_is_named() {
 fn torques_that_agree_have_no_slip() {
     assert!(names(&torques_with("slip_none", "name: puma560", "name: puma560")).is_empty());
     let text = fine(&["diagnose", "planar1", "--q", "0.3", "--qd", "0.5", "--qdd=-1", "--tau", "4.5193"]);
-    assert!(text.starts_with("ok the torques are those of planar1"), "{text}");
+    assert!(text.starts_with("ok the torques agree with planar1"), "{text}");
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn mistakes_in_the_call() {
     };
     call(&["--tau", "1,2"], &["--tau needs 1 number", "not 2"]);
     call(&[], &["--tau"]);
-    call(&["--tau", "x"], &["number 1, `x`, is none"]);
+    call(&["--tau", "x"], &["number 1, `x`, is not a number"]);
     for bad in ["2", "-1", "-1e-3", "x"] {
         call(&["--tau", "1", "--tolerance", bad], &["from 0 to below 1, such as --tolerance 1e-4"]);
     }

@@ -47,6 +47,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo fmt", ".ci/run", "step cargo fmt --all"),
     ("cargo clippy", ".ci/run", "step cargo clippy --workspace --all-targets -- -D warnings\n"),
     ("cargo xtask lines", ".ci/run", "step cargo xtask lines\n"),
+    ("cargo xtask prose", ".ci/run", "step cargo xtask prose\n"),
     ("cargo xtask verify", ".ci/run", "step cargo xtask verify\n"),
     ("cargo xtask urdf", "xtask/src/verify.rs", "\"xtask\", \"urdf\""),
     ("cargo xtask doors", ".ci/run", "step cargo xtask doors --install\n"),

@@ -226,13 +226,17 @@ fn settings_that_spoil_the_sine_are_refused() {
 #[test]
 fn a_file_has_a_name_of_its_language() {
     let folder = folder("c_names");
-    fails(2, &["emit", ROBOT, "-o", &path(&folder, "arm.c")], &["no name for a file in Rust", "arm.rs", "--lang c"]);
+    fails(2, &["emit", ROBOT, "-o", &path(&folder, "arm.c")], &["not a name for a file in Rust", "arm.rs", "--lang c"]);
     fails(
         2,
         &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "arm.rs")],
-        &["no name for a file in C", "--lang rust"],
+        &["not a name for a file in C", "--lang rust"],
     );
-    fails(2, &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "arm.cpp")], &["no name for a file in C", "arm.c"]);
+    fails(
+        2,
+        &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "arm.cpp")],
+        &["not a name for a file in C", "arm.c"],
+    );
     fails(1, &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "none/arm.c")], &["there is no folder", "none"]);
     assert!(fs::read_dir(&folder).expect("a folder").next().is_none(), "nothing was written");
 }

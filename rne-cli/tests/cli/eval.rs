@@ -39,8 +39,8 @@ fn close(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn a_number_is_no_file() {
-    fails(2, &["eval", "--q", "0.5", "0.3"], &["`0.3` stands where FILE", "--q 0.5,0.3"]);
-    fails(2, &["eval", "--q", "0.5", "pi/2"], &["`pi/2` stands where FILE"]);
+    fails(2, &["eval", "--q", "0.5", "0.3"], &["`0.3` is in the place of FILE", "--q 0.5,0.3"]);
+    fails(2, &["eval", "--q", "0.5", "pi/2"], &["`pi/2` is in the place of FILE"]);
     fails(1, &["eval", "nowhere", "--q", "1"], &["there is no robot file nowhere"]);
 }
 
@@ -131,7 +131,11 @@ fn arguments_that_do_not_fit() {
     let wrench = ["--q", three, "--qd", three, "--qdd", three, "--wrench", "1,2,3"];
     call(2, &wrench, &["--wrench needs 6 numbers, not 3", "fx,fy,fz,nx,ny,nz"]);
     for bad in ["1,nan,3", "1,inf,3", "1,1e999,3"] {
-        call(2, &["--q", bad], &["--q", "number 2", "is none", if bad.contains('e') { "too large" } else { "finite" }]);
+        call(
+            2,
+            &["--q", bad],
+            &["--q", "number 2", "is not a number", if bad.contains('e') { "too large" } else { "finite" }],
+        );
     }
     call(2, &["--q", "1,90°,3"], &["number 2", "write `deg(90)`"]);
     // numbers may begin with a sign or a point, and behind an option too

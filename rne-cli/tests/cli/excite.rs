@@ -50,7 +50,7 @@ fn a_trajectory_is_what_other_commands_read() {
     let piped = rne(&excite(&["-o", "-"]));
     assert_eq!((piped.status, piped.out), (0, text.clone()));
     assert!(piped.err.contains("the best of 60 motions"), "{}", piped.err);
-    fails(2, &excite(&["-o", &csv]), &["is there already", "--force"]);
+    fails(2, &excite(&["-o", &csv]), &["exists and is not changed", "--force"]);
     assert!(rne(&excite(&["-o", &csv, "--force"])).err.contains("up to date"));
     // three periods of a third, and as many steps as the rate asks for
     let thrice = numbers(&rne(&excite(&["-o", "-", "--periods", "3", "--rate", "12"])).out);
@@ -104,7 +104,7 @@ fn what_is_wrong_is_said() {
     // 2 kg wherever they are
     let weighs = "gravity alone needs 19.620 of 5.000 N of rail at rail 0.500 m";
     let helps = "neither a slower motion nor a smaller --range helps";
-    fails(1, &["excite", path, "--evaluations", "20"], &[weighs, helps, "is the effort limit of rail right"]);
+    fails(1, &["excite", path, "--evaluations", "20"], &[weighs, helps, "are the effort limit of rail and the masses"]);
     fs::write(&slide, text.replace("LIMITS", "limits: {position: [1, 1]},")).expect("a file");
     fails(1, &["excite", path], &["the position limits of rail leave it no room to move"]);
 }
@@ -137,7 +137,7 @@ fn gravity_beyond_the_effort_limits_is_told_apart() {
     assert!(!middle.contains(slower), "{middle}");
     // friction is in the way where it hangs lower
     let end = said("[-1.5, 0.2]", 4.2, 4.0);
-    has(&end, &["swing would need", slower, "gravity alone needs 4.905 of 4.200", "a smaller --range keeps away from"]);
+    has(&end, &["swing would need", slower, "gravity alone needs 4.905 of 4.200", "use a smaller --range"]);
     let friction = said("[-1.5, 0.2]", 6.0, 6.0);
     has(&friction, &["swing would need", slower]);
     assert!(!friction.contains("gravity"), "{friction}");

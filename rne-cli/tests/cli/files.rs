@@ -95,7 +95,7 @@ fn a_dash_is_standard_output_everywhere() {
         (&["excite", "planar2", "--plot", "-"], "a picture goes into a file"),
         (&["watch", "planar2", "states.csv", "--plot", "-"], "a picture goes into a file"),
         (&["identify", "planar2", "states.csv", "--plot", "/dev/stdout"], "a picture goes into a file"),
-        (&["emit", "planar2", "--check", "-"], "standard output is none"),
+        (&["emit", "planar2", "--check", "-"], "and not standard output"),
     ] {
         let called = in_folder(&folder, arguments);
         assert!(called.status == 2 && called.out.is_empty() && called.said().contains(said), "{called:?}");
@@ -112,8 +112,8 @@ fn what_is_there_already_stays() {
     let long = "x".repeat(5000);
     let long_file = format!("{long}.svg");
     for (arguments, said) in [
-        (&["new", "elbow", "--dof", "2"][..], "elbow.yaml is there already and stays as it is"),
-        (&["new", "elbow", "--dof", "2", "-o", "place"], "place is there already"),
+        (&["new", "elbow", "--dof", "2"][..], "elbow.yaml exists and is not changed"),
+        (&["new", "elbow", "--dof", "2", "-o", "place"], "place exists and is not changed"),
         (&["man", "-o", "elbow.yaml"], "is not a folder"),
         (&["new", &long, "--dof", "2"], "its name is too long"),
         (&["plot", "planar2", "-o", &long_file], "its name is too long"),

@@ -65,7 +65,7 @@ fn a_firmware_is_written_once() {
     let before = read(written.join("src/main.rs"));
     let again = firmware(&empty, &["torque", "--robot", "planar2", "--rne-path", ROOT]);
     assert_eq!(again.status, 2, "{again:?}");
-    assert!(again.err.contains("torque is not empty and stays as it is"), "{again:?}");
+    assert!(again.err.contains("torque is not empty and is not changed"), "{again:?}");
     assert_eq!((read(written.join("src/main.rs")), written.join("README.md").exists()), (before, false));
     fs::create_dir(empty.join("mine")).expect("a folder");
     assert_eq!(firmware(&empty, &["torque", "-o", "mine"]).status, 0, "an empty folder is as good as none");
@@ -108,10 +108,10 @@ fn wrong_requests_for_a_firmware() {
     for (status, arguments, said) in [
         (2, &["../torque"][..], "letters, digits, - and _"),
         (2, &["7arms"], "starts with a letter"),
-        (2, &["rne"], "this name is taken"),
-        (2, &["cortex_m"], "this name is taken"),
-        (2, &["torque", "-o", "file"], "file is no folder and stays as it is"),
-        (2, &["torque", "--rne-path", "."], "no clone of rne's repository"),
+        (2, &["rne"], "this name is reserved"),
+        (2, &["cortex_m"], "this name is reserved"),
+        (2, &["torque", "-o", "file"], "file is not a folder and is not changed"),
+        (2, &["torque", "--rne-path", "."], "not a clone of the rne repository"),
         (1, &["torque", "--robot", "nothing"], "there is no robot file nothing"),
         (1, &["torque", "--robot", "wrong.yaml"], "wrong.yaml"),
     ] {

@@ -66,7 +66,7 @@ fn a_robot_file_that_is_there_stays() {
     fs::write(&out, "my own").expect("written");
     let (urdf, out) = (urdf.to_str().expect("UTF-8"), out.to_str().expect("UTF-8"));
     let import = ["import", urdf, "--tip", "tip", "--lock-others", "-o", out];
-    fails(2, &import, &["is there already and stays as it is", "--force"]);
+    fails(2, &import, &["exists and is not changed", "--force"]);
     assert_eq!(fs::read_to_string(out).expect("it is there"), "my own");
     let forced = rne(&[&import[..], &["--force"]].concat());
     assert!(forced.err.contains("wrote"), "{forced:?}");

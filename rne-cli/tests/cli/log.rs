@@ -317,7 +317,7 @@ fn columns_that_are_not_understood_are_named() {
     let unread = "Zeit [s], Achse1_Moment, Achse2_Moment, Achse3_Moment";
     let said = fine(&["log", log, "--rate", "25"]);
     let place = |words: &str| said.find(words).unwrap_or_else(|| panic!("no `{words}` in {said}"));
-    assert!(place(&format!("columns that are not read: {unread}")) < place("there are no efforts"));
+    assert!(place(&format!("columns that are not read: {unread}")) < place("the log has no efforts"));
     let judge = judge(log, &["--rate", "25"]);
     fails(1, &judge, &["the log has no efforts", &format!("not read are {unread}"), "tau1, …"]);
     // of a log that has all, nothing else is meant

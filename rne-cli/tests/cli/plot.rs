@@ -61,7 +61,7 @@ fn pictures_are_written() {
     assert!(picture.starts_with("<svg") && picture.contains("Two-link planar arm") && picture.contains("in 2 s"));
     assert_eq!(picture, fine(&["plot", "planar2"]));
     assert!(fine(&["plot", "planar2", "-o", path]).starts_with("up to date"));
-    fails(2, &["plot", "planar1", "-o", path], &["is there already", "--force"]);
+    fails(2, &["plot", "planar1", "-o", path], &["exists and is not changed", "--force"]);
     fine(&["plot", "planar1", "-o", path, "--force"]);
     // speed limits ask for time
     assert!(fine(&["plot", "panda", "--duration", "0.1"]).contains("faster than speed limits allow"));
@@ -133,10 +133,10 @@ fn trajectories_that_are_none() {
     bad("time,q1,q2\n0,1,2\n", &["there is no column `t`"]);
     bad("t,q1,q_2\n0,1,2\n", &["there is no column `q2`; is it `q_2`?"]);
     bad("t,q1,q2,qd1\n0,1,2,3\n", &["there is no column `qd2`"]);
-    bad("t,q1,q2,q3\n0,1,2,3\n", &[":1:9", "`q3` is of no joint: there are joints 1 to 2"]);
-    bad("t,q1,q2,q1\n0,1,2,3\n", &[":1:9", "`q1` is there twice"]);
-    rows("2,x,1\n", &[":4:3", "`x` of column `q1` is no finite number"]);
-    rows("2,nan,1\n", &[":4:3", "no finite number"]);
+    bad("t,q1,q2,q3\n0,1,2,3\n", &[":1:9", "`q3` belongs to no joint: there are joints 1 to 2"]);
+    bad("t,q1,q2,q1\n0,1,2,3\n", &[":1:9", "`q1` occurs twice"]);
+    rows("2,x,1\n", &[":4:3", "`x` of column `q1` is not a finite number"]);
+    rows("2,nan,1\n", &[":4:3", "not a finite number"]);
     rows("2,,1\n", &[":4:3", "a number of column `q1` is missing"]);
     rows("2,1\n", &[":4:1", "2 cells, and 3 columns"]);
     rows("2,0,5,1\n", &["4 cells, and 3 columns", "decimal point"]);

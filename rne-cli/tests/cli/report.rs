@@ -15,7 +15,7 @@ fn a_page_is_written_once() {
     assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"), "{}", page.len());
     // the same page is no change, another is not written over it
     assert!(rne(&["report", "planar2", "-o", out]).err.contains("up to date"));
-    fails(2, &["report", "puma560", "-o", out], &["is there already", "--force"]);
+    fails(2, &["report", "puma560", "-o", out], &["exists and is not changed", "--force"]);
     assert_eq!(fs::read_to_string(&path).expect("a page"), page);
     assert_eq!(rne(&["report", "puma560", "-o", out, "--force"]).status, 0);
     assert!(fs::read_to_string(&path).expect("a page").contains("PUMA 560"));

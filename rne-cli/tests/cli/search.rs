@@ -65,7 +65,7 @@ fn a_plan_is_written_replayed_and_never_becomes_worse() {
     assert!(fresh.contains("is as good as it was"), "a plan that fits is kept: {fresh}");
     assert_eq!(totals(&fresh), better);
     fs::write(&plan, "my: notes\n").expect("written");
-    fails(2, &["search", &robot, "--seconds", "0", "--fresh"], &["is no plan that rne has written", "stays as it is"]);
+    fails(2, &["search", &robot, "--seconds", "0", "--fresh"], &["is not a plan written by rne", "is not changed"]);
     assert_eq!(fs::read_to_string(&plan).expect("notes"), "my: notes\n");
     let names: Vec<_> =
         fs::read_dir(folder_of(&robot)).expect("a folder").map(|entry| entry.expect("an entry").file_name()).collect();
@@ -180,7 +180,7 @@ fn arguments_of_a_search() {
     let text = fs::read_to_string(&robot).expect("a robot");
     let called = rne_reading(&["search", "-"], &text);
     assert_eq!((called.status, called.out.as_str()), (2, ""));
-    assert!(called.err.contains("beside the robot file, so it needs a file"), "{}", called.err);
+    assert!(called.err.contains("next to the robot file, so it needs a file"), "{}", called.err);
     for seconds in ["-1", "nan", "1e9", "soon"] {
         fails(2, &["search", &robot, "--seconds", seconds], &["--seconds", "a number of seconds, 0 to 1000000"]);
     }

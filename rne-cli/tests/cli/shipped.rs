@@ -69,7 +69,7 @@ fn a_new_file_is_written_once() {
     assert!(text.contains("type: prismatic") && text.lines().all(|line| line.chars().count() <= 120), "{text}");
     let (status, said) = new(&[]);
     assert_eq!(status, Some(2), "{said}");
-    assert!(said.contains("stays as it is"), "{said}");
+    assert!(said.contains("is not changed"), "{said}");
     assert_eq!(fs::read_to_string(folder.join("my_arm.yaml")).expect("it is there"), text);
     let file = folder.join("my_arm.yaml");
     let out = fine(&["check", file.to_str().expect("UTF-8")]);

@@ -90,7 +90,7 @@ fn what_a_name_in_the_code_is() {
     assert!(q.contains("joint position, rad") && q.contains("used by   s2, c2"), "{q}");
     let reduced = fine(&["explain", "tau6", "puma560", "--form", "reduced"]);
     assert!(reduced.contains("let tau6 = "), "{reduced}");
-    fails(2, &["explain", "w2z", "puma560"], &["nothing is called `w2z`", "did you mean w2_z"]);
+    fails(2, &["explain", "w2z", "puma560"], &["there is no name `w2z`", "did you mean w2_z"]);
     fails(2, &["explain", "functons"], &["did you mean functions", "rne explain w2_z puma560"]);
     fails(1, &["explain", "w2_z", "nowhere.yaml"], &["nowhere.yaml"]);
 }
@@ -187,7 +187,7 @@ fn other_functions_for_reading() {
     }
     assert!(with(&[]).contains("// returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇\n"));
     let nothing = fine(&["show", robot, "--function", "jacobian", "--step", "7"]);
-    assert!(nothing.contains("nothing of jacobian stands there"), "{nothing}");
+    assert!(nothing.contains("no code of jacobian is there"), "{nothing}");
     assert!(fine(&["show", robot, "--function", "actuator_torques"]).contains("// returned\n    [zero, zero]"));
     assert!(fine(&["show", "robots/puma560.yaml", "--function", "actuator_torques"]).contains("// motor 6: G² Jm q̈"));
 }
@@ -295,7 +295,7 @@ fn tricks_and_what_they_save() {
 
 #[test]
 fn base_parameters_that_no_double_can_see_are_marked() {
-    let said = "Torques in double precision see 24 combinations only";
+    let said = "Torques in double precision determine only 24 combinations";
     let text = fine(&["show", "tests/nearly_right/tilts_of_1e-7.yaml", "--base-parameters"]);
     assert!(text.contains(said) && text.lines().any(|line| line.starts_with("? ")), "{text}");
     let text = fine(&["show", "puma560", "--base-parameters"]);

@@ -13,7 +13,7 @@ use crate::call::{Called, called, command, fails, fine, folder, rne, rne_reading
 /// The columns that a function asks for, as it tells them.
 fn columns(robot: &str, function: &str) -> Vec<String> {
     let said = rne_reading(&["eval", robot, "--function", function, "--states", "-"], "t\n0\n").err;
-    let needed = said.split("needed are ").nth(1).and_then(|rest| rest.split(", others are passed over").next());
+    let needed = said.split("required columns are ").nth(1).and_then(|rest| rest.split("; others are ignored").next());
     needed.unwrap_or_else(|| panic!("{function}: {said}")).split(", ").map(str::to_owned).collect()
 }
 
@@ -259,17 +259,17 @@ fn mistakes_in_csv_have_a_line() {
         ("", "<standard input> is empty; its header is q1,q2, in any order"),
         ("q1,q2\n1,2\n0.5,-1e400\n", "<standard input>:3: `q2` is `-1e400`, which is too large for a 64-bit float"),
         ("q1,q2\n1e-400,2\n", "<standard input>:2: `q1` is `1e-400`, which is too small for a 64-bit float"),
-        ("q1\n1\n", "<standard input>: the header has no column `q2` (there is `q1`); needed are q1, q2"),
+        ("q1\n1\n", "<standard input>: the header has no column `q2` (there is `q1`); the required columns are q1, q2"),
         ("# angles\nQ1,Q2\n1,2\n", ": the header has no column `q1` (there is `Q1`)"),
-        ("1,2\n3,4\n", ": the header has no column `q1`; needed are q1, q2, others are passed over"),
+        ("1,2\n3,4\n", ": the header has no column `q1`; the required columns are q1, q2; others are ignored"),
         ("q1;q2\n1;2\n", "(it has semicolons; columns are separated by commas)"),
         ("q1\tq2\n1\t2\n", "(it has tabs; columns are separated by commas)"),
-        ("q1,q2,q1\n1,2,3\n", ": the column `q1` is there twice"),
-        ("q1,q2\n1,2\n\n1,pi/2\n", ":4: `q2` is `pi/2`, which is no number"),
-        ("q1,q2\r\n1,2\r\n# and\r\n\r\n1,pi/2", ":5: `q2` is `pi/2`, which is no number"),
-        ("q1,q2,of\n1,2,\"a\nb\"\n1,x,\"a\nb\"\n", ":4: `q2` is `x`, which is no number"),
+        ("q1,q2,q1\n1,2,3\n", ": the column `q1` occurs twice"),
+        ("q1,q2\n1,2\n\n1,pi/2\n", ":4: `q2` is `pi/2`, which is not a number"),
+        ("q1,q2\r\n1,2\r\n# and\r\n\r\n1,pi/2", ":5: `q2` is `pi/2`, which is not a number"),
+        ("q1,q2,of\n1,2,\"a\nb\"\n1,x,\"a\nb\"\n", ":4: `q2` is `x`, which is not a number"),
         ("q1,q2\n1,\n", ":2: `q2` is empty"),
-        ("q1,q2\n1,2\u{1b}[31m\n", ":2: `q2` is `2\\u{1b}[31m`, which is no number"),
+        ("q1,q2\n1,2\u{1b}[31m\n", ":2: `q2` is `2\\u{1b}[31m`, which is not a number"),
         ("q1,q2\n1,2\n1,2,3\n", ":3: 3 cells where the header has 2"),
         ("q1,q2\n1\n", ":2: 1 cell where the header has 2"),
         ("q1,q2\n\"1,2\n3,4\n", ":2: 1 cell where the header has 2; a quote in it is not closed on its line"),
@@ -364,7 +364,7 @@ fn files_stay_unless_told_otherwise() {
     let text = fs::read_to_string(&out).expect("results");
     assert_eq!(text, gravity("q1,q2\n1,2\n").out);
     for (out, more, status, said) in [
-        (&out, &[][..], 2, "is there already and stays as it is; --force overwrites it"),
+        (&out, &[][..], 2, "exists and is not changed; --force overwrites it"),
         (&states, &["--force"], 2, "is the file that is read; name another"),
         (&folder.display().to_string(), &["--force"], 2, "is a folder; name a file in it"),
         (&path("nowhere/out.csv"), &[], 1, "make it first"),
@@ -467,7 +467,7 @@ fn memory_does_not_grow_with_the_states() {
 #[test]
 fn options_that_do_not_go_with_states_are_refused() {
     let of_one = ["eval", "planar2", "--q", "1,2", "--qd", "1,2", "--qdd", "1,2", "-o", "nowhere.csv"];
-    fails(2, &of_one, &["-o is where the results of --states go"]);
+    fails(2, &of_one, &["-o is for the results of --states"]);
     for other in [["--q", "1,2"], ["--axes", "link"], ["--step", "4"], ["--golden", "3"]] {
         fails(
             2,

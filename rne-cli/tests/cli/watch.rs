@@ -127,9 +127,9 @@ fn a_dead_channel_is_not_in_order() {
     let folder = folder("watch_dead");
     let log = fs::read_to_string(format!("{ROOT}/{QUIET}")).expect("a log");
     for (columns, effort, said) in [
-        (8..9, "0", "shoulder: is FILE"),
-        (7..10, "0", "waist, shoulder, elbow: is"),
-        (8..9, "3.3", "shoulder: is FILE"),
+        (8..9, "0", "shoulder: does FILE"),
+        (7..10, "0", "waist, shoulder, elbow: does"),
+        (8..9, "3.3", "shoulder: does FILE"),
     ] {
         let dead = log.lines().enumerate().map(|(at, line)| {
             let cell = |(index, cell)| if at > 0 && columns.contains(&index) { effort } else { cell };
@@ -147,7 +147,7 @@ fn a_dead_channel_is_not_in_order() {
 #[test]
 fn errors_are_those_of_a_judge() {
     let judged = fine(&["identify", ARM, KNOCK, "--judge"]);
-    let (_, judged) = judged.split_once("root mean square").expect("a table");
+    let (_, judged) = judged.split_once("error: RMS of").expect("a table");
     for more in [&[][..], &["--quiet", QUIET]] {
         let watched = rne(&[&["watch", ARM, KNOCK], more].concat());
         assert!(watched.out.ends_with(judged), "{}\n{judged}", watched.out);

@@ -133,7 +133,7 @@ fn the_first_difference_reads_well() {
     assert_eq!(first["reasons"][0]["says"], "the term ω2 × (ω2 × d2) is left out");
     // another state, and a payload that nobody said anything of
     let called = compared("joint,quantity,value\n1,q,0.7\n", &[]);
-    assert!(called.out.contains("q1: given") && called.out.contains("of another state than that"), "{}", called.out);
+    assert!(called.out.contains("q1: given") && called.out.contains("for another state than"), "{}", called.out);
     let payload: Vec<&str> = planar2(&["--payload", "2,0.1,0,0", "--csv"]);
     let called = compared(&fine(&payload), &[]);
     assert!(called.out.contains("step 6, joint 2 (j2), f2,3, component x"), "{}", called.out);
@@ -159,7 +159,7 @@ fn slips_are_named() {
     assert_eq!(called.status, 1);
     assert!(called.out.contains("step 5, joint 1 (j1), g1, component x"), "{}", called.out);
     assert!(
-        called.out.contains("all your values are right but for this: gravity points the other way"),
+        called.out.contains("all your values are right except for this: gravity points the other way"),
         "{}",
         called.out
     );
@@ -185,17 +185,17 @@ fn files_that_are_no_worksheets() {
     };
     let row = |row: &str, parts: &[&str]| bad(&format!("{HEAD}1,1,omega,z,1.3,rad/s,link\n{row}\n"), parts);
     bad("", &["the file is empty", "the header is `joint,step,quantity"]);
-    bad(HEAD, &["no value is given"]);
+    bad(HEAD, &["has no value to compare"]);
     bad("1,omega,z,1.3\n", &["there is no column `joint`"]);
     bad("joint,quantty,value\n1,tau,2\n", &["<standard input>:1:7", "did you mean `quantity`?"]);
-    bad("joint,quantity,value,value\n1,tau,2,3\n", &["`value` is there twice"]);
+    bad("joint,quantity,value,value\n1,tau,2,3\n", &["`value` occurs twice"]);
     row("1,2,omega_dt,z,1,rad/s²,link", &[":3:5", "`omega_dt`", "did you mean `omega_dot`?", "there are q, qd"]);
     row("1,2,omega_dot,w,1,rad/s²,link", &[":3:15", "has no component `w`", "x, y, z"]);
     row("1,2,omega_dot,,1,rad/s²,link", &["which component of omega_dot"]);
     row("1,7,tau,z,1,N m,", &["tau has no component `z`", "leave the component empty"]);
-    row("3,2,omega_dot,x,1,rad/s²,link", &[":3:1", "`3` is no joint of planar2", "1 to 2"]);
+    row("3,2,omega_dot,x,1,rad/s²,link", &[":3:1", "`3` is not a joint of planar2", "1 to 2"]);
     row("j3,2,omega_dot,x,1,rad/s²,link", &["did you mean `j1`?"]);
-    row("1,3,omega_dot,x,1,rad/s²,link", &[":3:3", "omega_dot is found by step 2, not by step `3`"]);
+    row("1,3,omega_dot,x,1,rad/s²,link", &[":3:3", "omega_dot is computed by step 2, not by step `3`"]);
     row("1,2,omega_dot,x,1,deg/s²,link", &["omega_dot of joint 1 is in rad/s², not in `deg/s²`", "deg(30)"]);
     row("1,2,omega_dot,x,1,rad/s^2,base", &["this is in base axes, and the comparison in link axes", "--axes base"]);
     row("1,2,omega_dot,x,1,rad/s2,lonk", &["`lonk` names no axes", "`lecture`"]);
@@ -203,7 +203,7 @@ fn files_that_are_no_worksheets() {
     row("1,1,omega,z,1,,\n1,1,omega,z,1,,", &[":3:1", ":4:1", "first on line 2"]);
     bad(&(HEAD.to_owned() + &"1,7,tau,,1,,\n".repeat(1000)), &["more rows than a worksheet of planar2 has"]);
     for number in ["nan", "inf", "1e999", "O.5", "1/0"] {
-        row(&format!("1,2,omega_dot,x,{number},rad/s²,link"), &[":3:17", "is no number"]);
+        row(&format!("1,2,omega_dot,x,{number},rad/s²,link"), &[":3:17", "is not a number"]);
     }
     row("1,2,omega_dot,x,0,5,rad/s²,link", &["8 cells, and 7 columns", "decimal point"]);
     row("1,2,\"omega_dot,x,0", &["this quote is not closed"]);
@@ -212,7 +212,7 @@ fn files_that_are_no_worksheets() {
     bad("# rne worksheet, format 1, robot panda\njoint,quantity,value\n1,tau,1\n", &["is of `panda`"]);
     // every mistake at once
     row("9,1,omega,x,1,,\n1,1,omga,x,1,,", &[":3:1", ":4:5"]);
-    bad("{\"rows\": 3}", &["this is no worksheet"]);
+    bad("{\"rows\": 3}", &["this is not a worksheet"]);
     bad("{\"row\": []}", &["no key `rows`"]);
     bad("[{\"joint\": 1, \"quantity\": \"tau\", \"value\": NaN}]", &["<standard input>:1:", "JSON has no NaN"]);
     bad("[\n {\"joint\": 1, \"quantity\": \"tao\", \"value\": 1}]", &[":2:27", "did you mean `tau`?"]);

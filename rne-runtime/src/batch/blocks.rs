@@ -30,7 +30,7 @@ pub(super) struct States<'a, R, T, const DOF: usize> {
     pub(super) tau: [&'a mut [T]; DOF],
 }
 
-/// The torques of states, which depend on so many angles.
+/// The torques of states, which depend on `ANGLES` angles.
 pub(super) struct TorquesOf<'a, R, T, const DOF: usize, const ANGLES: usize>(pub(super) States<'a, R, T, DOF>);
 
 impl<R, T: BatchScalar, const DOF: usize, const ANGLES: usize> Work<T> for TorquesOf<'_, R, T, DOF, ANGLES>

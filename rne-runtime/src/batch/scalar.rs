@@ -105,7 +105,7 @@ mod sealed {
         type Avx2: Vector<Element = Self, Unit = registers::Avx2>;
         #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
         type Avx512: Vector<Element = Self, Unit = registers::Avx512>;
-        /// Lends so many numbers of memory, aligned to a line of the cache, which the thread keeps.
+        /// Lends memory for a number of values, aligned to a line of the cache, which the thread keeps.
         #[cfg(feature = "machine")]
         fn with_memory<R>(length: usize, work: impl FnOnce(&mut [Self]) -> R) -> R;
     }

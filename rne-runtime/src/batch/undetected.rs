@@ -1,4 +1,4 @@
-//! Where no vector unit is looked for: there is none beyond the compiled target.
+//! Targets on which no vector unit is detected at run time: only the compiled target is used.
 
 use super::BatchScalar;
 use super::vector::Work;

@@ -13,7 +13,7 @@ pub enum Source<'a, T> {
 }
 
 impl<T: Copy> Source<'_, T> {
-    /// Whether there is a number for each of so many states.
+    /// Whether there is a number for each state.
     pub(super) fn holds(&self, states: usize) -> bool {
         match self {
             _ if states == 0 => true,
@@ -35,7 +35,7 @@ pub enum Destination<'a, T> {
 }
 
 impl<T> Destination<'_, T> {
-    /// Whether there is room for just so many outputs of so many states.
+    /// Whether there is room for exactly these outputs of these states.
     pub(super) fn fits(&self, outputs: usize, states: usize) -> bool {
         match self {
             Self::Rows(numbers) => outputs.checked_mul(states) == Some(numbers.len()),

@@ -172,7 +172,7 @@ pub struct Code {
 }
 
 impl Code {
-    /// Code on so many slots, with so many inputs and outputs; `None` when an instruction names one that is not there,
+    /// Creates code for a number of slots, inputs and outputs; `None` if an instruction names one that does not exist,
     /// or an output is not written just once.
     #[must_use]
     pub fn new(

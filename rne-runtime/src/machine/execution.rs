@@ -176,7 +176,7 @@ pub(super) fn slots<V: Vector, const N: usize>(memory: &mut [V::Element]) -> &mu
     V::split_mut(memory).0.as_chunks_mut().0
 }
 
-/// How many numbers the slots of some code take, in registers of so many lanes.
+/// Memory of the slots of some code, in numbers, for registers with `lanes` lanes.
 pub(super) const fn memory(code: &Code, lanes: usize, registers: usize) -> usize {
     code.slots * lanes * registers
 }

@@ -52,7 +52,7 @@ use crate::batch::BatchScalar;
 const TASK: usize = 4096;
 
 impl Code {
-    /// Computes so many states: one source per input, room for every output.
+    /// Computes a number of states: one source per input, room for every output.
     ///
     /// With the feature `rayon`, on all cores for more than some thousand states.
     ///

@@ -20,8 +20,8 @@ pub(super) fn largest<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> f64 {
     numbers.into_iter().fold(0.0, |largest: f64, number| largest.max(number.abs()))
 }
 
-/// Whether numbers can be compared: the accelerations of a singular mass matrix are not finite, and no more is said of
-/// them.
+/// Whether numbers can be compared: the accelerations of a singular mass matrix are not finite, and nothing is required
+/// of them.
 pub(super) fn are_finite(numbers: &[f64]) -> bool {
     numbers.iter().all(|number| number.is_finite())
 }

@@ -20,7 +20,7 @@ pub struct GoldenState<const DOF: usize> {
     pub tau: [f64; DOF],
 }
 
-/// The torques of every line, to so many parts of the largest torque of the file. All that are wrong are named, with
+/// Compares the torques of every line, relative to the largest torque of the file. All wrong torques are named, with
 /// line and joint.
 pub fn torques_are_those_of_the_golden_file<const DOF: usize, R: InverseDynamics<DOF>>(
     robot: &R,
