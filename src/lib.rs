@@ -1,4 +1,4 @@
-//! The dynamics compiler for robot arms: a Denavit-Hartenberg table becomes straight-line recursive Newton-Euler code,
+//! A dynamics compiler for robot arms: a Denavit-Hartenberg table becomes straight-line recursive Newton-Euler code,
 //! while your program is compiled.
 //!
 //! ```
@@ -15,14 +15,14 @@
 //!
 //! `robots/puma560.yaml` holds the table of the arm and the mass, centre of mass and inertia of each link. The
 //! [derive](derive@InverseDynamics) reads it at compile time, writes the seven steps of the recursion for each link,
-//! folds what this arm's right angles and zeros make trivial, and leaves a few hundred multiplications and additions
-//! with names such as `w2_z`: no loop, no matrix, no allocation, no branch, no panic, no `unsafe`. The counts, before
-//! and after, stand in the documentation of your type. A mistake in the file is a compiler error that points into the
-//! file.
+//! and removes the terms that vanish by this arm's right angles and zeros. A few hundred multiplications and additions
+//! remain, with names such as `w2_z`: no loop, no matrix, no allocation, no branch, no panic, no `unsafe`. The
+//! documentation of your type gives the counts before and after. A mistake in the file is a compiler error that points
+//! into the file.
 //!
-//! # What a robot can compute
+//! # Functions of a robot
 //!
-//! One trait per capability, generic over the [`Scalar`]: `f32`, `f64`, SIMD lanes, dual numbers, fixed point.
+//! There is one trait per capability, generic over the [`Scalar`]: `f32`, `f64`, SIMD lanes, dual numbers, fixed point.
 //!
 #![doc = include_str!("../docs/capabilities.md")]
 //!
@@ -32,8 +32,8 @@
 //! writes it, with loops and vectors. Generated code is tested against it: in `f64`, without fused multiply-add, the
 //! seven steps give the same bits for the torques of all traits, the mass matrix, forward dynamics, kinetic energy, the
 //! derivatives and the joint wrenches. [`Kinematics`], potential energy, [`CoriolisMatrix`] and [`Regressor`] sum in
-//! another order and agree to rounding, and so does `f32`, for an `Arm` keeps its constants in `f64`. `DynArm` is for a
-//! number of joints that is not known either.
+//! another order and agree to rounding. So does `f32`, because an `Arm` stores its constants in `f64`. `DynArm` is for
+//! a robot whose number of joints is not known at compile time either.
 //!
 //! ```
 //! # #[cfg(all(feature = "arm", feature = "std"))] {
@@ -69,27 +69,27 @@
 //! # Ok::<(), rne::LengthMismatch>(())
 //! ```
 //!
-//! AVX-512, AVX2, SSE2 or NEON: what the processor has is found when the program runs, without `-C target-cpu`. With
-//! the feature `rayon`, on all cores.
+//! A batch uses AVX-512, AVX2, SSE2 or NEON, detected at run time, without `-C target-cpu`. With the feature `rayon` it
+//! uses all cores.
 //!
 //! # The processor
 //!
-//! Single calls in the form `reduced` take the AVX2 and the fused multiply-add of an x86 processor that has them, in
-//! `f64` and `f32`: a plain `cargo build --release` is about as fast as one with `-C target-cpu=x86-64-v3`, and has its
-//! bits. The form `seven_steps` has the same bits on every processor. `#[robot(…, inline)]` leaves the processor out of
-//! it, so that a method can be [inlined](derive@InverseDynamics#inline) into a loop.
+//! Single calls in the form `reduced` use AVX2 and fused multiply-add on x86 processors that have them, in `f64` and
+//! `f32`. So a plain `cargo build --release` is about as fast as one with `-C target-cpu=x86-64-v3`, and returns the
+//! same bits. The form `seven_steps` returns the same bits on every processor. `#[robot(…, inline)]` switches the
+//! detection off, so that a method can be [inlined](derive@InverseDynamics#inline) into a loop.
 //!
 //! # Features
 //!
-//! | feature | |
+//! | feature | effect |
 //! |---|---|
-//! | `arm` (default) | the robot that is known at run time: [`Arm`], `DynArm`; it brings nalgebra |
-//! | `simba` (default) | computing in every scalar that simba knows; without it in `f32`, `f64` and types of your own. The lanes `WideF64x4` and their like come with simba's own feature `std`, which `simba = "0.10"` in your `Cargo.toml` has |
+//! | `arm` (default) | robots that are known at run time: [`Arm`], `DynArm`; depends on nalgebra |
+//! | `simba` (default) | every scalar of simba; without it `f32`, `f64` and your own types. Lanes such as `WideF64x4` need simba's feature `std`, which `simba = "0.10"` in your `Cargo.toml` enables |
 //! | `std` (default) | robot files at run time |
-//! | `batch` (default) | instructions of the processor found at run time, for batches and single calls; without it they are those of the compiled target |
-//! | `compiled` | any arm at run time, nearly as fast as a derived one: `compiled::CompiledArm`; it brings the compiler |
-//! | `native` | single calls of it as instructions of the processor, as fast as derived ones; it brings Cranelift |
-//! | `nalgebra` | conversions of poses and wrenches; `arm` has it |
+//! | `batch` (default) | detection of the processor's instructions at run time, for batches and single calls; without it the code uses the compiled target |
+//! | `compiled` | any arm at run time, nearly as fast as a derived one: `compiled::CompiledArm`; depends on the compiler |
+//! | `native` | machine code for single calls of a `CompiledArm`, as fast as derived ones; depends on Cranelift |
+//! | `nalgebra` | conversions of poses and wrenches; enabled by `arm` |
 //! | `rayon` | batches on all cores |
 //! | `core_float_math` | without `std`: fused multiply-add in the reduced form, with a nightly compiler (a stable one says E0554) |
 //!
@@ -101,18 +101,20 @@
 //! # Conventions
 //!
 //! - Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
-//! - Torques are what the actuators must deliver: τ = M(q) q̈ + C(q, q̇) q̇ + g(q), without friction and rotor inertia.
-//! - A table says whether its rows are `standard` (distal) or `modified` (proximal, Craig); it is never guessed.
+//! - Torques are the torques that the actuators must deliver: τ = M(q) q̈ + C(q, q̇) q̇ + g(q), without friction and rotor
+//!   inertia.
+//! - A table states whether its rows are `standard` (distal) or `modified` (proximal, Craig); this is never guessed.
 //! - `gravity` is the acceleration of gravity in frame 0: `[0, 0, -9.81]` when z points up.
 //! - A [`Wrench`] is exerted by the last link on its environment, at the tip frame, in its axes: τ = τ_free + Jᵀ w.
-//! - Inertia tensors are tensors: `xy` is -∫ x y dm; about the centre of mass unless the file says otherwise.
+//! - Inertias are elements of the tensor, so `xy` is -∫ x y dm; about the centre of mass unless the file says
+//!   otherwise.
 //!
 //! # Robot files
 //!
-//! [`model`] reads and checks them, and has the plain types of the table that [`Arm::new`] takes: one YAML document per
-//! arm, where every number may be an expression (`pi/2`, `m*a^2/12`). [`robot_file`] explains every key, and leads an
-//! arm from its datasheet to its torque.
-//! `rne check FILE` reports mistakes and suspicious values, `rne show FILE` the annotated code.
+//! [`model`] reads and checks robot files, and contains the plain types of the table that [`Arm::new`] takes: one YAML
+//! document per arm, where every number may be an expression (`pi/2`, `m*a^2/12`). [`robot_file`] explains every key,
+//! and leads an arm from its datasheet to its torque. `rne check FILE` reports mistakes and suspicious values,
+//! `rne show FILE` the annotated code.
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -1,8 +1,8 @@
-//! Compiled functions of a robot, run where they are: for arms that are known at run time only.
+//! Compiled functions of a robot inside the running program, for arms that are known only at run time.
 //!
-//! A [`Machine`] is made of a [`Program`], in some ten microseconds and without trusting it with anything: safe code
-//! interprets it over blocks of states, on the widest vector unit of the processor. Single states are computed at the
-//! speed of derived code with the feature `native`, by `Native`.
+//! A [`Machine`] is made from a [`Program`] in some ten microseconds. Safe code interprets it over blocks of states, on
+//! the widest vector unit of the processor. With the feature `native`, `Native` computes single states at the speed of
+//! derived code.
 //!
 //! ```
 //! use rne_codegen::{Compiler, Form, Function, Target};

@@ -321,7 +321,7 @@ fn write(arguments: &Arguments, files: &[Generated]) -> Result<Outcome, Failure>
 
 fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     if output_file::is_same(out, &arguments.file) {
-        let message = format!("{} is the robot file itself; the code needs a file of its own", out.display());
+        let message = format!("{} is the robot file itself; write the code to another file", out.display());
         return Err(Failure::usage(message));
     }
     file_name::check(out, arguments.lang.format())?;

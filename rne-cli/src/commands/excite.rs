@@ -95,17 +95,18 @@ pub(crate) struct Arguments {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| (1e-3..=86_400.0).contains(seconds));
-    seconds.ok_or_else(|| "a motion takes a number of seconds, 0.001 to 86400".to_owned())
+    seconds.ok_or_else(|| "write a number of seconds, 0.001 to 86400".to_owned())
 }
 
 fn harmonics(text: &str) -> Result<usize, String> {
     let harmonics = text.parse().ok().filter(|harmonics| (2..=50).contains(harmonics));
-    harmonics.ok_or_else(|| "2 to 50 harmonics; fewer than two cannot start and end at rest".to_owned())
+    harmonics
+        .ok_or_else(|| "write 2 to 50 harmonics; a motion with fewer than two cannot start and end at rest".to_owned())
 }
 
 fn rate(text: &str) -> Result<f64, String> {
     let rate = text.parse().ok().filter(|rate: &f64| (1e-3..=1e6).contains(rate));
-    rate.ok_or_else(|| "a rate is a number of samples per second, 0.001 to 1000000".to_owned())
+    rate.ok_or_else(|| "write a number of samples per second, 0.001 to 1000000".to_owned())
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {

@@ -136,7 +136,7 @@ fn told(account: &Account) -> String {
         let _ = writeln!(text, "  on the base, left out: {}", account.aside.join(", "));
     }
     if let Some(change) = &account.change {
-        let _ = writeln!(text, "{TITLE}snapped{TITLE:#} to multiples of pi/12, {TYPED}--no-snap{TYPED:#} leaves them:");
+        let _ = writeln!(text, "{TITLE}snapped{TITLE:#} to multiples of pi/12, {TYPED}--no-snap{TYPED:#} keeps them:");
         for snapped in account.snapped.iter().take(SHOWN) {
             let _ = writeln!(
                 text,
@@ -168,7 +168,7 @@ fn changed(change: &Difference) -> String {
         |acceleration| format!("accelerations by {acceleration:.1e}"),
     );
     format!(
-        "  over 1,000 states that moves the tip by {:.1e} m and {:.1e} rad, torques by {:.1e} N m or {:.1e} of the \
+        "  over 1,000 states this moves the tip by {:.1e} m and {:.1e} rad, torques by {:.1e} N m or {:.1e} of the \
          largest, {accelerations}\n",
         change.position, change.rotation, change.absolute_torque, change.torque
     )

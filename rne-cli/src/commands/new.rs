@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(joint) = arguments.prismatic.iter().find(|&&joint| joint == 0 || joint > arguments.dof) {
         return Err(Failure::usage(format_args!(
-            "there is no joint {joint}; they are numbered from 1 at the base to {}",
+            "there is no joint {joint}; joints have the numbers 1 (at the base) to {}",
             arguments.dof
         )));
     }

@@ -58,7 +58,7 @@ const SAMPLES: usize = 241;
 
 fn duration(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite() && *seconds > 0.0);
-    seconds.ok_or_else(|| "a duration is a number of seconds above 0, such as 1.5".to_owned())
+    seconds.ok_or_else(|| "write a number of seconds above 0, such as 1.5".to_owned())
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -97,16 +97,16 @@ fn is_named_for(path: &Path, csv: bool) -> Result<(), Failure> {
     let shown = path.display();
     match (extension.as_str(), csv) {
         ("", _) | ("svg", false) | ("csv" | "txt", true) => Ok(()),
-        ("csv", false) => {
-            Err(Failure::usage(format_args!("{shown} is named for numbers; {TYPED}--csv{TYPED:#} asks for them")))
-        }
+        ("csv", false) => Err(Failure::usage(format_args!(
+            "{shown} has the name of a CSV file; add {TYPED}--csv{TYPED:#} to write numbers"
+        ))),
         (_, false) => Err(Failure::usage(format_args!(
-            "{shown} is not named for an SVG, the one kind of picture that is written; name it {TYPED}{}{TYPED:#}, and \
-             let a browser, Inkscape or LibreOffice make another of it",
+            "{shown} does not have the name of an SVG, the only picture format; name it {TYPED}{}{TYPED:#}, and \
+             convert it with a browser, Inkscape or LibreOffice",
             path.with_extension("svg").display()
         ))),
         (_, true) => Err(Failure::usage(format_args!(
-            "{shown} is not named for numbers, which --csv asks for; name it {TYPED}{}{TYPED:#}",
+            "{shown} does not have the name of a CSV file, which --csv writes; name it {TYPED}{}{TYPED:#}",
             path.with_extension("csv").display()
         ))),
     }

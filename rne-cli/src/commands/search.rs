@@ -64,7 +64,7 @@ pub(crate) struct Arguments {
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if (0.0..=1e6).contains(&seconds) => Ok(seconds),
-        _ => Err("a search takes a number of seconds, 0 to 1000000".to_owned()),
+        _ => Err("write a number of seconds, 0 to 1000000".to_owned()),
     }
 }
 
@@ -181,7 +181,9 @@ fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
     }
     let functions: Vec<Function> = Function::ALL.into_iter().filter(|&function| is_asked(function)).collect();
     if let Some(function) = functions.iter().find(|function| !function.can_be_rewritten()) {
-        return Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")));
+        return Err(Failure::usage(format_args!(
+            "`{function}` has only the form seven_steps, so there is nothing to rewrite"
+        )));
     }
     if asked.contains(&FunctionOrAll::All) {
         return Ok(Function::ALL.into_iter().filter(|function| function.can_be_rewritten()).collect());
@@ -252,7 +254,7 @@ fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], pa
         let lost = lost.join(",");
         let _ = writeln!(
             text,
-            "{QUIET}left out, for it was not proved; `--rewrite --function {lost}` rewrites it anew{QUIET:#}"
+            "{QUIET}left out, because it was not proved; `--rewrite --function {lost}` rewrites it again{QUIET:#}"
         );
     }
     let state = match (written, known) {

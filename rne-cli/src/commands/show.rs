@@ -118,7 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
         form @ Form::Reduced => {
             return Err(Failure::usage(format_args!(
-                "only the seven steps have {}; the form {form} keeps torques alone",
+                "only the seven steps have {}; the form {form} computes only torques",
                 keep[0].words()
             )));
         }

@@ -53,8 +53,8 @@ pub(crate) fn format(path: &Path, written: &[Format]) -> Result<Format, Failure>
     let ends: Vec<String> = written.iter().map(|format| format!("{TYPED}.{}{TYPED:#}", format.ends()[0])).collect();
     let shown = path.display();
     let has = match end.as_str() {
-        "" => format!("the name {shown} does not say its format"),
-        end => format!("{shown} ends with .{end}, which is not written"),
+        "" => format!("the name {shown} has no ending that gives the format"),
+        end => format!("{shown} ends with .{end}, which this command does not write"),
     };
     Err(Failure::usage(format_args!("{has}; name a file that ends with {}", ends.join(" or "))))
 }

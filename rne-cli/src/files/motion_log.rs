@@ -96,12 +96,15 @@ impl MotionLog {
         }
         if survey.counts.states == 0 {
             let why: Vec<String> = left_out(&log, &survey).map(|(count, why)| format!("{count} {why}")).collect();
-            let what = format_args!("no message of the log is a state of the arm: {}", why.join("; ")).to_string();
+            let what =
+                format_args!("no message of the log contains a state of the arm: {}", why.join("; ")).to_string();
             return Err(Failure::input(one_line(&what)));
         }
         let of_motion = || survey.cutoff.hertz().map(|hertz| PART * hertz);
         let cutoff = asked.or_else(of_motion).ok_or_else(|| {
-            Failure::input(format_args!("no run is long enough to choose a low-pass; say {TYPED}--cutoff HZ{TYPED:#}"))
+            Failure::input(format_args!(
+                "no run is long enough to choose a low-pass; give one with {TYPED}--cutoff HZ{TYPED:#}"
+            ))
         })?;
         let highest = HIGHEST / log.layout().step;
         let longest = survey.runs.iter().map(|run| run.duration).fold(0.0, f64::max);
@@ -260,11 +263,11 @@ fn check_efforts(log: &Log) -> Result<(), Failure> {
             format!("; not read are {names}, and names of efforts are tau1, … or effort and the joint: docs/logs.md")
         };
         return Err(Failure::input(format_args!(
-            "the log has no efforts, and torques are what a model is held against{unread}"
+            "the log has no efforts, and a model is compared with torques{unread}"
         )));
     }
     Err(Failure::input(format_args!(
-        "the log has no efforts of {}, and torques of every joint are what a model is held against",
+        "the log has no efforts of {}, and a model is compared with the torques of every joint",
         missing.join(", ")
     )))
 }
@@ -291,13 +294,12 @@ fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64)
     );
     if is_left(highest) {
         return Err(Failure::usage(format_args!(
-            "{said}; {TYPED}--cutoff{TYPED:#} is from {} to {} Hz here, and the lower, the more of the ends of runs is \
-             lost",
+            "{said}; {TYPED}--cutoff{TYPED:#} can be from {} to {} Hz here; a lower cut-off drops more of the ends of runs",
             rounded((lowest * 1e3).ceil() * 1e-3, 3),
             rounded((highest * 1e3).floor() * 1e-3, 3)
         )));
     }
-    Err(Failure::input(format_args!("{said}, and no other is: runs are too short")))
+    Err(Failure::input(format_args!("{said}, and neither is any other: the runs are too short")))
 }
 
 /// Opens logs by the names of the robot's joints; where those of the logs are as many numbers, by these.
@@ -319,8 +321,8 @@ fn slides(robot: &Robot) -> Vec<bool> {
 }
 
 /// What to do where a log has fewer joints than the robot.
-const ALL_NEEDED: &str = "positions and torques of all of them are needed, so take a log that has all, or a robot file \
-                          of the joints that were logged";
+const ALL_NEEDED: &str = "the positions and torques of all joints are needed, so use a log with all joints, or a robot \
+    file of the logged joints";
 
 /// Refuses names of another number than the robot has joints; those of the log, where it can be read without names.
 fn miscounted(robot: &Robot, named: usize, logged: &[String]) -> Failure {
@@ -379,9 +381,9 @@ fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) 
     let is_elsewhere = |(at, name): &(usize, &String)| logged.contains(name) && logged[*at] != **name;
     if let Some((_, name)) = names.iter().enumerate().find(is_elsewhere) {
         let name = one_line(name);
-        return Err(Failure::usage(format_args!("{both}, and {name} has another place among them; {said}")));
+        return Err(Failure::usage(format_args!("{both}, and {name} has another place in them; {said}")));
     }
-    remarks.push((format!("joints of the log by their order: {}", shown(logged)), false));
+    remarks.push((format!("joints of the log are matched by their order: {}", shown(logged)), false));
     Ok(logged.to_vec())
 }
 

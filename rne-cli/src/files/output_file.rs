@@ -223,7 +223,7 @@ pub(crate) fn is_standard_output(path: &Path) -> bool {
 pub(crate) fn check_picture(path: Option<&Path>) -> Result<(), Failure> {
     if path.is_some_and(is_standard_output) {
         return Err(Failure::usage(format_args!(
-            "a picture goes into a file; name one after {TYPED}--plot{TYPED:#}, such as picture.svg"
+            "{TYPED}--plot{TYPED:#} needs the name of a file, such as picture.svg"
         )));
     }
     Ok(())
@@ -284,8 +284,8 @@ pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let shown = path.display();
     if error.kind() == ErrorKind::InvalidFilename {
         return Failure::usage(format_args!(
-            "{} cannot be written: its name is too long for this system, or has letters that it does not take; name \
-             another file",
+            "{} cannot be written: its name is too long for this system, or contains letters that are not \
+             allowed; name another file",
             shortened(&shown.to_string(), 80)
         ));
     }

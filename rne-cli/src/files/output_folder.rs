@@ -15,7 +15,7 @@ pub(crate) fn write(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Un
     let (root, rest) = first_missing(folder);
     let of_folder = |error| (folder.to_owned(), error);
     if !rest.components().all(|part| matches!(part, Component::Normal(_))) {
-        return Err(of_folder(io::Error::new(ErrorKind::NotFound, "it leads through a folder that is not there")));
+        return Err(of_folder(io::Error::new(ErrorKind::NotFound, "the path contains a folder that does not exist")));
     }
     let make = || tempfile::Builder::new().prefix(".rne.").suffix(".tmp").tempdir_in(&root);
     let (_registered, temporary) = Registered::new(make).map_err(of_folder)?;

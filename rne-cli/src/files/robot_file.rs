@@ -115,7 +115,7 @@ fn missing(path: &Path) -> String {
         let shown = names.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
         let _ = write!(text, "; {} has {shown}{more}", path.with_file_name("").display());
     } else {
-        let _ = write!(text, "; {TYPED}rne list{TYPED:#} has the robots that are known by name");
+        let _ = write!(text, "; {TYPED}rne list{TYPED:#} prints the shipped robots");
     }
     text
 }

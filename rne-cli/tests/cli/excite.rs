@@ -24,7 +24,7 @@ fn a_trajectory_is_what_other_commands_read() {
     let (csv, svg) = (path("trajectory.csv"), path("motion.svg"));
     // one file by two ways
     fails(2, &excite(&["-o", &csv, "--plot", &path("../excite/trajectory.csv")]), &["-o and --plot name the same"]);
-    fails(2, &excite(&["-o", &path("trajectory.npy")]), &["ends with .npy, which is not written", ".csv"]);
+    fails(2, &excite(&["-o", &path("trajectory.npy")]), &["ends with .npy, which this command does not write", ".csv"]);
     let called = rne(&excite(&["-o", &csv, "--plot", &svg]));
     assert!(called.status == 0 && called.err.matches("wrote").count() == 2, "{called:?}");
     assert!(called.out.lines().all(|line| line.chars().count() <= 80), "{}", called.out);

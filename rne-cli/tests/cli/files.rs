@@ -91,10 +91,13 @@ fn a_dash_is_standard_output_everywhere() {
     // what is no text for standard output
     for (arguments, said) in [
         (&["firmware", "torque", "-o", "-"][..], "a firmware is a folder"),
-        (&["man", "-o", "-"], "files in a folder"),
-        (&["excite", "planar2", "--plot", "-"], "a picture goes into a file"),
-        (&["watch", "planar2", "states.csv", "--plot", "-"], "a picture goes into a file"),
-        (&["identify", "planar2", "states.csv", "--plot", "/dev/stdout"], "a picture goes into a file"),
+        (&["man", "-o", "-"], "needs a folder for the pages"),
+        (&["excite", "planar2", "--plot", "-"], "needs the name of a file, such as picture.svg"),
+        (&["watch", "planar2", "states.csv", "--plot", "-"], "needs the name of a file, such as picture.svg"),
+        (
+            &["identify", "planar2", "states.csv", "--plot", "/dev/stdout"],
+            "needs the name of a file, such as picture.svg",
+        ),
         (&["emit", "planar2", "--check", "-"], "and not standard output"),
     ] {
         let called = in_folder(&folder, arguments);

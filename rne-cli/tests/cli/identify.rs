@@ -257,7 +257,7 @@ fn places_are_looked_at_first() {
         ("--plot", path("nowhere/out.svg"), "there is no folder"),
         ("-o", path(""), "is a folder"),
         ("--plot", path(""), "is a folder"),
-        ("--plot", "-".to_owned(), "goes into a file"),
+        ("--plot", "-".to_owned(), "needs the name of a file"),
     ] {
         let status = if said == "there is no folder" { 1 } else { 2 };
         fails(status, &["identify", ARM, &none, option, &place], &[said]);

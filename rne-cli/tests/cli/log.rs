@@ -247,7 +247,7 @@ fn joints_are_named_as_the_log_names_them() {
     fails(2, &judge(log, &[]), &["base, elbow, shoulder there", "shoulder has another place", "--joints"]);
     assert_eq!(judged(log, &["--joints", "base,elbow,shoulder"]), expected);
     // fewer or more than the robot has; what is advised is no circle
-    let few = "take a log that has all";
+    let few = "use a log with all joints";
     fails(2, &["identify", "ur10", log], &["the log has 3 joints, the robot 6: base, elbow, shoulder there", few]);
     let there = "names 3 joints of the log, which has base, elbow, shoulder, and the robot has 6 joints: shoulder";
     fails(2, &["identify", "ur10", log, "--joints", "base,elbow,shoulder"], &[there, few]);
@@ -351,11 +351,14 @@ fn a_motion_is_written_into_names_of_its_format() {
     let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
     fs::write(path("log.csv"), table(|i| format!("{}", f64::from(i) * 0.01))).expect("a file");
     for (name, said) in [
-        ("x.parquet", "x.parquet ends with .parquet, which is not written; name a file that ends with .csv"),
-        ("x.mcap", "x.mcap ends with .mcap, which is not written"),
-        ("x.db3", "x.db3 ends with .db3, which is not written"),
-        ("x.npy", "x.npy ends with .npy, which is not written"),
-        ("x", "does not say its format; name a file that ends with .csv"),
+        (
+            "x.parquet",
+            "x.parquet ends with .parquet, which this command does not write; name a file that ends with .csv",
+        ),
+        ("x.mcap", "x.mcap ends with .mcap, which this command does not write"),
+        ("x.db3", "x.db3 ends with .db3, which this command does not write"),
+        ("x.npy", "x.npy ends with .npy, which this command does not write"),
+        ("x", "has no ending that gives the format; name a file that ends with .csv"),
     ] {
         fails(2, &["log", &path("log.csv"), "--cutoff", "8", "-o", &path(name)], &[said]);
         assert!(!folder.join(name).exists(), "{name}");

@@ -92,10 +92,10 @@ fn files_are_named_for_what_they_hold() {
     let folder = folder("plot_names");
     let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
     for name in ["x.png", "x.pdf", "x.svg.gz"] {
-        fails(2, &["plot", "planar1", "-o", &path(name)], &["not named for an SVG", "x.svg", "Inkscape"]);
+        fails(2, &["plot", "planar1", "-o", &path(name)], &["does not have the name of an SVG", "x.svg", "Inkscape"]);
     }
-    fails(2, &["plot", "planar1", "-o", &path("x.csv")], &["--csv asks for them"]);
-    fails(2, &["plot", "planar1", "--csv", "-o", &path("x.svg")], &["not named for numbers", "x.csv"]);
+    fails(2, &["plot", "planar1", "-o", &path("x.csv")], &["add --csv to write numbers"]);
+    fails(2, &["plot", "planar1", "--csv", "-o", &path("x.svg")], &["does not have the name of a CSV file", "x.csv"]);
     assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 0, "nothing is written");
     for (name, more) in [("x.SVG", &[][..]), ("x", &[]), ("x.csv", &["--csv"])] {
         fine(&[&["plot", "planar1", "-o", &path(name)], more].concat());

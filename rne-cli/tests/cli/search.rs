@@ -187,7 +187,7 @@ fn arguments_of_a_search() {
     fails(2, &["search", &robot, "--seed", "x"], &["--seed"]);
     fails(2, &["search", &robot, "--function", "mass_matrix"], &["--rewrite"]);
     for functions in ["joint_wrenches", "joint_wrenches,all"] {
-        fails(2, &["search", &robot, "--rewrite", "--function", functions], &["seven steps only"]);
+        fails(2, &["search", &robot, "--rewrite", "--function", functions], &["has only the form seven_steps"]);
     }
     assert_eq!(rne(&["search"]).status, 2);
     fails(1, &["search", "nowhere.yaml"], &["no robot file nowhere.yaml"]);

@@ -372,9 +372,9 @@ fn files_stay_unless_told_otherwise() {
             &path("out.parquet"),
             &[],
             2,
-            "out.parquet ends with .parquet, which is not written; name a file that ends with .csv or .npy",
+            "ends with .parquet, which this command does not write; name a file that ends with .csv or .npy",
         ),
-        (&path("out"), &[], 2, "does not say its format; name a file that ends with .csv or .npy"),
+        (&path("out"), &[], 2, "has no ending that gives the format; name a file that ends with .csv or .npy"),
     ] {
         let found = to(&states, out, more);
         assert!(found.status == status && found.err.contains(said), "{found:?}");

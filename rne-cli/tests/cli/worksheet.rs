@@ -198,7 +198,7 @@ fn files_that_are_no_worksheets() {
     row("1,3,omega_dot,x,1,rad/s²,link", &[":3:3", "omega_dot is computed by step 2, not by step `3`"]);
     row("1,2,omega_dot,x,1,deg/s²,link", &["omega_dot of joint 1 is in rad/s², not in `deg/s²`", "deg(30)"]);
     row("1,2,omega_dot,x,1,rad/s^2,base", &["this is in base axes, and the comparison in link axes", "--axes base"]);
-    row("1,2,omega_dot,x,1,rad/s2,lonk", &["`lonk` names no axes", "`lecture`"]);
+    row("1,2,omega_dot,x,1,rad/s2,lonk", &["`lonk` is not a name of axes", "`lecture`"]);
     row("1,1,omega,z,1.3,rad/s,link", &[":3:1", "omega z of joint 1 is given twice; first on line 2"]);
     row("1,1,omega,z,1,,\n1,1,omega,z,1,,", &[":3:1", ":4:1", "first on line 2"]);
     bad(&(HEAD.to_owned() + &"1,7,tau,,1,,\n".repeat(1000)), &["more rows than a worksheet of planar2 has"]);
@@ -209,7 +209,7 @@ fn files_that_are_no_worksheets() {
     row("1,2,\"omega_dot,x,0", &["this quote is not closed"]);
     row("1,0,orientation,xx,1,,", &["a worksheet in link axes has no orientation"]);
     bad("# rne worksheet, format 2, robot planar2\njoint,quantity,value\n1,tau,1\n", &[":1:1", "reads format 1"]);
-    bad("# rne worksheet, format 1, robot panda\njoint,quantity,value\n1,tau,1\n", &["is of `panda`"]);
+    bad("# rne worksheet, format 1, robot panda\njoint,quantity,value\n1,tau,1\n", &["is for `panda`"]);
     // every mistake at once
     row("9,1,omega,x,1,,\n1,1,omga,x,1,,", &[":3:1", ":4:5"]);
     bad("{\"rows\": 3}", &["this is not a worksheet"]);
