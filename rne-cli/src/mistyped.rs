@@ -120,7 +120,7 @@ mod tests {
             ("eval arm --q 1,2 3 --base-omega 0 0 1", "--q 1,2,3 --base-omega 0,0,1"),
             ("diagnose planar2 --q 1,2 --qd 1,2 --qdd 1,2 --tau 1 2", "--tau 1,2"),
         ] {
-            let expected = format!("error: a list has commas and no blanks between its numbers: write {meant}");
+            let expected = format!("error: separate the numbers of a list by commas without blanks: write {meant}");
             assert_eq!(said(line), Some(expected), "{line}");
         }
     }
@@ -136,9 +136,9 @@ mod tests {
     #[test]
     fn dashes_before_values() {
         let joint = said("show puma560 --joint -1").expect("refused");
-        assert!(joint.starts_with("error: `-1` is no value of --joint <") && !joint.contains("-- -1"), "{joint}");
+        assert!(joint.starts_with("error: `-1` is not a value of --joint <") && !joint.contains("-- -1"), "{joint}");
         let set = said("eval planar2 --set -m --q 1,1").expect("refused");
-        assert!(set.contains("`-m` is no value of --set <NAME=VALUE>: Another value of a parameter"), "{set}");
+        assert!(set.contains("`-m` is not a value of --set <NAME=VALUE>: Another value of a parameter"), "{set}");
     }
 
     #[test]

@@ -368,7 +368,7 @@ mod tests {
             arm.write(notes);
             let (status, said) = refused(arm.keep(arm.plan.clone(), || ()));
             assert_eq!(status, INPUT);
-            assert!(said.contains("arm.plan.yaml has changed during the search, and stays as it is"), "{said}");
+            assert!(said.contains("arm.plan.yaml has changed during the search and is kept"), "{said}");
             assert_eq!(arm.written().as_deref(), Some(notes));
         }
         // a fresh search replaces a plan that cannot be read, and nothing else
@@ -390,7 +390,7 @@ mod tests {
         assert_ne!(right, wrong);
         arm.write(&wrong);
         let (_, said) = refused(arm.keep(arm.found(Function::ForwardDynamics), || ()));
-        assert!(said.contains("is not the seven steps") && said.contains("stays as it is"), "{said}");
+        assert!(said.contains("is not the seven steps") && said.contains("and is kept"), "{said}");
         assert_eq!(arm.written().as_deref(), Some(wrong.as_str()));
         let kept = arm.keep_as(true, arm.found(Function::ForwardDynamics), || ());
         let kept = kept.unwrap_or_else(|failure| panic!("{}", failure.text));

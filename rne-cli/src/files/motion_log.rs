@@ -294,7 +294,8 @@ fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64)
     );
     if is_left(highest) {
         return Err(Failure::usage(format_args!(
-            "{said}; {TYPED}--cutoff{TYPED:#} can be from {} to {} Hz here; a lower cut-off drops more of the ends of runs",
+            "{said}; {TYPED}--cutoff{TYPED:#} can be from {} to {} Hz here; a lower cut-off drops more of the ends of \
+             runs",
             rounded((lowest * 1e3).ceil() * 1e-3, 3),
             rounded((highest * 1e3).floor() * 1e-3, 3)
         )));

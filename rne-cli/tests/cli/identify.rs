@@ -164,7 +164,11 @@ fn what_cannot_be_identified_is_said() {
         fails(1, &["identify", ARM, &log, "-o", out], &["efforts of all joints are zero"]);
     }
     let huge = changed(&folder.join("log.csv"), |_, cells| cells[7] = "1e200".to_owned());
-    fails(1, &["identify", ARM, &huge, "-o", out], &["no message of the log is a state", "effort of waist: 1.00e200"]);
+    fails(
+        1,
+        &["identify", ARM, &huge, "-o", out],
+        &["no message of the log contains a state of the arm", "effort of waist: 1.00e200"],
+    );
     let degrees = changed(&folder.join("log.csv"), |_, cells| {
         for cell in &mut cells[1..7] {
             *cell = cell.parse::<f64>().expect("a number").to_degrees().to_string();

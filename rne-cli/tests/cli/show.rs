@@ -212,7 +212,7 @@ fn counts_as_json() {
     let json = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml", "--json"]);
     let json: Value = serde_json::from_str(&json).expect("JSON");
     let entries = json.as_array().expect("a list");
-    assert_eq!(entries.len(), 2 * 45, "22 functions, 23 with motors, two forms");
+    assert_eq!(entries.len(), 2 * 47, "23 functions, 24 with motors, two forms");
     for entry in entries {
         let keys: Vec<&str> = entry.as_object().expect("an object").keys().map(String::as_str).collect();
         let mut expected = ["robot", "function", "form", "mul", "add", "div", "sincos", "statements"];
