@@ -233,7 +233,7 @@ fn counts_as_a_table() {
     let all = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml"]);
     let rows = all.lines().filter(|line| line.contains("seven_steps"));
     let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
-    assert_eq!(widths.len(), 22 + 23);
+    assert_eq!(widths.len(), 23 + 24);
     assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
 }
 
