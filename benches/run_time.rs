@@ -20,10 +20,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use rne::{BatchInverseDynamics, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, VectorUnit};
-use rne_search::PlanFile;
 use rne_codegen::{Compiler, Form, Function, Program, Target};
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Machine, Native, Source};
 use rne_model::Robot;
+use rne_search::PlanFile;
 
 const STATES: usize = 1024;
 const REPETITIONS: usize = 300;

@@ -4,9 +4,9 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use rne_search::PlanFile;
 use rne_codegen::{Compiler, Form};
 use rne_model::Robot;
+use rne_search::PlanFile;
 
 /// The robot whose plans are read: small, so that a proof takes little time.
 static ROBOT: LazyLock<Robot> =

@@ -7,10 +7,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use rne_codegen::plan::PlanSet;
-use rne_search::PlanFile;
 use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record};
 use rne_emit::{Precision, Prefix, c_code};
 use rne_model::Robot;
+use rne_search::PlanFile;
 use robots::puma560::Arguments;
 use robots::{STATES, State};
 
