@@ -25,7 +25,7 @@ pub enum Array<'a, T> {
 }
 
 impl<'a, T> Array<'a, T> {
-    /// Some of the elements of an array that has so many, as an array of its own: the force of a wrench, say.
+    /// Some elements of a larger array as an array of its own, such as the force of a wrench.
     #[must_use]
     pub fn part(self, elements: usize, range: Range<usize>) -> Self {
         match self {
@@ -41,7 +41,7 @@ impl<'a, T> Array<'a, T> {
         }
     }
 
-    /// Whether it has so many elements of so many states.
+    /// Whether it has that number of elements for each of these states.
     pub(crate) fn has(&self, elements: usize, states: usize) -> bool {
         match *self {
             Array::Columns(columns) => columns.len() == elements && columns.iter().all(|column| column.len() == states),
@@ -50,7 +50,7 @@ impl<'a, T> Array<'a, T> {
         }
     }
 
-    /// One element of so many states, of an array that has so many elements; `None` when it does not reach as far.
+    /// One element of all states; `elements` is their number per state. `None` when the array is too short.
     pub(crate) fn source(&self, element: usize, elements: usize, states: usize) -> Option<Source<'a, T>> {
         match *self {
             Array::Rows(numbers) => {
@@ -70,7 +70,7 @@ impl<'a, T> Array<'a, T> {
         }
     }
 
-    /// One element of one of so many states, of an array that has so many elements.
+    /// One element of one state; `elements` is their number per state.
     pub(crate) fn number(&self, element: usize, elements: usize, state: usize, states: usize) -> Option<&'a T> {
         match self.source(element, elements, states)? {
             Source::Column(numbers) => numbers.get(state),
@@ -128,7 +128,7 @@ macro_rules! arguments {
 rne_codegen::argument_parts!(arguments);
 
 impl<'a, T> Arguments<'a, T> {
-    /// None yet.
+    /// Begins without any argument.
     #[must_use]
     pub const fn new() -> Self {
         Self { arrays: [const { None }; ARGUMENTS.len()] }

@@ -17,7 +17,7 @@ pub struct CompiledFunction {
     arrays: Vec<(&'static str, usize)>,
     /// The places of the arrays among all arguments.
     places: Vec<usize>,
-    /// Of each input of the machine: which array, and which element of it.
+    /// The array and the element of it that each input of the machine is.
     inputs: Vec<(usize, usize)>,
     #[cfg(feature = "native")]
     natives: std::sync::Arc<crate::number::natively::Natives>,
@@ -83,7 +83,7 @@ impl CompiledFunction {
         T::prepare(&self.natives, &self.program);
     }
 
-    /// Computes so many states, on all cores with the feature `rayon`.
+    /// Computes a number of states, on all cores with the feature `rayon`.
     ///
     /// # Errors
     /// When an argument is missing or has another size, the payload of a state has a mass below zero, or the room for
@@ -144,7 +144,7 @@ impl CompiledFunction {
         self.machine.code().run_one(unit, inputs, results).map_err(|_| room)
     }
 
-    /// Refuses what [`run`](Self::run) refuses of the arguments of so many states, whether the program uses them or
+    /// Refuses what [`run`](Self::run) refuses of the arguments of these states, whether the program uses them or
     /// not. Who computes states in parts asks this once before the first part.
     ///
     /// # Errors

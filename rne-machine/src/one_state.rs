@@ -45,7 +45,7 @@ macro_rules! taken {
     ($of_joints:ident) => { &[T] };
 }
 
-/// What an argument is read from.
+/// A source that an argument is read from.
 macro_rules! read {
     (Payload $payload:ident) => {
         $payload.to_array()

@@ -1,4 +1,4 @@
-//! What functions return for one state, by the names of the shapes in the table of functions.
+//! The results of functions for one state, by the names of the shapes in the table of functions.
 
 use core::array;
 
@@ -40,7 +40,7 @@ pub struct Derivatives<T> {
     pub dqd: Matrix<T>,
 }
 
-/// What is made of the numbers of a function, in the order of its layout.
+/// A result that is made of the numbers of a function, in the order of its layout.
 pub(crate) trait Shaped<T> {
     /// Takes as many numbers as the layout has.
     fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self;

@@ -96,7 +96,7 @@ pub(crate) fn operation(dataflow: &Dataflow, id: ValueId, place: impl Fn(ValueId
     })
 }
 
-/// Which operands of a value can stay constants, wherever the others are.
+/// The operands of a value that can stay constants, wherever the others are.
 pub(crate) fn constants(dataflow: &Dataflow, id: ValueId) -> Vec<ValueId> {
     let place = |left_out: &[ValueId], operand: ValueId| match dataflow.constant(operand) {
         Some(k) if !left_out.contains(&operand) => Place::Constant(k),

@@ -105,7 +105,7 @@ struct Translation<'a, T> {
     dataflow: &'a Dataflow,
     kernel: &'a Kernel,
     is_live: Vec<bool>,
-    /// Which value uses each one last.
+    /// The value that uses each one last.
     last: Vec<Option<ValueId>>,
     inputs: ir::Value,
     outputs: ir::Value,

@@ -49,7 +49,7 @@ pub(crate) fn not_compiled(robot: &str, error: &CompileError) -> String {
     format!("{robot}: {error}{remedy}")
 }
 
-/// What is wrong with a robot file or a plan, for the message of a compiler: without the lints, which stop no build.
+/// The mistakes in a robot file or a plan, for the message of a compiler: without the lints, which stop no build.
 pub(crate) fn describe(mut report: Report) -> String {
     report.diagnostics.retain(|found| found.severity == Severity::Error);
     // An empty line keeps the second `error:` apart from the compiler's own.

@@ -95,7 +95,7 @@ impl Report {
         problems.finish(name, text)
     }
 
-    /// The same with a remedy added to the help of each diagnostic.
+    /// Adds a remedy to the help of each diagnostic.
     #[must_use]
     pub fn with_remedy(mut self, remedy: &str) -> Self {
         for found in &mut self.diagnostics {
