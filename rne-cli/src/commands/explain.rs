@@ -165,11 +165,12 @@ fn swapped(name: &str, path: &Path) -> Option<Failure> {
 
 /// How arguments are given.
 const OF_EVAL: &str = "\
-Every function takes exactly its arguments, and nothing is assumed to be zero. A LIST has one number per joint, \
-base to tip: rad for a revolute joint, m for a prismatic one; pi/2 and 'deg(30)' are numbers. A wrench is in N \
-and N m, what the last link exerts at the tip, a payload in kg, m and kg m², both in the axes of the tip; what a \
-moving base does is in frame 0. Tables are rounded for reading; --json has every digit, in the shape that the \
-Rust function returns. Without --function it is inverse_dynamics, with --wrench or --payload that with it.";
+Every function needs exactly its arguments; none has the default zero. A LIST has one number per joint, \
+base to tip: rad for a revolute joint, m for a prismatic one; pi/2 and 'deg(30)' are numbers. A wrench, in N \
+and N m, is exerted by the last link at the tip, in tip axes. A payload, in kg, m and kg m², is in tip axes \
+too. The motion of a moving base is in frame 0. Tables are rounded for reading; --json prints every digit, in \
+the shape that the Rust function returns. The default function is inverse_dynamics, or its variant with a wrench \
+or payload if --wrench or --payload is given.";
 
 /// Which options of `rne eval` a function takes, exactly.
 fn of_eval() -> String {

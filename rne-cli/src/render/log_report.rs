@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_logs::{Counts, Cutoff, Log, Run, Survey, Unusable};
+use rne_logs::{Counts, Cutoff, Format, Log, Run, Survey, Unusable};
 use rne_model::one_line;
 use serde::Serialize;
 
@@ -120,10 +120,14 @@ pub(crate) fn text(log: &Log, survey: &Survey) -> String {
     let topic = layout.topic.as_ref().map_or(String::new(), |topic| format!(", {topic}"));
     let _ = writeln!(text, "{TITLE}{}{TITLE:#}  {}{topic}", files.join(" "), layout.format);
     let counts = &survey.counts;
-    let times = if layout.recorded { "receive times" } else { "message stamps" };
+    let (what, times) = match layout.format {
+        Format::Sqlite | Format::Mcap if layout.recorded => ("messages", "; times: receive times"),
+        Format::Sqlite | Format::Mcap => ("messages", "; times: message stamps"),
+        Format::Parquet | Format::Npy | Format::Csv => ("rows", ""),
+    };
     let _ = writeln!(
         text,
-        "{} of {} messages contain states, at {} Hz; times: {times}\n",
+        "{} of {} {what} contain states, at {} Hz{times}\n",
         counts.states,
         counts.messages,
         short(1.0 / layout.step)

@@ -16,9 +16,9 @@ fn a_log_is_described() {
     let said = fine(&["log", UR10, "--robot", "ur10", "--cutoff", "8"]);
     for part in [
         "rosbag2, SQLite, /joint_states",
-        "460 of 460 messages are states, at 125 Hz",
+        "460 of 460 messages contain states, at 125 Hz",
         "wrist_3_joint",
-        "cut-off 8 Hz, given: passes below 5.333 Hz",
+        "cut-off 8 Hz, as given: passes below 5.333 Hz",
         "--torque-constant",
     ] {
         assert!(said.contains(part), "no `{part}` in {said}");
@@ -54,7 +54,7 @@ fn a_motion_is_what_other_commands_read() {
     assert_eq!(torques.out.lines().count(), text.lines().count());
     assert!(fine(&["plot", "ur10", "--trajectory", path]).contains("<svg"));
     // a motion is a log itself
-    assert!(fine(&["log", path, "--cutoff", "8"]).contains("356 of 356 messages are states"));
+    assert!(fine(&["log", path, "--cutoff", "8"]).contains("356 of 356 rows contain states"));
     fails(2, &["log", UR10, "-o", path], &["--force"]);
     fails(2, &["log", path, "-o", path, "--force"], &["is the file that is read"]);
 }
