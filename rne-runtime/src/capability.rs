@@ -4,7 +4,7 @@
 //!
 //! Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
 
-use crate::mass_matrix::inverse_of;
+use crate::ldlt::inverse_of;
 use crate::smooth_sign::SmoothSign;
 use crate::{BaseMotion, Payload, Pose, Scalar, Wrench};
 

@@ -14,6 +14,7 @@
 //! backward           q̈_i  = z_i - L_{i+1,i} q̈_{i+1} - L_{i+2,i} q̈_{i+2} - …   over k > i, ascending
 //! ```
 
+use crate::ldlt::factor;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
@@ -30,26 +31,6 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         factor(m.as_mut(), inverse.as_mut());
         solve(m.as_ref(), inverse.as_ref(), x.as_mut());
         x
-    }
-}
-
-/// Makes L and D of M, which keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse` is a place for
-/// the reciprocals of D.
-pub(crate) fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse: &mut [T]) {
-    let n = m.len();
-    for j in 0..n {
-        // What is left of column j, M being symmetric: c_ij for i ≥ j, of which the first is D_j.
-        for i in j..n {
-            let mut rest = m[j].as_ref()[i];
-            for k in 0..j {
-                rest -= m[i].as_ref()[k] * m[k].as_ref()[j];
-            }
-            m[j].as_mut()[i] = rest;
-        }
-        inverse[j] = T::one() / m[j].as_ref()[j];
-        for i in j + 1..n {
-            m[i].as_mut()[j] = m[j].as_ref()[i] * inverse[j];
-        }
     }
 }
 

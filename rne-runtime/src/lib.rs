@@ -37,6 +37,7 @@ mod joint;
 mod joint_wrenches;
 #[cfg(feature = "arm")]
 mod kinematics;
+mod ldlt;
 #[cfg(feature = "arm")]
 mod link_frame;
 #[cfg(feature = "arm")]

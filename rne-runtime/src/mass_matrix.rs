@@ -5,13 +5,12 @@
 //! generated code repeats it. The inverse is L⁻ᵀ D⁻¹ L⁻¹ by the factors of
 //! [forward dynamics](crate::ForwardDynamics): column j from row j on, mirrored too.
 
-use crate::forward_dynamics::factor;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::{Arm, BaseMotion, Constant, MassMatrix, Scalar};
 #[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
+use crate::{DynArm, WrongLength, ldlt::inverse_of};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T]) -> Square<J, T> {
@@ -30,42 +29,6 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-/// The inverse of M; `zeros` is a row of them.
-pub(crate) fn inverse_of<T: Scalar, R, M>(mut m: M, zeros: &R) -> M
-where
-    R: AsRef<[T]> + AsMut<[T]> + Clone,
-    M: AsRef<[R]> + AsMut<[R]> + Clone,
-{
-    let (mut matrix, mut inverse) = (m.clone(), zeros.clone());
-    factor(m.as_mut(), inverse.as_mut());
-    let (m, inverse) = (m.as_ref(), inverse.as_ref());
-    let lower = |i: usize, k: usize| m[i].as_ref()[k];
-    for j in 0..m.len() {
-        let mut column = zeros.clone();
-        let x = column.as_mut();
-        x[j] = T::one();
-        for i in j + 1..m.len() {
-            x[i] = -lower(i, j);
-            for k in j + 1..i {
-                let y = x[k];
-                x[i] -= lower(i, k) * y;
-            }
-        }
-        for i in j..m.len() {
-            x[i] *= inverse[i];
-        }
-        for i in (j..m.len()).rev() {
-            for k in i + 1..m.len() {
-                let below = x[k];
-                x[i] -= lower(k, i) * below;
-            }
-            matrix.as_mut()[i].as_mut()[j] = x[i];
-            matrix.as_mut()[j].as_mut()[i] = x[i];
-        }
-    }
-    matrix
-}
-
 impl<const DOF: usize, S: Constant> MassMatrix<DOF> for Arm<DOF, S> {
     fn mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF] {
         self.mechanism().mass_matrix(q)
@@ -82,6 +45,7 @@ impl<S: Constant> DynArm<S> {
         self.has_length("q", q)?;
         Ok(self.mechanism().mass_matrix(q))
     }
+
     /// As [`MassMatrix::inverse_mass_matrix`]: rows of M(q)⁻¹.
     ///
     /// # Errors

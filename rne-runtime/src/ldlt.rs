@@ -1,0 +1,60 @@
+//! The factors M = L D Lᵀ of a mass matrix, and its inverse by them. The order of the operations is that of
+//! [`ForwardDynamics`](crate::ForwardDynamics).
+
+use crate::Scalar;
+
+/// Makes L and D of M, which keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse` is a place for
+/// the reciprocals of D.
+pub(crate) fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse: &mut [T]) {
+    let n = m.len();
+    for j in 0..n {
+        // What is left of column j, M being symmetric: c_ij for i ≥ j, of which the first is D_j.
+        for i in j..n {
+            let mut rest = m[j].as_ref()[i];
+            for k in 0..j {
+                rest -= m[i].as_ref()[k] * m[k].as_ref()[j];
+            }
+            m[j].as_mut()[i] = rest;
+        }
+        inverse[j] = T::one() / m[j].as_ref()[j];
+        for i in j + 1..n {
+            m[i].as_mut()[j] = m[j].as_ref()[i] * inverse[j];
+        }
+    }
+}
+
+/// The inverse of M; `zeros` is a row of them.
+pub(crate) fn inverse_of<T: Scalar, R, M>(mut m: M, zeros: &R) -> M
+where
+    R: AsRef<[T]> + AsMut<[T]> + Clone,
+    M: AsRef<[R]> + AsMut<[R]> + Clone,
+{
+    let (mut matrix, mut inverse) = (m.clone(), zeros.clone());
+    factor(m.as_mut(), inverse.as_mut());
+    let (m, inverse) = (m.as_ref(), inverse.as_ref());
+    let lower = |i: usize, k: usize| m[i].as_ref()[k];
+    for j in 0..m.len() {
+        let mut column = zeros.clone();
+        let x = column.as_mut();
+        x[j] = T::one();
+        for i in j + 1..m.len() {
+            x[i] = -lower(i, j);
+            for k in j + 1..i {
+                let y = x[k];
+                x[i] -= lower(i, k) * y;
+            }
+        }
+        for i in j..m.len() {
+            x[i] *= inverse[i];
+        }
+        for i in (j..m.len()).rev() {
+            for k in i + 1..m.len() {
+                let below = x[k];
+                x[i] -= lower(k, i) * below;
+            }
+            matrix.as_mut()[i].as_mut()[j] = x[i];
+            matrix.as_mut()[j].as_mut()[i] = x[i];
+        }
+    }
+    matrix
+}
