@@ -186,21 +186,18 @@ fn of_source(text: &str, is_wanted: impl Fn(&str) -> bool) -> Vec<Paragraph> {
     let mut is_first = true;
     for (index, line) in text.lines().enumerate() {
         let code = line.trim_start();
-        match ["///", "//!"].iter().find_map(|mark| code.strip_prefix(mark)) {
-            Some(words) => {
-                is_first &= !words.trim().is_empty();
-                if is_first {
-                    paragraph.push(index + 1, words);
-                }
+        if let Some(words) = ["///", "//!"].iter().find_map(|mark| code.strip_prefix(mark)) {
+            is_first &= !words.trim().is_empty();
+            if is_first {
+                paragraph.push(index + 1, words);
             }
-            None => {
-                let of_comment = std::mem::take(&mut paragraph);
-                if !of_comment.text.is_empty() && is_wanted(code) {
-                    found.push(of_comment);
-                }
-                is_first = true;
-            }
+            continue;
         }
+        let of_comment = std::mem::take(&mut paragraph);
+        if !of_comment.text.is_empty() && is_wanted(code) {
+            found.push(of_comment);
+        }
+        is_first = true;
     }
     found
 }
@@ -249,10 +246,8 @@ fn broken(paragraph: &Paragraph, rules: &[(Regex, &'static Rule)]) -> Vec<(usize
 /// The rules, to be searched for. A sentence begins with the text, or after a full stop, a mark of emphasis between.
 fn rules() -> Result<Vec<(Regex, &'static Rule)>> {
     let of = |rule: &'static Rule| {
-        let pattern = match rule.begins {
-            true => format!(r"(?:^|[.!?:] )[*\[]*{}", rule.pattern),
-            false => format!("(?i){}", rule.pattern),
-        };
+        let pattern =
+            if rule.begins { format!(r"(?:^|[.!?:] )[*\[]*{}", rule.pattern) } else { format!("(?i){}", rule.pattern) };
         Ok((Regex::new(&pattern).with_context(|| rule.pattern)?, rule))
     };
     RULES.iter().map(of).collect()
