@@ -656,9 +656,9 @@ fn the_robot_file_of_the_readme_is_valid() {
 #[test]
 fn the_explained_plan_is_the_shipped_one() {
     let page = read(&root().join("docs/reduced-form.md"));
-    let (_, explained) = page.split_once("\n    format: 2 ").expect("a plan");
+    let (_, explained) = page.split_once("\n    format: 3 ").expect("a plan");
     let (explained, _) = explained.split_once("\n    rewritten:").expect("two forms");
-    let explained = format!("format: 2 {explained}\n").replace("\n    ", "\n");
+    let explained = format!("format: 3 {explained}\n").replace("\n    ", "\n");
     let robot =
         Robot::from_yaml(&read(&root().join("robots/puma560.yaml"))).unwrap_or_else(|report| panic!("{report}"));
     let plan = |name: &str, text: &str| PlanFile::read(name, text, &robot).unwrap_or_else(|report| panic!("{report}"));

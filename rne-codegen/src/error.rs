@@ -61,8 +61,8 @@ pub enum CompileError {
         robot: String,
         /// The function whose graph it is.
         function: Function,
-        /// The line of the graph, counted from 1.
-        line: usize,
+        /// The word of the graph, counted from 1.
+        word: usize,
         /// What is wrong there.
         message: String,
     },
@@ -224,8 +224,8 @@ impl fmt::Display for CompileError {
             Self::PlanDoesNotFit { robot } => {
                 write!(f, "the plan does not fit `{robot}`: one of its choices is not offered by this robot")
             }
-            Self::Graph { robot, function, line, message } => {
-                write!(f, "line {line} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}")
+            Self::Graph { robot, function, word, message } => {
+                write!(f, "word {word} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}")
             }
         }
     }

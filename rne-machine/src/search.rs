@@ -38,7 +38,7 @@ impl CompiledArm {
     ///     ControlFlow::Continue(())
     /// })?;
     /// let plan = found.plan().expect("a search gives one").to_yaml(); // NAME.plan.yaml
-    /// # assert!(plan.contains("format: 2"));
+    /// # assert!(plan.contains("format: 3"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -32,8 +32,8 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
     assert!(error.message.contains("numbers of its robot file have changed"), "{}", error.message);
     assert_eq!(error.help, None, "what helps is said by whoever shows it");
     for (from, to, what, line) in [
-        ("format: 2", "format: 1", "format: 2", "format: 1"),
-        ("format: 2", "format: one", "found `one` where a whole number is needed", "format: one"),
+        ("format: 3", "format: 1", "format: 3", "format: 1"),
+        ("format: 3", "format: one", "found `one` where a whole number is needed", "format: one"),
         ("robot: ur5", "robot: ur6", "this plan is of `ur6`, not of `ur5`", "robot: ur6"),
         ("robot:", "robt:", "unknown key `robt`; a plan file has the keys format, robot", "robt: ur5"),
         ("fingerprint: ", "fingerprint: +", "is no fingerprint", "fingerprint: +"),
@@ -81,13 +81,13 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
     for (wrong, what) in [
         ("", "the plan file is empty"),
         ("\n \n", "the plan file is empty"),
-        ("# nothing\n", "the file is empty; a plan file is a YAML mapping that begins with `format: 2`"),
+        ("# nothing\n", "the file is empty; a plan file is a YAML mapping that begins with `format: 3`"),
         ("3", "found `3` where a mapping (format, robot"),
         ("- 3", "found a list of 1 where a mapping"),
         ("reduced: {plan: [\n", "this is not YAML"),
         (&"[".repeat(1 << 20), "nested more than 16 levels deep"),
         (&"{a: ".repeat(1 << 18), "nested more than 16 levels deep"),
-        ("format: 2\nformat: 2\n", "repeated key `format`; it is already in line 1"),
+        ("format: 3\nformat: 3\n", "repeated key `format`; it is already in line 1"),
         (&format!("{text}---\n{text}"), "a second document begins; a plan file has exactly one"),
         (&format!("{text}reduced: {{}}\n"), "repeated key `reduced`"),
         (&format!("{text}# {}\n", "x".repeat(1 << 20)), "more than 1048576 bytes"),

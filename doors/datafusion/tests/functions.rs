@@ -348,6 +348,6 @@ fn a_key_is_that_of_the_files_that_are_read() {
     // mistakes are told with the name of the file
     std::fs::write(folder.path().join("planar2.plan.yaml"), "nonsense").expect("a file");
     assert!(held().expect_err("no plan").to_string().contains("planar2.plan.yaml"));
-    std::fs::write(&path, "format: 2").expect("a file");
+    std::fs::write(&path, "format: 3").expect("a file");
     assert!(held().expect_err("no robot").to_string().contains("planar2.yaml:1:"));
 }

@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn what_has_no_place_is_told_as_what_has_one() {
         let keys = |told: &Value| told.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
-        let said = answer("format: 2");
+        let said = answer("format: 3");
         let (with, without) = (&said["diagnostics"][0], without_place("a constant is too large"));
         assert_eq!(keys(with), keys(&without));
         assert!(with["line"] == 1 && without["line"].is_null() && without["message"] == "a constant is too large");

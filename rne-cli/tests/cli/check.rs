@@ -66,17 +66,22 @@ fn plans_are_compiled() {
 
     let first = |start: &str| good.lines().find(|line| line.trim_start().starts_with(start)).expect(start).to_owned();
     let replaced = |from: &str, to: &str| good.replacen(from, to, 1);
-    let (torque, sum) = (first("out3 = "), good.lines().find(|line| line.contains(" + t")).expect("a sum"));
+    let (results, operations) = (first("results "), first("operations "));
+    let sum = operations.split_whitespace().find(|word| word.contains('+')).expect("a sum");
     let products = good.lines().find(|line| line.contains("mul: ")).expect("products");
+    let result = results.split_whitespace().last().expect("a result");
     for (wrong, at, what) in [
-        (replaced(sum, &sum.replace('+', "-")), "graph: |", "is not the seven steps"),
-        (replaced(&format!("{torque}\n"), ""), "out2", "`out3` is missing"),
-        (replaced(&torque, &format!("{torque}\n{torque}")), "out3", "`out3` stands there twice"),
-        (replaced(&torque, &torque.replace("out3", "out+3")), "out+3", "`out+3` is no name of a graph"),
-        (replaced(&torque, &torque.replace("out3", "out4")), "out4", "3 numbers are returned"),
-        (replaced(&torque, "      out3 = k99"), "out3 = k99", "there is no `k99` before this line"),
-        (replaced(&torque, "      out3 = k+1"), "out3 = k+1", "there is no `k+1` before this line"),
-        (replaced(&torque, "      out3 = t1 ^ t2"), "t1 ^ t2", "`^` is no operation"),
+        (
+            replaced(&operations, &operations.replacen(sum, &sum.replace('+', "-"), 1)),
+            "graph: |",
+            "is not the seven steps",
+        ),
+        (replaced(&results, "      results 1 1"), "results 1 1", "returns 3 numbers, the graph has 2 results"),
+        (replaced(&results, &format!("{results} {result}")), result, "returns 3 numbers, the graph has 4 results"),
+        (replaced("      constants ", "      "), "", "a graph begins with `constants` or `operations`"),
+        (replaced(&results, "      results k99"), "k99", "there is no value `k99` before this word"),
+        (replaced(&results, "      results k+1"), "k+1", "there is no value `k+1` before this word"),
+        (replaced(&operations, "      operations qd1^qd2"), "qd1^qd2", "`qd1^qd2` is not an operation of a graph"),
         (replaced("length_scale: a2", "length_scale: a99"), "  plan:", "does not fit"),
         (replaced("    joints:", "    gyrostat: true\n    joints:"), "  plan:", "does not fit"),
         (replaced(products, "    mul: 1"), "  operations:", "the file says 1 products"),

@@ -1,15 +1,15 @@
-//! A rewritten graph as text: one operation per line, in order.
+//! A rewritten graph as text: its values in order, without names of their own.
 //!
 //! ```text
-//! k1 = 0.4318           a number of the graph before it was rewritten: the one that rounds to this
-//! d1 = 1 / k1           a constant made from others, without its sign
-//! t12 = t3 - t4         s2, c2 sine and cosine of joint 2, s2_4 of the summed angle of joints 2 to 4
-//! t13 = d1 * qd3
-//! out2 = -t13           the second number returned
+//! constants 0.4318 /1 2*1     k1 is the number of the plan that is nearest to 0.4318, k2 = 1 / k1, k3 = k1 k2
+//! operations qd1*s2_3 k2*1    sines and cosines have the numbers of their joints: s2_3 = sin(q2 + q3)
+//! results -1 c3 2             the numbers returned
 //! ```
+//!
+//! A number among the operands counts back: `1` is the value before, `2` the one before that; among constants it counts
+//! constants, and operations elsewhere.
 
 use std::collections::HashMap;
-use std::fmt::Write;
 
 use crate::function::Function;
 use crate::ir::{
@@ -17,43 +17,87 @@ use crate::ir::{
 };
 use crate::reduced::choices::count;
 
+const CONSTANTS: &str = "constants";
+const OPERATIONS: &str = "operations";
+const RESULTS: &str = "results";
+
+/// Fewest digits of a number, and how far from a number of the plan a number with so few digits may be.
+const LEAST_DIGITS: usize = 4;
+const ROUNDING: f64 = 1e-3;
+
 /// A graph as text, when the numbers in the places `given` are those of its plan.
 pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
-    let mut text = String::new();
-    let mut constants = Constants { numbers: &graph.numbers, given, names: HashMap::new(), text: String::new() };
-    let mut names: Vec<String> = vec![String::new(); graph.len()];
-    let mut terms = 0;
+    let mut constants = Constants { numbers: &graph.numbers, given, places: Vec::new(), words: Vec::new() };
+    let mut operations: Vec<String> = Vec::new();
+    let mut values: Vec<Called> = Vec::with_capacity(graph.len());
     // angles are known by their joints
     let mut live = Vec::new();
     mark_live_outside_angles(&graph.nodes, &graph.outputs, &mut live);
-    for (at, op) in graph.nodes().filter(|(at, _)| live[at.index()]) {
-        let operand = |at: Ref| format!("{}{}", if at.is_negative() { "-" } else { "" }, names[at.index()]);
-        let line = match op {
-            Op::Constant(place) => Err(constants.name(place)),
-            Op::Input(input) => Err(input.name().to_string()),
-            Op::Sine(angle) => Err(format!("s{}", group(graph, angle))),
-            Op::Cosine(angle) => Err(format!("c{}", group(graph, angle))),
-            Op::Sum(a, b) if b.is_negative() => Ok(format!("{} - {}", operand(a), operand(-b))),
-            Op::Sum(a, b) => Ok(format!("{} + {}", operand(a), operand(b))),
-            Op::Product(a, b) => Ok(format!("{} * {}", operand(a), operand(b))),
-            Op::Quotient(a, b) => Ok(format!("{} / {}", operand(a), operand(b))),
+    for (at, op) in graph.nodes() {
+        let operand = |at: Ref| values[at.index()].operand(at.is_negative(), operations.len());
+        let operation = match op {
+            _ if !live[at.index()] => Err(Called::default()),
+            Op::Constant(place) => Err(Called::Named(format!("k{}", constants.number(place)))),
+            Op::Input(input) => Err(Called::Named(input.name().to_string())),
+            Op::Sine(angle) => Err(Called::Named(format!("s{}", group(graph, angle)))),
+            Op::Cosine(angle) => Err(Called::Named(format!("c{}", group(graph, angle)))),
+            Op::Sum(a, b) if b.is_negative() => Ok(format!("{}-{}", operand(a), operand(-b))),
+            Op::Sum(a, b) => Ok(format!("{}+{}", operand(a), operand(b))),
+            Op::Product(a, b) => Ok(format!("{}*{}", operand(a), operand(b))),
+            Op::Quotient(a, b) => Ok(format!("{}/{}", operand(a), operand(b))),
             // nothing that is rewritten chooses
-            Op::BySign(_) => Err(String::new()),
+            Op::BySign(_) => Err(Called::default()),
         };
-        names[at.index()] = match line {
-            Err(name) => name,
-            Ok(line) => {
-                terms += 1;
-                let _ = writeln!(text, "t{terms} = {line}");
-                format!("t{terms}")
-            }
-        };
+        values.push(operation.map_or_else(
+            |named| named,
+            |operation| {
+                operations.push(operation);
+                Called::Operation(operations.len())
+            },
+        ));
     }
-    for (index, at) in graph.outputs.iter().enumerate() {
-        let sign = if at.is_negative() { "-" } else { "" };
-        let _ = writeln!(text, "out{} = {sign}{}", index + 1, names[at.index()]);
+    let results = graph.outputs.iter().map(|at| values[at.index()].operand(at.is_negative(), operations.len()));
+    let results = results.collect();
+    let sections = [(CONSTANTS, constants.words), (OPERATIONS, operations), (RESULTS, results)];
+    sections.into_iter().filter(|(_, words)| !words.is_empty()).map(|(name, words)| wrapped(name, &words)).collect()
+}
+
+/// How a value of a graph is called where it is used.
+enum Called {
+    /// By a name: an argument, a sine, a cosine, a constant.
+    Named(String),
+    /// By its number, counted from 1.
+    Operation(usize),
+}
+
+impl Default for Called {
+    fn default() -> Self {
+        Self::Named(String::new())
     }
-    constants.text + &text
+}
+
+impl Called {
+    /// The value as an operand, where `count` operations have been written.
+    fn operand(&self, is_negative: bool, count: usize) -> String {
+        let sign = if is_negative { "-" } else { "" };
+        match self {
+            Self::Named(name) => format!("{sign}{name}"),
+            Self::Operation(number) => format!("{sign}{}", count + 1 - number),
+        }
+    }
+}
+
+/// A section in lines of its own.
+fn wrapped(name: &str, words: &[String]) -> String {
+    const WIDTH: usize = 112;
+    let (mut text, mut width) = (name.to_owned(), name.len());
+    for word in words {
+        let is_full = width + 1 + word.len() > WIDTH;
+        text.push(if is_full { '\n' } else { ' ' });
+        text.push_str(word);
+        width = if is_full { word.len() } else { width + 1 + word.len() };
+    }
+    text + "\n"
 }
 
 /// The joints whose positions are summed in an angle: `2`, or `2_4` for three of them.
@@ -73,95 +117,94 @@ fn group(graph: &Graph, angle: Ref) -> String {
     }
 }
 
-/// Names of constants, and the lines that make those that are not given.
+/// Constants in the order in which they are written.
 struct Constants<'a> {
     numbers: &'a Numbers,
     given: &'a [u32],
-    names: HashMap<u32, String>,
-    text: String,
+    places: Vec<u32>,
+    words: Vec<String>,
 }
 
 impl Constants<'_> {
-    fn define(&mut self, letter: char, place: u32, line: &str) -> String {
-        let name = format!("{letter}{}", self.names.len() + 1);
-        let _ = writeln!(self.text, "{name} = {line}");
-        self.names.insert(place, name.clone());
-        name
-    }
-
-    fn name(&mut self, place: u32) -> String {
-        if let Some(name) = self.names.get(&place) {
-            return name.clone();
+    /// The number of a constant, counted from 1, which is written first where it has none yet.
+    fn number(&mut self, place: u32) -> usize {
+        if let Some(known) = self.places.iter().position(|known| *known == place) {
+            return known + 1;
         }
         let (number, source) = self.numbers.get(place);
-        if self.given.contains(&place) {
-            return self.define('k', place, &format!("{:?}", number.to_f64()));
-        }
-        let mut operand = |at: Ref| {
-            let name = self.name(u32::try_from(at.index()).unwrap_or(u32::MAX));
-            if at.is_negative() { format!("-{name}") } else { name }
-        };
-        let line = match source {
+        let word = match source {
+            _ if self.given.contains(&place) => self.digits(number.to_f64()),
             // numbers that were not there at first have all been made
             Source::Given => String::from("1"),
-            Source::Sum(a, b) => format!("{} + {}", operand(a), operand(b)),
-            Source::Product(a, b) => format!("{} * {}", operand(a), operand(b)),
-            Source::Inverse(of) => format!("1 / {}", operand(Ref::new(of as usize))),
+            Source::Sum(a, b) => self.made(a, "+", b),
+            Source::Product(a, b) => self.made(a, "*", b),
+            Source::Inverse(of) => {
+                let of = self.number(of);
+                format!("/{}", self.places.len() + 1 - of)
+            }
         };
-        self.define('d', place, &line)
+        self.places.push(place);
+        self.words.push(word);
+        self.places.len()
+    }
+
+    fn made(&mut self, a: Ref, operator: &str, b: Ref) -> String {
+        let [a, b] = [a, b].map(|at| {
+            let number = self.number(u32::try_from(at.index()).unwrap_or(u32::MAX));
+            (if at.is_negative() { "-" } else { "" }, number)
+        });
+        let back = |number: usize| self.places.len() + 1 - number;
+        let operator = if operator == "+" && b.0 == "-" { "" } else { operator };
+        format!("{}{}{operator}{}{}", a.0, back(a.1), b.0, back(b.1))
+    }
+
+    /// A number of the plan with as many digits as tell it from the others, with room for what rounding moves.
+    fn digits(&self, value: f64) -> String {
+        let others = self.given.iter().map(|&place| self.numbers.get(place).0.to_f64()).chain([1.0]);
+        let others = others.filter(|other| *other != value).map(|other| (other - value).abs());
+        let nearest = others.fold(f64::INFINITY, f64::min);
+        let short = (LEAST_DIGITS..16).map(|digits| format!("{value:.*e}", digits - 1));
+        let short = short.filter_map(|text| text.parse::<f64>().ok());
+        let short = short.into_iter().find(|short| 100.0 * (short - value).abs() < nearest);
+        format!("{:?}", short.unwrap_or(value))
     }
 }
 
 /// The graph of a text; `plain` is the one before it was rewritten.
 ///
 /// # Errors
-/// What is wrong in which line of the text, counted from 1.
+/// What is wrong with which word of the text, counted from 1.
 pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
     let builder = Builder::traced(Policy::Numbered, plain.embedding(), function);
-    let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).collect();
+    let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).chain([Number::ONE]).collect();
     let divisors =
         plain.nodes().filter_map(|(_, op)| if let Op::Quotient(_, b) = op { Some(plain.residue(b)) } else { None });
-    let mut reader = Reader { given, divisors: divisors.collect(), builder: &builder, known: leaves(plain, &builder) };
-    let mut outputs = vec![None; plain.outputs.len()];
-    for (index, line) in text.lines().enumerate() {
-        let at = index + 1;
-        let line = line.trim();
-        if line.is_empty() {
-            continue;
-        }
-        let Some((name, value)) = line.split_once('=') else {
-            return Err((at, format!("`{line}` is no line of a graph, such as `t1 = s2 * qd3`")));
-        };
-        let (name, value) = (name.trim(), value.trim());
-        let term = if name.starts_with('k') { reader.given(value) } else { reader.operation(value) };
-        let term = term.map_err(|message| (at, message))?;
-        // a constant is kept without its sign
-        let term = if name.starts_with('d') { builder.symbol(term.at.magnitude()) } else { term };
-        if let Some(number) = name.strip_prefix("out").and_then(count) {
-            let slot = number.checked_sub(1).and_then(|index| outputs.get_mut(index));
-            let slot = slot.ok_or_else(|| (at, format!("`{name}`: {} numbers are returned", plain.outputs.len())))?;
-            if slot.replace(term.at).is_some() {
-                return Err((at, format!("`{name}` stands there twice")));
-            }
-        } else if !is_name(name) {
-            return Err((
-                at,
-                format!("`{name}` is no name of a graph: `k1` and `d1` are constants, `t1` a term, `out1` a result"),
-            ));
-        } else if reader.known.insert(name.to_owned(), term).is_some() {
-            return Err((at, format!("`{name}` stands there twice")));
-        }
+    let mut reader = Reader {
+        given,
+        divisors: divisors.collect(),
+        builder: &builder,
+        leaves: leaves(plain, &builder),
+        section: "",
+        constants: Vec::new(),
+        operations: Vec::new(),
+        results: Vec::new(),
+    };
+    for (index, word) in text.split_whitespace().enumerate() {
+        reader.read(word).map_err(|message| (index + 1, message))?;
     }
-    let end = text.lines().count();
-    let outputs = outputs.into_iter().enumerate();
-    let outputs: Result<Vec<Ref>, _> =
-        outputs.map(|(index, at)| at.ok_or_else(|| (end, format!("`out{}` is missing", index + 1)))).collect();
-    outputs.map(|outputs| builder.finish(outputs))
+    let (found, needed) = (reader.results.len(), plain.outputs.len());
+    if found != needed {
+        let message = format!("`{function}` returns {needed} numbers, the graph has {found} results");
+        return Err((text.split_whitespace().count(), message));
+    }
+    let results = reader.results.iter().map(|result| result.at).collect();
+    drop(reader);
+    Ok(builder.finish(results))
 }
 
 /// What a graph calls by name without having computed it: its arguments, and the sines and cosines of its angles.
 fn leaves<'s>(graph: &Graph, builder: &'s Builder) -> HashMap<String, Symbol<'s>> {
-    let mut leaves = HashMap::from([("1".to_owned(), builder.one())]);
+    let mut leaves = HashMap::new();
     for (_, op) in graph.nodes() {
         match op {
             Op::Input(input) => _ = leaves.insert(input.name().to_string(), builder.argument(input.name())),
@@ -188,11 +231,6 @@ fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
         _ => graph.turn(at.magnitude()).map_or_else(|| builder.zero(), |turn| builder.angle(turn)),
     };
     angle.signed(at.is_negative())
-}
-
-/// Whether a line may define this name.
-fn is_name(name: &str) -> bool {
-    ["k", "d", "t"].iter().any(|letter| name.strip_prefix(letter).and_then(count).is_some())
 }
 
 /// A graph that was read, with the numbers of its plan in their places and its own behind them.
@@ -244,31 +282,56 @@ fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, R
 }
 
 struct Reader<'s> {
+    /// The numbers of the graph before, and 1.
     given: Vec<Number>,
     /// What the graph before divides by. Nothing else may be divided by: it could be zero where that is not.
     divisors: Vec<Residue>,
     builder: &'s Builder,
-    known: HashMap<String, Symbol<'s>>,
+    leaves: HashMap<String, Symbol<'s>>,
+    /// The section that is being read.
+    section: &'static str,
+    constants: Vec<Symbol<'s>>,
+    operations: Vec<Symbol<'s>>,
+    results: Vec<Symbol<'s>>,
 }
 
 impl<'s> Reader<'s> {
-    fn operation(&self, text: &str) -> Result<Symbol<'s>, String> {
-        let parts: Vec<&str> = text.split_whitespace().collect();
-        match parts[..] {
-            [one] => self.operand(one),
-            [a, sign, b] => {
-                let (a, b) = (self.operand(a)?, self.operand(b)?);
-                match sign {
-                    "+" => Ok(a + b),
-                    "-" => Ok(a - b),
-                    "*" => Ok(a * b),
-                    "/" if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
-                    "/" if self.divides_by(b.at) => Ok(self.builder.quotient(a, b)),
-                    "/" => Err(format!("`{text}` divides by what the plan does not divide by")),
-                    _ => Err(format!("`{sign}` is no operation of a graph")),
-                }
+    fn read(&mut self, word: &str) -> Result<(), String> {
+        match self.section {
+            _ if [CONSTANTS, OPERATIONS, RESULTS].contains(&word) => {
+                self.section = [CONSTANTS, OPERATIONS, RESULTS].into_iter().find(|name| *name == word).unwrap_or("");
             }
-            _ => Err(format!("`{text}` is no operation of a graph")),
+            CONSTANTS => self.constants.push(self.constant(word)?),
+            OPERATIONS => self.operations.push(self.operation(word)?),
+            RESULTS => self.results.push(self.operand(word)?),
+            _ => return Err(format!("a graph begins with `{CONSTANTS}` or `{OPERATIONS}`, not with `{word}`")),
+        }
+        Ok(())
+    }
+
+    /// A constant, which is kept without its sign.
+    fn constant(&self, word: &str) -> Result<Symbol<'s>, String> {
+        let constant = match (word.parse::<f64>(), word.strip_prefix('/')) {
+            (Ok(value), _) => self.given(word, value)?,
+            (_, Some(of)) => self.operand(of)?.inverse(),
+            _ => self.operation(word)?,
+        };
+        Ok(self.builder.symbol(constant.at.magnitude()))
+    }
+
+    fn operation(&self, word: &str) -> Result<Symbol<'s>, String> {
+        let no_operation = || format!("`{word}` is not an operation of a graph, such as `s2*qd3`");
+        // the first character may be a sign
+        let mut signs = word.char_indices().skip(1).filter(|(_, c)| "+-*/".contains(*c));
+        let (at, sign) = signs.next().ok_or_else(no_operation)?;
+        let (a, b) = (self.operand(&word[..at])?, self.operand(&word[at + 1..])?);
+        match sign {
+            '+' => Ok(a + b),
+            '-' => Ok(a - b),
+            '*' => Ok(a * b),
+            _ if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
+            _ if self.divides_by(b.at) => Ok(self.builder.quotient(a, b)),
+            _ => Err(format!("`{word}` divides by what the plan does not divide by")),
         }
     }
 
@@ -277,20 +340,27 @@ impl<'s> Reader<'s> {
         [at, -at].into_iter().any(|at| self.divisors.contains(&graph.residue(at)))
     }
 
+    /// A value by its name, or by how far back it is: `1` is the one before.
     fn operand(&self, text: &str) -> Result<Symbol<'s>, String> {
-        let (name, negative) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
-        let term = self.known.get(name).ok_or_else(|| format!("there is no `{name}` before this line"))?;
-        Ok(term.signed(negative))
+        let (name, is_negative) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
+        let earlier = if self.section == CONSTANTS { &self.constants } else { &self.operations };
+        let value = match (count(name), name.strip_prefix('k').and_then(count)) {
+            (Some(back), _) => earlier.len().checked_sub(back).and_then(|index| earlier.get(index)),
+            (_, Some(number)) => number.checked_sub(1).and_then(|index| self.constants.get(index)),
+            _ => self.leaves.get(name),
+        };
+        let value = value.ok_or_else(|| format!("there is no value `{name}` before this word"))?;
+        Ok(value.signed(is_negative))
     }
 
-    /// The number of the graph before that rounds to this. A change of the formulas may move a number by a rounding.
-    fn given(&self, text: &str) -> Result<Symbol<'s>, String> {
-        const ROUNDING: f64 = 1e-13;
-        let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-        let value = value.ok_or_else(|| format!("`{text}` is no number"))?;
+    /// The number of the graph before that is nearest. A change of the formulas may move a number by a rounding.
+    fn given(&self, word: &str, value: f64) -> Result<Symbol<'s>, String> {
+        if !value.is_finite() {
+            return Err(format!("`{word}` is not a finite number"));
+        }
         let distance = |number: &Number| (number.to_f64() - value).abs();
         let nearest = self.given.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let nearest = nearest.filter(|number| distance(number) <= ROUNDING * value.abs());
-        nearest.map(|&number| self.builder.number(number)).ok_or_else(|| format!("the plan gives no number {text}"))
+        nearest.map(|&number| self.builder.number(number)).ok_or_else(|| format!("the plan has no number {word}"))
     }
 }

@@ -21,7 +21,7 @@ pub struct Rewritten {
     pub algorithm: Algorithm,
     /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
     pub plan: Option<Plan>,
-    /// One operation per line.
+    /// The graph as text, as [`graph_text`] writes it.
     pub graph: String,
 }
 
@@ -63,7 +63,7 @@ impl Rewritten {
     pub fn formulation(&self, robot: &Robot, function: Function) -> Result<Formulation, CompileError> {
         let before = self.before(robot, function)?;
         let read = graph_text::read(&self.graph, &before.traced.graph, function)
-            .map_err(|(line, message)| CompileError::Graph { robot: robot.name.clone(), function, line, message })?;
+            .map_err(|(word, message)| CompileError::Graph { robot: robot.name.clone(), function, word, message })?;
         Ok(Formulation { traced: read.told_by(&before.traced), ..before })
     }
 

@@ -65,7 +65,7 @@ impl FromStr for Fingerprint {
 }
 
 /// The format of plan files.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 const KIND: document::Kind = document::Kind { name: "a plan file", format: FORMAT };
 
@@ -185,7 +185,7 @@ impl PlanFile {
     #[must_use]
     pub fn located(name: &str, text: &str, (function, plans): (Function, &PlanSet), error: &CompileError) -> Report {
         let (place, message) = match error {
-            CompileError::Graph { line, message, .. } => (line_of_graph(text, function, *line), message.clone()),
+            CompileError::Graph { word, message, .. } => (word_of_graph(text, function, *word), message.clone()),
             _ if !plans.rewritten.contains_key(&function) => (value_of(text, &["reduced", "plan"]), error.to_string()),
             CompileError::NotIdentical { .. } => {
                 (value_of(text, &["rewritten", function.name(), "graph"]), error.to_string())
@@ -265,15 +265,17 @@ fn value_of(text: &str, keys: &[&str]) -> Range<usize> {
     document::read("", text, KIND).map_or(0..0, |root| place(&root, keys))
 }
 
-/// A line of the graph of a function, counted from 1.
-fn line_of_graph(text: &str, function: Function, line: usize) -> Range<usize> {
+/// A word of the graph of a function, counted from 1.
+fn word_of_graph(text: &str, function: Function, word: usize) -> Range<usize> {
     let graph = value_of(text, &["rewritten", function.name(), "graph"]);
-    let Some((before, below)) = text.split_at_checked(graph.start) else { return graph };
-    let mut start = before.len();
-    for content in below.split_inclusive('\n').take(line) {
-        start += content.len();
+    let Some((_, below)) = text.split_at_checked(graph.start) else { return graph };
+    // a text in lines of its own begins below its key
+    let is_below = below.starts_with("graph");
+    let head = if is_below { below.find('\n').unwrap_or(below.len()) } else { 0 };
+    let mut rest = below.get(head..).unwrap_or_default().trim_start();
+    for _ in 1..word {
+        rest = rest.trim_start_matches(|c: char| !c.is_whitespace()).trim_start();
     }
-    let content = text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
-    let blank = content.len() - content.trim_start().len();
-    start + blank..start + content.len()
+    let start = text.len() - rest.len();
+    start..start + rest.find(char::is_whitespace).unwrap_or(rest.len())
 }

@@ -89,7 +89,7 @@ impl Value {
 
 /// A text: as it is where it can mean nothing else, in lines of its own where it has lines, else in quotation marks.
 fn scalar(text: &str, indent: usize) -> String {
-    let is_line = |line: &str| line.starts_with(|c: char| c.is_ascii_alphanumeric()) && is_visible(line);
+    let is_line = |line: &str| !line.is_empty() && !line.starts_with(' ') && is_visible(line);
     if let Some(lines) = text.strip_suffix('\n').filter(|lines| lines.split('\n').all(is_line)) {
         let margin = format!("\n{:1$}", "", indent);
         return format!("|{margin}{}", lines.replace('\n', &margin));
@@ -156,8 +156,18 @@ mod tests {
     fn texts_are_read_as_they_were() {
         let fingerprints = ["a775c97f9150e34b", "1234567890123456", "12e4567890123456", "0000000000000001", "1e5"];
         let words = ["ur5", "null", "true", "false", "no", "inf", "nan", "h2_x", "", " ", "a b", "it's", "- x", "#"];
-        let lines =
-            ["t1 = 2 * q\nout1 = -t1\n", "a\n\nb\n", "a", "a\nb", "a\n\n", " a\n", "a \n", "a\tb\n", "\n", "ü\n"];
+        let lines = [
+            "constants 2.0\noperations k1*qd1\n-1*1\nresults -1\n",
+            "a\n\nb\n",
+            "a",
+            "a\nb",
+            "a\n\n",
+            " a\n",
+            "a \n",
+            "a\tb\n",
+            "\n",
+            "ü\n",
+        ];
         let odd = ["\u{7}", "\u{85}", "\u{2028}", "\u{FEFF}a", "\"\\", "a: b", "a #b", "[", "\u{1F600}"];
         for one in fingerprints.into_iter().chain(words).chain(lines).chain(odd) {
             let document = text(one);

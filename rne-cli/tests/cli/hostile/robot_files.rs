@@ -118,7 +118,7 @@ fn texts() -> Vec<(&'static str, String, &'static str)> {
         ("JSON", "{\"joints\": [1, 2]}".into(), "is missing"),
         ("TOML", "format = 1\nname = \"arm\"\n".into(), "mapping"),
         ("C", "#include <stdio.h>\nint main(void) { return 0; }\n".into(), "x.yaml:"),
-        ("a plan", "format: 2\nrobot: arm\nfingerprint: 0\nreduced: {}\n".into(), "unknown format `2`"),
+        ("a plan", "format: 3\nrobot: arm\nfingerprint: 0\nreduced: {}\n".into(), "unknown format `3`"),
         ("a word", "arm".into(), "mapping"),
         ("a number", "1e999".into(), "mapping"),
         ("nothing", "~".into(), "mapping"),
