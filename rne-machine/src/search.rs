@@ -120,4 +120,11 @@ mod tests {
         let error = arm.search(Duration::ZERO, &SearchOptions::default(), |_| ControlFlow::Continue(()));
         assert!(error.expect_err("no plan").to_string().contains("run-time parameters"));
     }
+
+    #[test]
+    fn a_function_without_a_reduced_form_is_refused() {
+        let options = SearchOptions { rewrite: vec![Function::MassMatrix, Function::JointWrenches], seed: 0 };
+        let error = puma().search(Duration::ZERO, &options, |_| ControlFlow::Continue(()));
+        assert!(error.expect_err("nothing to rewrite").to_string().starts_with("`joint_wrenches` has no reduced form"));
+    }
 }

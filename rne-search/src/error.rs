@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use rne_codegen::CompileError;
+use rne_codegen::{CompileError, Function};
 use rne_model::Report;
 
 /// Why a search has no result.
@@ -11,6 +11,8 @@ use rne_model::Report;
 pub enum SearchError {
     /// An arm with run-time parameters has no plan.
     RunTimeParameters,
+    /// A function that should be rewritten has the seven steps alone.
+    Irreducible(Function),
     /// What was found, or what was known before, cannot be compiled or proved.
     Compile(CompileError),
     /// The plan that was found is another one when it is read again.
@@ -30,6 +32,9 @@ impl fmt::Display for SearchError {
         match self {
             Self::RunTimeParameters => {
                 f.write_str("an arm with run-time parameters has no plan; search for the arm with their values")
+            }
+            Self::Irreducible(function) => {
+                write!(f, "`{function}` has no reduced form: there is no graph that a search could make smaller")
             }
             Self::Compile(error) => error.fmt(f),
             Self::NotWritten => f.write_str("the plan that was found cannot be written. Please report this robot"),

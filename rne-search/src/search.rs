@@ -26,7 +26,8 @@ pub struct SearchOptions {
 /// `clock` is asked now and then how much of the time is over.
 ///
 /// # Errors
-/// When the result cannot be proved, which would be a mistake of this program.
+/// When the robot has run-time parameters, when a function of `options` has no reduced form, or when the result cannot
+/// be proved, which would be a mistake of this program.
 pub fn search(
     robot: &Robot,
     known: Option<&PlanFile>,
@@ -35,6 +36,9 @@ pub fn search(
 ) -> Result<PlanFile, SearchError> {
     if !robot.run_time.is_empty() {
         return Err(SearchError::RunTimeParameters);
+    }
+    if let Some(&function) = options.rewrite.iter().find(|function| !function.can_be_rewritten()) {
+        return Err(SearchError::Irreducible(function));
     }
     let torques = Function::InverseDynamics;
     let torques_by = |plan: &Plan| Formulation::by_plan(robot, plan, torques, Algorithm::Rnea);
