@@ -150,6 +150,8 @@ enum Named {
 /// the value itself, and behind it a sum of one term for a statement that gives a value another name.
 struct Sums<'p> {
     program: &'p Program,
+    /// How many values come before the statements: counted once, for it is asked of every value.
+    before_statements: usize,
     /// Which node a value is.
     terms: Vec<Term>,
     /// By node: the terms of a sum.
@@ -166,6 +168,7 @@ impl<'p> Sums<'p> {
         let nodes = 2 * program.values.len();
         let mut sums = Self {
             program,
+            before_statements: program.before_statements(),
             terms: Vec::with_capacity(program.values.len()),
             terms_of: vec![None; nodes],
             names: vec![None; nodes],
@@ -174,7 +177,7 @@ impl<'p> Sums<'p> {
         };
         for (id, value) in program.values.iter() {
             let mut term = sums.term(id, value);
-            if id.index() >= program.before_statements() && program.values.name(id).is_some() {
+            if !sums.is_leaf(id) && program.values.name(id).is_some() {
                 term = sums.named(id, term);
             }
             sums.terms.push(term);
@@ -234,7 +237,7 @@ impl<'p> Sums<'p> {
 
     /// What statements are made of: arguments, constants, angles, sines and cosines.
     fn is_leaf(&self, id: ValueId) -> bool {
-        id.index() < self.program.before_statements()
+        id.index() < self.before_statements
     }
 
     /// The value that a node is, unless it is a sum.
