@@ -8,7 +8,7 @@ use rne_model::Robot;
 use crate::record::{Became, Component, Folded};
 use crate::tree::{Mark, Tree, signed};
 
-/// Operations of a number of the table that are told one by one.
+/// Most operations of a number of the table that are listed one by one.
 const SIMPLE: usize = 12;
 
 /// The equations of a program, and what is asked of them again and again.

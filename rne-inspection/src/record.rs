@@ -148,7 +148,7 @@ pub struct Name {
     /// `x`, `y`, `z` of a vector, `xy` and so on of a matrix; absent for one number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<String>,
-    /// Which shared term inside the quantity it is, from 1; absent for the quantity itself.
+    /// Number of the shared term inside the quantity, from 1; absent for the quantity itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub part: Option<usize>,
 }
@@ -181,7 +181,7 @@ pub struct Quantity {
 pub struct Statement {
     /// The name of its value.
     pub name: String,
-    /// The component of the lecture that it is, or is a part of; absent where there is none.
+    /// Component of the lecture to which the term belongs; absent if it belongs to none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<String>,
     /// Its value.

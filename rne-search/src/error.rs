@@ -13,9 +13,9 @@ pub enum SearchError {
     RunTimeParameters,
     /// A function that should be rewritten has the seven steps alone.
     Irreducible(Function),
-    /// What was found, or what was known before, cannot be compiled or proved.
+    /// The plan that was found, or the one at hand, cannot be compiled or proved.
     Compile(CompileError),
-    /// The plan that was found is another one when it is read again.
+    /// The plan that was found differs from the one that is read back from its text.
     NotWritten,
     /// The plan that was found cannot be read again.
     NotRead(Report),

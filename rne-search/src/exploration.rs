@@ -11,9 +11,9 @@ use crate::neighbourhood::Neighbourhood;
 pub struct Progress {
     /// Plans counted so far.
     pub plans: usize,
-    /// What the best of them costs.
+    /// Operations of the best plan so far.
     pub best: Cost,
-    /// What the search is doing.
+    /// Words for the part of the search that is running.
     pub phase: &'static str,
 }
 

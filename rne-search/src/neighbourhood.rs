@@ -1,4 +1,4 @@
-//! What can be changed in a plan, in a fixed order.
+//! Plans that differ from a plan in one choice or in few, in a fixed order.
 
 use rne_codegen::plan::{Descent, Moment, OpenChoices, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
 use rne_model::JointKind::Revolute;

@@ -1,4 +1,4 @@
-//! What each trick of a plan saves.
+//! Operations that each trick of a plan saves.
 
 use rne_codegen::Function;
 use rne_codegen::plan::{Cost, Descent, Plan, PlanSet, Rewritten, Trick};
@@ -32,8 +32,8 @@ fn without_tricks(costs: &mut Descent<'_>, plan: &Plan, tricks: &[Trick]) -> Opt
     costs.cost(&plan).is_some().then_some(plan)
 }
 
-/// What each trick saves in `inverse_dynamics`: by how many operations the code is longer when it is left out. The
-/// tricks of a plan are counted before rewriting.
+/// Operations that each trick saves in `inverse_dynamics`: the code without the trick has this many more. The tricks of
+/// a plan are counted before rewriting.
 #[must_use]
 pub fn savings(robot: &Robot, plans: &PlanSet) -> Vec<(Trick, isize)> {
     let plan = &plans.plan;

@@ -10,7 +10,7 @@ use crate::error::SearchError;
 use crate::exploration::{Clock, Exploration, Over, Progress};
 use crate::plan_file::{PlanFile, Reduced};
 
-/// What a search is asked to do.
+/// Options of a search.
 #[derive(Clone, Debug, Default)]
 pub struct SearchOptions {
     /// The functions whose graphs are rewritten.
@@ -107,7 +107,7 @@ pub fn search(
     }
 }
 
-/// What a function costs by the plan alone.
+/// Operations of a function by the plan alone, without rewriting.
 fn without_rewriting(robot: &Robot, reduced: &Reduced, function: Function) -> Result<Cost, CompileError> {
     if !Algorithm::is_planned(function) {
         return Ok(Formulation::numbered(robot, function).cost());

@@ -1,4 +1,4 @@
-//! What the loops of a batch are made of, from the machine code of examples/batch_speed.
+//! Instructions in the loops of a batch, counted in the machine code of examples/batch_speed.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -13,7 +13,7 @@ use xshell::cmd;
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// What the loops of a batch are made of, from the machine code of examples/batch_speed
+/// Counts the instructions in the loops of a batch, in the machine code of examples/batch_speed
 ///
 /// A state's torques take two loops: sines and cosines of a register's angles, then the torques. For each: instructions
 /// for one register of eight f64, how many of them compute with registers of 512 bits, load them, store them, or copy
@@ -102,7 +102,7 @@ fn loops<'a>(code: &'a [Instruction<'a>]) -> Vec<&'a [Instruction<'a>]> {
     found.iter().filter(|found| !has_inner(found)).map(|&(start, end)| &code[start..=end]).collect()
 }
 
-/// What a loop is made of.
+/// Counts of instructions in a loop.
 #[derive(Debug, PartialEq, Eq)]
 struct Row {
     instructions: usize,

@@ -10,14 +10,14 @@ use xshell::{Shell, cmd};
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// What a static library of Rust wants of the system.
+/// System libraries that a static library of Rust needs.
 const SYSTEM: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 
-/// What checks memory, and what finds the library as others do.
+/// Packages of Debian: a checker of memory, and two programs that find an installed library.
 const PACKAGES: [&str; 3] = ["valgrind", "cmake", "pkg-config"];
 
-/// What a program is told to find by itself: what it reads and writes beyond what is its own, of the library too where
-/// that is the system's memory, what is not freed, and what C does not define.
+/// Sanitizers that a program is compiled with: accesses outside its memory, memory that is not freed, and behaviour
+/// that C does not define.
 const SANITIZERS: [&str; 4] =
     ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer", "-g"];
 
@@ -87,7 +87,7 @@ pub(crate) fn built(prefix: &Path) -> Result<PathBuf> {
     Ok(prefix)
 }
 
-/// What the shared library is called here.
+/// File name of the shared library on this system.
 fn shared() -> String {
     format!("librne{}", std::env::consts::DLL_SUFFIX)
 }

@@ -51,7 +51,7 @@ struct Script {
     door: Door,
 }
 
-/// What a script gives its inputs to.
+/// The interface that receives a script's inputs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Door {
     CommandLine,
@@ -63,7 +63,7 @@ const fn script(name: &'static str, share: f64, door: Door) -> Script {
     Script { name, share, door }
 }
 
-/// Those that take longest come first, for two run at a time.
+/// All scripts. Two run at a time, so the slowest come first.
 const SCRIPTS: [Script; 16] = [
     script("long_logs", 0.024, Door::CommandLine),
     script("robot_texts", 0.032, Door::CommandLine),
@@ -83,7 +83,7 @@ const SCRIPTS: [Script; 16] = [
     script("capi", 0.3, Door::Library),
 ];
 
-/// What a script writes about its run.
+/// Summary that a script writes about its run.
 #[derive(Default, Deserialize)]
 struct Summary {
     cases: usize,
@@ -226,7 +226,7 @@ impl Programs {
     }
 }
 
-/// What a script wrote about its run.
+/// Reads the summary of a script's run.
 fn summary(folder: &Path, script: &Script) -> Result<Summary> {
     let text = fs::read_to_string(folder.join(script.name));
     let text = text.with_context(|| format!("tests/doors/{}.py did not come to its end", script.name))?;

@@ -25,7 +25,7 @@ pub(crate) struct Features {
 /// For a nightly compiler.
 const UNSTABLE: &str = "core_float_math";
 
-/// What is read of `cargo metadata`.
+/// The part of `cargo metadata` that is used.
 #[derive(Deserialize)]
 struct Metadata {
     packages: Vec<Package>,

@@ -1,4 +1,4 @@
-//! The list of emitted texts that stay as they are, byte for byte.
+//! The list of emitted texts that must not change, byte for byte.
 
 use anyhow::Result;
 use clap::Args;

@@ -34,7 +34,7 @@ pub(crate) struct Fuzz {
     grow: bool,
 }
 
-/// What instruments the code, as cargo-fuzz has it.
+/// Compiler flags that instrument the code, the same as those of cargo-fuzz.
 const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
                      -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
                      -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
@@ -42,7 +42,7 @@ const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer
 /// The longest input, bytes.
 const LONGEST: u32 = 4096;
 
-/// So many seconds may one input take, and so many MB the whole; few words, the same inputs every time.
+/// Limits of libFuzzer: seconds for one input, MB in total; short output, the same inputs every time.
 const OPTIONS: [&str; 5] = ["-timeout=10", "-rss_limit_mb=2048", "-verbosity=0", "-print_final_stats=1", "-seed=1"];
 
 impl Fuzz {

@@ -1,4 +1,4 @@
-//! What grows with the number of joints: benches/growth.
+//! Measures of generated code by the number of joints: benches/growth.
 
 use anyhow::Result;
 use clap::Args;
@@ -7,7 +7,7 @@ use xshell::{Cmd, cmd};
 use crate::Verdict;
 use crate::machine;
 
-/// What grows with the number of joints: operations, expansion, compile time, code size
+/// Measures operations, expansion, compile time and code size by the number of joints
 ///
 /// Random chains in which nothing folds, derived and built: benches/growth says what the columns are. Some minutes.
 #[derive(Args)]
@@ -21,7 +21,7 @@ pub(crate) struct Growth {
     /// Numbers of joints, 1 or more each
     #[arg(value_parser = clap::value_parser!(u16).range(1..))]
     joints: Vec<u16>,
-    /// Measure so many random arms instead, and fail where a function takes more than a second
+    /// Measure this number of random arms instead, and fail if a function takes more than a second
     #[arg(long, value_name = "N", conflicts_with = "joints", value_parser = clap::value_parser!(u16).range(1..))]
     arms: Option<u16>,
 }

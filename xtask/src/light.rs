@@ -1,4 +1,4 @@
-//! What a user waits for before the first result: crates to compile, languages to have, bytes to load.
+//! Costs before a user's first result: crates to compile, compilers to install, bytes to load.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -45,7 +45,7 @@ const DERIVE: &str = "\
 pub struct Puma560;
 ";
 
-/// What a build consists of.
+/// Crates of a build.
 #[derive(Default)]
 struct Build {
     /// How often the library of a crate is compiled, by name and version: more than once where two sides of the build

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, anyhow};
 use xshell::{Cmd, Shell};
 
-/// Something that this machine does not have, and why that is told instead of a result.
+/// A tool that this machine lacks: the message that replaces a result.
 #[derive(Debug)]
 pub(crate) struct Missing(String);
 
@@ -87,7 +87,7 @@ pub(crate) fn packages(names: &[&str], install: bool) -> Result<()> {
     Err(Missing::error(format!("apt-get does not install {}{complaint}", missing.join(" "))))
 }
 
-/// Those of some packages that are not installed; all, where there is no dpkg.
+/// The packages of a list that are not installed; all of them if there is no dpkg.
 fn not_installed<'a>(names: &[&'a str]) -> Vec<&'a str> {
     // a package that was removed has a status as well: `config-files`
     let is_installed = |name: &&str| {
@@ -122,7 +122,7 @@ fn apt_get(names: &[&str]) -> Option<String> {
     None
 }
 
-/// Sees to it that rustup has a toolchain; else why there is none, in a line.
+/// Installs a toolchain by rustup unless it exists; the reason in one line if that fails.
 pub(crate) fn toolchain(version: &str) -> Option<String> {
     let answers = |program: &str, arguments: &[&str]| {
         let output = Command::new(program).args(arguments).stdin(Stdio::null()).env_remove("RUSTUP_TOOLCHAIN").output();

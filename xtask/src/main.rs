@@ -1,4 +1,4 @@
-//! What is done to this repository beside `cargo build` and `cargo test`.
+//! Tasks for this repository beside `cargo build` and `cargo test`.
 //!
 //! Each subcommand is a module of this crate, and its `--help` says what it needs and what it takes. Nothing of this is
 //! published; `.ci/run` is the list of those that must succeed before a change lands.
@@ -83,7 +83,7 @@ enum Task {
     Playground(playground::Playground),
 }
 
-/// What a task found.
+/// Result of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
     /// It is as it shall be.
@@ -99,7 +99,7 @@ impl From<bool> for Verdict {
 }
 
 impl Task {
-    /// What the task is called in messages, whether it was asked to install what it needs, and what it found.
+    /// Runs the task: its name in messages, whether it may install what it needs, and its result.
     fn run(&self) -> (&'static str, bool, Result<Verdict>) {
         match self {
             Self::Certificate(task) => ("embedded certificate", task.install, task.run()),

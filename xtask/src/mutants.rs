@@ -14,7 +14,7 @@ pub(crate) const FILE: &str = "xtask/mutants.yaml";
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Mutant {
-    /// What is wrong then.
+    /// The mistake that the mutant has, in words.
     pub(crate) what: String,
     /// The source, from the root of the repository.
     pub(crate) file: String,
@@ -22,7 +22,7 @@ pub(crate) struct Mutant {
     pub(crate) check: Check,
     /// A text that occurs once in the source.
     pub(crate) old: String,
-    /// What stands there in the mutant.
+    /// Text of the mutant in its place.
     pub(crate) new: String,
 }
 
@@ -38,7 +38,7 @@ pub(crate) enum Check {
     Functions,
     /// C, beside the derived code.
     Code,
-    /// What a student reads: equations, closed forms and pictures, beside the runtime and Lagrange's equations.
+    /// Pages for students: equations, closed forms and pictures, compared with the runtime and Lagrange's equations.
     Views,
 }
 
@@ -92,7 +92,7 @@ impl Check {
         }
     }
 
-    /// What its section says before the table.
+    /// Text of its section before the table.
     pub(crate) fn about(self) -> &'static str {
         match self {
             Self::Compare => {
@@ -127,7 +127,7 @@ impl Mutant {
         }
     }
 
-    /// The same with the source from a tree.
+    /// The mutated source, with the source read from a tree.
     pub(crate) fn applied_in(&self, tree: &Path) -> Result<String, String> {
         let Self { what, file, .. } = self;
         let source = std::fs::read_to_string(tree.join(file));

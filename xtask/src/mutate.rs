@@ -117,7 +117,7 @@ fn section(check: Check) -> String {
     format!("\n## {heading}\n\n{about}\n\n    cargo test {tests}\n\n| mutation | {head} |\n|---|---|\n")
 }
 
-/// What noticed.
+/// The tests that noticed a mutant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Caught {
     Nothing,
@@ -204,7 +204,7 @@ impl Laboratory {
         Ok(Self { tree, shell })
     }
 
-    /// What a mutant wakes up.
+    /// Finds the tests that notice a mutant.
     fn caught(&self, mutant: &Mutant) -> Result<Caught> {
         let file = self.tree.path().join(&mutant.file);
         let original = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
@@ -214,7 +214,7 @@ impl Laboratory {
         caught.with_context(|| mutant.what.clone())
     }
 
-    /// What fails in the tree as it is.
+    /// Finds the tests that fail in the tree without a mutant.
     fn failing(&self, check: Check) -> Result<Caught> {
         let tests = check.tests();
         let output =

@@ -9,7 +9,7 @@ use xshell::{Shell, cmd};
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// What is installed for it: Debian's Chromium with its driver, and a client that is current.
+/// Packages of Debian that the browser's tests need: Chromium and its driver.
 const BROWSER: [&str; 2] = ["chromium", "chromium-driver"];
 const PACKAGES: [&str; 3] = ["selenium==4.51.0", "axe-core-python==0.1.0", "pillow==12.0.0"];
 

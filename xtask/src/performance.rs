@@ -43,9 +43,9 @@ enum Block {
     SinCos,
     /// Nanoseconds of a state of a batch
     Batch,
-    /// What a batch's loops are made of
+    /// Instructions in a batch's loops
     BatchProfile,
-    /// What grows with the number of joints
+    /// Measures of generated code by the number of joints
     Growth,
     /// Nanoseconds of an arm at run time
     RunTime,
@@ -160,7 +160,7 @@ fn without_empty_lines(text: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// What a command prints, as a block of text.
+/// The output of a command, as a block of text.
 fn listing(command: Cmd<'_>) -> Result<String> {
     Ok(format!("```text\n{}\n```\n", command.quiet().read()?))
 }

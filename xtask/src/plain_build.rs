@@ -10,7 +10,7 @@ use crate::machine;
 /// How often each of the two runs.
 const RUNS: usize = 15;
 
-/// What a run prints: nanoseconds of what is named, asking the processor and inlined.
+/// Output of a run: nanoseconds by name, with the processor asked and inlined.
 type Times = Vec<(String, [f64; 2])>;
 
 /// Builds both, runs them in turn and writes a table.

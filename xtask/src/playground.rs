@@ -22,7 +22,7 @@ use crate::page;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The page may have so many bytes.
+/// Largest size of the page, bytes.
 const LARGEST: usize = 900_000;
 
 /// The scripts of the page, in their order; what stands around them uses each once.

@@ -60,17 +60,26 @@ const DOCUMENTS: &[&str] = &[
 ];
 
 /// Folders of sources whose first sentences are checked. Lengthen this list with a crate after it is rewritten.
-const SOURCES: &[&str] = &["src", "rne-machine/src", "rne-macro/src", "rne-model/src", "rne-runtime/src"];
+const SOURCES: &[&str] = &[
+    "src",
+    "rne-inspection/src",
+    "rne-machine/src",
+    "rne-macro/src",
+    "rne-model/src",
+    "rne-runtime/src",
+    "rne-search/src",
+    "xtask/src",
+];
 
 /// Folders of sources whose helps are checked.
 const HELPS: &[&str] = &["rne-cli/src"];
 
 struct Rule {
-    /// What is refused.
+    /// Pattern that is refused.
     pattern: &'static str,
     /// Whether a sentence has to begin with it.
     begins: bool,
-    /// What to write instead.
+    /// Words to write instead.
     instead: &'static str,
     /// A text that the rule finds, for the test.
     #[cfg_attr(not(test), expect(dead_code, reason = "the test of the rules reads it"))]

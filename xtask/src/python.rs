@@ -10,25 +10,25 @@ use xshell::{Shell, cmd};
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// What builds the wheel.
+/// Package that builds the wheel.
 const MATURIN: &str = "maturin>=1.9,<2";
 
-/// What the tests need beside the wheel.
+/// Packages that the tests need beside the wheel.
 const TESTS: [&str; 1] = ["pytest>=8"];
 
-/// What they need to hold the wheel against Pinocchio on real arms.
+/// Packages that the tests need to compare the wheel with Pinocchio on real arms.
 const PEERS: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
 
 /// Whose columns the wheel reads.
 const COLUMNS: [&str; 2] = ["polars>=1.8", "pyarrow>=17"];
 
-/// What is timed beside the wheel, besides: the version of `benches/peers/run`.
+/// Package that is timed beside the wheel, in the version of `benches/peers/run`.
 const TOOLBOX: &str = "roboticstoolbox-python==1.5.0";
 
-/// What runs the notebooks.
+/// Packages that run the notebooks.
 const NOTEBOOKS: [&str; 3] = ["nbclient>=0.10", "ipykernel>=6", "matplotlib>=3"];
 
-/// What somebody types first.
+/// The first lines that a user types.
 const FIRST: &str = "import rne\n\
                      arm = rne.robots['puma560']\n\
                      print('python, no compiler on PATH:', arm.gravity_torques([0.1] * 6), 'N m')";
@@ -112,7 +112,7 @@ impl Place {
         Ok(Self { shell: machine::shell()?, folder: machine::target_folder("target")?.join("python") })
     }
 
-    /// A virtual environment, its Python; one that is there already stays.
+    /// The Python of a virtual environment, which is made unless it exists.
     pub(crate) fn environment(&self, name: &str) -> Result<PathBuf> {
         let (shell, venv) = (&self.shell, self.folder.join(name));
         let python = venv.join("bin/python");

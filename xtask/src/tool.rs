@@ -20,7 +20,7 @@ Examples:
   cargo xtask tool semver --install      the public interface against the last tag; takes minutes to install
   cargo xtask tool book --install        docs/lecture as a book in target/book; takes minutes to install")]
 pub(crate) struct Tool {
-    /// Which one
+    /// Tool to get
     tool: Name,
     /// Get the tool, into target/tools
     #[arg(long)]

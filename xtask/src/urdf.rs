@@ -7,7 +7,7 @@ use xshell::cmd;
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// What is installed: Pinocchio, and packages that have arms as URDF.
+/// Packages that are installed: Pinocchio, and arms as URDF.
 const PACKAGES: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
 
 /// Imports real arms and compares them with Pinocchio

@@ -1,4 +1,4 @@
-//! What is exhaustive beyond `cargo test`: more samples, more targets, more compilers.
+//! Checks that take longer than `cargo test`: more samples, more targets, more compilers.
 
 use std::time::Instant;
 
@@ -37,11 +37,11 @@ struct Step {
     /// Variables of the environment, before the command.
     variables: &'static [(&'static str, &'static str)],
     command: &'static [&'static str],
-    /// What must be there; else the step is skipped.
+    /// Requirements; without them the step is skipped.
     needs: Needs,
 }
 
-/// What a step cannot do without.
+/// Requirements of a step.
 enum Needs {
     Nothing,
     /// The oldest compiler that Cargo.toml allows; rustup gets it.

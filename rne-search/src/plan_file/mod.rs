@@ -112,7 +112,7 @@ impl From<PlanFile> for PlanSet {
 }
 
 impl PlanFile {
-    /// What a search found for a robot.
+    /// The plan file of a search's result.
     pub(crate) fn new(robot: &Robot, reduced: Reduced, rewritten: BTreeMap<Function, Rewritten>) -> Self {
         Self { robot: robot.name.clone(), fingerprint: fingerprint(robot), reduced, rewritten }
     }
@@ -239,7 +239,7 @@ impl PlanFile {
     }
 }
 
-/// What a plan file says of itself.
+/// The comment at the head of a plan file.
 const HEADING: &str = "\
 # Choices and rewritten graphs of the reduced form of ROBOT, found by `rne search`, replayed by every build: what they
 # mean, `rne show ROBOT.yaml --form reduced` and docs/reduced-form.md say. `fingerprint` is that of the robot's numbers,
@@ -260,7 +260,7 @@ fn place(root: &Node, keys: &[&str]) -> Range<usize> {
     found
 }
 
-/// The same in a text that has been read before.
+/// The [place] of a key in a text, which has been read before.
 fn value_of(text: &str, keys: &[&str]) -> Range<usize> {
     document::read("", text, KIND).map_or(0..0, |root| place(&root, keys))
 }

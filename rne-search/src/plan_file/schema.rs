@@ -27,8 +27,8 @@ pub(super) fn read(root: &Node, robot: &Robot) -> Result<PlanFile, Mistake> {
     })
 }
 
-/// What decides whether the rest is to be read at all: a plan of another version, or of another robot, may have other
-/// keys.
+/// Checks format, robot and fingerprint before the rest is read: a plan of another version, or of another robot, may
+/// have other keys.
 fn belongs_to(root: &Node, robot: &Robot) -> Result<(), Mistake> {
     let refuse = |node: &Node, message: String| Err(Mistake::new(node.span.clone(), message));
     if let Some(node) = root.get("format")
@@ -100,7 +100,7 @@ fn accuracy(node: &Node) -> Result<Accuracy, Mistake> {
     })
 }
 
-/// What a function is off by: finite, and not negative.
+/// A relative error: finite, and not negative.
 fn difference(node: &Node) -> Result<f64, Mistake> {
     let difference = number(node)?;
     if difference.is_finite() && difference >= 0.0 {

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use rne_model::did_you_mean;
 use rne_model::document::{Content, Node, Style};
 
-/// What is wrong, and where.
+/// A mistake in a plan file, and its place in the text.
 #[derive(Debug)]
 pub(super) struct Mistake {
     pub(super) place: Range<usize>,
@@ -97,7 +97,7 @@ pub(super) fn text(node: &Node) -> Result<&str, Mistake> {
     }
 }
 
-/// What a text says, by its own grammar.
+/// The value that a text spells in the grammar of its type.
 pub(super) fn parsed<T: FromStr<Err: Display>>(node: &Node) -> Result<T, Mistake> {
     text(node)?.parse().map_err(|error: T::Err| Mistake::new(node.span.clone(), error.to_string()))
 }
@@ -129,7 +129,7 @@ pub(super) fn whole<T: TryFrom<usize>>(node: &Node) -> Result<T, Mistake> {
     number.ok_or_else(|| Mistake::wrong_shape(node, "a whole number"))
 }
 
-/// A decimal number; YAML's words for what is none are allowed.
+/// A decimal number, or YAML's words for infinity and not-a-number.
 pub(super) fn number(node: &Node) -> Result<f64, Mistake> {
     let number = match plain(node) {
         Some(".inf") => Some(f64::INFINITY),

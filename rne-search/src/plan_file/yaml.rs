@@ -72,7 +72,7 @@ impl Value {
         }
     }
 
-    /// What stands behind a key or a dash, to the end of the line; lines below it behind `indent` blanks.
+    /// Writes a value after its key or dash, to the end of the line; further lines are indented by `indent` blanks.
     fn line(&self, indent: usize, out: &mut String) {
         match self {
             Self::Plain(text) => {
@@ -131,7 +131,7 @@ mod tests {
         Value::Mapping(vec![("key", Value::Text(text.to_owned()))]).document()
     }
 
-    /// What serde reads of it.
+    /// The value of the key `key` as serde reads it.
     fn read(document: &str) -> serde_yaml::Value {
         let value: serde_yaml::Value = serde_yaml::from_str(document).unwrap_or_else(|e| panic!("{e}: {document:?}"));
         value["key"].clone()
