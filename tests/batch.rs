@@ -44,7 +44,10 @@ reduced! {
 struct Tooled<'a, T>(#[robot(skip)] std::cell::RefCell<&'a T>);
 
 /// Around the lengths of a register, and beyond those for which threads are used.
-const LENGTHS: [usize; 10] = [0, 1, 7, 8, 9, 16, 17, 1000, 1003, 8_203];
+fn lengths() -> [usize; 10] {
+    let longest = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 20_011 } else { 8_203 };
+    [0, 1, 7, 8, 9, 16, 17, 1000, 1003, longest]
+}
 
 /// Structure of arrays.
 struct States<T, const DOF: usize>([[Vec<T>; DOF]; 3]);
@@ -91,7 +94,7 @@ fn a_robot_read_at_run_time_has_the_bits_of_the_derived_one() {
     }
     fn check_of<T: Number, const DOF: usize>(file: &str, robot: &impl BatchInverseDynamics<DOF>, arm: &CompiledArm) {
         let compiled = arm.function(Function::InverseDynamics).expect("a function that compiles");
-        for length in LENGTHS {
+        for length in lengths() {
             let states = States::<T, DOF>::random(length);
             let [q, qd, qdd] = states.slices();
             let arguments = Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
@@ -135,7 +138,7 @@ fn compared<T: BatchScalar + Into<f64>, const DOF: usize>(
     is_reduced: bool,
 ) -> f64 {
     let mut worst = 0.0_f64;
-    for length in LENGTHS {
+    for length in lengths() {
         let states = States::<T, DOF>::random(length);
         let single = states.one_by_one(robot);
         for (index, unit) in VectorUnit::all().enumerate() {

@@ -167,7 +167,11 @@ fn c_of(robot: &Robot) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: if shipped::is_exhaustive() { 128 } else { 64 },
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn rust_stays_the_same_rust(title in nasty(), shoulder in nasty(), elbow in nasty()) {

@@ -9,9 +9,6 @@ use rne_runtime::DynArm;
 #[path = "../../tests/random/arms.rs"]
 mod arms;
 
-/// Of random arms, besides the shipped ones.
-const ARMS: u64 = 60;
-
 fn compare(robot: &Robot, name: &str) {
     let exact = Identifiability::of(robot, false);
     let numerical = DynArm::from_robot(robot).base_parameters();
@@ -65,7 +62,8 @@ fn base_parameters_of_the_shipped_robots_are_the_exact_ones() {
 
 #[test]
 fn base_parameters_of_random_arms_are_the_exact_ones() {
-    for seed in 0..ARMS {
+    let arms = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 120 } else { 60 };
+    for seed in 0..arms {
         compare(&Robot::from_yaml(&arms::yaml(seed)).expect("it is an arm"), &format!("arm {seed}"));
     }
 }

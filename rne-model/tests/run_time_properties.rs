@@ -60,7 +60,7 @@ fn value() -> impl Strategy<Value = f64> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 250,
+        cases: if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 500 } else { 250 },
         max_global_rejects: 50_000,
         failure_persistence: None,
         ..ProptestConfig::default()

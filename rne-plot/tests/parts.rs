@@ -89,7 +89,8 @@ fn powers_are_the_rate_of_energy() {
         let robot = robot(name);
         let arm = DynArm::from_robot(&robot);
         let [from, to] = Trajectory::postures(&robot);
-        let motion = Trajectory::quintic(&from, &to, 1.5, 1501).unwrap();
+        let steps = if shipped::is_exhaustive() { 3000 } else { 1500 };
+        let motion = Trajectory::quintic(&from, &to, 1.5, steps + 1).unwrap();
         let history = TorqueHistory::new(&robot, &motion).unwrap();
         let energy = |at: usize| {
             arm.kinetic_energy(&motion.q[at], &motion.qd[at]).unwrap() + arm.potential_energy(&motion.q[at]).unwrap()

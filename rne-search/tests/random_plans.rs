@@ -148,7 +148,8 @@ fn wander(robot: &Robot, rounds: usize, seed: u64) {
 fn unusual_robots_are_the_seven_steps() {
     wander(&robot("spindle"), 90, 1);
     wander(&robot("dense6_2p"), 0, 0);
-    for name in (0..20).map(|seed| seed.to_string()) {
+    let seeds = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 40 } else { 20 };
+    for name in (0..seeds).map(|seed| seed.to_string()) {
         wander(&robot(&name), 8, 2);
     }
 }

@@ -36,9 +36,6 @@ const SAME_BITS: [Function; 16] = [
 /// Of the largest number of the result.
 const TOLERANCE: f64 = 1e-13;
 
-/// States per robot that has its own code.
-const STATES: usize = 5;
-
 /// Numbers that vanish but for rounding are measured by those that they are parts of: this part of the forces and
 /// moments at the joints, of the energy at the farthest reach.
 const LEAST: f64 = 1e-2;
@@ -129,7 +126,8 @@ pub(crate) fn error(
 /// Compares all functions of an arm at random states.
 fn compare_at_states(arm: &Arm, maker: Maker, worst: &mut Worst) {
     let mut rng = Rng::with_seed(19);
-    for _ in 0..STATES {
+    let states = if shipped::is_exhaustive() { 8 } else { 5 };
+    for _ in 0..states {
         let mut array =
             |scale: f64| -> Vec<f64> { (0..arm.robot.dof()).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect() };
         let (q, qd, qdd, tau) = (array(3.0), array(2.0), array(5.0), array(20.0));
