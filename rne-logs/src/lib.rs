@@ -26,6 +26,7 @@ mod limits;
 mod log;
 mod number;
 mod options;
+mod remedy;
 mod signal;
 mod spelling;
 
@@ -41,5 +42,6 @@ pub use crate::log::pass::Unusable;
 pub use crate::log::survey::{Counts, Cutoff, Interruption, Run, Survey};
 pub use crate::log::{Layout, Log};
 pub use crate::options::{Angles, Options};
+pub use crate::remedy::{Remedy, Setting};
 pub use crate::signal::median::median;
 pub use crate::signal::spikes::Spike;

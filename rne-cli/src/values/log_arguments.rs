@@ -3,9 +3,9 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use rne_logs::{Angles, LogError, Options, TimeUnit};
-use rne_model::one_line;
 
 use crate::outcome::Failure;
+use crate::render::log_remedy;
 use crate::values::numbers::List;
 
 /// How a log is read.
@@ -94,7 +94,6 @@ impl LogArguments {
 
 /// A log that cannot be read, or a request that it cannot serve.
 pub(crate) fn failure(error: &LogError) -> Failure {
-    // names of a log may have any letters
-    let text = one_line(&error.to_string());
+    let text = log_remedy::sentence(error);
     if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
 }

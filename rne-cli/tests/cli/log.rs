@@ -221,7 +221,7 @@ fn joints_are_named_as_the_log_names_them() {
     desk_log(&path, [0, 1, 2], plain, [1.0; 3]);
     let expected = judged(log, &[]);
     for names in ["foo,bar,baz", "waist,shoulder,elbow", "elbow,shoulder,waist"] {
-        let said = ["the log has no joint", "it has 1, 2, 3", "--joints names those"];
+        let said = ["the log has no joint", "it has 1, 2, 3", "names the joints to read"];
         fails(2, &judge(log, &["--joints", names]), &said);
         fails(2, &["watch", "docs/desk_arm.yaml", log, "--joints", names], &said);
         fails(2, &["log", log, "--joints", names], &said);
@@ -287,9 +287,9 @@ fn metres_of_a_slide_are_no_degrees() {
     let (found, said) = account(&["identify", &robot, &degrees, "--judge", "--degrees"]);
     assert_eq!(found, expected);
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(said.contains("--degrees is of joints that turn: 1 slides, and is taken for m and m/s"), "{said}");
+    assert!(said.contains("degrees are for joints that turn: 1 slides, and is taken for m and m/s"), "{said}");
     let said = fine(&["log", &degrees, "--degrees", "--robot", &robot]);
-    assert!(said.contains("1  1      -0.4 … 0.4") && said.contains("--degrees is of joints that turn: 1"), "{said}");
+    assert!(said.contains("1  1      -0.4 … 0.4") && said.contains("degrees are for joints that turn: 1"), "{said}");
     let watched = account(&["watch", &robot, &degrees, "--degrees"]).1;
     assert!(watched.contains("joints that turn: 1"), "{watched}");
     // without a robot nobody knows, but its column may say it
@@ -312,7 +312,7 @@ fn columns_that_are_not_understood_are_named() {
     desk_log(&path, [0, 1, 2], german, [1.0; 3]);
     let text = fs::read_to_string(&path).expect("a log");
     fs::write(&path, text.replacen("time", "Zeit [s]", 1)).expect("a log");
-    let there = "and there is Zeit [s], Achse1_position, Achse2_position, Achse3_position, Achse1_speed";
+    let there = "the columns are Zeit [s], Achse1_position, Achse2_position, Achse3_position, Achse1_speed";
     fails(2, &["log", log], &["no column has times", there, "--rate"]);
     let unread = "Zeit [s], Achse1_Moment, Achse2_Moment, Achse3_Moment";
     let said = fine(&["log", log, "--rate", "25"]);
@@ -324,8 +324,8 @@ fn columns_that_are_not_understood_are_named() {
     let timed = fs::read_to_string(&path).expect("a log").replace("Moment", "torque").replacen("Zeit", "t", 1);
     fs::write(&path, &timed).expect("a log");
     assert!(!fine(&["log", log]).contains("not read"));
-    fails(2, &["log", log, "--rate", "25"], &["the column t [s] has times, and --rate is of tables without"]);
-    fails(2, &["log", log, "--columns", "time,q,tau"], &["--columns is of arrays of numpy; this is CSV"]);
+    fails(2, &["log", log, "--rate", "25"], &["the column t [s] has times, and a sampling rate is for tables", "remove --rate"]);
+    fails(2, &["log", log, "--columns", "time,q,tau"], &["an order of columns is for arrays of numpy; this is CSV", "remove --columns"]);
     let rows = timed.lines().skip(1).map(|line| {
         let (time, others) = line.split_once(',').expect("a time");
         format!("\n{},{others}", 1e3 * time.parse::<f64>().expect("a number"))
@@ -373,7 +373,7 @@ fn the_unit_of_times_is_asked_for() {
     let path = folder.join("log.csv").to_str().expect("UTF-8").to_owned();
     fs::write(&path, table(|i| i.to_string())).expect("a file");
     for command in [&["log", &path][..], &["identify", "planar2", &path, "-o", "-"], &["watch", "planar2", &path]] {
-        fails(2, command, &["the unit of the times is not known", "1 kHz in ms", "--time-unit ms"]);
+        fails(2, command, &["the unit of the times is not known", "1 kHz in ms", "--time-unit s, ms, us or ns"]);
     }
     assert!(fine(&["log", &path, "--time-unit", "ms", "--cutoff", "50"]).contains("1000 Hz"));
 }

@@ -7,6 +7,7 @@ use crate::columns::table::{Found, Header, by_joint};
 use crate::columns::unit::{Dimension, Unit};
 use crate::limits::{MOST_JOINTS, work};
 use crate::options::Angles;
+use crate::remedy::{Remedy, Setting};
 use crate::spelling::listed;
 use crate::{LogError, Options};
 
@@ -15,12 +16,11 @@ impl<'a> Header<'a> {
     pub(crate) fn check_count(&self, found: &[&Found]) -> Result<(), LogError> {
         let Some(one) = found.first().filter(|_| found.len() > MOST_JOINTS) else { return Ok(()) };
         let what = format!(
-            "the table has {} columns of {}; at most {MOST_JOINTS} joints are read; --topic says how the names of \
-             those that are meant begin",
+            "the table has {} columns of {}; at most {MOST_JOINTS} joints are read",
             found.len(),
             one.named.quantity.plural()
         );
-        Err(LogError::request(self.path, what))
+        Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Prefix)))
     }
 
     /// No joint has two columns of one quantity.
@@ -30,8 +30,7 @@ impl<'a> Header<'a> {
         for second in found {
             let Some(first) = seen.insert(&second.named.joint, second) else { continue };
             let what = format!(
-                "the columns {} and {}, {} and {} of the table, are both {} of {}; say how the names of those that \
-                 are meant begin, as in --topic actual, or take one away",
+                "the columns {} and {}, {} and {} of the table, are both {} of {}; remove one, or choose a group",
                 self.name(first),
                 self.name(second),
                 first.place + 1,
@@ -39,7 +38,7 @@ impl<'a> Header<'a> {
                 second.named.quantity.plural(),
                 second.named.joint
             );
-            return Err(LogError::request(self.path, what));
+            return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Prefix)));
         }
         Ok(())
     }
@@ -66,14 +65,13 @@ impl<'a> Header<'a> {
         if asked.is_none()
             && let Some(missing) = (first..=*most).find(|number| !there.contains(number))
         {
-            let all = there.iter().map(u32::to_string).collect::<Vec<_>>();
+            let all = there.iter().map(u32::to_string).collect();
             let what = format!(
-                "the columns {} are positions of joints by their numbers, and {missing} is missing; if only these are \
-                 meant, say --joints {}",
-                self.listed(positions),
-                all.join(",")
+                "the columns {} are positions of joints by their numbers, and {missing} is missing; choose joints if \
+                 only these are meant",
+                self.listed(positions)
             );
-            return Err(LogError::request(self.path, what));
+            return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Joints(all))));
         }
         for found in others {
             let have = numbers(found);
@@ -125,7 +123,7 @@ impl<'a> Header<'a> {
             let turns = says([Dimension::Angle, Dimension::Torque]) || all.iter().any(is_in_degrees);
             if turns && says([Dimension::Length, Dimension::Force]) {
                 let degrees =
-                    if all.iter().any(is_in_degrees) { ", and --degrees is of all that say no unit" } else { "" };
+                    if all.iter().any(is_in_degrees) { ", and those without a unit are in degrees" } else { "" };
                 let what = format!(
                     "the columns {} are of one joint, which either turns or slides{degrees}",
                     self.listed(&all)
@@ -142,11 +140,8 @@ impl<'a> Header<'a> {
             Some((name(found.iter().find(is_other)?), name(found.iter().find(is_unsaid)?)))
         };
         if let Some((said, unsaid)) = both(&motions).filter(|_| options.angles == Angles::Unsaid) {
-            let what = format!(
-                "the column {said} says its unit and {unsaid} does not: --degrees if it and all that say none are in \
-                 degrees, --radians if they are in radians or metres"
-            );
-            return Err(LogError::request(self.path, what));
+            let what = format!("the column {said} says its unit and {unsaid} does not");
+            return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Angles)));
         }
         if let Some((said, unsaid)) = both(efforts) {
             let what = format!(
@@ -159,29 +154,25 @@ impl<'a> Header<'a> {
 
     /// What the options say of units is not what all names say otherwise.
     fn check_options(&self, motions: &[&Found], efforts: &[&Found], options: &Options) -> Result<(), LogError> {
-        let (option, is_contrary): (_, fn(&Unit) -> bool) = match options.angles {
-            Angles::Degrees => ("--degrees is", |unit| unit.dimension == Dimension::Length || unit.is_si()),
-            Angles::Radians => ("--radians is", |unit| unit.dimension == Dimension::Angle && !unit.is_si()),
-            Angles::Unsaid => ("", |_| false),
+        let is_contrary: fn(&Unit) -> bool = match options.angles {
+            Angles::Degrees => |unit| unit.dimension == Dimension::Length || unit.is_si(),
+            Angles::Radians => |unit| unit.dimension == Dimension::Angle && !unit.is_si(),
+            Angles::Unsaid => |_| false,
         };
         let all_say = motions.iter().all(|found| found.named.unit.is_some());
         if let Some(found) = motions.iter().find(|found| found.named.unit.is_some_and(|unit| is_contrary(&unit)))
             && all_say
         {
-            let what =
-                format!("the column {} says its unit, and so do all others: {option} not needed", self.name(found));
-            return Err(LogError::request(self.path, what));
+            let what = format!("the column {} says its unit, and so do all others", self.name(found));
+            return Err(LogError::request(self.path, what).remedy(Remedy::LeaveOut(Setting::Angles)));
         }
         let is_torque = |found: &&Found| matches!(found.dimension(), Some(Dimension::Torque | Dimension::Force));
         if let Some(found) = efforts.first()
             && !options.torque_constants.is_empty()
             && efforts.iter().all(is_torque)
         {
-            let what = format!(
-                "the column {} has no current, and no other has: take --torque-constant away",
-                self.name(found)
-            );
-            return Err(LogError::request(self.path, what));
+            let what = format!("the column {} has no current, and no other column has one", self.name(found));
+            return Err(LogError::request(self.path, what).remedy(Remedy::LeaveOut(Setting::TorqueConstants)));
         }
         Ok(())
     }

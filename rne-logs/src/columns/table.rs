@@ -360,7 +360,7 @@ mod tests {
         let two = Options { joints: Some(vec!["3".into(), "1".into()]), ..Options::default() };
         let unsaid = Options::default();
         for (header, options, wanted) in [
-            (&["t", "q1", "q3"][..], &unsaid, Some("and 2 is missing; if only these are meant, say --joints 1,3")),
+            (&["t", "q1", "q3"][..], &unsaid, Some("and 2 is missing; choose joints if only these are meant")),
             (&["t", "q1", "q3"], &two, None),
             (&["t", "q2", "q3"], &unsaid, Some("and 1 is missing")),
             (&["t", "q0", "q1"], &unsaid, None),
@@ -380,17 +380,17 @@ mod tests {
                 &unsaid,
                 Some("positions in furlong, which is no unit of them that is known: rad"),
             ),
-            (&["t", "q1 [deg]", "q2"], &unsaid, Some("q1 [deg] says its unit and q2 does not: --degrees")),
-            (&["t", "q1 [deg]", "qd1"], &unsaid, Some("q1 [deg] says its unit and qd1 does not: --degrees")),
+            (&["t", "q1 [deg]", "q2"], &unsaid, Some("q1 [deg] says its unit and q2 does not")),
+            (&["t", "q1 [deg]", "qd1"], &unsaid, Some("q1 [deg] says its unit and qd1 does not")),
             (&["t", "q1 [deg]", "qd1"], &degrees, None),
             (&["t", "q1 [deg]", "qd1"], &radians, None),
             (&["t", "q1 [deg]"], &degrees, None),
-            (&["t", "q1 [deg]"], &radians, Some("so do all others: --radians is not needed")),
-            (&["t", "q1 [rad]"], &degrees, Some("so do all others: --degrees is not needed")),
+            (&["t", "q1 [deg]"], &radians, Some("q1 [deg] says its unit, and so do all others")),
+            (&["t", "q1 [rad]"], &degrees, Some("q1 [rad] says its unit, and so do all others")),
             (
                 &["t", "q1 [mm]", "qd1"],
                 &degrees,
-                Some("q1 [mm], qd1 are of one joint, which either turns or slides, and --degrees is of"),
+                Some("q1 [mm], qd1 are of one joint, which either turns or slides, and those without a unit"),
             ),
             (&["t", "q1", "qd1 [m/s]"], &degrees, Some("q1, qd1 [m/s] are of one joint")),
             (&["t", "q1 [mm]", "qd1 [deg/s]"], &unsaid, Some("which either turns or slides")),
@@ -398,7 +398,7 @@ mod tests {
             (&["t", "q1", "q2", "tau1 [mNm]", "tau2"], &unsaid, Some("tau1 [mNm] says its unit and tau2 does not")),
             (&["t", "q1", "tau1 [Nm]"], &currents, Some("tau1 [Nm] has no current")),
             (&["t", "q1", "i1 [A]"], &currents, None),
-            (&["t [s]", "q1"], &milliseconds, Some("the column t [s] has times in s, and --time-unit says ms")),
+            (&["t [s]", "q1"], &milliseconds, Some("the column t [s] has times in s, and ms was given")),
             (&["t [min]", "q1"], &unsaid, Some("times in min, which is none of s, ms, us, ns")),
             (&["stamp_sec", "stamp_nanosec", "q1"], &unsaid, Some("stamp_sec and stamp_nanosec are both times")),
         ] {

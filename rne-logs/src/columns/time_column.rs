@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::columns::name::time;
+use crate::remedy::{Remedy, Setting};
 use crate::{LogError, Options, TimeUnit};
 
 /// A column whose name is that of times.
@@ -61,8 +62,8 @@ impl TimeColumn {
         if let (Some(unit), Some(asked)) = (chosen.unit, options.time_unit)
             && unit != asked
         {
-            let what = format!("the column {said} has times in {}, and --time-unit says {}", unit.name(), asked.name());
-            return Err(LogError::request(path, what));
+            let what = format!("the column {said} has times in {}, and {} was given", unit.name(), asked.name());
+            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::TimeUnit)));
         }
         // stamp_sec and stamp_nanosec are one time in two columns
         let stem = |name: &'a str| name.rsplit_once('_').map(|(stem, _)| stem);

@@ -60,7 +60,7 @@ impl TimeUnit {
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => {
                 let name = self.name();
-                format!("{text} {name} are beyond the year 2262; --time-unit s, ms, us or ns says what times are")
+                format!("{text} {name} are later than the year 2262")
             }
             _ => format!("{text:?} is no time"),
         }

@@ -8,6 +8,7 @@ use crate::Options;
 use crate::columns::table::{Column, Columns};
 use crate::columns::unit::FileUnits;
 use crate::formats::sample::{Sample, Source};
+use crate::remedy::{Remedy, Setting};
 use crate::spelling::listed;
 use crate::{LogError, TimeUnit};
 
@@ -149,7 +150,14 @@ impl Source for CsvTable {
             Clock::Column(place, unit) => {
                 let cell = inner(self.record.get(place).unwrap_or_default());
                 let cell = std::str::from_utf8(cell).unwrap_or_default();
-                unit.parse(cell).ok_or_else(|| self.wrong(unit.refusal(cell) + of_comma(cell.as_bytes())))?
+                unit.parse(cell).ok_or_else(|| {
+                    let error = self.wrong(unit.refusal(cell) + of_comma(cell.as_bytes()));
+                    if cell.parse().is_ok_and(f64::is_finite) {
+                        error.remedy(Remedy::Give(Setting::TimeUnit))
+                    } else {
+                        error
+                    }
+                })?
             }
             Clock::Step(step) => TimeUnit::step(self.row, step),
         };
@@ -191,18 +199,15 @@ impl Source for CsvTable {
 
 /// What is said of a table that has no times.
 pub(crate) fn no_time<'a>(path: &Path, names: impl Iterator<Item = &'a str>) -> LogError {
-    let what = format!(
-        "no column has times: its name is time, t, stamp or timestamp, and there is {}; --rate HZ says how fast rows \
-         follow",
-        listed(names)
-    );
-    LogError::request(path, what)
+    let what =
+        format!("no column has times: its name is time, t, stamp or timestamp, and the columns are {}", listed(names));
+    LogError::request(path, what).remedy(Remedy::Give(Setting::Rate))
 }
 
 /// What is said of a table that has times, where a rate is asked for.
 pub(crate) fn two_times(path: &Path, name: &str) -> LogError {
-    let what = format!("the column {name} has times, and --rate is of tables without: take one of both away");
-    LogError::request(path, what)
+    let what = format!("the column {name} has times, and a sampling rate is for tables without times");
+    LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate))
 }
 
 /// What is said of a decimal comma.

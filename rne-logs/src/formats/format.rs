@@ -15,6 +15,7 @@ use crate::formats::parquet_table::ParquetTable;
 use crate::formats::sample::Source;
 #[cfg(feature = "bags")]
 use crate::formats::sqlite_bag::SqliteBag;
+use crate::remedy::{Remedy, Setting};
 use crate::{LogError, Options};
 
 /// What a log is written in.
@@ -106,11 +107,12 @@ impl Format {
     /// Opens a file of this format.
     pub(crate) fn open(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
         if self != Self::Npy && !options.columns.is_empty() {
-            let what = format!("--columns is of arrays of numpy; this is {self}, which has names: take it away");
-            return Err(LogError::request(path, what));
+            let what = format!("an order of columns is for arrays of numpy; this is {self}, whose columns have names");
+            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Columns)));
         }
         if matches!(self, Self::Sqlite | Self::Mcap) && options.rate.is_some() {
-            return Err(LogError::request(path, "messages have times, and --rate is of tables without: take it away"));
+            let what = "messages have times, and a sampling rate is for tables without times";
+            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate)));
         }
         Ok(match self {
             #[cfg(feature = "bags")]
@@ -123,8 +125,8 @@ impl Format {
             Self::Csv => Box::new(CsvTable::open(path, options)?),
             #[cfg(not(all(feature = "bags", feature = "parquet")))]
             other => {
-                let remedy = "`cargo install --path rne-cli --features full` in a clone of rne builds one that does";
-                return Err(LogError::file(path, format_args!("this build of rne does not read {other}; {remedy}")));
+                let error = LogError::file(path, format_args!("this build of rne does not read {other}"));
+                return Err(error.remedy(Remedy::BuildWithFormats));
             }
         })
     }

@@ -7,6 +7,7 @@ use crate::columns::quantity::Quantity;
 use crate::columns::time_column::within;
 use crate::columns::unit::{Dimension, JointUnits, Unit};
 use crate::options::Angles;
+use crate::remedy::{Remedy, Setting};
 use crate::spelling::listed;
 use crate::{LogError, Options};
 
@@ -43,11 +44,10 @@ impl ListColumns {
             })?;
             if let Some((_, first, _)) = found.iter().find(|(other, ..)| *other == quantity) {
                 let what = format!(
-                    "the columns {first} and {name} are both {}; say how the names of those that are meant begin, as \
-                     in --topic actual, or take one away",
+                    "the columns {first} and {name} are both {}; remove one, or choose a group",
                     quantity.plural()
                 );
-                return Err(LogError::request(path, what));
+                return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Prefix)));
             }
             found.push((quantity, name, unit));
             lists.converted.extend(unit.filter(|unit| !unit.is_si()).map(|_| name.to_owned()));
@@ -63,11 +63,8 @@ impl ListColumns {
         let said = motions().find(|(.., unit)| unit.is_some_and(|unit| !unit.is_si()));
         let unsaid = motions().find(|(.., unit)| unit.is_none());
         if let (Some((_, said, _)), Some((_, unsaid, _)), Angles::Unsaid) = (said, unsaid, options.angles) {
-            let what = format!(
-                "the column {said} says its unit and {unsaid} does not: --degrees if it is in degrees, --radians if it \
-                 is in radians or metres"
-            );
-            return Err(LogError::request(path, what));
+            let what = format!("the column {said} says its unit and {unsaid} does not");
+            return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Angles)));
         }
         Ok(lists)
     }
@@ -106,11 +103,11 @@ pub(crate) fn names<'a>(
         several => match several.iter().find(begins).map(|(place, _)| *place) {
             None => {
                 let what = format!(
-                    "the columns {} are all names of joints, and none has the name of {position} but for its end: say \
-                     how the names of those that are meant begin, as in --topic actual, or remove the others",
+                    "the columns {} are all names of joints, and none has the name of {position} but for its end; remove \
+                     the others, or choose a group",
                     listed(several.iter().map(|(_, name)| *name))
                 );
-                Err(LogError::request(path, what))
+                Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Prefix)))
             }
             place => Ok(place),
         },

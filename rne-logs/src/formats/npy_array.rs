@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::formats::csv_table::no_time;
 use crate::formats::sample::{Sample, Source};
 use crate::limits::MOST_JOINTS;
+use crate::remedy::{Remedy, Setting};
 use crate::{LogError, Npy, Options, TimeUnit};
 
 /// What an array may have, in the order that it has unless somebody says another.
@@ -55,11 +56,12 @@ impl NpyArray {
             (Some(_), Some(_)) => {
                 let others: Vec<&str> = asked.iter().copied().filter(|name| *name != QUANTITIES[0]).collect();
                 let what = format!(
-                    "the columns {} have times, and --rate is of arrays without: take it away, or say --columns {}",
+                    "the columns {} have times, and a sampling rate is for arrays without times, whose columns are {}",
                     asked.join(","),
                     others.join(",")
                 );
-                return Err(LogError::request(path, what));
+                let error = LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate));
+                return Err(error.remedy(Remedy::Give(Setting::Columns)));
             }
             _ => {}
         }
@@ -104,7 +106,8 @@ impl Source for NpyArray {
                 let time = self.row[place];
                 self.unit.number(time).ok_or_else(|| {
                     let what = self.unit.refusal(&time.to_string());
-                    LogError::file(&self.path, format_args!("state {}: {what}", self.read))
+                    let error = LogError::file(&self.path, format_args!("state {}: {what}", self.read));
+                    if time.is_finite() { error.remedy(Remedy::Give(Setting::TimeUnit)) } else { error }
                 })?
             }
             (None, step) => TimeUnit::step(self.read, step.unwrap_or_default()),
@@ -156,11 +159,8 @@ fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 
     let joints = width.saturating_sub(of_time) / each;
     if joints == 0 || joints > MOST_JOINTS || joints * each + of_time != width {
         let said = columns.join(",");
-        let what = format!(
-            "the array has {width} columns, which is not {said} of some joints; --columns says what there is, as in \
-             --columns time,q,tau"
-        );
-        return Err(LogError::request(path, what));
+        let what = format!("the array has {width} columns, which is not {said} of some joints");
+        return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Columns)));
     }
     let mut places = [None; 4];
     let mut place = 0;

@@ -17,6 +17,7 @@ use crate::formats::list_columns::{self, ListColumns};
 use crate::formats::parquet_column::{Column, Kind, Leaf};
 use crate::formats::parquet_pages::{Refused, Room, column_reader};
 use crate::formats::sample::{Sample, Source};
+use crate::remedy::{Remedy, Setting};
 use crate::{LogError, Options, TimeUnit};
 
 /// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
@@ -253,11 +254,10 @@ impl Source for ParquetTable {
             Clock::Column(place, unit) => columns[place].time(row, unit).ok_or_else(|| {
                 let (name, unit) = (&columns[place].name, unit.name());
                 let what = format!(
-                    "row {}: {name} is missing, no number, or beyond the year 2262 in {unit}; --time-unit s, ms, us or \
-                     ns says what times are",
+                    "row {}: {name} is missing, is not a number, or is later than the year 2262 in {unit}",
                     self.read
                 );
-                LogError::file(&self.path, what)
+                LogError::file(&self.path, what).remedy(Remedy::Give(Setting::TimeUnit))
             })?,
         };
         sample.recorded = sample.measured;

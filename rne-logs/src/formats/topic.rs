@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::LogError;
 use crate::formats::joint_state::TYPE;
+use crate::remedy::{Remedy, Setting};
 use crate::spelling::{instead, listed};
 
 /// The place of the topic that is read: the one asked for, or the only one with joint states. `topics` are names and
@@ -40,10 +41,10 @@ pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&s
             };
             Err(LogError::file(path, format_args!("no topic has {TYPE}; {all}")))
         }
-        _ => Err(LogError::request(
-            path,
-            format_args!("several topics have joint states: {}; name one with --topic", names()),
-        )),
+        _ => {
+            let error = LogError::request(path, format_args!("several topics have joint states: {}", names()));
+            Err(error.remedy(Remedy::Give(Setting::Topic)))
+        }
     }
 }
 

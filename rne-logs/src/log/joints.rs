@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::LogError;
 use crate::formats::sample::Sample;
 use crate::limits::work;
+use crate::remedy::{Remedy, Setting};
 use crate::spelling::{instead, listed};
 
 /// Where the joints stand in samples.
@@ -57,19 +58,14 @@ impl Joints {
         };
         if first.trim().is_empty() {
             let all = listed(there.iter().map(String::as_str));
-            let what =
-                format!("a name of --joints is empty; the log has {all}, and base to tip they are --joints A,B,…");
-            return Err(LogError::request(path, what));
+            let error = LogError::request(path, format_args!("a name of a joint is empty; the log has {all}"));
+            return Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))));
         }
         let near = instead(first, there.iter().map(String::as_str));
         let all = listed(there.iter().map(String::as_str));
         let missing = listed(missing.iter().map(|name| name.as_str()));
-        Err(LogError::request(
-            path,
-            format_args!(
-                "the log has no joint {missing}{near}; it has {all}; --joints names those that are meant, base to tip"
-            ),
-        ))
+        let error = LogError::request(path, format_args!("the log has no joint {missing}{near}; it has {all}"));
+        Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))))
     }
 
     /// The joints of the log that are none of these.

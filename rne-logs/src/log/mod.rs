@@ -16,6 +16,7 @@ use crate::limits::{LONGEST_GAP, MOST_BYTES};
 use crate::log::joints::Joints;
 use crate::number::short;
 use crate::options::{Angles, Options};
+use crate::remedy::{Remedy, Setting};
 use crate::spelling::listed;
 use crate::{LogError, TimeUnit};
 
@@ -137,11 +138,12 @@ impl Log {
         let times: Vec<i64> = states.iter().map(time).collect();
         let step = median_step(&times).ok_or_else(|| no_step(path, &times))?;
         if step >= SLOWEST && !is_time_unit_known {
-            return Err(LogError::request(path, unknown_unit(step)));
+            let error = LogError::request(path, unknown_unit(step)).remedy(Remedy::Give(Setting::TimeUnit));
+            return Err(error.remedy(Remedy::Give(Setting::Rate)));
         }
         if step >= SLOW && !is_time_unit_known {
             notes.push(format!(
-                "times have no unit and are read as seconds: samples are at {}; --time-unit says another unit",
+                "times have no unit and are read as seconds unless another unit is given: samples are at {}",
                 rates(step)
             ));
         }
@@ -291,8 +293,8 @@ fn median_step(times: &[i64]) -> Option<f64> {
 /// What is said of times that may be in any unit.
 fn unknown_unit(step: f64) -> String {
     format!(
-        "the unit of the times is not known: they are {} apart, and samples are at {}; say which it is, as in \
-         --time-unit ms; if the times only count rows, remove their column and say --rate HZ",
+        "the unit of the times is not known: they are {} apart, and samples are at {}; if the times only count rows, \
+         remove their column and give the sampling rate",
         short(step),
         rates(step)
     )
@@ -335,7 +337,7 @@ fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -
     let plural = if slides.len() == 1 { ("slides", "is") } else { ("slide", "are") };
     (!slides.is_empty()).then(|| {
         let names = listed(slides.into_iter());
-        format!("--degrees is of joints that turn: {names} {}, and {} taken for m and m/s", plural.0, plural.1)
+        format!("degrees are for joints that turn: {names} {}, and {} taken for m and m/s", plural.0, plural.1)
     })
 }
 
@@ -351,11 +353,9 @@ fn check(path: &Path, options: &Options) -> Result<(), LogError> {
         return Err(LogError::request(path, "a gap is at least 1.5 steps, or intervals that jitter are gaps"));
     }
     if options.gap > LONGEST_GAP {
-        let what = format!(
-            "a gap is at most {LONGEST_GAP} steps, as in --gap {LONGEST_GAP}: what is missing in a shorter one is \
-             interpolated, row by row"
-        );
-        return Err(LogError::request(path, what));
+        let what =
+            format!("a gap is at most {LONGEST_GAP} steps: missing rows of a shorter one are interpolated, row by row");
+        return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Gap)));
     }
     if options.torque_constants.iter().any(|constant| !constant.is_finite() || *constant == 0.0) {
         return Err(LogError::request(path, "a torque constant is zero or no number"));

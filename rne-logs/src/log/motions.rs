@@ -4,6 +4,7 @@ use crate::limits::MOST_NUMBERS;
 use crate::log::pass::Pass;
 use crate::log::survey::Survey;
 use crate::number::short;
+use crate::remedy::{Remedy, Setting};
 use crate::signal::grid::Grid;
 use crate::signal::kernel::{HIGHEST, Kernel};
 use crate::spelling::listed;
@@ -67,25 +68,19 @@ impl<'a> Motions<'a> {
     pub(crate) fn of(log: &'a Log, survey: &Survey) -> Result<Self, LogError> {
         if let Some((joint, range)) = survey.may_be_degrees(log) {
             let what = format!(
-                "positions of {} range over {range:.1}, more than 4π: if they are degrees, say --degrees; if they are \
-                 radians or metres, --radians",
+                "positions of {} range over {range:.1}, more than 4π: they may be degrees",
                 log.layout.joints[joint]
             );
-            return Err(log.request(what));
+            return Err(log.request(what).remedy(Remedy::Give(Setting::Angles)));
         }
         let currents = log.unsaid_currents();
         if !currents.is_empty() {
-            let what = format!(
-                "efforts of {} are currents, by the names of columns: --torque-constant says the N m/A that make \
-                 torques of them",
-                listed(currents.into_iter())
-            );
-            return Err(log.request(what));
+            let what = format!("efforts of {} are currents, by the names of columns", listed(currents.into_iter()));
+            return Err(log.request(what).remedy(Remedy::Give(Setting::TorqueConstants)));
         }
         let Some(hertz) = survey.cutoff.hertz() else {
-            let what =
-                "no run is long enough for a spectrum, a second and 64 states, to choose the filter: say --cutoff HZ";
-            return Err(log.request(what));
+            let what = "no run is long enough for a spectrum, a second and 64 states, to choose the filter";
+            return Err(log.request(what).remedy(Remedy::Give(Setting::Cutoff)));
         };
         if survey.longest <= survey.dropped.saturating_mul(2) as u64 {
             return Err(too_low(log, survey, hertz));
@@ -97,13 +92,15 @@ impl<'a> Motions<'a> {
         let columns = layout.joints.len() * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
         let dropped = log.dropped(kernel.half());
         if dropped.saturating_mul(2).saturating_mul(columns) > MOST_NUMBERS {
-            return Err(log.request(format_args!(
-                "at {} Hz a cut-off of {} Hz holds {} states at once, too many for {columns} columns; a higher \
-                 --cutoff holds fewer, and --joints names those joints that are meant",
+            let what = format!(
+                "at {} Hz a cut-off of {} Hz holds {} states at once, too many for {columns} columns: a higher cut-off \
+                 holds fewer, and so do fewer joints",
                 short(1.0 / layout.step),
                 short(hertz),
                 2 * dropped
-            )));
+            );
+            let error = log.request(what).remedy(Remedy::Give(Setting::Cutoff));
+            return Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))));
         }
         let mut motions = Self {
             pass,
@@ -277,7 +274,8 @@ fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
     if lowest <= HIGHEST / step {
         // rounded up
         let lowest = (lowest * 1e3).ceil() / 1e3;
-        log.request(format_args!("{what}; a higher --cutoff drops less, from {lowest} Hz on something is left"))
+        let what = format!("{what}; a higher cut-off drops less, from {lowest} Hz on something is left");
+        log.request(what).remedy(Remedy::Give(Setting::Cutoff))
     } else {
         LogError::file(&log.files[0], format_args!("{what}; no cut-off that the rate allows leaves anything"))
     }

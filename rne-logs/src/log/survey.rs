@@ -6,6 +6,7 @@ use crate::limits::{FEW_ROWS, MOST_FILLED};
 use crate::log::pass::Unusable;
 use crate::number::short;
 use crate::options::Angles;
+use crate::remedy::{Remedy, Setting};
 use crate::signal::grid::Grid;
 use crate::signal::kernel::{HIGHEST, Kernel, PASSED};
 use crate::signal::spectrum::Spectrum;
@@ -236,11 +237,12 @@ impl Survey {
                 push(&mut spectra, row);
             });
             if rows > FEW_ROWS && rows / MOST_FILLED > count {
-                return Err(log.request(format_args!(
+                let what = format!(
                     "more than {MOST_FILLED} states are filled in for each of the first {count}, up to {} s of the \
-                     log: a lower --gap leaves long intervals out",
+                     log: a lower limit of gaps leaves long intervals out",
                     short(log.seconds(state.time))
-                )));
+                );
+                return Err(log.request(what).remedy(Remedy::Give(Setting::Gap)));
             }
         }
         if let Some(grid) = grid {

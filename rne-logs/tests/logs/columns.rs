@@ -127,13 +127,13 @@ fn units_of_names_are_converted() {
         assert!(is_near(&found, &plain), "{joints:?}");
         let (_folder, path) = file("log.csv", &of_metres);
         let (log, _) = survey(&[path], slide(&joints, &slides)).unwrap();
-        let note = "--degrees is of joints that turn: 1 slides, and is taken for m and m/s".to_owned();
+        let note = "degrees are for joints that turn: 1 slides, and is taken for m and m/s".to_owned();
         assert_eq!(log.layout().notes, [note]);
     }
     // the option is of what says none
     let partly = text.replace("q1,q2,qd1,qd2", "q1 [deg],q2 [deg],qd1,qd2");
     assert_eq!(motion(&partly, asked.clone()), motion(&text, asked));
-    assert!(refused(&partly, options()).contains("q1 [deg] says its unit and qd1 does not: --degrees if"));
+    assert!(refused(&partly, options()).contains("q1 [deg] says its unit and qd1 does not"));
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn currents_need_a_constant() {
     let (log, _) = survey(&[path], options()).unwrap();
     assert_eq!((log.unsaid_currents(), log.layout().units[0].effort), (vec!["1", "2"], Some(Dimension::Current)));
     let error = refused(&text, options());
-    assert!(error.contains("efforts of 1, 2 are currents, by the names of columns: --torque-constant"), "{error}");
+    assert!(error.contains("efforts of 1, 2 are currents, by the names of columns"), "{error}");
     assert!(refused(&csv(&times()).replace("tau", "current_"), options()).contains("are currents"));
     let said = motion(&text, Options { torque_constants: vec![200.0, 0.3], ..options() });
     let plain = motion(&csv(&times()), options());

@@ -11,7 +11,7 @@ use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int64T
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
-use rne_logs::{Format, LogError, Motion, Options};
+use rne_logs::{Format, LogError, Motion, Options, Remedy, Setting};
 use tempfile::TempDir;
 
 use crate::written::{SINES, csv, file, joint_state, rows, runs, survey};
@@ -25,6 +25,8 @@ pub(crate) fn times() -> Vec<f64> {
 fn nanoseconds(time: f64) -> i64 {
     (time * 1e9).round() as i64
 }
+
+const UNIT: Remedy = Remedy::Give(Setting::TimeUnit);
 
 /// A bag in MCAP, with an image topic among the joint states.
 pub(crate) fn mcap(times: &[f64], compression: Option<mcap::Compression>, topics: &[&str]) -> Vec<u8> {
@@ -313,8 +315,9 @@ fn topics_are_named_where_there_are_several() {
     let bytes = mcap(&times(), None, &["/left", "/right"]);
     let (_folder, path) = file("two.mcap", bytes);
     let asked = error(path.clone(), Options::default());
-    let several = "several topics have joint states: /left, /right; name one with --topic";
+    let several = "several topics have joint states: /left, /right";
     assert!(asked.is_of_request() && asked.to_string().contains(several), "{asked}");
+    assert_eq!(asked.remedies(), [Remedy::Give(Setting::Topic)]);
     let topic = |topic: &str| Options { topic: Some(topic.to_owned()), ..options() };
     assert_eq!(only(path.clone(), topic("/right")), expected());
     let asked = error(path.clone(), topic("/rigt"));
@@ -338,7 +341,7 @@ fn options_that_count_for_nothing_are_refused() {
     let rate = Options { rate: Some(125.0), ..options() };
     let columns = Options { columns: ["time", "q", "tau"].map(str::to_owned).to_vec(), ..options() };
     let plain = || WriterProperties::builder().build();
-    let (has, names) = ("and --rate is of", "--columns is of arrays of numpy; this is");
+    let (has, names) = ("and a sampling rate is for", "an order of columns is for arrays of numpy; this is");
     for (name, bytes) in [
         ("log.csv", csv(&times()).into_bytes()),
         ("log.npy", npy(&times(), true, "<f8")),
@@ -401,7 +404,7 @@ fn other_schemas_are_told() {
         ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not grow"),
         ("binary.csv", vec![1, 0, 2, 0], "zero bytes"),
         ("ints.npy", npy(&times()[..3], true, "<i8"), "the numbers are"),
-        ("wide.npy", npy(&times()[..3], false, "<f8"), "--columns says what there is"),
+        ("wide.npy", npy(&times()[..3], false, "<f8"), "which is not time,q,qd,tau of some joints"),
     ] {
         let (_folder, path) = file(name, bytes);
         let error = error(path, Options::default()).to_string();
@@ -468,7 +471,7 @@ fn the_unit_of_slow_times_is_known_or_asked_for() {
     let milliseconds = Options { time_unit: Some(rne_logs::TimeUnit::Milliseconds), ..Options::default() };
     let times: Vec<f64> = (0..200).map(f64::from).collect();
     let (_folder, path) = file("log.npy", npy(&times, true, "<f8"));
-    assert!(survey(std::slice::from_ref(&path), Options::default()).err().unwrap().to_string().contains("--time-unit"));
+    assert!(survey(std::slice::from_ref(&path), Options::default()).err().unwrap().remedies().contains(&UNIT));
     assert_eq!(survey(&[path], milliseconds).unwrap().0.layout().step, 1e-3);
     let (_folder, path) = file("log.npy", npy(&times, false, "<f8"));
     let untimed =
@@ -480,5 +483,5 @@ fn the_unit_of_slow_times_is_known_or_asked_for() {
     let (_folder, path) = file("log.parquet", scalars(&times, WriterProperties::builder().build()));
     assert_eq!(survey(&[path], Options::default()).unwrap().0.layout().step, 1.0);
     let (_folder, path) = file("log.parquet", lists(&times, true));
-    assert!(survey(&[path], Options::default()).err().unwrap().to_string().contains("--time-unit"));
+    assert!(survey(&[path], Options::default()).err().unwrap().remedies().contains(&UNIT));
 }

@@ -107,7 +107,7 @@ fn names_and_times_are_those_of_the_arm_that_is_read() {
     // a name that says no unit of the option, of lists as of single columns
     let said = [Column::Numbers("t_ms", times(10.0)), Column::Lists("position", positions())];
     let seconds = Options { time_unit: Some(TimeUnit::Seconds), ..Options::default() };
-    assert!(refused(&said, seconds).contains("the column t_ms has times in ms, and --time-unit says s"));
+    assert!(refused(&said, seconds).contains("the column t_ms has times in ms, and s was given"));
 }
 
 #[test]

@@ -1,0 +1,49 @@
+//! Remedies against errors of logs, in the options of the command line.
+
+use rne_logs::{LogError, Remedy, Setting};
+use rne_model::one_line;
+
+/// An error of a log with the options that help.
+pub(crate) fn sentence(error: &LogError) -> String {
+    // names of a log may have any letters
+    let remedies = error.remedies().iter().map(|remedy| match remedy {
+        Remedy::Give(setting) => given(setting),
+        Remedy::LeaveOut(setting) => format!("remove {}", option(setting)),
+        _ => "`cargo install --path rne-cli --features full` in a clone of rne builds one that does".to_owned(),
+    });
+    one_line(&[error.to_string()].into_iter().chain(remedies).collect::<Vec<_>>().join("; "))
+}
+
+/// The option of a setting with what it says.
+fn given(setting: &Setting) -> String {
+    let about = match setting {
+        Setting::Joints(names) if names.is_empty() => "A,B,… names the joints to read, base to tip".to_owned(),
+        Setting::Joints(names) => format!("{} reads these", names.join(",")),
+        Setting::Topic => "names one".to_owned(),
+        Setting::Prefix => "actual reads the columns whose names begin so".to_owned(),
+        Setting::TorqueConstants => "gives the N m/A that make torques of them".to_owned(),
+        Setting::Angles => {
+            return "--degrees if they are in degrees, --radians if they are in radians or metres".to_owned();
+        }
+        Setting::Gap => "is the option".to_owned(),
+        Setting::Cutoff => "HZ is the option".to_owned(),
+        Setting::TimeUnit => "s, ms, us or ns says the unit".to_owned(),
+        Setting::Rate => "HZ says the sampling rate".to_owned(),
+        _ => "says the order, as in --columns time,q,tau".to_owned(),
+    };
+    format!("{} {about}", option(setting))
+}
+
+fn option(setting: &Setting) -> &'static str {
+    match setting {
+        Setting::Joints(_) => "--joints",
+        Setting::Topic | Setting::Prefix => "--topic",
+        Setting::TorqueConstants => "--torque-constant",
+        Setting::Angles => "--degrees and --radians",
+        Setting::Gap => "--gap",
+        Setting::Cutoff => "--cutoff",
+        Setting::TimeUnit => "--time-unit",
+        Setting::Rate => "--rate",
+        _ => "--columns",
+    }
+}

@@ -1,0 +1,39 @@
+//! Remedies against errors of logs, as data: each interface names its own options in them.
+
+/// A change of the [`Options`](crate::Options) that helps against an error.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Give this option.
+    Give(Setting),
+    /// Leave this option out.
+    LeaveOut(Setting),
+    /// Read the log with a build that has the formats of bags and Parquet.
+    BuildWithFormats,
+}
+
+/// An option of a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Setting {
+    /// [`Options::joints`](crate::Options::joints), with names that would do.
+    Joints(Vec<String>),
+    /// [`Options::topic`](crate::Options::topic) of a bag
+    Topic,
+    /// [`Options::topic`](crate::Options::topic) as the beginning of the names of columns
+    Prefix,
+    /// [`Options::torque_constants`](crate::Options::torque_constants)
+    TorqueConstants,
+    /// [`Options::angles`](crate::Options::angles)
+    Angles,
+    /// [`Options::gap`](crate::Options::gap)
+    Gap,
+    /// [`Options::cutoff`](crate::Options::cutoff)
+    Cutoff,
+    /// [`Options::time_unit`](crate::Options::time_unit)
+    TimeUnit,
+    /// [`Options::rate`](crate::Options::rate)
+    Rate,
+    /// [`Options::columns`](crate::Options::columns)
+    Columns,
+}
