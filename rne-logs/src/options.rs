@@ -1,6 +1,6 @@
 //! What is said of a log that it does not say itself.
 
-use crate::TimeUnit;
+use crate::{Mapping, TimeUnit};
 
 /// What is said of a log that it does not say itself. `Options::default()` says nothing: radians, torques, the only
 /// topic, a cut-off from the spectrum.
@@ -38,6 +38,8 @@ pub struct Options {
     /// What the columns of an array are, in order: of `time`, `q`, `qd`, `tau`, each but the first for every joint.
     /// Empty: all of these. Other formats have names, and refuse it.
     pub columns: Vec<String>,
+    /// Meanings of columns of a table, which take precedence over their names. Arrays and bags refuse them.
+    pub map: Vec<Mapping>,
 }
 
 impl Options {
@@ -75,6 +77,7 @@ impl Default for Options {
             time_unit: None,
             rate: None,
             columns: Vec::new(),
+            map: Vec::new(),
         }
     }
 }

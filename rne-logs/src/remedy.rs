@@ -36,4 +36,9 @@ pub enum Setting {
     Rate,
     /// [`Options::columns`](crate::Options::columns)
     Columns,
+    /// [`Options::map`](crate::Options::map) of a table that has these columns: [`suggested`](crate::suggested) makes a
+    /// proposal.
+    Map(Vec<String>),
+    /// [`Options::map`](crate::Options::map) with the column of times, of a table that has these columns.
+    TimeColumn(Vec<String>),
 }

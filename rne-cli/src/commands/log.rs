@@ -55,7 +55,7 @@ impl Arguments {
     fn open(&self) -> Result<Log, Failure> {
         let options = self.reading.options();
         let Some(file) = &self.robot else {
-            return Log::open(&self.files, options).map_err(|error| failure(&error));
+            return Log::open(&self.files, options).map_err(|error| failure(&error, &[]));
         };
         let robot = robot_file::robot(file)?;
         let log = open_by_names(&self.files, &robot, options)?;
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         file_name::format(path, &[Format::Csv])?;
     }
     let log = arguments.open()?;
-    let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error))?;
+    let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error, &[]))?;
     let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
     let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
     let text = if is_result_shown {
@@ -97,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             Err(Stopped::Unwritable(error)) => {
                 return Err(Failure::input(format_args!("the output cannot be written: {error}")));
             }
-            Err(Stopped::Unreadable(error)) => return Err(failure(&error)),
+            Err(Stopped::Unreadable(error)) => return Err(failure(&error, &[])),
             Ok(states) => states,
         }
     } else {
@@ -129,7 +129,7 @@ fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
     let written = write(log, survey, &bar, &mut out);
     bar.finish_and_clear();
     let states = written.map_err(|stopped| match stopped {
-        Stopped::Unreadable(error) => failure(&error),
+        Stopped::Unreadable(error) => failure(&error, &[]),
         Stopped::Unwritable(error) => unwritable(error),
     })?;
     out.flush().map_err(unwritable)?;

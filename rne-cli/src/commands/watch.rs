@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     /// Gain of the momentum observer, Hz
     #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero)]
     gain: f64,
-    /// Shortest external torque to report, s
+    /// Shortest event to report, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero)]
     hold: f64,
     /// Permitted false alarms per hour, all joints

@@ -3,13 +3,17 @@
 use std::fmt::{Display, Write as _};
 use std::path::PathBuf;
 
-use rne_logs::{Dimension, JointUnits, Layout, Log, LogError, Motion, Motions, Options, Survey};
+use rne_logs::{
+    Dimension, JointUnits, Layout, Log, LogError, Mapping, Motion, Motions, Options, Quantity, Survey, Target,
+    suggested,
+};
 use rne_model::{JointKind, Robot, one_line};
 
 use crate::files::reading;
 use crate::outcome::Failure;
 use crate::palette::{TITLE, TYPED, WARNING};
 use crate::render::layout::wrap;
+use crate::render::log_remedy;
 use crate::render::log_report::{left_out, notes_of_motion};
 use crate::values::log_arguments::{self, LogArguments};
 use crate::values::numbers::rounded;
@@ -83,7 +87,7 @@ impl MotionLog {
                 return Err(miscounted(robot, names.len(), &logged));
             }
         } else {
-            let log = unnamed().map_err(failure)?;
+            let log = unnamed().map_err(|error| log_arguments::failure(&error, &joint_names(robot)))?;
             options.joints = Some(matched(robot, &log.layout().joints, &mut remarks)?);
         }
         let log = Log::open(paths, options.clone()).map_err(failure)?;
@@ -244,7 +248,7 @@ fn cut(motion: &Motion, is_in: impl Fn(f64) -> bool) -> Motion {
 
 #[expect(clippy::needless_pass_by_value, reason = "it is what errors are mapped by")]
 fn failure(error: LogError) -> Failure {
-    log_arguments::failure(&error)
+    log_arguments::failure(&error, &[])
 }
 
 /// Refuses a log without efforts of all joints.
@@ -259,8 +263,15 @@ fn check_efforts(log: &Log) -> Result<(), Failure> {
         let unread = if unread.is_empty() {
             String::new()
         } else {
-            let names = unread.join(", ");
-            format!("; not read are {names}, and names of efforts are tau1, … or effort and the joint: docs/logs.md")
+            let efforts = suggested(&layout.unread, &layout.joints).into_iter();
+            let is_effort = |target: &Target| matches!(target, Target::Joint { quantity: Quantity::Effort, .. });
+            let efforts: Vec<Mapping> = efforts.filter(|mapping| is_effort(&mapping.target)).collect();
+            format!(
+                "; not read are {}, and names of efforts are tau1, … or effort and the joint: docs/logs.md; name the \
+                 columns: {}",
+                unread.join(", "),
+                one_line(&log_remedy::map(&efforts))
+            )
         };
         return Err(Failure::input(format_args!(
             "the log has no efforts, and a model is compared with torques{unread}"
@@ -306,12 +317,11 @@ fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64)
 /// Opens logs by the names of the robot's joints; where those of the logs are as many numbers, by these.
 pub(crate) fn open_by_names(paths: &[PathBuf], robot: &Robot, options: Options) -> Result<Log, Failure> {
     let options = Options { slides: slides(robot), ..options };
-    let names = robot.joints.iter().map(|joint| joint.name.clone()).collect();
-    Log::open(paths, Options { joints: Some(names), ..options.clone() }).or_else(|error| {
+    Log::open(paths, Options { joints: Some(joint_names(robot)), ..options.clone() }).or_else(|error| {
         let is_number = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
         match Log::open(paths, options) {
             Ok(log) if log.layout().joints.len() == robot.dof() && log.layout().joints.iter().all(is_number) => Ok(log),
-            _ => Err(failure(error)),
+            _ => Err(log_arguments::failure(&error, &joint_names(robot))),
         }
     })
 }
@@ -348,10 +358,13 @@ fn shown(logged: &[String]) -> String {
     names.join(", ") + more
 }
 
-/// Its joints' names, base to tip.
+/// The names of a robot's joints, base to tip.
+fn joint_names(robot: &Robot) -> Vec<String> {
+    robot.joints.iter().map(|joint| joint.name.clone()).collect()
+}
+
 fn of_robot(robot: &Robot) -> String {
-    let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
-    shown(&names)
+    shown(&joint_names(robot))
 }
 
 fn of_joints(count: usize) -> String {
@@ -360,7 +373,7 @@ fn of_joints(count: usize) -> String {
 
 /// The joints of the log that are those of the robot, base to tip.
 fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) -> Result<Vec<String>, Failure> {
-    let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    let names = joint_names(robot);
     if names.iter().all(|name| logged.contains(name)) {
         return Ok(names);
     }

@@ -1,17 +1,34 @@
 //! Remedies against errors of logs, in the options of the command line.
 
-use rne_logs::{LogError, Remedy, Setting};
+use rne_logs::{LogError, Mapping, Remedy, Setting, suggested};
 use rne_model::one_line;
 
-/// An error of a log with the options that help.
-pub(crate) fn sentence(error: &LogError) -> String {
+/// An error of a log with the options that help; `joints` are those of the arm, as far as it is known.
+pub(crate) fn sentence(error: &LogError, joints: &[String]) -> String {
     // names of a log may have any letters
     let remedies = error.remedies().iter().map(|remedy| match remedy {
+        Remedy::Give(Setting::Map(columns)) if joints.is_empty() => {
+            format!("name the columns: {}", map(&suggested(columns, &["JOINT".to_owned()])))
+        }
+        Remedy::Give(Setting::Map(columns)) => format!("name the columns: {}", map(&suggested(columns, joints))),
+        Remedy::Give(Setting::TimeColumn(columns)) => {
+            format!("{} names the column of times", map(&suggested(columns, &[])))
+        }
         Remedy::Give(setting) => given(setting),
         Remedy::LeaveOut(setting) => format!("remove {}", option(setting)),
         _ => "`cargo install --path rne-cli --features full` in a clone of rne builds one that does".to_owned(),
     });
     one_line(&[error.to_string()].into_iter().chain(remedies).collect::<Vec<_>>().join("; "))
+}
+
+/// The options that map columns, to be typed into a shell.
+pub(crate) fn map(mappings: &[Mapping]) -> String {
+    let is_word = |text: &str| text.chars().all(|c| c.is_alphanumeric() || "._-/=".contains(c));
+    let quoted = |text: String| if is_word(&text) { text } else { format!("'{}'", text.replace('\'', "'\\''")) };
+    let options = mappings
+        .iter()
+        .map(|mapping| format!("--map {}={}", quoted(mapping.target.to_string()), quoted(mapping.column.clone())));
+    options.collect::<Vec<_>>().join(" ")
 }
 
 /// The option of a setting with what it says.
@@ -44,6 +61,7 @@ fn option(setting: &Setting) -> &'static str {
         Setting::Cutoff => "--cutoff",
         Setting::TimeUnit => "--time-unit",
         Setting::Rate => "--rate",
+        Setting::Map(_) | Setting::TimeColumn(_) => "--map",
         _ => "--columns",
     }
 }

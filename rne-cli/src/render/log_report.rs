@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_logs::{Counts, Cutoff, Format, Log, Run, Survey, Unusable};
+use rne_logs::{Counts, Cutoff, Format, InvalidSample, Log, Run, Survey};
 use rne_model::one_line;
 use serde::Serialize;
 
@@ -228,9 +228,9 @@ fn filter(log: &Log, survey: &Survey) -> String {
 /// What was left out, and why.
 pub(crate) fn left_out(log: &Log, survey: &Survey) -> impl Iterator<Item = (u64, String)> {
     let counts: &Counts = &survey.counts;
-    let first = survey.unusable.map_or(String::new(), |first| {
+    let first = survey.invalid_sample.map_or(String::new(), |first| {
         let joint = one_line(&log.layout().joints[first.joint]);
-        let Unusable { message, time, quantity, value, .. } = first;
+        let InvalidSample { message, time, quantity, value, .. } = first;
         format!("; the first is message {message} at {time:.3} s, {quantity} of {joint}: {}", short(value))
     });
     let all = [

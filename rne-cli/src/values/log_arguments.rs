@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use rne_logs::{Angles, LogError, Options, TimeUnit};
+use rne_logs::{Angles, LogError, Mapping, Options, TimeUnit};
 
 use crate::outcome::Failure;
 use crate::render::log_remedy;
@@ -49,6 +49,17 @@ pub(crate) struct LogArguments {
     /// Order in an array [default: time,q,qd,tau]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
+    /// Column of a quantity: elbow.effort='I3 [A]'
+    #[arg(long, value_name = "MAP", value_parser = mapping)]
+    map: Vec<Mapping>,
+}
+
+fn mapping(text: &str) -> Result<Mapping, String> {
+    let (target, column) = text
+        .split_once('=')
+        .filter(|(_, column)| !column.trim().is_empty())
+        .ok_or("write a meaning, `=` and a column, such as elbow.position='Pos 2 [deg]' or time='t [ms]'")?;
+    Ok(Mapping { target: target.trim().parse()?, column: column.trim().to_owned() })
 }
 
 fn time_unit() -> impl TypedValueParser<Value = TimeUnit> {
@@ -87,13 +98,14 @@ impl LogArguments {
             time_unit: self.time_unit,
             rate: self.rate,
             columns: self.columns.clone(),
+            map: self.map.clone(),
             ..Options::default()
         }
     }
 }
 
-/// A log that cannot be read, or a request that it cannot serve.
-pub(crate) fn failure(error: &LogError) -> Failure {
-    let text = log_remedy::sentence(error);
+/// A log that cannot be read, or a request that it cannot serve; `joints` are those of the arm, as far as it is known.
+pub(crate) fn failure(error: &LogError, joints: &[String]) -> Failure {
+    let text = log_remedy::sentence(error, joints);
     if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
 }

@@ -320,12 +320,29 @@ fn columns_that_are_not_understood_are_named() {
     assert!(place(&format!("columns that are not read: {unread}")) < place("the log has no efforts"));
     let judge = judge(log, &["--rate", "25"]);
     fails(1, &judge, &["the log has no efforts", &format!("not read are {unread}"), "tau1, …"]);
+    // what is printed can be typed
+    let efforts =
+        "--map Achse1.effort=Achse1_Moment --map Achse2.effort=Achse2_Moment --map Achse3.effort=Achse3_Moment";
+    fails(1, &judge, &["name the columns:", efforts]);
+    fails(2, &["log", log], &["--map time='Zeit [s]' names the column of times"]);
+    let map = [&["--map", "time=Zeit [s]"], efforts.split(' ').collect::<Vec<_>>().as_slice()].concat();
+    let errors = |said: &str| said.split_once('\n').expect("two lines").1.to_owned();
+    let mapped = errors(&judged(log, &map));
     // of a log that has all, nothing else is meant
     let timed = fs::read_to_string(&path).expect("a log").replace("Moment", "torque").replacen("Zeit", "t", 1);
     fs::write(&path, &timed).expect("a log");
     assert!(!fine(&["log", log]).contains("not read"));
-    fails(2, &["log", log, "--rate", "25"], &["the column t [s] has times, and a sampling rate is for tables", "remove --rate"]);
-    fails(2, &["log", log, "--columns", "time,q,tau"], &["an order of columns is for arrays of numpy; this is CSV", "remove --columns"]);
+    assert_eq!(errors(&judged(log, &[])), mapped, "the same log by its names");
+    fails(
+        2,
+        &["log", log, "--rate", "25"],
+        &["the column t [s] has times, and a sampling rate is for tables", "remove --rate"],
+    );
+    fails(
+        2,
+        &["log", log, "--columns", "time,q,tau"],
+        &["an order of columns is for arrays of numpy; this is CSV", "remove --columns"],
+    );
     let rows = timed.lines().skip(1).map(|line| {
         let (time, others) = line.split_once(',').expect("a time");
         format!("\n{},{others}", 1e3 * time.parse::<f64>().expect("a number"))
@@ -333,6 +350,39 @@ fn columns_that_are_not_understood_are_named() {
     let header = timed.lines().next().expect("a header").replace("t [s]", "t [ms]");
     fs::write(&path, header + &rows.collect::<String>() + "\n").expect("a log");
     assert!(fine(&["log", log]).contains("note: numbers are converted from the units of columns' names: t [ms]\n"));
+}
+
+/// The line that a refused table gets can be typed, with the names of the robot's joints.
+#[test]
+fn a_table_without_known_names_gets_its_map() {
+    let folder = folder("log_map");
+    let path = folder.join("log.csv");
+    let log = path.to_str().expect("UTF-8");
+    let strange =
+        |quantity: usize, joint: usize| format!("{} axis {}", ["Lage", "Geschw.", "Moment"][quantity], joint + 1);
+    desk_log(&path, [0, 1, 2], strange, [1.0; 3]);
+    let called = rne(&judge(log, &[]));
+    assert_eq!(called.status, 1, "{called:?}");
+    let said = called.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    insta::assert_snapshot!("map_of_a_refused_table", said.replace(log, "LOG"));
+    let (_, line) = said.split_once("name the columns: ").expect("a line to type");
+    let (line, _) = line.split_once(" For more").unwrap_or((line, ""));
+    let options: Vec<String> = line.split("--map ").skip(1).map(|option| option.trim().replace('\'', "")).collect();
+    let map: Vec<&str> = options.iter().flat_map(|option| ["--map", option]).collect();
+    let mapped = judged(log, &map);
+    desk_log(&path, [0, 1, 2], |quantity, joint| format!("{}{}", ["q", "qd", "tau"][quantity], joint + 1), [1.0; 3]);
+    let errors = |said: &str| said.split_once('\n').expect("two lines").1.to_owned();
+    assert_eq!(errors(&mapped), errors(&judged(log, &[])));
+    for (option, wanted) in [
+        ("q1", "write a meaning, `=` and a column"),
+        ("base=q1", "neither `time` nor a joint with a quantity"),
+        ("base.torque=q1", "there are position, velocity, effort, acceleration"),
+        ("base.position=w1", "no column `w1` for base.position"),
+        ("base.position=q1 [furlong]", "`furlong` is not a unit for base.position"),
+    ] {
+        fails(2, &["log", log, "--map", option], &[wanted]);
+    }
+    fails(2, &["log", log, "--map", "a.effort=tau1", "--map", "b.effort=tau1"], &["the column `tau1` is mapped twice"]);
 }
 
 /// A table of three seconds at a hundred hertz.

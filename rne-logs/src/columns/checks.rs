@@ -48,7 +48,7 @@ impl<'a> Header<'a> {
     pub(crate) fn check_numbers(
         &self,
         positions: &[&Found],
-        others: &[&[&Found]; 2],
+        others: &[&[&Found]; 3],
         options: &Options,
     ) -> Result<(), LogError> {
         let asked: Option<BTreeSet<u32>> = options

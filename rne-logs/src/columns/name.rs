@@ -1,6 +1,7 @@
 //! What a column of a table is, by its name.
 
 use crate::TimeUnit;
+use crate::columns::mapping::Target;
 use crate::columns::quantity::Quantity;
 use crate::columns::unit::{self, Unit};
 use crate::limits::LONGEST_NAME;
@@ -40,6 +41,13 @@ pub(crate) struct Named {
     /// The joint's number, where its name is one.
     pub(crate) number: Option<u32>,
     pub(crate) unit: Option<Unit>,
+}
+
+impl Named {
+    /// What the column has, as a map of columns would say it.
+    pub(crate) fn target(&self) -> Target {
+        Target::Joint { joint: self.joint.clone(), quantity: self.quantity }
+    }
 }
 
 /// What a name may be.
@@ -118,7 +126,7 @@ fn plain(name: &str) -> Option<(Named, Form)> {
         quantity,
         is_current,
         joint: joint.to_owned(),
-        number: joint.parse().ok().filter(|_| joint.bytes().all(|byte| byte.is_ascii_digit())),
+        number: joint_number(joint),
         unit: None,
     };
     let (stem, number) = numbered(name);
@@ -165,6 +173,11 @@ fn within(mut named: Named, form: Form) -> Named {
     named
 }
 
+/// The number of a joint whose name is one.
+pub(crate) fn joint_number(joint: &str) -> Option<u32> {
+    joint.parse().ok().filter(|_| joint.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
 /// A name, and the number at its end.
 fn numbered(name: &str) -> (&str, &str) {
     let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -188,8 +201,8 @@ fn of_word(word: &str) -> Option<(Quantity, bool)> {
     Some((*quantity, CURRENTS.contains(&word.as_str())))
 }
 
-/// A name and what stands in brackets behind it, as in `q1 [rad]`, `time (s)`; the number of a joint is none such.
-fn bracketed(name: &str) -> (&str, Option<&str>) {
+/// A name and the unit in brackets after it, as in `q1 [rad]`, `time (s)`; the number of a joint is not a unit.
+pub(crate) fn bracketed(name: &str) -> (&str, Option<&str>) {
     let name = name.trim();
     let Some(begin) = name.rfind(['[', '(']) else { return (name, None) };
     let Some(inner) = name[begin + 1..].strip_suffix([']', ')']) else { return (name, None) };

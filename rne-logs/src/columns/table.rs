@@ -3,11 +3,13 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use crate::columns::mapping::{Mapped, Target};
 use crate::columns::name::{Meaning, Named, meaning};
 use crate::columns::quantity::Quantity;
 use crate::columns::time_column::{TimeColumn, unread, within};
 use crate::columns::unit::{Dimension, FileUnits, JointUnits, Unit};
 use crate::limits::work;
+use crate::remedy::{Remedy, Setting};
 use crate::spelling::listed;
 use crate::{LogError, Options, TimeUnit};
 
@@ -31,6 +33,7 @@ pub(crate) struct Columns {
     /// By joint; empty where no joint has one.
     pub(crate) velocity: Vec<Option<Column>>,
     pub(crate) effort: Vec<Option<Column>>,
+    pub(crate) acceleration: Vec<Option<Column>>,
     pub(crate) units: FileUnits,
     /// The names of columns whose numbers are not of SI, by these.
     pub(crate) converted: Vec<String>,
@@ -45,18 +48,17 @@ impl Columns {
     /// Finds out what columns are. With a prefix, the options' topic, those alone are joints' that begin with it.
     pub(crate) fn of(path: &Path, header: &[String], options: &Options) -> Result<Self, LogError> {
         let named = Header::read(path, header, options)?;
-        let [positions, velocities, efforts] =
-            [Quantity::Position, Quantity::Velocity, Quantity::Effort].map(|quantity| named.of(quantity));
+        let [positions, velocities, efforts, accelerations] = Quantity::ALL.map(|quantity| named.of(quantity));
         if positions.is_empty() {
             return Err(named.without_positions());
         }
         let efforts = torques_or_currents(&efforts, !options.torque_constants.is_empty());
-        for found in [&positions, &velocities, &efforts] {
+        for found in [&positions, &velocities, &efforts, &accelerations] {
             named.check_count(found)?;
             named.check_once(found)?;
         }
-        named.check_numbers(&positions, &[&velocities, &efforts], options)?;
-        named.check_units(&positions, &velocities, &efforts, options)?;
+        named.check_numbers(&positions, &[&velocities, &efforts, &accelerations], options)?;
+        named.check_units(&positions, &[&velocities[..], &accelerations].concat(), &efforts, options)?;
         let mut joints = positions;
         joints.sort_by_key(|found| found.named.number.unwrap_or(u32::MAX));
         let name = |place: usize| header[place].as_str();
@@ -66,24 +68,29 @@ impl Columns {
         notes.extend(lacking(&joints, &velocities, &efforts));
         let mut columns = Self {
             time: time.map(|time| (time.place, time.unit)),
-            converted: named.converted(time, &[&joints[..], &velocities, &efforts].concat()),
-            unread: named.unread(&joints, &velocities, &efforts),
+            converted: named.converted(time, &[&joints[..], &velocities, &efforts, &accelerations].concat()),
+            unread: named.unread(&joints, &velocities, &[&efforts[..], &accelerations].concat()),
             names: joints.iter().map(|found| found.named.joint.clone()).collect(),
             position: joints.iter().map(|found| found.column()).collect(),
             notes,
             ..Self::default()
         };
-        let [velocities, efforts] = [&velocities, &efforts].map(|found| by_joint(found));
+        let others = [&velocities, &efforts, &accelerations].map(|found| by_joint(found));
         for (joint, position) in columns.names.iter().zip(&joints) {
-            let [velocity, effort] = [&velocities, &efforts].map(|found| found.get(joint.as_str()).copied());
+            let [velocity, effort, acceleration] = others.each_ref().map(|found| found.get(joint.as_str()).copied());
             let dimension = |found: Option<&Found>| found.and_then(Found::dimension);
-            let units =
-                JointUnits { position: position.dimension(), velocity: dimension(velocity), effort: dimension(effort) };
+            let units = JointUnits {
+                position: position.dimension(),
+                velocity: dimension(velocity),
+                effort: dimension(effort),
+                acceleration: dimension(acceleration),
+            };
             columns.units.joints.insert(joint.clone(), units);
             columns.velocity.push(velocity.map(Found::column));
             columns.effort.push(effort.map(Found::column));
+            columns.acceleration.push(acceleration.map(Found::column));
         }
-        for list in [&mut columns.velocity, &mut columns.effort] {
+        for list in [&mut columns.velocity, &mut columns.effort, &mut columns.acceleration] {
             if list.iter().all(Option::is_none) {
                 list.clear();
             }
@@ -169,14 +176,21 @@ impl<'a> Header<'a> {
     fn read(path: &'a Path, names: &'a [String], options: &'a Options) -> Result<Self, LogError> {
         let prefix = options.topic.as_deref();
         let mut header = Self { path, names, prefix, found: Vec::new(), times: Vec::new(), unread: Vec::new() };
+        let (places, targets) = header.map(options)?;
         for (place, name) in names.iter().enumerate() {
             work::add(1);
+            if places.contains(&place) {
+                continue;
+            }
             if let Some(time) = TimeColumn::of(path, place, name, options)? {
-                header.times.push(time);
+                if !header.times.iter().any(|time| time.is_mapped) {
+                    header.times.push(time);
+                }
                 continue;
             }
             let inner = within(name, options);
             match inner.map_or(Meaning::Nothing, meaning) {
+                Meaning::Joint(named) if targets.contains(&named.target()) => header.unread.push(place),
                 Meaning::Joint(named) => header.found.push(Found { named, place }),
                 Meaning::Unknown { quantity, unit } => {
                     let what = format!(
@@ -193,6 +207,29 @@ impl<'a> Header<'a> {
         Ok(header)
     }
 
+    /// Takes the columns of the options' map: their places, and their meanings.
+    fn map(&mut self, options: &Options) -> Result<(HashSet<usize>, HashSet<Target>), LogError> {
+        let wrong = |what: String| LogError::request(self.path, what);
+        let mut places = HashSet::new();
+        let mut targets = HashSet::new();
+        let (mut found, mut times) = (Vec::new(), Vec::new());
+        for mapping in &options.map {
+            let (place, mapped) = mapping.find(self.names).map_err(wrong)?;
+            if !places.insert(place) {
+                return Err(wrong(format!("the column `{}` is mapped twice", self.names[place])));
+            }
+            if !targets.insert(mapping.target.clone()) {
+                return Err(wrong(format!("{} is mapped twice", mapping.target)));
+            }
+            match mapped {
+                Mapped::Time(unit) => times.push(TimeColumn::mapped(place, unit)),
+                Mapped::Joint(named) => found.push(Found { named, place }),
+            }
+        }
+        (self.found, self.times) = (found, times);
+        Ok((places, targets))
+    }
+
     fn of(&self, quantity: Quantity) -> Vec<&Found> {
         self.found.iter().filter(|found| found.named.quantity == quantity).collect()
     }
@@ -204,13 +241,11 @@ impl<'a> Header<'a> {
     fn without_positions(&self) -> LogError {
         let all = listed(self.names.iter().map(String::as_str));
         let of_prefix = self.prefix.map_or(String::new(), |prefix| format!(" that begins with {prefix}"));
-        LogError::file(
-            self.path,
-            format_args!(
-                "no column{of_prefix} is the position of a joint: names are q1, q2, … or position and the joint, as \
-                 in elbow/position, position.elbow, elbow_position; there is {all}"
-            ),
-        )
+        let what = format!(
+            "no column{of_prefix} is the position of a joint: names are q1, q2, … or position and the joint, as in \
+             elbow/position, position.elbow, elbow_position; there is {all}"
+        );
+        LogError::file(self.path, what).remedy(Remedy::Give(Setting::Map(self.names.to_vec())))
     }
 
     /// The columns whose names say units that are not of SI.

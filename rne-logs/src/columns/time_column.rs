@@ -14,6 +14,8 @@ pub(crate) struct TimeColumn {
     pub(crate) unit: Option<TimeUnit>,
     /// Whether its name begins as those of the joints do that are asked for.
     is_of_group: bool,
+    /// Whether the options map it.
+    pub(crate) is_mapped: bool,
 }
 
 /// A name behind the prefix that the options ask for; none if it begins otherwise.
@@ -25,6 +27,11 @@ pub(crate) fn within<'a>(name: &'a str, options: &Options) -> Option<&'a str> {
 }
 
 impl TimeColumn {
+    /// A column that the options map to times.
+    pub(crate) fn mapped(place: usize, unit: Option<TimeUnit>) -> Self {
+        Self { place, unit, is_of_group: true, is_mapped: true }
+    }
+
     /// The column of a name; none if it is not that of times.
     pub(crate) fn of(path: &Path, place: usize, name: &str, options: &Options) -> Result<Option<Self>, LogError> {
         let inner = within(name, options);
@@ -33,7 +40,7 @@ impl TimeColumn {
             let what = format!("the column {name} has times in {text}, which is none of s, ms, us, ns");
             LogError::file(path, what)
         })?;
-        Ok(Some(Self { place, unit, is_of_group: inner.is_some() }))
+        Ok(Some(Self { place, unit, is_of_group: inner.is_some(), is_mapped: false }))
     }
 
     /// The column that is read of several: the first whose name begins as those of the joints do, or the only one.

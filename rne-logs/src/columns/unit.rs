@@ -32,6 +32,8 @@ pub struct JointUnits {
     pub velocity: Option<Dimension>,
     /// A torque, a force or a current.
     pub effort: Option<Dimension>,
+    /// The angle or the length, per second squared.
+    pub acceleration: Option<Dimension>,
 }
 
 /// The units of a file: of joints by their names, and of all others.
@@ -122,6 +124,10 @@ impl Unit {
                 let per = ["/s", "/sec", "/second"].iter().find_map(|per| text.strip_suffix(per))?;
                 of_position(per)
             }
+            Quantity::Acceleration => {
+                let per = ["/s²", "/s^2", "/s2"].iter().find_map(|per| text.strip_suffix(per))?;
+                of_position(per)
+            }
             // the case of a letter is a prefix, of which one is a billion times the other
             Quantity::Effort => find(&EFFORTS, |name| name == text),
         }
@@ -138,6 +144,7 @@ impl Unit {
             Quantity::Position => "rad, mrad, deg, m, cm, mm",
             Quantity::Velocity => "rad/s, mrad/s, deg/s, rpm, m/s, cm/s, mm/s",
             Quantity::Effort => "Nm, mNm, kNm, Ncm, Nmm, N, mN, kN, A, mA",
+            Quantity::Acceleration => "rad/s^2, mrad/s^2, deg/s^2, m/s^2, cm/s^2, mm/s^2",
         }
     }
 }
@@ -178,6 +185,8 @@ mod tests {
             (Quantity::Velocity, "rad·s⁻¹", Dimension::Angle, 1.0),
             (Quantity::Velocity, "m/s", Dimension::Length, 1.0),
             (Quantity::Velocity, "RPM", Dimension::Angle, PI / 30.0),
+            (Quantity::Acceleration, "deg/s^2", Dimension::Angle, PI / 180.0),
+            (Quantity::Acceleration, "m/s²", Dimension::Length, 1.0),
             (Quantity::Effort, "N m", Dimension::Torque, 1.0),
             (Quantity::Effort, "mN·m", Dimension::Torque, 1e-3),
             (Quantity::Effort, "N*m", Dimension::Torque, 1.0),
@@ -198,7 +207,7 @@ mod tests {
             assert_eq!(Unit::parse(quantity, text), None, "{text}");
         }
         // what a message names is known
-        for quantity in [Quantity::Position, Quantity::Velocity, Quantity::Effort] {
+        for quantity in Quantity::ALL {
             for text in Unit::known(quantity).split(", ") {
                 assert!(Unit::parse(quantity, text).is_some(), "{text}");
             }

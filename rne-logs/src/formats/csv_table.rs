@@ -105,7 +105,10 @@ impl CsvTable {
             (Some((place, _)), Some(_)) => return Err(two_times(path, &header[place])),
             (Some((place, said)), None) => Clock::Column(place, said.or(options.time_unit).unwrap_or_default()),
             (None, Some(rate)) => Clock::Step(1.0 / rate),
-            (None, None) => return Err(no_time(path, header.iter().map(String::as_str))),
+            (None, None) => {
+                let error = no_time(path, header.iter().map(String::as_str));
+                return Err(error.remedy(Remedy::Give(Setting::TimeColumn(header))));
+            }
         };
         let is_time_unit_known = columns.time.is_none_or(|(_, said)| said.is_some()) || options.time_unit.is_some();
         let record = csv::ByteRecord::new();
@@ -172,6 +175,7 @@ impl Source for CsvTable {
         }
         self.numbers(&self.columns.velocity, &mut sample.velocity)?;
         self.numbers(&self.columns.effort, &mut sample.effort)?;
+        self.numbers(&self.columns.acceleration, &mut sample.acceleration)?;
         Ok(true)
     }
 

@@ -110,6 +110,10 @@ impl Format {
             let what = format!("an order of columns is for arrays of numpy; this is {self}, whose columns have names");
             return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Columns)));
         }
+        if !matches!(self, Self::Csv | Self::Parquet) && !options.map.is_empty() {
+            let what = format!("a map of columns is for tables; the format of this file is {self}");
+            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Map(Vec::new()))));
+        }
         if matches!(self, Self::Sqlite | Self::Mcap) && options.rate.is_some() {
             let what = "messages have times, and a sampling rate is for tables without times";
             return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate)));

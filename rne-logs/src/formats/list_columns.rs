@@ -55,6 +55,8 @@ impl ListColumns {
                 Quantity::Position => (&mut lists.position, &mut lists.units.position),
                 Quantity::Velocity => (&mut lists.velocity, &mut lists.units.velocity),
                 Quantity::Effort => (&mut lists.effort, &mut lists.units.effort),
+                // no name of a list says it
+                Quantity::Acceleration => continue,
             };
             *list = Some((place, unit.map_or(1.0, |unit| unit.factor)));
             *said = unit.map(|unit| unit.dimension).or(is_current.then_some(Dimension::Current));

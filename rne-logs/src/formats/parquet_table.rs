@@ -54,8 +54,17 @@ pub(crate) struct ParquetTable {
 
 /// What columns are, by their places among those that are read.
 enum Roles {
-    Scalars { position: Vec<usize>, velocity: Vec<Option<usize>>, effort: Vec<Option<usize>> },
-    Lists { names: Option<usize>, position: usize, velocity: Option<usize>, effort: Option<usize> },
+    /// Velocities, efforts and accelerations are the others.
+    Scalars {
+        position: Vec<usize>,
+        others: [Vec<Option<usize>>; 3],
+    },
+    Lists {
+        names: Option<usize>,
+        position: usize,
+        velocity: Option<usize>,
+        effort: Option<usize>,
+    },
 }
 
 /// When a row was measured.
@@ -88,7 +97,7 @@ impl ParquetTable {
             group: 0,
             left: 0,
             columns: Vec::new(),
-            roles: Roles::Scalars { position: Vec::new(), velocity: Vec::new(), effort: Vec::new() },
+            roles: Roles::Scalars { position: Vec::new(), others: Default::default() },
             clock: Clock::Step(0.0),
             is_time_unit_known: true,
             row: 0,
@@ -110,7 +119,7 @@ impl ParquetTable {
         let is_list = |leaf: &Leaf| leaf.is_list && leaf.kind.is_number() && within(&leaf.name, options).is_some();
         let lists = leaves.iter().enumerate().filter(|(_, leaf)| is_list(leaf));
         let lists = ListColumns::of(&self.path, lists.map(|(place, leaf)| (place, leaf.name.as_str())), options)?;
-        if let Some((position, factor)) = lists.position {
+        if let Some((position, factor)) = lists.position.filter(|_| options.map.is_empty()) {
             let texts = leaves.iter().enumerate().filter(|(_, leaf)| leaf.is_list && leaf.kind == Kind::Text);
             let texts = texts.map(|(place, leaf)| (place, leaf.name.as_str()));
             let names = list_columns::names(&self.path, texts, &leaves[position].name, options)?;
@@ -151,9 +160,8 @@ impl ParquetTable {
         let mut optional = |found: &[Option<table::Column>]| -> Result<Vec<Option<usize>>, LogError> {
             found.iter().map(|found| found.map(&mut column).transpose()).collect()
         };
-        let velocity = optional(&columns.velocity)?;
-        let effort = optional(&columns.effort)?;
-        self.roles = Roles::Scalars { position, velocity, effort };
+        let others = [optional(&columns.velocity)?, optional(&columns.effort)?, optional(&columns.acceleration)?];
+        self.roles = Roles::Scalars { position, others };
         if let Some((place, _)) = columns.time
             && matches!(leaves[scalars[place]].kind, Kind::Stamp(_))
         {
@@ -174,7 +182,11 @@ impl ParquetTable {
     ) -> Result<(), LogError> {
         self.clock = match (time, options.rate) {
             (None, Some(rate)) => Clock::Step(1.0 / rate),
-            (None, None) => return Err(no_time(&self.path, leaves.iter().map(|leaf| leaf.name.as_str()))),
+            (None, None) => {
+                let error = no_time(&self.path, leaves.iter().map(|leaf| leaf.name.as_str()));
+                let columns = leaves.iter().map(|leaf| leaf.name.clone()).collect();
+                return Err(error.remedy(Remedy::Give(Setting::TimeColumn(columns))));
+            }
             (Some((leaf, _)), Some(_)) => return Err(two_times(&self.path, &leaves[leaf].name)),
             (Some((leaf, said)), None) => {
                 let unit = match leaves[leaf].kind {
@@ -261,18 +273,20 @@ impl Source for ParquetTable {
             })?,
         };
         sample.recorded = sample.measured;
-        for list in [&mut sample.position, &mut sample.velocity, &mut sample.effort] {
+        for list in [&mut sample.position, &mut sample.velocity, &mut sample.effort, &mut sample.acceleration] {
             list.clear();
         }
         match &self.roles {
-            Roles::Scalars { position, velocity, effort } => {
+            Roles::Scalars { position, others } => {
                 if sample.names != self.names {
                     sample.names.clone_from(&self.names);
                 }
                 sample.position.extend(position.iter().map(|place| columns[*place].numbers[row]));
                 let number = |place: &Option<usize>| place.map_or(f64::NAN, |place| columns[place].numbers[row]);
-                sample.velocity.extend(velocity.iter().map(number));
-                sample.effort.extend(effort.iter().map(number));
+                let lists = [&mut sample.velocity, &mut sample.effort, &mut sample.acceleration];
+                for (list, places) in lists.into_iter().zip(others) {
+                    list.extend(places.iter().map(number));
+                }
             }
             Roles::Lists { names, position, velocity, effort } => {
                 let position = columns[*position].list(row);

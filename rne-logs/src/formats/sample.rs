@@ -18,13 +18,17 @@ pub(crate) struct Sample {
     pub(crate) velocity: Vec<f64>,
     /// Efforts by joint; empty where the message has none.
     pub(crate) effort: Vec<f64>,
+    /// Accelerations by joint; empty where the message has none.
+    pub(crate) acceleration: Vec<f64>,
 }
 
 impl Sample {
     /// Bytes that it takes, about.
     pub(crate) fn size(&self) -> usize {
         let names: usize = self.names.iter().map(|name| name.len() + 32).sum();
-        names + 8 * (self.position.len() + self.velocity.len() + self.effort.len()) + size_of::<Self>()
+        names
+            + 8 * (self.position.len() + self.velocity.len() + self.effort.len() + self.acceleration.len())
+            + size_of::<Self>()
     }
 }
 

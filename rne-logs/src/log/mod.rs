@@ -7,8 +7,10 @@ pub(crate) mod pass;
 pub(crate) mod survey;
 
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use crate::columns::quantity::Quantity;
 use crate::columns::unit::{Dimension, FileUnits, JointUnits};
 use crate::formats::format::{self, Format};
 use crate::formats::sample::{Sample, Source};
@@ -46,6 +48,7 @@ pub struct Log {
 /// What a log has, by its first thousand messages.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[expect(clippy::struct_excessive_bools, reason = "each is a quantity that the log has, or not")]
 pub struct Layout {
     /// Of the first file.
     pub format: Format,
@@ -61,6 +64,8 @@ pub struct Layout {
     pub has_velocities: bool,
     /// Whether the log has efforts; states without them are left out then.
     pub has_efforts: bool,
+    /// Whether the log has accelerations, which only a [`Mapping`](crate::Mapping) names; else they are derived.
+    pub has_accelerations: bool,
     /// Where it has none: the joints none of whose efforts is a number, of the first thousand messages.
     pub without_efforts: Vec<String>,
     /// The median interval, s.
@@ -74,6 +79,27 @@ pub struct Layout {
     pub unread: Vec<String>,
     /// Remarks on what the file is.
     pub notes: Vec<String>,
+}
+
+impl Layout {
+    /// Places of a quantity among the numbers of a state: positions, then velocities, efforts and accelerations as far
+    /// as the log has them.
+    pub(crate) fn places(&self, quantity: Quantity) -> Range<usize> {
+        let has = |quantity| match quantity {
+            Quantity::Position => true,
+            Quantity::Velocity => self.has_velocities,
+            Quantity::Effort => self.has_efforts,
+            Quantity::Acceleration => self.has_accelerations,
+        };
+        let before = Quantity::ALL.into_iter().take_while(|other| *other != quantity).filter(|other| has(*other));
+        let start = before.count() * self.joints.len();
+        start..start + if has(quantity) { self.joints.len() } else { 0 }
+    }
+
+    /// How many numbers a state has.
+    pub(crate) fn width(&self) -> usize {
+        self.places(Quantity::Acceleration).end
+    }
 }
 
 impl Log {
@@ -116,16 +142,17 @@ impl Log {
             return Err(LogError::request(path, what));
         }
         let mut states: Vec<&Sample> = Vec::new();
-        let mut whole = [0; 3];
+        let mut whole = [0; 4];
         for sample in &head {
             if joints.find(sample) == crate::log::joints::Presence::All {
                 states.push(sample);
-                for (count, numbers) in whole.iter_mut().zip([&sample.position, &sample.velocity, &sample.effort]) {
+                let lists = [&sample.position, &sample.velocity, &sample.effort, &sample.acceleration];
+                for (count, numbers) in whole.iter_mut().zip(lists) {
                     *count += usize::from(joints.are_whole(numbers, sample));
                 }
             }
         }
-        let [positions, velocities, efforts] = whole;
+        let [positions, velocities, efforts, accelerations] = whole;
         if positions == 0 {
             let what =
                 format!("none of the first {} messages has positions of {}", head.len(), joints.names.join(", "));
@@ -157,6 +184,7 @@ impl Log {
             recorded,
             has_velocities: has(velocities) && !options.derive_velocities,
             has_efforts: has(efforts),
+            has_accelerations: has(accelerations),
             without_efforts: without_efforts(&mut joints.clone(), &states),
             step,
             origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },

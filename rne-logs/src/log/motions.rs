@@ -1,5 +1,6 @@
 //! The runs of a log, filtered, in pieces.
 
+use crate::columns::quantity::Quantity;
 use crate::limits::MOST_NUMBERS;
 use crate::log::pass::Pass;
 use crate::log::survey::Survey;
@@ -89,7 +90,7 @@ impl<'a> Motions<'a> {
         let layout = &log.layout;
         let pass = log.pass()?;
         let pass = if log.options.leave_out_spikes { pass.without(&survey.spikes) } else { pass };
-        let columns = layout.joints.len() * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
+        let columns = layout.width();
         let dropped = log.dropped(kernel.half());
         if dropped.saturating_mul(2).saturating_mul(columns) > MOST_NUMBERS {
             let what = format!(
@@ -221,7 +222,6 @@ impl<'a> Motions<'a> {
             return Motion::default();
         }
         let layout = &self.log.layout;
-        let joints = layout.joints.len();
         let more = self.dropped - self.kernel.half();
         let smooth = |rows: &Vec<f64>| self.kernel.smooth(rows, count + 2 * more);
         // the numbers of the states themselves, of lists that reach further
@@ -232,16 +232,15 @@ impl<'a> Motions<'a> {
         let each = |of: fn(&Kernel, &[f64]) -> Vec<f64>, lists: &[Vec<f64>]| -> Vec<Vec<f64>> {
             lists.iter().map(|list| of(&self.kernel, list)).collect()
         };
-        let q: Vec<Vec<f64>> = self.rows[..joints].iter().map(smooth).collect();
-        let qd = if layout.has_velocities {
-            self.rows[joints..2 * joints].iter().map(smooth).collect()
-        } else {
-            each(Kernel::differentiate, &q)
-        };
-        let qdd = each(Kernel::differentiate, &qd);
-        let efforts = if layout.has_efforts { self.rows.len() - joints } else { self.rows.len() };
-        let tau: Vec<Vec<f64>> = self.rows[efforts..].iter().map(smooth).collect();
-        let recorded = self.rows[efforts..].iter().map(|rows| rows[self.dropped..self.dropped + count].to_vec());
+        let smoothed = |quantity| -> Vec<Vec<f64>> { self.rows[layout.places(quantity)].iter().map(smooth).collect() };
+        let q = smoothed(Quantity::Position);
+        let qd = if layout.has_velocities { smoothed(Quantity::Velocity) } else { each(Kernel::differentiate, &q) };
+        let qdd =
+            if layout.has_accelerations { smoothed(Quantity::Acceleration) } else { each(Kernel::differentiate, &qd) };
+        let tau = smoothed(Quantity::Effort);
+        let recorded = self.rows[layout.places(Quantity::Effort)]
+            .iter()
+            .map(|rows| rows[self.dropped..self.dropped + count].to_vec());
         let begin = self.log.seconds(self.begin);
         let before = if self.has_begun { 0 } else { self.dropped as u64 };
         let time = |i: u64| begin + (self.first + before + i) as f64 * layout.step;

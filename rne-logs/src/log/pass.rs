@@ -1,9 +1,11 @@
 //! One reading of a log: its states, and where a run begins.
 
+use std::fmt;
+
+use crate::columns::quantity::Quantity;
 use crate::formats::sample::Sample;
 use crate::log::Chain;
 use crate::log::joints::{Joints, Presence};
-use crate::log::survey::{Counts, Interruption};
 use crate::signal::spikes::Spike;
 use crate::{Log, LogError};
 
@@ -30,20 +32,81 @@ pub(crate) struct State {
     pub(crate) numbers: Vec<f64>,
 }
 
-/// A number that makes a message unusable: it is none, infinite, or so large that nobody measured it.
+/// A number that makes a message invalid_sample: it is none, infinite, or so large that nobody measured it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Unusable {
+pub struct InvalidSample {
     /// The number of the message or row, from 1, header and comments not counted.
     pub message: u64,
     /// s
     pub time: f64,
     /// The joint's place among those that are read, from 0.
     pub joint: usize,
-    /// `position`, `velocity` or `effort`
+    /// `position`, `velocity`, `effort` or `acceleration`
     pub quantity: &'static str,
     /// As the log has it, in SI units.
     pub value: f64,
+}
+
+/// Counts of messages, and of those that are not states of the arm by their reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages or rows, all of them.
+    pub messages: u64,
+    /// Messages that are states of the arm.
+    pub states: u64,
+    /// Messages that have none of the joints.
+    pub of_others: u64,
+    /// Messages that have some of the joints.
+    pub without_joints: u64,
+    /// Messages without positions, or with another number of them.
+    pub without_positions: u64,
+    /// Messages without velocities, or with another number of them, where the log has velocities.
+    pub without_velocities: u64,
+    /// Messages without efforts, or with another number of them, where the log has efforts.
+    pub without_efforts: u64,
+    /// Messages with a number that is none, infinite, or beyond 10¹² of its unit.
+    pub not_finite: u64,
+    /// Messages that say the same as the one before, at the same time.
+    pub repeats: u64,
+}
+
+/// The reason for which a run begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Interruption {
+    /// It is the first.
+    Beginning,
+    /// Nothing was measured for so many seconds.
+    Gap {
+        /// s
+        seconds: f64,
+    },
+    /// Time went back.
+    Reset {
+        /// By so much, s.
+        seconds: f64,
+    },
+    /// Two states have the same time and differ.
+    Duplicate,
+    /// A joint is elsewhere, faster than a joint moves.
+    Jump {
+        /// Its place among those that are read, from 0.
+        joint: usize,
+        /// rad or m
+        by: f64,
+    },
+}
+
+impl fmt::Display for Interruption {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Beginning => f.write_str("begins the log"),
+            Self::Gap { seconds } => write!(f, "after a gap of {seconds:.3} s"),
+            Self::Reset { seconds } => write!(f, "time went back by {seconds:.3} s"),
+            Self::Duplicate => f.write_str("two states have one time"),
+            Self::Jump { joint, by } => write!(f, "joint {} jumped by {by:.3}", joint + 1),
+        }
+    }
 }
 
 /// One reading of a log.
@@ -55,7 +118,7 @@ pub(crate) struct Pass<'a> {
     state: State,
     previous: Option<State>,
     pub(crate) counts: Counts,
-    pub(crate) unusable: Option<Unusable>,
+    pub(crate) invalid_sample: Option<InvalidSample>,
     /// Messages that are left out, by their numbers, in order.
     without: Vec<u64>,
 }
@@ -70,7 +133,7 @@ impl<'a> Pass<'a> {
             state: State::default(),
             previous: None,
             counts: Counts::default(),
-            unusable: None,
+            invalid_sample: None,
             without: Vec::new(),
         })
     }
@@ -151,15 +214,16 @@ impl<'a> Pass<'a> {
         if layout.has_efforts {
             self.joints.take(&sample.effort, |joint| log.torque_constant(joint), &mut state.numbers);
         }
+        if layout.has_accelerations {
+            let factor = |joint: usize| log.of_angle(joint, units[joint].acceleration);
+            self.joints.take(&sample.acceleration, factor, &mut state.numbers);
+        }
         if let Some(at) = state.numbers.iter().position(|number| number.is_nan() || number.abs() > LARGEST) {
             counts.not_finite += 1;
             let joints = self.joints.names.len();
-            let quantity = match at / joints {
-                0 => "position",
-                1 if layout.has_velocities => "velocity",
-                _ => "effort",
-            };
-            self.unusable.get_or_insert(Unusable {
+            let is_of = |quantity: &Quantity| layout.places(*quantity).contains(&at);
+            let quantity = Quantity::ALL.into_iter().find(is_of).map_or("", Quantity::word);
+            self.invalid_sample.get_or_insert(InvalidSample {
                 message: counts.messages,
                 time: log.seconds(state.time),
                 joint: at % joints,

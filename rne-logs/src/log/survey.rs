@@ -1,9 +1,8 @@
 //! What a log has, by one reading of it.
 
-use std::fmt;
-
+use crate::columns::quantity::Quantity;
 use crate::limits::{FEW_ROWS, MOST_FILLED};
-use crate::log::pass::Unusable;
+use crate::log::pass::{Counts, Interruption, InvalidSample};
 use crate::number::short;
 use crate::options::Angles;
 use crate::remedy::{Remedy, Setting};
@@ -65,8 +64,8 @@ pub struct Survey {
     /// fewer of more than a hundred joints; in the motions, unless
     /// [`Options::leave_out_spikes`](crate::Options::leave_out_spikes) says otherwise.
     pub spikes: Vec<Spike>,
-    /// The first number that made a message unusable, of those that [`Counts::not_finite`] counts.
-    pub unusable: Option<Unusable>,
+    /// The first number that made a message invalid_sample, of those that [`Counts::not_finite`] counts.
+    pub invalid_sample: Option<InvalidSample>,
     /// By joint: the least and the greatest position, rad or m.
     pub positions: Vec<(f64, f64)>,
     /// By joint: the least and the greatest velocity, rad/s or m/s; empty where the log has none.
@@ -80,67 +79,6 @@ pub struct Survey {
     pub cutoff: Cutoff,
     /// States at each end of a run that the filter drops; a run with no more than twice as many gives none.
     pub dropped: usize,
-}
-
-/// How many messages there were, and why they are no states.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Messages or rows, all of them.
-    pub messages: u64,
-    /// Messages that are states of the arm.
-    pub states: u64,
-    /// Messages that have none of the joints.
-    pub of_others: u64,
-    /// Messages that have some of the joints.
-    pub without_joints: u64,
-    /// Messages without positions, or with another number of them.
-    pub without_positions: u64,
-    /// Messages without velocities, or with another number of them, where the log has velocities.
-    pub without_velocities: u64,
-    /// Messages without efforts, or with another number of them, where the log has efforts.
-    pub without_efforts: u64,
-    /// Messages with a number that is none, infinite, or beyond 10¹² of its unit.
-    pub not_finite: u64,
-    /// Messages that say the same as the one before, at the same time.
-    pub repeats: u64,
-}
-
-/// Why a run begins.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Interruption {
-    /// It is the first.
-    Beginning,
-    /// Nothing was measured for so many seconds.
-    Gap {
-        /// s
-        seconds: f64,
-    },
-    /// Time went back.
-    Reset {
-        /// By so much, s.
-        seconds: f64,
-    },
-    /// Two states have the same time and differ.
-    Duplicate,
-    /// A joint is elsewhere, faster than a joint moves.
-    Jump {
-        /// Its place among those that are read, from 0.
-        joint: usize,
-        /// rad or m
-        by: f64,
-    },
-}
-
-impl fmt::Display for Interruption {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Beginning => f.write_str("begins the log"),
-            Self::Gap { seconds } => write!(f, "after a gap of {seconds:.3} s"),
-            Self::Reset { seconds } => write!(f, "time went back by {seconds:.3} s"),
-            Self::Duplicate => f.write_str("two states have one time"),
-            Self::Jump { joint, by } => write!(f, "joint {} jumped by {by:.3}", joint + 1),
-        }
-    }
 }
 
 /// A run: states without an interruption.
@@ -198,9 +136,9 @@ impl Survey {
         let layout = &log.layout;
         let joints = layout.joints.len();
         let rate = 1.0 / layout.step;
-        let columns = joints * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
+        let efforts = layout.places(Quantity::Effort);
         let mut spectra = SEGMENTS.map(|seconds| Spectrum::new(joints, rate, seconds));
-        let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); columns];
+        let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); layout.width()];
         let mut spikes = Spikes::new(if layout.has_efforts { joints } else { 0 });
         let mut agreement = Agreement::new(if layout.has_velocities { joints } else { 0 });
         let mut runs = Runs::default();
@@ -229,8 +167,7 @@ impl Survey {
                 runs.push(log.seconds(state.time), layout.step);
             }
             agreement.push(state.time, &state.numbers);
-            let efforts = columns - if layout.has_efforts { joints } else { 0 };
-            spikes.push(message, log.seconds(state.time), &state.numbers[efforts..]);
+            spikes.push(message, log.seconds(state.time), &state.numbers[efforts.clone()]);
             let grid = grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
             grid.push(state.time, &state.numbers, &mut |row| {
                 rows += 1;
@@ -262,12 +199,12 @@ impl Survey {
             None => spectra.iter().find_map(Spectrum::ends).map_or(Cutoff::Unknown, |ends| chosen(ends, rate)),
         };
         let dropped = cutoff.hertz().map_or(0, |hertz| log.dropped(Kernel::half_of(hertz, layout.step)));
-        let unusable = pass.unusable.take();
+        let invalid_sample = pass.invalid_sample.take();
         let spikes = spikes.end(counts.states);
         let longest = runs.longest(layout.step);
         let (run_count, runs) = runs.end();
-        let efforts = ranges.split_off(columns - if layout.has_efforts { joints } else { 0 });
-        let velocities = ranges.split_off(joints);
+        let [positions, velocities, efforts, _] =
+            Quantity::ALL.map(|quantity| ranges[layout.places(quantity)].to_vec());
         let disagreement = agreement.end();
         Ok(Self {
             counts,
@@ -275,8 +212,8 @@ impl Survey {
             run_count,
             longest,
             spikes,
-            unusable,
-            positions: ranges,
+            invalid_sample,
+            positions,
             velocities,
             efforts,
             disagreement,

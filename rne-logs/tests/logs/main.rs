@@ -21,6 +21,7 @@ mod filtered;
 mod formats;
 #[cfg(not(feature = "full"))]
 mod left_out;
+mod mapped;
 mod runs;
 #[cfg(feature = "full")]
 mod tables;

@@ -75,8 +75,8 @@ fn numbers_that_are_none_are_counted_and_left_out() {
     let (_folder, path) = file("nan.csv", lines.join("\n"));
     let (_, survey) = survey(&[path], Options::default()).unwrap();
     assert_eq!((survey.counts.not_finite, survey.counts.states, survey.counts.messages), (3, 497, 500));
-    let unusable = survey.unusable.unwrap();
-    assert_eq!((unusable.message, unusable.joint, unusable.quantity), (50, 0, "position"));
+    let invalid_sample = survey.invalid_sample.unwrap();
+    assert_eq!((invalid_sample.message, invalid_sample.joint, invalid_sample.quantity), (50, 0, "position"));
     // two steps are missing: not yet a gap
     assert_eq!(survey.run_count, 1);
     assert!((survey.runs[0].longest - 0.03).abs() < 1e-9);
@@ -92,9 +92,12 @@ fn numbers_that_nobody_measured_are_left_out() {
     let (_folder, path) = file("huge.csv", lines.join("\n"));
     let (_, survey) = survey(&[path], Options::default()).unwrap();
     assert_eq!((survey.counts.not_finite, survey.counts.states), (1, 499));
-    let unusable = survey.unusable.unwrap();
-    assert_eq!((unusable.message, unusable.joint, unusable.quantity, unusable.value), (91, 1, "effort", -1e300));
-    assert!((unusable.time - 0.9).abs() < 1e-9);
+    let invalid_sample = survey.invalid_sample.unwrap();
+    assert_eq!(
+        (invalid_sample.message, invalid_sample.joint, invalid_sample.quantity, invalid_sample.value),
+        (91, 1, "effort", -1e300)
+    );
+    assert!((invalid_sample.time - 0.9).abs() < 1e-9);
     assert!(survey.efforts[1].0 > -100.0);
 }
 
