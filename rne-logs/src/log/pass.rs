@@ -32,7 +32,7 @@ pub(crate) struct State {
     pub(crate) numbers: Vec<f64>,
 }
 
-/// A number that makes a message invalid_sample: it is none, infinite, or so large that nobody measured it.
+/// A number that makes a sample invalid: it is not a number, infinite, or larger than anything measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct InvalidSample {

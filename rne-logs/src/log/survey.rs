@@ -64,7 +64,7 @@ pub struct Survey {
     /// fewer of more than a hundred joints; in the motions, unless
     /// [`Options::leave_out_spikes`](crate::Options::leave_out_spikes) says otherwise.
     pub spikes: Vec<Spike>,
-    /// The first number that made a message invalid_sample, of those that [`Counts::not_finite`] counts.
+    /// The first number that made a message invalid, of those that [`Counts::not_finite`] counts.
     pub invalid_sample: Option<InvalidSample>,
     /// By joint: the least and the greatest position, rad or m.
     pub positions: Vec<(f64, f64)>,
