@@ -5,7 +5,7 @@ use std::fmt;
 use rne_model::Robot;
 
 use crate::function::Function;
-use crate::ir::name::Name;
+use crate::ir::Name;
 
 /// Why a robot cannot be compiled.
 #[derive(Clone, Debug, PartialEq)]

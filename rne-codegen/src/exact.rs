@@ -4,8 +4,7 @@ use rne_model::Robot;
 
 use crate::formulate;
 use crate::function::Function;
-use crate::ir::name::Name;
-use crate::ir::{Builder, Embedding, Graph, Input, Op, Policy, Ref, Residue, SamplePoint};
+use crate::ir::{Builder, Embedding, Graph, Input, Name, Op, Policy, Ref, Residue, SamplePoint};
 
 /// The plain formulas of a function, evaluated at random points of two prime fields. Sines and cosines are random
 /// points of the circle there. Nothing is rounded, so a rank or an identity that is found at a few points needs no

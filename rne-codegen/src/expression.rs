@@ -1,6 +1,6 @@
 //! The values of a program as they are written: a value with a name by that name, another one where it is used.
 
-use crate::ir::name::Name;
+use crate::ir::Name;
 use crate::values::{Negated, Operator, Value, ValueId, Values};
 
 /// A value of a program, as it is written in one place.

@@ -16,7 +16,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::ir::name::Name;
+use crate::ir::Name;
 use crate::latency::{self, Latency};
 use crate::program::{Output, Program, Statement};
 use crate::values::{Contraction, Operator, Sign, Value, ValueId, Values};

@@ -2,8 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::ir::name::Name;
-use crate::ir::quantity::{Component, Quantity};
+use crate::ir::{Component, Name, Quantity};
 use crate::program::Program;
 use crate::values::{Contraction, Negated, Operator, Value, ValueId, Values};
 

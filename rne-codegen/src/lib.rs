@@ -50,10 +50,10 @@ pub use function::{
     Own, Record, Returned, Shape,
 };
 pub use interpret::{Arguments, Interpreter, Real};
-pub use ir::Residue;
-pub use ir::fold_report::{Cause, Causes, Fold, FoldReport, Line, Operation, Place};
-pub use ir::name::{Name, WithRespectTo};
-pub use ir::quantity::{Axis, Component, Quantity, Step};
+pub use ir::{
+    Axis, Cause, Causes, Component, Fold, FoldReport, Line, Name, Operation, Place, Quantity, Residue, Step,
+    WithRespectTo,
+};
 pub use named::UnknownName;
 pub use pipeline::Target;
 pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, SineCosine, Statement};

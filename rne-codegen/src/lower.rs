@@ -6,18 +6,14 @@ mod writing;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use rne_model::Robot;
+use writing::Writing;
 
 use crate::CompileError;
 use crate::function::{Form, Function};
-use crate::ir::fold_report::{Operation, Place};
-use crate::ir::name::Name;
-use crate::ir::quantity::{Quantity, Step};
-use crate::ir::{ExactAngle, Number, Op, Ref, Traced};
+use crate::ir::{ExactAngle, Name, Number, Op, Operation, Place, Quantity, Ref, Step, Traced};
 use crate::program::{Constant, Exactly, Program, Resolution, ResolvedAs};
 use crate::reduced::algorithm::Algorithm;
 use crate::values::{Sign, Value, Values};
-
-use writing::Writing;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);

@@ -1,7 +1,6 @@
 //! Why a program that is not the seven steps can be trusted, in words.
 
-use rne_codegen::Form;
-use rne_codegen::{Program, Proof};
+use rne_codegen::{Form, Program, Proof};
 
 /// What the form is, its proof and its choices, one sentence or choice per line.
 #[must_use]

@@ -2,9 +2,10 @@
 
 use std::cell::Cell;
 
+use rne_codegen::{Expression, ExpressionKind, Negated, Operator};
+
 use super::annotated::{Annotated, Part};
 use super::syntax::Syntax;
-use rne_codegen::{Expression, ExpressionKind, Negated, Operator};
 
 /// Where an operand stands.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! The formulas of the seven steps and of the reduced form, for the comments of generated code.
 
-use rne_model::JointKind::{self, Prismatic, Revolute};
-
 use rne_codegen::{Quantity, Step};
+use rne_model::JointKind::{self, Prismatic, Revolute};
 
 /// A formula of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]

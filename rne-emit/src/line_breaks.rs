@@ -6,11 +6,12 @@
 
 use std::collections::HashMap;
 
+use rne_codegen::{Expression, Operator};
+
 use super::annotated::Annotated;
 use super::expression::{Infix as _, Kind, Measured, Operand};
 use super::syntax::Syntax;
 use super::wrap::WIDTH;
-use rne_codegen::{Expression, Operator};
 
 /// `START EXPRESSION;`, where the start is `let NAME =` or the like, broken where it is too long.
 pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expression: Expression<'_>) -> Annotated {

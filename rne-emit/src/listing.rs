@@ -4,6 +4,10 @@
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 
+use rne_codegen::{
+    Argument, Cause, Causes, Constant, Expression, Fold, FoldReport, Form, Function, Name, Place, Program, Quantity,
+    Resolution, ResolvedAs, Sign, SineCosine, Statement, Step, WithRespectTo,
+};
 use rne_model::{JointKind, Robot};
 
 use super::annotated::{Annotated, Part};
@@ -14,11 +18,6 @@ use super::syntax::Syntax;
 use super::table::angle;
 use super::text::returned;
 use super::wrap::{TIED, WIDTH, fill};
-use rne_codegen::{Argument, Form, Function};
-use rne_codegen::{Cause, Causes, Fold, FoldReport, Place};
-use rne_codegen::{Constant, Expression, Program, Resolution, ResolvedAs, Sign, SineCosine, Statement};
-use rne_codegen::{Name, WithRespectTo};
-use rne_codegen::{Quantity, Step};
 
 /// Which part of a program to list, and how much to say.
 #[derive(Clone, Copy, Debug, Default)]

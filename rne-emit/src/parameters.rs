@@ -2,11 +2,8 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Name, Program, Quantity};
 use rne_model::{Entry, Formula, Robot};
-
-use rne_codegen::Name;
-use rne_codegen::Program;
-use rne_codegen::Quantity;
 
 /// More numbers of the table than this are counted, not named.
 const MOST_NAMED: usize = 4;

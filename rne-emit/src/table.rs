@@ -1,9 +1,8 @@
 //! The Denavit-Hartenberg table for people.
 
+use rne_codegen::Program;
 use rne_model::{Angle, JointKind, QuarterTurns, Robot, one_line};
 use unicode_width::UnicodeWidthStr;
-
-use rne_codegen::Program;
 
 /// The table of a robot as text: one line per joint, aligned, angles as multiples of π where they are right angles.
 pub(super) fn dh_table(robot: &Robot) -> String {

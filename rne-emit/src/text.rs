@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use rne_codegen::{ArgumentArray, Layout, Name, Program};
 use rne_model::Robot;
 
 use super::annotated::Annotated;
@@ -16,10 +17,6 @@ use super::parameters::{self, Parameter};
 use super::syntax::Syntax;
 use super::table::operations_table;
 use super::wrap::{WIDTH, fill};
-use rne_codegen::ArgumentArray;
-use rne_codegen::Layout;
-use rne_codegen::Name;
-use rne_codegen::Program;
 
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]

@@ -5,14 +5,12 @@ use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{ToTokens, quote};
+use rne_codegen::{
+    ArgumentArray, Expression, ExpressionKind, Name, Negated, Program, Record, Statement, ValueId, fma, fma::Fusing,
+};
 
 use super::expression::{Infix as _, Position, needs_parentheses};
 use super::syntax::Syntax;
-use rne_codegen::ArgumentArray;
-use rne_codegen::Name;
-use rne_codegen::Record;
-use rne_codegen::fma::{self, Fusing};
-use rne_codegen::{Expression, ExpressionKind, Negated, Program, Statement, ValueId};
 
 /// The body of a program's function: everything between its braces.
 ///

@@ -13,10 +13,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::arm::Arm;
 use crate::formulate::kinematics::Frames;
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Symbol, Vector};
+use crate::ir::{Builder, Cause, Name, Quantity, Symbol, Vector};
 
 /// In the world. `frames` start at the base, in world axes; `centres` lead from the joints to the centres of mass.
 pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vector<'s> {

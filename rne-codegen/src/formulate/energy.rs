@@ -7,10 +7,7 @@ use crate::formulate::arm::Arm;
 use crate::formulate::joint::JointState;
 use crate::formulate::kinematics::Frames;
 use crate::formulate::seven_steps::Motion;
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Symbol, Vector};
+use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
 
 pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[Motion<'s>]) -> Symbol<'s> {
     let builder = arm.builder;

@@ -3,9 +3,7 @@
 use crate::formulate::arm::Arm;
 use crate::formulate::joint::{JointState, Wrench};
 use crate::formulate::seven_steps::{self, Motion};
-use crate::ir::Symbol;
-use crate::ir::fold_report::Cause;
-use crate::ir::name::WithRespectTo;
+use crate::ir::{Cause, Symbol, WithRespectTo};
 
 /// The upper half of M: row i holds its elements (i, i) to (i, n). Element (i, j) is torque i for q̈ = e_j, `taui_qddj`.
 ///

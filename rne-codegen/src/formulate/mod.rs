@@ -21,10 +21,7 @@ use crate::formulate::kinematics::{Frame, Frames};
 use crate::formulate::payload::Payload;
 use crate::formulate::seven_steps::{Load, Motion};
 use crate::function::{Argument, Function};
-use crate::ir::fold_report::Cause;
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Component, Quantity};
-use crate::ir::{Builder, Ref, Symbol, Vector};
+use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
 /// What a function of a robot returns, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.

@@ -12,9 +12,7 @@ use crate::formulate::arm::Arm;
 use crate::formulate::joint::Wrench;
 use crate::formulate::seven_steps::Motion;
 use crate::function::Argument;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Matrix, Symbol, Vector};
+use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
 
 /// What is known of a payload, in tip axes.
 #[derive(Clone, Copy)]

@@ -12,10 +12,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::formulate::arm::Arm;
 use crate::formulate::joint::JointState;
 use crate::formulate::seven_steps::{Motion, Turning};
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Matrix, Symbol, Vector};
+use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// Parameters of a link.
 pub(crate) const PARAMETERS: usize = 10;

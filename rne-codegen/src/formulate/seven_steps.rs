@@ -11,9 +11,7 @@
 
 use crate::formulate::arm::{Arm, Mount, identity};
 use crate::formulate::joint::{Joint, JointState, Wrench};
-use crate::ir::fold_report::Cause;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
+use crate::ir::{Builder, Cause, JointLines, Matrix, Quantity, Symbol, Vector};
 
 /// How a link turns, in its frame: what steps 1 and 2 find.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! The arguments of functions, and the arrays that they are passed in.
 
 use super::Length;
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 
 /// An argument of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

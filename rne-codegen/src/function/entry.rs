@@ -2,7 +2,7 @@
 
 use super::table::{Capability, Function};
 use super::{Answer, Argument, Returned};
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 
 /// What a caller must know of a function.
 #[derive(Debug)]

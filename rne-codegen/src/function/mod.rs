@@ -6,7 +6,7 @@ mod entry;
 mod layout;
 mod table;
 
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 use crate::named::named;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};

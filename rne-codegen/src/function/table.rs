@@ -5,7 +5,7 @@
 //! capability, so that the others keep their places, which are the ids of the C library.
 
 use super::{Answer, AnswerTable, Argument, Entry, Labels, MatrixUnit, Own, Returned, Signature};
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 use crate::named::named;
 
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,

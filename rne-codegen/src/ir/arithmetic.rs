@@ -132,9 +132,7 @@ impl Graph {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ir::name::Name;
-    use crate::ir::quantity::Quantity;
-    use crate::ir::{Embedding, Input, Number};
+    use crate::ir::{Embedding, Input, Name, Number, Quantity};
 
     fn inputs(policy: Policy) -> (Graph, Ref, Ref) {
         let mut graph = Graph::new(policy, Embedding::default());

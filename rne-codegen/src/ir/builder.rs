@@ -4,15 +4,11 @@ use std::cell::{Cell, RefCell};
 
 use rne_model::{Angle, Joint};
 
-use super::trace::{Birth, Definition, Trace, Traced};
 use super::{
-    CausesId, Embedding, ExactAngle, Graph, Input, Matrix, Number, Outcome, Policy, Ref, Symbol, TermId, Vector,
-    Written, WrittenTerms,
+    Axis, Birth, Cause, CausesId, Definition, Embedding, ExactAngle, Graph, Input, Matrix, Name, Number, Operation,
+    Outcome, Place, Policy, Quantity, Ref, Symbol, TermId, Trace, Traced, Vector, WithRespectTo, Written, WrittenTerms,
 };
 use crate::function::Function;
-use crate::ir::fold_report::{Cause, Operation, Place};
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Quantity};
 use crate::values::Operator;
 
 /// What moves in the formulas that are being written.

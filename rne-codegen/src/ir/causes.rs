@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::ir::fold_report::{Alternatives, Cause, Causes};
+use super::{Alternatives, Cause, Causes};
 
 /// The index of [`Causes`] in the trace that knows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -2,8 +2,7 @@
 
 use rne_model::Angle;
 
-use super::numbers::{Source, canonical};
-use super::{ExactAngle, Graph, Number, Op, Policy, Ref};
+use super::{ExactAngle, Graph, Number, Op, Policy, Ref, numbers::Source, numbers::canonical};
 
 impl Graph {
     /// What a reference to a constant is exactly.

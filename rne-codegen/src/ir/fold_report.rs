@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Quantity, Step};
+use super::{Axis, Name, Quantity, Step, WithRespectTo};
 
 /// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

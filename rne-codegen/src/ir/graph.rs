@@ -14,8 +14,10 @@ use std::collections::HashMap;
 
 use hashbrown::HashTable;
 
-use super::numbers::{Numbers, canonical, key};
-use super::{Embedding, ExactAngle, Input, Node, Number, Op, Ref, Residue, SamplePoint};
+use super::{
+    Embedding, ExactAngle, Input, Node, Number, Op, Ref, Residue, SamplePoint, numbers::Numbers, numbers::canonical,
+    numbers::key,
+};
 
 /// What the constructors of a graph may fold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::ir::quantity::{Axis, Component, Indices, Quantity};
+use super::{Axis, Component, Indices, Quantity};
 
 /// The full name of a number: `w2_z` is component z of ω of link 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -2,8 +2,7 @@
 
 use rne_model::{Angle, Double, InertiaReference, Joint, QuarterTurns, decimal_digits};
 
-use super::operators;
-use super::residue::Residue;
+use super::{operators, residue::Residue};
 
 /// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -4,8 +4,7 @@ use std::ops::{Add, Mul};
 
 use rne_model::QuarterTurns;
 
-use super::{Builder, CausesId, Number, Ref, TermId, operators};
-use crate::ir::quantity::Axis;
+use super::{Axis, Builder, CausesId, Number, Ref, TermId, operators};
 
 /// A number of a graph that is being written.
 #[derive(Clone, Copy)]

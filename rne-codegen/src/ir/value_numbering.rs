@@ -1,8 +1,6 @@
 //! Value numbering: the live part of a graph written once more, with equal values as one node.
 
-use super::{Birth, Definition, Graph, Op, Policy, Ref, Trace, Traced, mark_live};
-use crate::ir::fold_report::Place;
-use crate::ir::quantity::{Component, Quantity, Step};
+use super::{Birth, Component, Definition, Graph, Op, Place, Policy, Quantity, Ref, Step, Trace, Traced, mark_live};
 
 /// Writes what is live of `from` into `to`, a numbered graph, in its order: of equal values the first one stays.
 ///

@@ -4,8 +4,7 @@ use std::collections::HashSet;
 
 use super::{Lowering, sign};
 use crate::equation::{Equation, Operation, Term};
-use crate::ir::fold_report::{Causes, Fold};
-use crate::ir::{CausesId, Number, Op, Outcome, Ref, TermId, Written};
+use crate::ir::{Causes, CausesId, Fold, Number, Op, Outcome, Ref, TermId, Written};
 use crate::values::Operator;
 
 impl Lowering<'_> {

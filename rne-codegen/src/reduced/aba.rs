@@ -13,15 +13,12 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::{Builder, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::wrench::Wrench;
-
 use crate::reduced::forward::{Arm, Gradient};
 use crate::reduced::inward::{BodiesPer, Inward, Symmetric, Turned, full};
 use crate::reduced::rnea_derivatives::{Station, matter, stations};
-
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector, square};
+use crate::reduced::wrench::Wrench;
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 

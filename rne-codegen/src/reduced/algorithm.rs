@@ -1,5 +1,11 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
+use crate::formulate::inverse_mass_matrix;
+use crate::formulate::ldlt;
+use crate::formulate::payload::Payload;
+use crate::formulate::square;
+use crate::function::Function;
+use crate::ir::{Builder, Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::aba;
 use crate::reduced::backward::{torques, torques_with};
 use crate::reduced::crba::{self, BodiesPer};
@@ -8,15 +14,6 @@ use crate::reduced::joint_frames::JointFrames;
 use crate::reduced::momentum;
 use crate::reduced::payload::Load;
 use crate::reduced::rnea_derivatives::sensitivity;
-
-use crate::formulate::inverse_mass_matrix;
-use crate::formulate::ldlt;
-use crate::formulate::payload::Payload;
-use crate::formulate::square;
-use crate::function::Function;
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

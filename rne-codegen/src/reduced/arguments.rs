@@ -1,12 +1,12 @@
 //! What the formulas of the reduced form start from: arguments in the frames of its rows, and turns.
 
-use crate::function::Argument;
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, ExactAngle, Moving, Number, Symbol, Vector, by_quarters};
-use crate::reduced::joint_frames::JointFrame;
 use rne_model::QuarterTurns;
 
+use crate::function::Argument;
+use crate::ir::{
+    Axis, Builder, ExactAngle, Moving, Name, Number, Quantity, Symbol, Vector, WithRespectTo, by_quarters,
+};
+use crate::reduced::joint_frames::JointFrame;
 use crate::reduced::link_parameters::Triple;
 
 /// The name of what belongs to a group of joints, or to a single one.

@@ -8,6 +8,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::{Axis, Builder, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::choices::{JointPlan, Moment, Side};
 use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
@@ -17,10 +18,6 @@ use crate::reduced::link_parameters::PseudoInertia;
 use crate::reduced::payload::Load;
 use crate::reduced::regrouping::is_parallel;
 use crate::reduced::wrench::Wrench;
-
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Number, Symbol, Vector};
 
 /// What the link behind exerts, about the origin of its frame.
 #[derive(Clone, Copy)]

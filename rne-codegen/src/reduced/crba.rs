@@ -21,10 +21,8 @@ use crate::reduced::wrench::Wrench;
 
 pub(crate) use crate::reduced::inward::BodiesPer;
 
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::Axis::{self, X, Y, Z};
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector};
+use crate::ir::Axis::{self, X, Y, Z};
+use crate::ir::{Builder, Name, Number, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The matter of all links from one on. Its mass is a number.
 #[derive(Clone, Copy)]

@@ -10,13 +10,11 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::{Builder, Matrix, Number, Quantity, Symbol, Vector};
 use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::choices::{JointPlan, Plan, Side};
 use crate::reduced::joint_frames::{JointFrame, JointFrames};
 use crate::reduced::regrouping::{Parameters, group_start, is_parallel};
-
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Matrix, Number, Symbol, Vector};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
 #[derive(Clone, Copy)]

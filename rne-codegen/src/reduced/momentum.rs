@@ -12,16 +12,13 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::{Builder, Moving, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::backward::{Carried, inward};
 use crate::reduced::crba;
 use crate::reduced::forward::{Arm, Motion, Moved, motions};
 use crate::reduced::inward::BodiesPer;
 use crate::reduced::joint_frames::JointFrames;
 use crate::reduced::wrench::Wrench;
-
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Moving, Number, Symbol, Vector};
 
 /// p and its rate without external torques, base to tip.
 pub(crate) fn momentum_and_rate<'s>(

@@ -26,6 +26,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::{Builder, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::backward::antisymmetric_of;
 use crate::reduced::crba::Composite;
@@ -33,9 +34,6 @@ use crate::reduced::forward::{Arm, Gradient};
 use crate::reduced::inward::{BodiesPer, Carried, Inward, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
 use crate::reduced::wrench::Wrench;
-
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector, square};
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
 pub(crate) struct Sensitivity<'s> {

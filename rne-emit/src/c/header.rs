@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Name, Program, Quantity, Record};
+
 use super::signature::{fields, head, parameters_type, record_type, records};
 use super::{ConstantTooLarge, File, comment, observer};
 use crate::evidence::{evidence, refusals};
@@ -10,10 +12,6 @@ use crate::parameters::{self, Parameter};
 use crate::syntax::Precision;
 use crate::wrap::{TIED, WIDTH, fill};
 use crate::{inert, table};
-use rne_codegen::Name;
-use rne_codegen::Program;
-use rne_codegen::Quantity;
-use rne_codegen::Record;
 
 /// How both files begin.
 pub(super) fn title(file: &File) -> String {

@@ -8,15 +8,12 @@ mod source;
 
 use std::fmt;
 
+use rne_codegen::{Function, Name, Program, Quantity};
 use rne_model::Robot;
 
 use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
-use rne_codegen::Function;
-use rne_codegen::Name;
-use rne_codegen::Program;
-use rne_codegen::Quantity;
 
 pub use prefix::{BadPrefix, Prefix};
 pub(super) use signature::{inputs, record_name, result_elements};

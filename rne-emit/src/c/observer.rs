@@ -5,12 +5,12 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Function, Program, Record};
+
 use super::signature::{parameters_type, record_type};
 use super::{File, comment};
 use crate::parameters;
 use crate::wrap::{TIED, WIDTH, fill};
-use rne_codegen::Program;
-use rne_codegen::{Function, Record};
 
 /// What the observer is made on, if it is among the programs.
 fn program<'a>(file: &'a File) -> Option<&'a Program> {

@@ -2,12 +2,11 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{ArgumentArray, Layout, Program, Record};
+
 use super::File;
 use crate::parameters;
 use crate::wrap::{TIED, WIDTH, fill};
-use rne_codegen::ArgumentArray;
-use rne_codegen::Program;
-use rne_codegen::{Layout, Record};
 
 /// The argument arrays of a function, by names that are no functions of the C library.
 pub(crate) fn inputs(program: &Program) -> Vec<ArgumentArray> {

@@ -1,16 +1,16 @@
 //! What the layouts of deep expressions cost, and that a broken statement is the one of a single line.
 
 use fastrand::Rng;
+use rne_codegen::{
+    Compiler, Contraction, Expression, ExpressionKind, Form, Function, Name, Negated, Operator, Quantity, Value,
+    ValueId, Values,
+};
 
 use super::LineBreaks;
 use crate::annotated::Annotated;
 use crate::expression::line;
 use crate::syntax::{Precision, Syntax};
 use crate::wrap::WIDTH;
-use rne_codegen::Name;
-use rne_codegen::Quantity;
-use rne_codegen::{Compiler, Form, Function};
-use rne_codegen::{Contraction, Expression, ExpressionKind, Negated, Operator, Value, ValueId, Values};
 
 const LANGUAGES: [Syntax<'_>; 2] = [Syntax::Rust, Syntax::C { precision: Precision::Double, prefix: "arm" }];
 

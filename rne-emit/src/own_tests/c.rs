@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Function, Layout, Program};
 use rne_model::Robot;
 
 use super::{Golden, Law, floor, program, results};
@@ -9,8 +10,6 @@ use crate::Precision;
 use crate::c::{Prefix, inputs, result_elements};
 use crate::parameters::{self};
 use crate::wrap::{WIDTH, fill};
-use rne_codegen::Program;
-use rne_codegen::{Function, Layout};
 
 /// A function `main` for the end of a source of [`c_code`](crate::c_code), behind `#ifdef RNE_TEST`: it compares
 /// what the programs return at the given states, and tries laws of mechanics. It prints what is wrong, and returns 0

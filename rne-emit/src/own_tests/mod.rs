@@ -5,8 +5,7 @@
 mod c;
 mod rust;
 
-use rne_codegen::Function;
-use rne_codegen::Program;
+use rne_codegen::{Function, Program};
 
 pub use c::c_tests;
 pub use rust::rust_tests;

@@ -2,13 +2,12 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Function, Program};
 use rne_model::Robot;
 
 use super::{Golden, Law, MOTION, floor, program, results};
 use crate::parameters::{self, OF_RUST, Parameter};
 use crate::wrap::{WIDTH, fill};
-use rne_codegen::Function;
-use rne_codegen::Program;
 
 /// A module `tests` for the end of a file of [`rust_file`](crate::rust_file): what the programs return at the
 /// given states, in `f64` and to nine digits, and laws of mechanics. It needs `std`, which tests have.

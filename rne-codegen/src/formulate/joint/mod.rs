@@ -9,9 +9,7 @@ mod revolute;
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::arm::{Arm, Link, turned};
-use crate::ir::fold_report::Cause;
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
+use crate::ir::{Axis, Builder, Cause, JointLines, Matrix, Quantity, Symbol, Vector};
 
 /// A force and a moment.
 #[derive(Clone, Copy)]

@@ -2,9 +2,7 @@
 
 use super::Joint;
 use crate::formulate::joint::Wrench;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Symbol, Vector};
+use crate::ir::{Name, Quantity, Symbol, Vector};
 
 /// Of the constant θ.
 pub(super) fn sine_and_cosine<'s>(joint: &Joint<'_, 's>) -> (Symbol<'s>, Symbol<'s>) {

@@ -4,8 +4,7 @@ use rne_model::QuarterTurns;
 
 use super::Joint;
 use crate::formulate::joint::Wrench;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Symbol, Vector, by_quarters};
+use crate::ir::{Quantity, Symbol, Vector, by_quarters};
 
 /// Of θ + q. A right angle θ permutes and negates those of q exactly; any other is added to q.
 pub(super) fn sine_and_cosine<'s>(joint: &Joint<'_, 's>) -> (Symbol<'s>, Symbol<'s>) {
