@@ -1,13 +1,11 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
-use crate::formulate::inverse_mass_matrix;
-use crate::formulate::ldlt;
 use crate::formulate::payload::Payload;
-use crate::formulate::square;
+use crate::formulate::{self, Outputs, by_joint, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Builder, Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::aba;
-use crate::reduced::backward::{torques, torques_with};
+use crate::reduced::backward::torques;
 use crate::reduced::crba::{self, BodiesPer};
 use crate::reduced::forward::{Arm, motions};
 use crate::reduced::joint_frames::JointFrames;
@@ -126,10 +124,10 @@ pub(crate) fn write<'s>(
     arm: &Arm<'_>,
     function: Function,
     algorithm: Algorithm,
-) -> Option<Vec<(Name, Symbol<'s>)>> {
-    let by_joint = |quantity: Quantity, values: Vec<Symbol<'s>>| -> Vec<(Name, Symbol<'s>)> {
-        values.into_iter().enumerate().map(|(index, value)| (Name::scalar(quantity, index + 1), value)).collect()
-    };
+) -> Option<Outputs<'s>> {
+    let dof = arm.rows().len();
+    let upper_half = || mass_matrix(builder, arm, algorithm);
+    let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (function, algorithm) {
         (Function::GravityTorques, Algorithm::Crba(bodies_per)) => {
             by_joint(Quantity::Torque, crba::gravity_torques(builder, arm, bodies_per))
@@ -139,72 +137,30 @@ pub(crate) fn write<'s>(
             let [momenta, rates] = momentum::momentum_and_rate(builder, arm, bodies_per);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
-        (Function::MassMatrix, _) => {
-            let upper = mass_matrix(builder, arm, algorithm);
-            square(arm.rows().len(), |row, column| {
-                let (row, column) = (row.min(column), row.max(column));
-                let by = Some(WithRespectTo::RateDot(column + 1));
-                (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, upper[row][column - row])
-            })
-        }
-        (Function::InverseMassMatrix, _) => inverse_mass_matrix(builder, &mass_matrix(builder, arm, algorithm)),
+        (Function::MassMatrix, _) => formulate::mass_matrix(&upper_half()),
+        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &upper_half()),
         (Function::ForwardDynamics, Algorithm::Aba(bodies_per)) => {
             by_joint(Quantity::RateDot, aba::forward_dynamics(builder, arm, bodies_per))
         }
-        (Function::ForwardDynamics, _) => {
-            let upper = mass_matrix(builder, arm, algorithm);
-            let bias = recursion(builder, arm);
-            let rest: Vec<_> = bias
-                .into_iter()
-                .enumerate()
-                .map(|(index, torque)| {
-                    builder.at(Quantity::Reduced, index + 1);
-                    builder.torque(index) - torque
-                })
-                .collect();
-            by_joint(Quantity::RateDot, ldlt::solved(builder, &upper, &rest))
-        }
+        (Function::ForwardDynamics, _) => formulate::forward_dynamics(builder, &upper_half(), recursion(builder, arm)),
         (Function::InverseDynamicsDerivatives, Algorithm::Crba(bodies_per)) => {
             let found = sensitivity(builder, arm, bodies_per, Number::integer(2));
             let by = |kind: fn(usize) -> WithRespectTo, matrix: &[Vec<Symbol<'s>>]| {
-                square(arm.rows().len(), |row, column| {
-                    let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
-                    builder.name(name, matrix[row][column]);
-                    (name, matrix[row][column])
-                })
+                square(dof, |row, column| named(torque_by(row, kind(column + 1)), matrix[row][column]))
             };
             [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
         }
         (Function::CoriolisMatrix, Algorithm::Crba(bodies_per)) => {
             let found = sensitivity(builder, arm, bodies_per, Number::ONE);
-            square(arm.rows().len(), |row, column| {
-                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
-                builder.name(name, found.by_rate[row][column]);
-                (name, found.by_rate[row][column])
+            square(dof, |row, column| {
+                named(Name::indexed(Quantity::CoriolisElement, row + 1, column + 1), found.by_rate[row][column])
             })
         }
-        (Function::InverseDynamicsDerivatives, _) => {
-            let torques = recursion(builder, arm);
-            let by = |kind: fn(usize) -> WithRespectTo| {
-                let columns = builder.derivatives(&torques, (1..=torques.len()).map(kind));
-                square(torques.len(), |row, column| {
-                    let by = Some(kind(column + 1));
-                    (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, columns[column][row])
-                })
-            };
-            [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
-        }
+        (Function::InverseDynamicsDerivatives, _) => formulate::derivatives(builder, &recursion(builder, arm)),
         (Function::CoriolisMatrix, _) => {
             let torques = recursion(builder, arm);
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
-            let columns = builder.derivatives(&torques, (1..=torques.len()).map(WithRespectTo::Rate));
-            square(torques.len(), |row, column| {
-                builder.at(Quantity::CoriolisElement, row + 1);
-                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
-                let element = columns[column][row] * half;
-                builder.name(name, element);
-                (name, element)
-            })
+            formulate::coriolis_matrix(builder, &torques, half)
         }
         (
             Function::InverseDynamics
@@ -217,8 +173,8 @@ pub(crate) fn write<'s>(
         ) => {
             let moved = motions(builder, arm);
             let unturned = algorithm == Algorithm::UnturnedPayload;
-            let payload = Payload::argument(builder, arm.rows().len()).map(|payload| Load { payload, unturned });
-            by_joint(Quantity::Torque, torques_with(builder, arm, &moved, payload))
+            let payload = Payload::argument(builder, dof).map(|payload| Load { payload, unturned });
+            by_joint(Quantity::Torque, torques(builder, arm, &moved, payload))
         }
         // `Algorithm::of` matches them all
         _ => return None,
@@ -226,8 +182,7 @@ pub(crate) fn write<'s>(
 }
 
 fn recursion<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Symbol<'s>> {
-    let moved = motions(builder, arm);
-    torques(builder, arm, &moved)
+    torques(builder, arm, &motions(builder, arm), None)
 }
 
 /// The upper half of M.

@@ -29,13 +29,8 @@ struct Child<'s> {
     arm: [Number; 3],
 }
 
-/// The torques, base to tip.
-pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s>]) -> Vec<Symbol<'s>> {
-    torques_with(builder, arm, moved, None)
-}
-
-/// The same with what the last link carries.
-pub(crate) fn torques_with<'s>(
+/// The torques, base to tip, with what the last link carries.
+pub(crate) fn torques<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
     moved: &[Moved<'s>],
