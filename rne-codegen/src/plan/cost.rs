@@ -2,6 +2,7 @@
 
 use rne_model::{JointKind, Robot};
 
+use crate::formulate::Outputs;
 use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
@@ -96,6 +97,18 @@ impl FramedRobot {
             .then(|| parameters(&self.joint_frames, &self.offers, plan))?
     }
 
+    /// What the builder's function returns under a plan.
+    fn outputs<'s>(
+        &self,
+        builder: &'s Builder,
+        plan: &Plan,
+        parameters: &Parameters,
+        algorithm: Algorithm,
+    ) -> Option<Outputs<'s>> {
+        let bodies_per = algorithm.bodies_per();
+        algorithm::write(&Arm { builder, bodies_per, joint_frames: &self.joint_frames, plan, parameters }, algorithm)
+    }
+
     /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
     pub(crate) fn written(&self, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Formulation> {
         if plan.gyrostat && function.takes(Argument::Payload) {
@@ -104,8 +117,8 @@ impl FramedRobot {
         }
         let parameters = self.parameters(plan)?;
         let builder = Builder::traced(Policy::Value, self.joint_frames.embedding, function);
-        let arm = Arm { joint_frames: &self.joint_frames, plan, parameters: &parameters };
-        let (names, outputs) = algorithm::write(&builder, &arm, function, algorithm)?
+        let (names, outputs) = self
+            .outputs(&builder, plan, &parameters, algorithm)?
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
@@ -160,11 +173,8 @@ impl Evaluator {
         let frame = frames.iter().find(|frame| frame.is_of(plan))?;
         let parameters = frame.parameters(plan)?;
         builder.restart(frame.joint_frames.embedding);
-        let arm = Arm { joint_frames: &frame.joint_frames, plan, parameters: &parameters };
-        let outputs: Vec<Ref> = algorithm::write(builder, &arm, builder.function, algorithm)?
-            .into_iter()
-            .map(|(_, symbol)| symbol.at)
-            .collect();
+        let outputs = frame.outputs(builder, plan, &parameters, algorithm)?;
+        let outputs: Vec<Ref> = outputs.into_iter().map(|(_, symbol)| symbol.at).collect();
         let graph = builder.graph.get_mut();
         graph.outputs = outputs;
         number_values(graph, numbered, live, map);

@@ -3,7 +3,7 @@
 use crate::formulate::payload::Payload;
 use crate::formulate::{self, Outputs, by_joint, square, torque_by};
 use crate::function::Function;
-use crate::ir::{Builder, Name, Number, Quantity, Symbol, WithRespectTo};
+use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::aba;
 use crate::reduced::backward::torques;
 use crate::reduced::crba::{self, BodiesPer};
@@ -103,6 +103,14 @@ impl Algorithm {
         Self::of(function).iter().copied().filter(|algorithm| joints < MANY || !is_of_columns(*algorithm)).collect()
     }
 
+    /// How it gathers bodies, where it has some.
+    pub(crate) const fn bodies_per(self) -> BodiesPer {
+        match self {
+            Self::Crba(bodies_per) | Self::Aba(bodies_per) => bodies_per,
+            Self::Rnea | Self::UnitColumns | Self::UnturnedPayload => BodiesPer::Group,
+        }
+    }
+
     /// In words, for the choices of a program; nothing is said of the recursion.
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
@@ -119,46 +127,37 @@ impl Algorithm {
 
 /// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout; `None` for
 /// what has no reduced recursion.
-pub(crate) fn write<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    function: Function,
-    algorithm: Algorithm,
-) -> Option<Outputs<'s>> {
+pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outputs<'s>> {
+    let builder = arm.builder;
     let dof = arm.rows().len();
-    let upper_half = || mass_matrix(builder, arm, algorithm);
+    let upper_half = || mass_matrix(arm, algorithm);
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
-    Some(match (function, algorithm) {
-        (Function::GravityTorques, Algorithm::Crba(bodies_per)) => {
-            by_joint(Quantity::Torque, crba::gravity_torques(builder, arm, bodies_per))
-        }
-        (Function::MomentumAndRate, algorithm) => {
-            let bodies_per = if let Algorithm::Crba(bodies_per) = algorithm { bodies_per } else { BodiesPer::Group };
-            let [momenta, rates] = momentum::momentum_and_rate(builder, arm, bodies_per);
+    Some(match (builder.function, algorithm) {
+        (Function::GravityTorques, Algorithm::Crba(_)) => by_joint(Quantity::Torque, crba::gravity_torques(arm)),
+        (Function::MomentumAndRate, _) => {
+            let [momenta, rates] = momentum::momentum_and_rate(arm);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
         (Function::MassMatrix, _) => formulate::mass_matrix(&upper_half()),
         (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &upper_half()),
-        (Function::ForwardDynamics, Algorithm::Aba(bodies_per)) => {
-            by_joint(Quantity::RateDot, aba::forward_dynamics(builder, arm, bodies_per))
-        }
-        (Function::ForwardDynamics, _) => formulate::forward_dynamics(builder, &upper_half(), recursion(builder, arm)),
-        (Function::InverseDynamicsDerivatives, Algorithm::Crba(bodies_per)) => {
-            let found = sensitivity(builder, arm, bodies_per, Number::integer(2));
+        (Function::ForwardDynamics, Algorithm::Aba(_)) => by_joint(Quantity::RateDot, aba::forward_dynamics(arm)),
+        (Function::ForwardDynamics, _) => formulate::forward_dynamics(builder, &upper_half(), recursion(arm)),
+        (Function::InverseDynamicsDerivatives, Algorithm::Crba(_)) => {
+            let found = sensitivity(arm, Number::integer(2));
             let by = |kind: fn(usize) -> WithRespectTo, matrix: &[Vec<Symbol<'s>>]| {
                 square(dof, |row, column| named(torque_by(row, kind(column + 1)), matrix[row][column]))
             };
             [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
         }
-        (Function::CoriolisMatrix, Algorithm::Crba(bodies_per)) => {
-            let found = sensitivity(builder, arm, bodies_per, Number::ONE);
+        (Function::CoriolisMatrix, Algorithm::Crba(_)) => {
+            let found = sensitivity(arm, Number::ONE);
             square(dof, |row, column| {
                 named(Name::indexed(Quantity::CoriolisElement, row + 1, column + 1), found.by_rate[row][column])
             })
         }
-        (Function::InverseDynamicsDerivatives, _) => formulate::derivatives(builder, &recursion(builder, arm)),
+        (Function::InverseDynamicsDerivatives, _) => formulate::derivatives(builder, &recursion(arm)),
         (Function::CoriolisMatrix, _) => {
-            let torques = recursion(builder, arm);
+            let torques = recursion(arm);
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
             formulate::coriolis_matrix(builder, &torques, half)
         }
@@ -171,32 +170,31 @@ pub(crate) fn write<'s>(
             | Function::BiasTorques,
             algorithm,
         ) => {
-            let moved = motions(builder, arm);
+            let moved = motions(arm);
             let unturned = algorithm == Algorithm::UnturnedPayload;
             let payload = Payload::argument(builder, dof).map(|payload| Load { payload, unturned });
-            by_joint(Quantity::Torque, torques(builder, arm, &moved, payload))
+            by_joint(Quantity::Torque, torques(arm, &moved, payload))
         }
         // `Algorithm::of` matches them all
         _ => return None,
     })
 }
 
-fn recursion<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Symbol<'s>> {
-    torques(builder, arm, &motions(builder, arm), None)
+fn recursion<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
+    torques(arm, &motions(arm), None)
 }
 
 /// The upper half of M.
-fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s>>> {
-    let Algorithm::UnitColumns = algorithm else {
-        let bodies_per = if let Algorithm::Crba(bodies_per) = algorithm { bodies_per } else { BodiesPer::Joint };
-        return crba::mass_matrix(builder, arm, bodies_per);
-    };
+fn mass_matrix<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s>>> {
+    if algorithm != Algorithm::UnitColumns {
+        return crba::mass_matrix(arm);
+    }
     let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
-    let still = Arm { joint_frames: &joint_frames, plan: arm.plan, parameters: arm.parameters };
+    let still = Arm { joint_frames: &joint_frames, ..*arm };
     let dof = arm.rows().len();
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
     for column in 0..dof {
-        let torques = builder.accelerating(column, || recursion(builder, &still));
+        let torques = arm.builder.accelerating(column, || recursion(&still));
         for (row, torque) in torques.into_iter().take(column + 1).enumerate() {
             rows[row].push(torque);
         }

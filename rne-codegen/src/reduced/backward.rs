@@ -30,13 +30,8 @@ struct Child<'s> {
 }
 
 /// The torques, base to tip, with what the last link carries.
-pub(crate) fn torques<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    moved: &[Moved<'s>],
-    payload: Option<Load<'s>>,
-) -> Vec<Symbol<'s>> {
-    inward(builder, arm, moved, payload).into_iter().map(|carried| carried.torque).collect()
+pub(crate) fn torques<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Symbol<'s>> {
+    inward(arm, moved, payload).into_iter().map(|carried| carried.torque).collect()
 }
 
 /// A joint's torque, and the wrench that is behind it: of the link and all that it carries, about the origin of its
@@ -48,14 +43,9 @@ pub(crate) struct Carried<'s> {
 }
 
 /// The way back, base to tip.
-pub(crate) fn inward<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    moved: &[Moved<'s>],
-    payload: Option<Load<'s>>,
-) -> Vec<Carried<'s>> {
-    let rows = arm.rows();
-    let tip = tip_wrench(builder, arm);
+pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Carried<'s>> {
+    let (builder, rows) = (arm.builder, arm.rows());
+    let tip = tip_wrench(arm);
     let mut found = Vec::with_capacity(rows.len());
     let mut child: Option<Child<'s>> = None;
     for index in (0..rows.len()).rev() {
@@ -64,22 +54,22 @@ pub(crate) fn inward<'s>(
         let tip = tip.filter(|_| index + 1 == rows.len());
         let nothing = Wrench::zero(builder);
         let ((torque, next), own, unturned) = if arm.is_spin(index) {
-            (spin(builder, arm, index, link, tip), nothing, nothing)
+            (spin(arm, index, link, tip), nothing, nothing)
         } else {
             let payload = payload.filter(|_| index + 1 == rows.len());
-            let (own, unturned) = own_wrench(builder, arm, index, link, payload);
+            let (own, unturned) = own_wrench(arm, index, link, payload);
             let own = tip.map_or(own, |tip| own.plus(tip));
-            let (own, unturned) = with_child(builder, arm, index, link, child, own, unturned);
+            let (own, unturned) = with_child(arm, index, link, child, own, unturned);
             match rows[index].kind {
                 Prismatic => {
                     let own = own.plus(unturned);
-                    (origin_shift(builder, arm, index, link, own), own, nothing)
+                    (origin_shift(arm, index, link, own), own, nothing)
                 }
-                Revolute => (turn(builder, arm, index, link, own, unturned), own, unturned),
+                Revolute => (turn(arm, index, link, own, unturned), own, unturned),
             }
         };
         builder.at(Quantity::Torque, index + 1);
-        let torque = torque + builder.rate_dot(rows, index).times(arm.joint_frames.rotors[index]);
+        let torque = torque + arm.rate_dot(index).times(arm.joint_frames.rotors[index]);
         let torque = if rows[index].reversed { -torque } else { torque };
         builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
         found.push(Carried { torque, own, unturned });
@@ -90,8 +80,9 @@ pub(crate) fn inward<'s>(
 }
 
 /// What the last link exerts at the tip, about the origin of its frame and in its axes.
-fn tip_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Option<Wrench<'s>> {
-    let (force, moment) = builder.wrench(arm.rows().len())?;
+fn tip_wrench<'s>(arm: &Arm<'_, 's>) -> Option<Wrench<'s>> {
+    let builder = arm.builder;
+    let (force, moment) = arm.wrench()?;
     let tip = &arm.joint_frames.tip;
     let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
     let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
@@ -103,15 +94,14 @@ fn tip_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Option<Wrench<'s>> {
 
 /// A last link that is a sphere without mass: it keeps its spin, and q itself is not needed (section 5.6).
 fn spin<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     tip: Option<Wrench<'s>>,
 ) -> (Symbol<'s>, Option<Child<'s>>) {
-    let rows = arm.rows();
+    let (builder, rows) = (arm.builder, arm.rows());
     let c = arm.parameters.sphere.unwrap_or_default();
-    let (momentum, rate_dot) = (builder.rate(rows, index).times(c), builder.rate_dot(rows, index).times(c));
+    let (momentum, rate_dot) = (arm.rate(index).times(c), arm.rate_dot(index).times(c));
     let ([wx, wy, _], [_, _, dz]) = (link.own.omega.0, link.own.omega_dot.0);
     let torque = dz.times(c) + rate_dot;
     let (offset, d) = arm.lengths(index, length_inward(arm));
@@ -129,18 +119,18 @@ fn spin<'s>(
 }
 
 /// 1/μ: lengths of the way back.
-fn length_inward(arm: &Arm<'_>) -> Number {
+fn length_inward(arm: &Arm<'_, '_>) -> Number {
     arm.parameters.mu.inverse().unwrap_or(Number::ONE)
 }
 
 /// F and N of the link itself: the part in its frame, and the part in frame N.
 fn own_wrench<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     payload: Option<Load<'s>>,
 ) -> (Wrench<'s>, Wrench<'s>) {
+    let builder = arm.builder;
     let JointPlan { moment, switches: on, .. } = arm.plan.joints[index];
     let matter = &arm.parameters.links[index];
     let is_revolute = arm.rows()[index].kind != Prismatic;
@@ -148,14 +138,14 @@ fn own_wrench<'s>(
     let (mut own, mut unturned) = (Wrench::zero(builder), Wrench::zero(builder));
     let h = builder.vector(matter.h);
     if on.first_moment_unturned && is_revolute {
-        unturned = first_moment(builder, arm, &link.unturned, matter, link.group_turn.about_z(h));
+        unturned = first_moment(arm, &link.unturned, matter, link.group_turn.about_z(h));
     } else {
-        own = first_moment(builder, arm, &link.own, matter, h);
+        own = first_moment(arm, &link.own, matter, h);
     }
     if let Some(load) = payload {
         // second moments of both at once
         let to_unturned = load.unturned && is_revolute;
-        let both = load.with_link(builder, arm, link, matter, to_unturned);
+        let both = load.with_link(arm, link, matter, to_unturned);
         if to_unturned { unturned = unturned.plus(both) } else { own = own.plus(both) }
     } else if on.second_moment_unturned && is_revolute {
         let s = turned_second_moment(builder, matter, link.group_turn);
@@ -167,16 +157,10 @@ fn own_wrench<'s>(
 }
 
 /// F = m a + U h and h × a.
-fn first_moment<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    motion: &Motion<'s>,
-    matter: &PseudoInertia,
-    h: Vector<'s>,
-) -> Wrench<'s> {
+fn first_moment<'s>(arm: &Arm<'_, 's>, motion: &Motion<'s>, matter: &PseudoInertia, h: Vector<'s>) -> Wrench<'s> {
     let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
     let per_length = lambda.inverse().unwrap_or(Number::ONE);
-    let mass = builder.number(matter.mass * mu * per_length);
+    let mass = arm.builder.number(matter.mass * mu * per_length);
     Wrench {
         force: motion.acceleration * mass + motion.gradient.of(h.times(mu)),
         moment: h.times(per_length).cross(motion.acceleration),
@@ -244,8 +228,7 @@ fn turned_second_moment<'s>(
 
 /// Adds what the link behind exerts.
 fn with_child<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     child: Option<Child<'s>>,
@@ -253,7 +236,7 @@ fn with_child<'s>(
     unturned: Wrench<'s>,
 ) -> (Wrench<'s>, Wrench<'s>) {
     let Some(child) = child else { return (own, unturned) };
-    let p = builder.vector(child.arm);
+    let p = arm.builder.vector(child.arm);
     let Wrench { force, moment } = child.wrench;
     let to_unturned = arm.plan.joints[index].switches.wrench_unturned && arm.rows()[index].kind != Prismatic;
     match (child.unturned, to_unturned) {
@@ -273,13 +256,13 @@ fn with_child<'s>(
 
 /// A revolute joint: its torque, and what its link exerts on the one before.
 fn turn<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     own: Wrench<'s>,
     unturned: Wrench<'s>,
 ) -> (Symbol<'s>, Option<Child<'s>>) {
+    let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
     let JointPlan { inward_offset, switches: on, .. } = arm.plan.joints[index];
@@ -318,19 +301,19 @@ fn turn<'s>(
 
 /// A prismatic joint.
 fn origin_shift<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     wrench: Wrench<'s>,
 ) -> (Symbol<'s>, Option<Child<'s>>) {
+    let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
     let per_force = length_inward(arm);
     let (offset, d) = arm.lengths(index, per_force);
     builder.name_vector(Quantity::ReducedForce, joint, wrench.force);
     builder.name_vector(Quantity::ReducedMoment, joint, wrench.moment);
-    let q = builder.position(rows, index).times(per_force) + builder.number(d);
+    let q = arm.position(index).times(per_force) + builder.number(d);
     let u = builder.vector(row.axis);
     let torque = u.dot(wrench.force).times(per_force);
     if row.carried {

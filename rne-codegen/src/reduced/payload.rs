@@ -25,12 +25,12 @@ impl<'s> Load<'s> {
     /// What the payload asks for, and the second moments of the last link with it: about the origin of the last frame.
     pub(crate) fn with_link(
         &self,
-        builder: &'s Builder,
-        arm: &Arm<'_>,
+        arm: &Arm<'_, 's>,
         link: &Moved<'s>,
         matter: &PseudoInertia,
         unturned: bool,
     ) -> Wrench<'s> {
+        let builder = arm.builder;
         let Payload { mass, com, inertia } = self.payload;
         let tip = &arm.joint_frames.tip;
         let rotation = Matrix(tip.rotation.map(|row| builder.vector(row)));
