@@ -39,11 +39,11 @@ pub enum Term {
 /// An operation of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operation {
-    /// Which one.
+    /// The operator.
     pub operator: Operator,
     /// Left and right.
     pub operands: [Term; 2],
-    /// What became of it.
+    /// Its fate in the code.
     pub fold: Fold,
     /// All that makes it a zero, or leaves one operand alone; `None` where nothing of the arm does.
     pub causes: Option<Causes>,

@@ -22,7 +22,7 @@ pub enum CompileError {
         function: Function,
         /// The first number returned that differs, counted from 1: for torques, the joint.
         output: usize,
-        /// What may be the cause.
+        /// The probable cause.
         suspect: Suspect,
     },
     /// Code that rounds too far away from the seven steps; it is never emitted.
@@ -31,7 +31,7 @@ pub enum CompileError {
         function: Function,
         /// The largest difference, relative to the largest number returned.
         rounding: f64,
-        /// What may be the cause.
+        /// The probable cause.
         suspect: Suspect,
     },
     /// Two variables of one name, of which the second would shadow the first; it is never emitted.
@@ -41,7 +41,7 @@ pub enum CompileError {
         /// The name.
         name: String,
     },
-    /// A function of so many joints that no compiler would take its code.
+    /// A function whose code no compiler would take, for the arm has too many joints.
     TooLarge {
         /// The function.
         function: Function,
@@ -63,24 +63,24 @@ pub enum CompileError {
         function: Function,
         /// The line of the graph, counted from 1.
         line: usize,
-        /// What is wrong there.
+        /// The mistake, in words.
         message: String,
     },
 }
 
-/// What helps against an error of a plan. Each interface says it in its own words: the command line names its options.
+/// A remedy for an error of a plan. Each interface says it in its own words: the command line names its options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
     /// A search that leaves out what is wrong in the plan and finds the rest anew.
     SearchAfresh,
-    /// The same with rewriting, so that the graph is written anew too.
+    /// Such a search with rewriting, so that the graph is written anew too.
     RewriteAfresh,
     /// A search from the plan at hand on, which counts the operations anew.
     CountAnew,
 }
 
-/// What may be the cause when a form is refused.
+/// The probable cause of the refusal of a form.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Suspect {
@@ -93,7 +93,6 @@ pub struct Suspect {
 /// A number of a robot that is very large or very small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extreme {
-    /// What it is, and its link.
     what: &'static str,
     link: usize,
     value: f64,
@@ -145,7 +144,7 @@ impl CompileError {
         matches!(self, Self::NotIdentical { .. } | Self::Imprecise { .. })
     }
 
-    /// What helps, where that is another plan.
+    /// The remedy for the error, where another plan is one.
     #[must_use]
     pub const fn remedy(&self) -> Option<Remedy> {
         match self {

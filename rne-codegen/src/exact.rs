@@ -28,7 +28,7 @@ impl ExactFunction {
         Self { graph: builder.finish(outputs).graph }
     }
 
-    /// What the function returns at a point, in the order of its layout. Points are counted from 1.
+    /// The numbers that the function returns at a point, in the order of its layout. Points are counted from 1.
     #[must_use]
     pub fn at(&self, point: u64) -> Vec<Residue> {
         self.at_point(&SamplePoint::new(self.graph.embedding(), point))

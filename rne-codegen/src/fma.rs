@@ -64,7 +64,7 @@ pub fn instructions(program: &Program) -> usize {
     instructions.sum()
 }
 
-/// Which products are fused with what they are added to.
+/// The choice of the products that are fused with what they are added to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fusing {
     /// All.
@@ -150,7 +150,7 @@ enum Named {
 /// the value itself, and behind it a sum of one term for a statement that gives a value another name.
 struct Sums<'p> {
     program: &'p Program,
-    /// Which node a value is.
+    /// By value: its node.
     terms: Vec<Term>,
     /// By node: the terms of a sum.
     terms_of: Vec<Option<Vec<Term>>>,
@@ -232,7 +232,7 @@ impl<'p> Sums<'p> {
         Term::plus(named)
     }
 
-    /// What statements are made of: arguments, constants, angles, sines and cosines.
+    /// Whether a value is an argument, a constant, an angle, a sine or a cosine: statements are made of them.
     fn is_leaf(&self, id: ValueId) -> bool {
         id.index() < self.program.before_statements()
     }

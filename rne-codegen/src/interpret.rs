@@ -19,7 +19,7 @@ pub struct Arguments<'a, T> {
     pub force: [T; 3],
     /// Moment that the last link exerts at the tip, N m.
     pub moment: [T; 3],
-    /// What is fixed to the tip: mass, kg; centre of mass x, y, z from the origin of the tip frame, m; inertia about it
+    /// The payload at the tip: mass, kg; centre of mass x, y, z from the origin of the tip frame, m; inertia about it
     /// xx, yy, zz, xy, xz, yz, kg m², all in tip axes.
     pub payload: [T; 10],
     /// Joint torques.
@@ -56,7 +56,7 @@ pub struct Interpreter {
     outputs: Vec<ValueId>,
 }
 
-/// What a number of the interpreter can do.
+/// A number of the interpreter.
 pub trait Real:
     Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {

@@ -81,7 +81,7 @@ use crate::prove::Reference;
 #[derive(Clone, Debug)]
 pub struct Compiler<'r> {
     robot: &'r Robot,
-    /// Those of a plan file, or those that the build makes by itself when they are first needed.
+    /// The plans of a plan file, or those that the build makes by itself when they are first needed.
     plans: OnceLock<PlanSet>,
     target: Target,
     intermediates: Vec<Quantity>,

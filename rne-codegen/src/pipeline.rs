@@ -17,7 +17,7 @@ use crate::reduced::algorithm::Algorithm;
 /// nothing folds. Its text is some 15 MB.
 pub(crate) const LARGEST: usize = 500_000;
 
-/// What a program is arranged for.
+/// The purpose that a program is arranged for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
     /// The shortest wait for the result of one call ([`fma::ordered_for_latency`]); the fewest instructions where a
@@ -129,7 +129,7 @@ impl<'r> Reference<'r> {
     }
 
     /// Whether a formulation can be proved, and how many times less precise than the seven steps it is in single
-    /// precision, on the average of so many states; `None` when it is another function.
+    /// precision, on the average of random states; `None` when it is another function.
     ///
     /// # Errors
     /// When it cannot be lowered.

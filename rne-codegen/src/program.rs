@@ -37,9 +37,9 @@ pub struct Program {
     pub statements: Vec<Statement>,
     /// The values returned, in the order of [`Function::layout`], then what was asked to be kept.
     pub outputs: Vec<Output>,
-    /// What every quantity of the recursion became, in its order.
+    /// The fate of every quantity of the recursion, in its order.
     pub resolutions: Vec<Resolution>,
-    /// What became of every operation of the recursion.
+    /// The fate of every operation of the recursion.
     pub fold_report: FoldReport,
     /// Its formulas before folding, component by component in the order in which they are computed; only of the seven
     /// steps, and only when they were asked for ([`crate::Compiler::with_equations`]).
@@ -66,15 +66,15 @@ pub struct Proof {
     /// The largest difference of a torque from the seven steps there in double precision, relative to the largest
     /// torque.
     pub rounding: f64,
-    /// The same in single precision, from double precision.
+    /// The largest difference in single precision, from double precision.
     pub single: f64,
-    /// The same of the seven steps themselves in single precision.
+    /// The largest difference of the seven steps themselves in single precision.
     pub single_of_seven_steps: f64,
     /// (products, sums) of the seven steps before folding.
     pub before: (usize, usize),
 }
 
-/// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
+/// The exact constants of a program: each as a number and, if it is an angle, as a turn.
 pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A named constant. A number that is two entries of the table stands under each name that the statements use.
@@ -119,16 +119,16 @@ pub struct Output {
     pub value: ValueId,
 }
 
-/// What a component of a quantity became.
+/// The fate of a component of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolution {
     /// The component.
     pub name: Name,
-    /// What it became.
+    /// Its fate in the code.
     pub value: ResolvedAs,
 }
 
-/// What a component of a quantity became in the code.
+/// The fate of a component of a quantity in the code.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResolvedAs {
     /// It is computed by the statement of its own name.
@@ -204,7 +204,7 @@ impl Program {
         })
     }
 
-    /// What the statements compute, then what is returned.
+    /// The expressions of the statements, then those that are returned.
     pub fn expressions(&self) -> impl Iterator<Item = Expression<'_>> {
         let statements = self.statements.iter().map(|statement| self.values.defined(statement.value));
         statements.chain(self.outputs.iter().map(|output| self.values.used(output.value)))

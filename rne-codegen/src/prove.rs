@@ -26,7 +26,7 @@ const SINGULAR: f64 = 0.1;
 /// torques at least.
 const LEAST_SCALE: f64 = 1e-2;
 
-/// What programs are held against: the seven steps, compiled.
+/// The seven steps, compiled: programs are compared with them.
 #[derive(Debug)]
 pub struct Reference<'r> {
     robot: &'r Robot,
@@ -169,7 +169,7 @@ fn argument(robot: &Robot, point: &SamplePoint, name: Name) -> Value {
     Value::number(point.argument(Input::new(name)))
 }
 
-/// What a program returns at a point.
+/// The results of a program at a point.
 fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &SamplePoint) -> Option<Vec<Residue>> {
     let dof = robot.dof();
     let joints = |quantity| -> Vec<Value> {
@@ -237,7 +237,7 @@ struct Errors {
 }
 
 /// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
-/// where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
+/// without limits, |q̇| ≤ 2, |q̈| ≤ 4.
 fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Program, states: usize) -> Vec<Errors> {
     let mut all = Vec::with_capacity(states);
     let steps = Interpreter::new(faithful);

@@ -76,7 +76,7 @@ pub struct Contraction {
     pub factors: [ValueId; 2],
     /// z.
     pub addend: ValueId,
-    /// What a difference negates.
+    /// The part that a difference negates.
     pub negated: Option<Negated>,
 }
 

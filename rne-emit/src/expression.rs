@@ -101,7 +101,7 @@ pub(super) struct Measure {
     pub(super) kind: Kind,
 }
 
-/// What a part of an expression is.
+/// The kind of a part of an expression.
 pub(super) enum Kind {
     /// A name, or zero.
     Word(Annotated),

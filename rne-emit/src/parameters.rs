@@ -23,7 +23,7 @@ pub(super) struct Parameter {
 }
 
 impl Parameter {
-    /// Those of a robot in their order, as members of a struct in a language with these keywords.
+    /// The parameters of a robot in their order, as members of a struct in a language with these keywords.
     pub(super) fn of(robot: &Robot, keywords: &str) -> Vec<Self> {
         let run_time = &robot.run_time;
         let parameter = |(index, (name, value)): (usize, (&String, f64))| {
@@ -38,7 +38,7 @@ impl Parameter {
         run_time.names.iter().zip(run_time.values(robot)).enumerate().map(parameter).collect()
     }
 
-    /// What it is, for the documentation of its member: its value in the file, its unit, what depends on it.
+    /// The documentation of its member: its value in the file, its unit, what depends on it.
     pub(super) fn about(&self) -> String {
         let mut text = String::new();
         if self.name != self.member {

@@ -1,4 +1,4 @@
-//! What motors behind gears add: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇). Rotor gyroscopics are left out.
+//! Torques that motors with gears add: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇). Rotor gyroscopics are left out.
 
 use rne_model::{Entry, Robot};
 

@@ -129,7 +129,7 @@ impl<'s> Arm<'s> {
         }
     }
 
-    /// What a link carries on the way to the tip: the next joint, or the tip.
+    /// The mount of what a link carries on the way to the tip: the next joint, or the tip.
     pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
         self.links.iter().find(|link| link.parent == Some(index)).map_or(&self.tip, |link| &link.mount)
     }

@@ -74,7 +74,7 @@ fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) 
         .collect()
 }
 
-/// What a link has in the centre of mass, μ_i c_i, and what a first moment beside its mass has.
+/// The part of a link in the centre of mass, μ_i c_i, with that of a first moment beside its mass.
 fn with_first_moment<'s>(
     arm: &Arm<'s>,
     frames: &Frames<'s>,
@@ -85,8 +85,8 @@ fn with_first_moment<'s>(
     arm.links[index].first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
 }
 
-/// What part of the mass each link has, and one by the mass: constants, unless a mass is given at run time. Of an arm
-/// without mass, what is not finite: a product with its zeros would fold.
+/// The part of the mass that each link has, and one by the mass: constants, unless a mass is given at run time. Of an
+/// arm without mass, what is not finite: a product with its zeros would fold.
 fn parts<'s>(arm: &Arm<'s>) -> Result<(Vec<Symbol<'s>>, Symbol<'s>), Symbol<'s>> {
     let builder = arm.builder;
     let line = builder.joint(arm.links.len());

@@ -1,4 +1,4 @@
-//! Which formulas a function of a robot is made of: the seven steps and what stands beside them, written on a builder.
+//! Formulas of each function of a robot: the seven steps and what stands beside them, written on a builder.
 
 pub(crate) mod actuation;
 pub(crate) mod arm;
@@ -23,7 +23,7 @@ use crate::formulate::seven_steps::{Load, Motion};
 use crate::function::{Argument, Function};
 use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
-/// What a function of a robot returns, by name, in the order of its layout. Zeros of the function are put in before
+/// The results of a function of a robot, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.
 pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> Vec<(Name, Ref)> {
     let derivation = Derivation::new(builder, robot, function);
@@ -56,7 +56,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
 
-/// What a function returns, by name, in the order of its layout.
+/// The results of a function, by name, in the order of its layout.
 pub(crate) type Outputs<'s> = Vec<(Name, Symbol<'s>)>;
 
 /// A function being written.

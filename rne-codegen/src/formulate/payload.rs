@@ -14,7 +14,7 @@ use crate::formulate::seven_steps::Motion;
 use crate::function::Argument;
 use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
 
-/// What is known of a payload, in tip axes.
+/// A payload, in tip axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Payload<'s> {
     pub(crate) mass: Symbol<'s>,
@@ -38,7 +38,7 @@ impl<'s> Payload<'s> {
         })
     }
 
-    /// What the last link exerts on it, at the tip, in tip axes.
+    /// The wrench that the last link exerts on it, at the tip, in tip axes.
     pub(crate) fn wrench(&self, arm: &Arm<'s>, last: &Motion<'s>) -> Wrench<'s> {
         let Self { mass, com, inertia } = *self;
         let dof = arm.links.len();

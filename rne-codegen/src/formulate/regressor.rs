@@ -64,7 +64,7 @@ pub(crate) fn regressor<'s>(
     rows
 }
 
-/// Of an element of Y; all counted from 0.
+/// The name of an element of Y; joint, link and parameter are counted from 0.
 pub(crate) fn element_name(joint: usize, link: usize, parameter: usize) -> Name {
     Name { indices: [link + 1, parameter + 1], ..Name::scalar(Quantity::RegressorElement, joint + 1) }
 }

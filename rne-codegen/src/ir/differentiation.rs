@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{Birth, Builder, Cause, Definition, Input, Name, Op, Place, Ref, Symbol, WithRespectTo, mark_live};
 
-/// What is differentiated: the graph as it was before.
+/// The graph that is differentiated, as it was before.
 struct Formulas {
     ops: Vec<Op>,
     births: Vec<Option<Birth>>,

@@ -19,18 +19,18 @@ use super::{
     numbers::key,
 };
 
-/// What the constructors of a graph may fold.
+/// The rule by which the constructors of a graph fold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Policy {
-    /// What is exact in floating point.
+    /// Only identities that are exact in floating point fold.
     Structure,
-    /// What is equal as numbers.
+    /// Equal numbers fold.
     Value,
-    /// The same, and equal values are one node.
+    /// Equal numbers fold, and equal values are one node.
     Numbered,
 }
 
-/// What became of an operation.
+/// The result of writing an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// A new node: it will be computed, unless it turns out dead.
@@ -63,7 +63,7 @@ pub(crate) struct Graph {
     pub(super) policy: Policy,
     /// Where the residues are taken, and how constants are read there.
     pub(crate) point: SamplePoint,
-    /// What constants are that are angles, by their places.
+    /// The turns of constants that are angles, by their places.
     pub(super) turns: HashMap<u32, ExactAngle>,
     /// Indices of nodes by operation and by value. Looked up, never iterated.
     structures: HashTable<u32>,
@@ -204,7 +204,7 @@ impl Graph {
         }
     }
 
-    /// What no operation computes: by value where values are looked up.
+    /// A node that no operation computes: by value where values are looked up.
     pub(super) fn leaf(&mut self, op: Op, residue: Residue) -> Ref {
         if self.policy == Policy::Structure {
             return self.intern(op, residue).0;

@@ -41,7 +41,8 @@ impl Residue {
         self == Self::ZERO
     }
 
-    /// Of an image and its negative, one is the negative one: images have no order, this only picks one of the two.
+    /// Whether it is the negative one of an image and its negative: images have no order, this only picks one of the
+    /// two.
     pub(crate) fn is_negative(self) -> bool {
         match self.0 {
             [0, second] => second > MASK / 2,
@@ -54,8 +55,8 @@ impl Residue {
         self.0[0].wrapping_mul(0x9E37_79B9_7F4A_7C15)
     }
 
-    /// What stands for a value that is chosen by a sign, of which no field knows anything: the same for the same
-    /// operands, and its negative for both values negated.
+    /// The image of a value that is chosen by a sign, of which no field knows anything: the same for the same operands,
+    /// and its negative for both values negated.
     pub(crate) fn by_sign([x, positive, negative]: [Self; 3]) -> Self {
         if positive.is_zero() && negative.is_zero() {
             return Self::ZERO;

@@ -1,5 +1,5 @@
-//! What is told of a graph beside it, for those who read the code: names, places, causes, and what became of every
-//! operation. A search, which counts thousands of plans, keeps none.
+//! The trace of a graph, for those who read the code: names, places, causes, and what became of every operation. A
+//! search, which counts thousands of plans, keeps none.
 
 use std::collections::HashMap;
 

@@ -10,7 +10,7 @@ pub(crate) fn number_values(from: &Graph, to: &mut Graph, live: &mut Vec<bool>, 
 }
 
 impl Traced {
-    /// The same with its trace: a name stays with its value, wherever that is computed now.
+    /// Numbers the values of a graph and its trace: a name stays with its value, wherever that is computed now.
     pub(crate) fn numbered(self) -> Self {
         let Self { graph, trace: told } = self;
         let mut numbered = Graph::new(Policy::Numbered, graph.embedding());

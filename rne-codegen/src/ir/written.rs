@@ -18,7 +18,7 @@ impl TermId {
 pub(crate) enum Written {
     /// A node: a number, an argument, or what was written on the graph alone.
     Node(Ref, CausesId),
-    /// What has a name.
+    /// A term with a name.
     Named(Name),
     /// -a
     Negative(TermId),

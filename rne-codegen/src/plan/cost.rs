@@ -1,4 +1,4 @@
-//! What a plan costs: the form is written, equal values are merged, and what is left is counted.
+//! The cost of a plan: the form is written, equal values are merged, and what is left is counted.
 
 use rne_model::{JointKind, Robot};
 
@@ -23,7 +23,7 @@ pub(crate) struct FramedRobot {
 /// The choices that a robot leaves open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OpenChoices {
-    /// Those of each joint, base to tip.
+    /// The choices of each joint, base to tip.
     pub joints: Vec<OpenJoint>,
     /// The different lengths of the robot, in which lengths and forces can be measured.
     pub lengths: Vec<Scale>,
@@ -97,7 +97,7 @@ impl FramedRobot {
             .then(|| parameters(&self.joint_frames, &self.offers, plan))?
     }
 
-    /// What the builder's function returns under a plan.
+    /// The results of the builder's function under a plan.
     fn outputs<'s>(
         &self,
         builder: &'s Builder,
@@ -162,12 +162,12 @@ impl Evaluator {
         }
     }
 
-    /// What a plan costs; `None` when it does not apply to the robot.
+    /// The cost of a plan; `None` when it does not apply to the robot.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
         self.cost_of(plan, Algorithm::Rnea)
     }
 
-    /// What a plan costs when the function is written in one of its ways.
+    /// The cost of a plan when the function is written in one of its ways.
     pub(crate) fn cost_of(&mut self, plan: &Plan, algorithm: Algorithm) -> Option<Cost> {
         let Self { frames, builder, numbered, live, map } = self;
         let frame = frames.iter().find(|frame| frame.is_of(plan))?;

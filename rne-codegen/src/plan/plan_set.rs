@@ -89,7 +89,7 @@ impl PlanSet {
     }
 }
 
-/// What may be better for an arm with a payload: what is best for the last link alone need not be for both.
+/// Changes that may be better for an arm with a payload: what is best for the last link alone need not be for both.
 const FOR_A_PAYLOAD: [fn(&mut Plan); 6] = [
     // the payload would be turned with it
     |plan| plan.turned_last_frame = false,

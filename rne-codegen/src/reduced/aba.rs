@@ -22,7 +22,7 @@ use crate::reduced::wrench::Wrench;
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 
-/// What is behind a joint, as its motion resists it.
+/// The links from a joint on, as they resist its motion.
 #[derive(Clone, Copy)]
 struct Articulated<'s> {
     angular: Symmetric<'s>,
@@ -31,12 +31,12 @@ struct Articulated<'s> {
     bias: Wrench<'s>,
 }
 
-/// What the way out needs of a joint again.
+/// The numbers of a joint that the way out needs again.
 #[derive(Clone, Copy)]
 struct Pivot<'s> {
     /// U: angular and linear part.
     resistance: [Vector<'s>; 2],
-    /// What velocities alone do to ω̇ and a.
+    /// The parts of ω̇ and a by velocities alone.
     drift: [Vector<'s>; 2],
     inverse: Symbol<'s>,
     rest: Symbol<'s>,

@@ -91,8 +91,8 @@ impl Algorithm {
         }
     }
 
-    /// The ways of a function for so many joints that are worth counting. Those that write the recursion anew for every
-    /// joint grow faster than composite bodies, and lose long before `MANY`.
+    /// The ways of a function that are worth counting for an arm of `joints` joints. Those that write the recursion
+    /// anew for every joint grow faster than composite bodies, and lose long before `MANY`.
     pub(crate) fn of_so_many(function: Function, joints: usize) -> Vec<Self> {
         const MANY: usize = 10;
         let is_of_columns = |algorithm: Self| {
@@ -111,7 +111,7 @@ impl Algorithm {
         }
     }
 
-    /// In words, for the choices of a program; nothing is said of the recursion.
+    /// The words for the choices of a program; none for the recursion.
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
             Self::Rnea => None,

@@ -1,4 +1,4 @@
-//! What the formulas of the reduced form start from: arguments in the frames of its rows, and turns.
+//! Start of the formulas of the reduced form: arguments in the frames of its rows, and turns.
 
 use rne_model::QuarterTurns;
 
@@ -53,12 +53,12 @@ impl Builder {
         SymbolicTurn { s: self.number(turn.sin), c: self.number(turn.cos) }
     }
 
-    /// What `formulas` are when one joint accelerates with 1 and nothing moves.
+    /// Writes `formulas` where one joint accelerates with 1 and nothing moves.
     pub(crate) fn accelerating<R>(&self, joint: usize, formulas: impl FnOnce() -> R) -> R {
         self.moving(Moving::OneAccelerates(joint), || self.by(Some(WithRespectTo::RateDot(joint + 1)), formulas))
     }
 
-    /// What `formulas` are when the joints move so.
+    /// Writes `formulas` where the joints move so.
     pub(crate) fn moving<R>(&self, moving: Moving, formulas: impl FnOnce() -> R) -> R {
         let outer = self.moving.replace(moving);
         let value = formulas();

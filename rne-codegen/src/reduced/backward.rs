@@ -19,7 +19,7 @@ use crate::reduced::payload::Load;
 use crate::reduced::regrouping::is_parallel;
 use crate::reduced::wrench::Wrench;
 
-/// What the link behind exerts, about the origin of its frame.
+/// The wrench that the next link exerts, about the origin of its frame.
 #[derive(Clone, Copy)]
 struct Child<'s> {
     wrench: Wrench<'s>,
@@ -34,8 +34,8 @@ pub(crate) fn torques<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Optio
     inward(arm, moved, payload).into_iter().map(|carried| carried.torque).collect()
 }
 
-/// A joint's torque, and the wrench that is behind it: of the link and all that it carries, about the origin of its
-/// frame. A part of it is in the link's frame, the other one in frame N; none is told of a spin.
+/// A joint's torque, and the wrench at the joint: of the link and all that it carries, about the origin of its frame. A
+/// part of it is in the link's frame, the other one in frame N; none is told of a spin.
 pub(crate) struct Carried<'s> {
     pub(crate) torque: Symbol<'s>,
     pub(crate) own: Wrench<'s>,
@@ -79,7 +79,7 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
     found
 }
 
-/// What the last link exerts at the tip, about the origin of its frame and in its axes.
+/// The wrench that the last link exerts at the tip, about the origin of its frame and in its axes.
 fn tip_wrench<'s>(arm: &Arm<'_, 's>) -> Option<Wrench<'s>> {
     let builder = arm.builder;
     let (force, moment) = arm.wrench()?;

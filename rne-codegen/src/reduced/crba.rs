@@ -63,7 +63,7 @@ impl<'s> Composite<'s> {
         self.around.unwrap_or_else(|| self.s[0] + self.s[1])
     }
 
-    /// What gives its points the accelerations b + e × r.
+    /// The wrench that gives its points the accelerations b + e × r.
     pub(crate) fn carried(&self, builder: &'s Builder, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
         let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
         // J = tr(S) 1 - S
@@ -75,13 +75,13 @@ impl<'s> Composite<'s> {
         Wrench { force: b * builder.number(self.mass) + e.cross(self.h), moment: momentum + self.h.cross(b) }
     }
 
-    /// What accelerates it about the z axis with 1 rad/s².
+    /// The wrench that accelerates it about the z axis with 1 rad/s².
     pub(crate) fn turning(&self, builder: &'s Builder) -> Wrench<'s> {
         let ([hx, hy, _], [_, _, _, _, xz, yz]) = (self.h.0, self.s);
         Wrench { force: Vector([-hy, hx, builder.zero()]), moment: Vector([-xz, -yz, self.around()]) }
     }
 
-    /// What accelerates it along u with 1 m/s².
+    /// The wrench that accelerates it along u with 1 m/s².
     pub(crate) fn sliding(&self, u: Vector<'s>, builder: &'s Builder) -> Wrench<'s> {
         Wrench { force: u * builder.number(self.mass), moment: self.h.cross(u) }
     }

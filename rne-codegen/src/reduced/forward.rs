@@ -65,12 +65,12 @@ impl<'s> Gradient<'s> {
 pub(crate) struct Motion<'s> {
     pub(crate) omega: Vector<'s>,
     pub(crate) omega_dot: Vector<'s>,
-    /// Of the frame's origin, less gravity, times λ.
+    /// Acceleration of the frame's origin, less gravity, times λ.
     pub(crate) acceleration: Vector<'s>,
     pub(crate) gradient: Gradient<'s>,
 }
 
-/// What the way back needs to know of a link.
+/// The motion of a link, as the way back needs it.
 #[derive(Clone, Copy)]
 pub(crate) struct Moved<'s> {
     /// In the link's frame.
@@ -254,7 +254,7 @@ impl<'s> Revolving<'s, '_> {
         Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn }
     }
 
-    /// What frame N takes over from before the group, and the rates of the group so far.
+    /// The motion that frame N takes over from before the group, and the rates of the group so far.
     fn share(&self, before: Motion<'s>, group: &mut Option<Group<'s>>) -> Group<'s> {
         self.builder.at(Quantity::OmegaUnturned, self.joint);
         let shared = match *group {

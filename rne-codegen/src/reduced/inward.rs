@@ -60,7 +60,7 @@ impl<'s> Turned<'s> {
     }
 }
 
-/// What can be given in other axes and about another point.
+/// A quantity that can be given in other axes and about another point.
 pub(crate) trait Inward<'s>: Sized {
     fn turned(self, turn: Turned<'s>) -> Self;
 
@@ -85,7 +85,7 @@ impl<'s> Inward<'s> for FirstMoment<'s> {
     }
 }
 
-/// What can be given in the axes of a link farther out and at another of its points.
+/// A motion that can be given in the axes of a link farther out and at another of its points.
 pub(crate) trait Outward<'s>: Copy {
     fn turned_back(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self;
 
@@ -93,7 +93,7 @@ pub(crate) trait Outward<'s>: Copy {
     fn at(self, p: Vector<'s>) -> Self;
 }
 
-/// What a link carries: the bodies from there on and the columns of their joints, about the origin of its frame, in its
+/// The load of a link: the bodies from there on and the columns of their joints, about the origin of its frame, in its
 /// axes or in the frame N of its group.
 pub(crate) struct Carried<B, C> {
     pub(crate) behind: Option<B>,
@@ -102,7 +102,7 @@ pub(crate) struct Carried<B, C> {
 }
 
 impl<B, C> Carried<B, C> {
-    /// Behind the last link.
+    /// The load of the last link.
     pub(crate) const NOTHING: Self = Self { behind: None, columns: Vec::new(), unturned: false };
 
     fn map(self, behind: impl Fn(B) -> B, column: impl Fn(C) -> C) -> Self {

@@ -22,7 +22,8 @@ pub(crate) struct Load<'s> {
 }
 
 impl<'s> Load<'s> {
-    /// What the payload asks for, and the second moments of the last link with it: about the origin of the last frame.
+    /// The wrench of the payload, and of the second moments of the last link with it: about the origin of the last
+    /// frame.
     pub(crate) fn with_link(
         &self,
         arm: &Arm<'_, 's>,

@@ -53,9 +53,9 @@ pub(crate) struct Motion<'s> {
 
 /// A joint on the way out.
 pub(crate) struct Station<'s> {
-    /// Of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
+    /// Motion of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
     pub(crate) before: Motion<'s>,
-    /// Of the link, in its axes.
+    /// Motion of the link, in its axes.
     pub(crate) own: Motion<'s>,
     /// From the axes of the link to N.
     pub(crate) turn: SymbolicTurn<'s>,
@@ -64,7 +64,7 @@ pub(crate) struct Station<'s> {
 /// ∫ r vᵀ dm
 type Moment<'s> = [[Symbol<'s>; 3]; 3];
 
-/// What is behind a joint, about its origin.
+/// The links from a joint on, about its origin.
 #[derive(Clone, Copy)]
 struct Behind<'s> {
     body: Composite<'s>,
@@ -76,7 +76,7 @@ struct Behind<'s> {
     wrench: Wrench<'s>,
 }
 
-/// What joint `joint` contributes to the rows and columns of joints nearer to the base.
+/// The contribution of joint `joint` to the rows and columns of joints nearer to the base.
 #[derive(Clone, Copy)]
 struct Column<'s> {
     joint: usize,
@@ -289,7 +289,7 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<Station<'s>
     stations
 }
 
-/// What a link alone contributes, in its axes.
+/// The contribution of a link alone, in its axes.
 fn own<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>) -> Behind<'s> {
     let (h, m) = (builder.vector(matter.h), builder.number(matter.mass));
     let s = matter.s.map(|row| row.map(|x| builder.number(x)));
@@ -352,7 +352,7 @@ fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> Twists<
     }
 }
 
-/// What a joint contributes to rows and columns of joints nearer to the base.
+/// The contribution of a joint to rows and columns of joints nearer to the base.
 fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>, behind: &Behind<'s>) -> Column<'s> {
     let builder = arm.builder;
     let row = &arm.rows()[index];

@@ -93,7 +93,7 @@ fn initialiser(name: &str, numbers: &[String]) -> String {
     format!("{start} \\\n{lines}}}\n")
 }
 
-/// The limits of the joints as initialisers of arrays; of what no joint has there is none.
+/// The limits of the joints as initialisers of arrays; a limit that no joint has is left out.
 fn limits(file: &File, upper: &str) -> String {
     let precision = file.precision;
     let largest = match precision {
@@ -166,7 +166,7 @@ fn robot(file: &File) -> String {
     text
 }
 
-/// What holds for all functions.
+/// The contract of all functions.
 fn contract(file: &File) -> String {
     let real = file.precision.c_type();
     let mut text = "//\n".to_owned();

@@ -29,7 +29,7 @@ pub struct CCode {
 }
 
 impl CCode {
-    /// The same with tests at the end of the source, as [`c_tests`](super::c_tests) writes them.
+    /// The code with tests at the end of the source, as [`c_tests`](super::c_tests) writes them.
     #[must_use]
     pub fn with_tests(self, tests: &str) -> Self {
         Self { body: self.body + tests, ..self }
@@ -82,7 +82,7 @@ pub fn c_code_of_file(
     Ok(CCode { title: header::title(&file), header: header::header(&file)?, body: source::body(&file)? })
 }
 
-/// What is written, and how.
+/// The programs that are written, and how.
 struct File<'a> {
     robot: &'a Robot,
     programs: &'a [Program],

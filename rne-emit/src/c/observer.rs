@@ -12,7 +12,7 @@ use super::{File, comment};
 use crate::parameters;
 use crate::wrap::{TIED, WIDTH, fill};
 
-/// What the observer is made on, if it is among the programs.
+/// The program that the observer calls, if it is among the programs.
 fn program<'a>(file: &'a File) -> Option<&'a Program> {
     file.programs.iter().find(|program| program.function == Function::MomentumAndRate)
 }
@@ -113,7 +113,7 @@ pub(super) fn definitions(file: &File) -> String {
 /// The shortest period, s, as that of the runtime.
 const SHORTEST_PERIOD: f64 = 1e-30;
 
-/// Of the series: the next one is below a unit in the last place of a double, at 1/2.
+/// Terms of the series: the next one is below a unit in the last place of a double, at 1/2.
 const TERMS: u32 = 14;
 
 fn begin_head(file: &File) -> String {

@@ -66,7 +66,7 @@ pub(super) fn record_type(file: &File, record: Record) -> String {
     record_name(file.prefix, record)
 }
 
-/// The same, behind a prefix.
+/// The name of a record's type with a prefix.
 pub(crate) fn record_name(prefix: &str, record: Record) -> String {
     let name = match record {
         Record::Pose => "pose",

@@ -17,7 +17,7 @@ use crate::text::legend;
 /// Sine and cosine in C; PREFIX stands for the prefix.
 const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_cos_double.c")];
 
-/// What follows the inclusion of the header.
+/// The source after the inclusion of the header.
 pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     let mut text = String::new();
     if file.turns() {

@@ -148,7 +148,7 @@ impl Tests<'_> {
         )
     }
 
-    /// The same, of the program of a function.
+    /// A call of the program of a function.
     fn call_of(&self, function: Function, others: &[(&str, &str)], name: &str) -> Option<String> {
         Some(self.call(program(self.programs, function)?, others, name))
     }

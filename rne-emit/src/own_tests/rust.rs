@@ -164,7 +164,7 @@ impl Tests<'_> {
         format!("super::{}({}).flat()", program.function, given.join(", "))
     }
 
-    /// The same, of the program of a function.
+    /// A call of the program of a function.
     fn call_of(&self, function: Function, others: &[(&str, &str)]) -> Option<String> {
         Some(self.call(program(self.programs, function)?, others))
     }

@@ -1,4 +1,4 @@
-//! What each kind of joint adds to the seven steps: one file per kind.
+//! Terms that each kind of joint adds to the seven steps: one file per kind.
 //!
 //! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Every law takes what the link would
 //! have if the joint were rigid and returns what it has.
@@ -101,7 +101,7 @@ by_kind! {
     fn velocity(self, rigid: Vector<'s>) -> Vector<'s>;
     /// Step 4: acceleration of a point of the link.
     fn acceleration(self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s>;
-    /// The same where the joint does not accelerate.
+    /// Step 4 where the joint does not accelerate.
     fn unaccelerated(self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s>;
     /// Step 7: what the actuator delivers of the joint's wrench.
     fn actuator(self, wrench: &Wrench<'s>) -> Symbol<'s>;

@@ -4,7 +4,7 @@ use super::Joint;
 use crate::formulate::joint::Wrench;
 use crate::ir::{Name, Quantity, Symbol, Vector};
 
-/// Of the constant θ.
+/// Sine and cosine of the constant θ.
 pub(super) fn sine_and_cosine<'s>(joint: &Joint<'_, 's>) -> (Symbol<'s>, Symbol<'s>) {
     joint.constant_turn()
 }

@@ -6,7 +6,7 @@ use super::Joint;
 use crate::formulate::joint::Wrench;
 use crate::ir::{Quantity, Symbol, Vector, by_quarters};
 
-/// Of θ + q. A right angle θ permutes and negates those of q exactly; any other is added to q.
+/// Sine and cosine of θ + q. A right angle θ permutes and negates those of q exactly; any other is added to q.
 pub(super) fn sine_and_cosine<'s>(joint: &Joint<'_, 's>) -> (Symbol<'s>, Symbol<'s>) {
     let (line, theta) = (joint.lines, joint.link.theta);
     match (joint.state.turn, theta.right) {
