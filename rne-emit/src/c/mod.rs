@@ -16,7 +16,7 @@ use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
 
 pub use prefix::{BadPrefix, Prefix};
-pub(super) use signature::{inputs, record_name, result_elements};
+pub(super) use signature::{array_name, element_type, elements_of, inputs, result_elements};
 #[cfg(test)]
 pub(crate) use source::UNUSED;
 

@@ -7,10 +7,9 @@ use std::fmt::Write;
 
 use rne_codegen::{Function, Program, Record};
 
-use super::signature::{parameters_type, record_type};
+use super::signature::{parameters_type, record_type, wrapped};
 use super::{File, comment};
 use crate::parameters;
-use crate::wrap::{TIED, WIDTH, fill};
 
 /// The program that the observer calls, if it is among the programs.
 fn program<'a>(file: &'a File) -> Option<&'a Program> {
@@ -129,12 +128,5 @@ fn update_head(file: &File, program: &Program) -> String {
         arguments.push(format!("const {} *parameters", parameters_type(file)));
     }
     arguments.push(format!("{real} external[{dof}]"));
-    let start = format!("void {prefix}_observer_update(");
-    let line = format!("{start}{})", arguments.join(", "));
-    // one column is for the semicolon
-    if line.len() < WIDTH {
-        return line;
-    }
-    let arguments: Vec<String> = arguments.iter().map(|argument| argument.replace(' ', TIED)).collect();
-    start + "\n" + fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ").trim_end()
+    wrapped(&format!("void {prefix}_observer_update("), &arguments)
 }

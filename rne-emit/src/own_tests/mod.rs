@@ -67,6 +67,14 @@ impl Law {
         }
     }
 
+    /// The function that returns the torques of motion where rates, accelerations or both are `zero`, and which.
+    fn of_zeros(self, zero: &str) -> (Function, Vec<(&'static str, &str)>) {
+        match self {
+            Self::Gravity => (Function::GravityTorques, vec![("qd", zero), ("qdd", zero)]),
+            _ => (Function::BiasTorques, vec![("qdd", zero)]),
+        }
+    }
+
     /// The name of its test.
     const fn name(self) -> &'static str {
         match self {

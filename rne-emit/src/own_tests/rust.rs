@@ -221,16 +221,13 @@ impl Tests<'_> {
                 )
             }
             Law::Gravity | Law::Bias => {
-                let (function, others) = match law {
-                    Law::Gravity => (Function::GravityTorques, &[("qd", zero.as_str()), ("qdd", &zero)][..]),
-                    _ => (Function::BiasTorques, &[("qdd", zero.as_str())][..]),
-                };
+                let (function, others) = law.of_zeros(&zero);
                 format!(
                     "let found = {};\n            let expected = {};\n            \
                      let scale = largest(&expected).max(largest(&{}));\n            \
                      compare(\"{name}\", index, &found, &expected, 1e-9, scale);",
                     self.call_of(function, &[])?,
-                    self.call_of(Function::InverseDynamics, others)?,
+                    self.call_of(Function::InverseDynamics, &others)?,
                     // torques that vanish but for rounding are measured by others
                     self.call_of(Function::InverseDynamics, &[])?,
                 )
