@@ -12,7 +12,7 @@ use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::ir::{ExactAngle, Name, Number, Op, Operation, Place, Quantity, Ref, Step, Traced};
 use crate::program::{Constant, Exactly, Program, Resolution, ResolvedAs};
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 use crate::values::{Sign, Value, Values};
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.

@@ -11,7 +11,7 @@ use crate::lower::{Heading, lower};
 use crate::plan::{self, Plan};
 use crate::program::{Exactly, Program, Proof};
 use crate::prove::{self, Reference};
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 
 /// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
 /// nothing folds. Its text is some 15 MB.

@@ -9,7 +9,7 @@ use crate::equation::Equation;
 use crate::expression::Expression;
 use crate::function::{Form, Function};
 use crate::ir::{Causes, ExactAngle, FoldReport, Name, Number, Place};
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 use crate::refusal::Refusal;
 use crate::values::{Operator, Sign, Value, ValueId, Values};
 

@@ -2,8 +2,8 @@
 
 use rne_model::{Entry, Robot};
 
+use crate::formulate::JointState;
 use crate::formulate::arm::number;
-use crate::formulate::joint::JointState;
 use crate::ir::{Builder, Cause, Name, Quantity, Symbol};
 
 /// The torques of the motors, base to tip; zero where a joint has none. Rotors that belong to the arm are in its own.

@@ -11,8 +11,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::Arm;
-use crate::formulate::kinematics::Frames;
+use crate::formulate::{Arm, Frames};
 use crate::ir::{Builder, Cause, Name, Quantity, Symbol, Vector};
 
 /// In the world. `frames` start at the base, in world axes; `centres` lead from the joints to the centres of mass.

@@ -8,7 +8,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::QuarterTurns;
 
-use crate::formulate::arm::{Arm, Link, turned};
+use crate::formulate::arm::turned;
+use crate::formulate::{Arm, Link};
 use crate::ir::{Axis, Builder, Cause, JointLines, Matrix, Name, Quantity, Symbol, Vector, by_quarters};
 
 /// A force and a moment.

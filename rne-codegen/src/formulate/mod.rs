@@ -13,13 +13,14 @@ pub(crate) mod payload;
 pub(crate) mod regressor;
 pub(crate) mod seven_steps;
 
+pub(crate) use arm::{Arm, Link, Mount};
+pub(crate) use joint::{Joint, JointState, Wrench};
+pub(crate) use kinematics::{Frame, Frames};
+pub(crate) use payload::Payload;
+pub(crate) use seven_steps::{Load, Motion, Turning};
+
 use rne_model::Robot;
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::{JointState, Wrench};
-use crate::formulate::kinematics::{Frame, Frames};
-use crate::formulate::payload::Payload;
-use crate::formulate::seven_steps::{Load, Motion};
 use crate::function::{Argument, Function};
 use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 

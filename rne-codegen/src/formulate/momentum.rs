@@ -24,9 +24,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::{Joint, JointState};
-use crate::formulate::seven_steps::Motion;
+use crate::formulate::{Arm, Joint, JointState, Motion};
 use crate::ir::{Name, Quantity, Symbol, Vector};
 
 /// A link and all that it carries: as one body, about its joint, in its axes or in those of its parent.

@@ -8,9 +8,7 @@
 //! f = m (c̈ - g)                   n = I ω̇ + ω × (I ω) + c × f          about the origin of the tip frame
 //! ```
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::Wrench;
-use crate::formulate::seven_steps::Motion;
+use crate::formulate::{Arm, Motion, Wrench};
 use crate::function::Argument;
 use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
 

@@ -9,9 +9,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::JointState;
-use crate::formulate::seven_steps::{Motion, Turning};
+use crate::formulate::{Arm, JointState, Motion, Turning};
 use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// Parameters of a link.

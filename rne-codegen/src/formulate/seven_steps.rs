@@ -9,8 +9,8 @@
 //! in [`super::joint`]. A link without mass may have a first moment h about the point that its centre of mass would be,
 //! as in a set of base parameters: its terms stand apart, for no body has them.
 
-use crate::formulate::arm::{Arm, Mount, identity};
-use crate::formulate::joint::{Joint, JointState, Wrench};
+use crate::formulate::arm::identity;
+use crate::formulate::{Arm, Joint, JointState, Mount, Wrench};
 use crate::ir::{Builder, Cause, JointLines, Matrix, Quantity, Symbol, Vector};
 
 /// How a link turns, in its frame: what steps 1 and 2 find.

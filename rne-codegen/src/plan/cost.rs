@@ -7,10 +7,8 @@ use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
 use crate::plan::{OriginShift, Plan, Scale};
-use crate::reduced::algorithm::{self, Algorithm};
-use crate::reduced::forward::Arm;
-use crate::reduced::joint_frames::{FrameChoice, JointFrames};
-use crate::reduced::regrouping::{Offers, Parameters, is_parallel, parameters};
+use crate::reduced::regrouping::{is_parallel, parameters};
+use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
 
 /// A table and what it offers.
 #[derive(Clone, Debug)]

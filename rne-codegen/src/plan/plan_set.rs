@@ -8,7 +8,7 @@ use crate::function::{Argument, Function};
 use crate::plan::cost::Evaluator;
 use crate::plan::descent::default_plan;
 use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Rewritten, Scale};
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 use crate::refusal::LeftOut;
 
 /// The choices by which a robot's functions are compiled in the reduced form.

@@ -15,10 +15,9 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{ExactAngle, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::inward::{Inward, Outward, Symmetric, Turned, full};
-use crate::reduced::rnea_derivatives::{Station, matter, stations};
-use crate::reduced::wrench::Wrench;
+use crate::reduced::inward::full;
+use crate::reduced::rnea_derivatives::{matter, stations};
+use crate::reduced::{Arm, Gradient, Inward, Outward, Station, Symmetric, Turned, Wrench};
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 

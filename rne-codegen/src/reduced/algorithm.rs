@@ -1,17 +1,13 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
-use crate::formulate::payload::Payload;
-use crate::formulate::{self, Outputs, by_joint, square, torque_by};
+use crate::formulate::{self, Outputs, Payload, by_joint, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
-use crate::reduced::aba;
 use crate::reduced::backward::torques;
-use crate::reduced::crba::{self, BodiesPer};
-use crate::reduced::forward::{Arm, motions};
-use crate::reduced::joint_frames::JointFrames;
-use crate::reduced::momentum;
-use crate::reduced::payload::Load;
+use crate::reduced::crba::BodiesPer;
+use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
+use crate::reduced::{Arm, JointFrames, Load, aba, crba, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

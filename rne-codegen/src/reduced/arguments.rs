@@ -6,9 +6,7 @@ use crate::function::Argument;
 use crate::ir::{
     Axis, Builder, ExactAngle, Moving, Name, Number, Quantity, Symbol, Vector, WithRespectTo, by_quarters,
 };
-use crate::reduced::forward::Arm;
-use crate::reduced::joint_frames::JointFrame;
-use crate::reduced::link_parameters::Triple;
+use crate::reduced::{Arm, JointFrame, Triple};
 
 /// The name of what belongs to a group of joints, or to a single one.
 fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {

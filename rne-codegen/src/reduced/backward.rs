@@ -9,15 +9,13 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Axis, Builder, Name, Number, Quantity, Symbol, Vector};
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::choices::{JointPlan, Moment, Side};
-use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
+use crate::reduced::forward::{along_axis, plus};
 use crate::reduced::inward::full;
-use crate::reduced::joint_frames::JointFrame;
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::payload::Load;
 use crate::reduced::regrouping::is_parallel;
-use crate::reduced::wrench::Wrench;
+use crate::reduced::{
+    Arm, Gradient, JointFrame, JointPlan, Load, Moment, Motion, Moved, PseudoInertia, ScaledTwist, Side, SymbolicTurn,
+    Wrench,
+};
 
 /// The wrench that the next link exerts, about the origin of its frame.
 #[derive(Clone, Copy)]

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::reduced::joint_frames::FrameChoice;
-use crate::reduced::link_parameters::Entry;
+use crate::reduced::{Entry, FrameChoice};
 
 /// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

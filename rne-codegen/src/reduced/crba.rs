@@ -14,10 +14,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::torque_by;
-use crate::reduced::forward::Arm;
-use crate::reduced::inward::{Carried, FirstMoment, Inward, Symmetric, Turned};
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::wrench::Wrench;
+use crate::reduced::inward::Carried;
+use crate::reduced::{Arm, FirstMoment, Inward, PseudoInertia, Symmetric, Turned, Wrench};
 
 pub(crate) use crate::reduced::inward::BodiesPer;
 

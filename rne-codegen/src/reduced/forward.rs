@@ -11,11 +11,9 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Builder, Matrix, Number, Quantity, Symbol, Vector};
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::choices::{JointPlan, Plan, Side};
 use crate::reduced::inward::BodiesPer;
-use crate::reduced::joint_frames::{JointFrame, JointFrames};
-use crate::reduced::regrouping::{Parameters, group_start, is_parallel};
+use crate::reduced::regrouping::{group_start, is_parallel};
+use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
 #[derive(Clone, Copy)]

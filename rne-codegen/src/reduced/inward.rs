@@ -3,10 +3,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Number, Symbol, Vector};
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::forward::Arm;
 use crate::reduced::regrouping::{group_start, is_parallel};
-use crate::reduced::wrench::Wrench;
+use crate::reduced::{Arm, SymbolicTurn, Wrench};
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,10 +14,8 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Moving, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::backward::{Carried, inward};
-use crate::reduced::crba;
-use crate::reduced::forward::{Arm, Motion, Moved, motions};
-use crate::reduced::joint_frames::JointFrames;
-use crate::reduced::wrench::Wrench;
+use crate::reduced::forward::motions;
+use crate::reduced::{Arm, JointFrames, Motion, Moved, Wrench, crba};
 
 /// p and its rate without external torques, base to tip.
 pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {

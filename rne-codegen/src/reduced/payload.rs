@@ -6,12 +6,9 @@
 //!
 //! R and t lead from the tip to the frame of the last link, J_n is what regrouping has left of that link's own inertia.
 
-use crate::formulate::payload::Payload;
+use crate::formulate::Payload;
 use crate::ir::{Builder, Matrix, Number, Vector};
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::forward::{Arm, Motion, Moved};
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::wrench::Wrench;
+use crate::reduced::{Arm, Motion, Moved, PseudoInertia, SymbolicTurn, Wrench};
 
 /// A payload, and the axes in which what it asks for is written.
 #[derive(Clone, Copy)]

@@ -4,9 +4,9 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::Number;
-use crate::reduced::choices::{OriginShift, Plan, RegroupingTarget, Scale};
-use crate::reduced::joint_frames::{JointFrame, JointFrames};
-use crate::reduced::link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
+use crate::reduced::{
+    Entry, IDENTITY, JointFrame, JointFrames, OriginShift, Plan, PseudoInertia, RegroupingTarget, Scale, Square, Triple,
+};
 
 /// A pivot of the three equations for the rods of an axis must not be smaller.
 const LEAST_PIVOT: f64 = 1e-5;

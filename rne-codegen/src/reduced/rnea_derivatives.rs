@@ -27,13 +27,9 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Builder, Number, Quantity, Symbol, Vector, square};
-use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::crba::Composite;
-use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::inward::{Carried, Inward, Outward, Turned};
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::wrench::Wrench;
+use crate::reduced::inward::Carried;
+use crate::reduced::{Arm, Composite, Gradient, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench};
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
 pub(crate) struct Sensitivity<'s> {
