@@ -137,6 +137,16 @@ impl fmt::Display for Extreme {
     }
 }
 
+impl Suspect {
+    /// Says what helps: about the number, where one is the cause, else by who made the plan.
+    fn advise(&self, f: &mut fmt::Formatter<'_>, of_plan_file: &str, of_build: &str) -> fmt::Result {
+        match &self.number {
+            Some(number) => write!(f, "{number}"),
+            None => f.write_str(if self.planned { of_plan_file } else { of_build }),
+        }
+    }
+}
+
 impl CompileError {
     /// Whether a form was written and refused, for it is another function than the seven steps or a worse one.
     #[must_use]
@@ -184,13 +194,7 @@ impl fmt::Display for CompileError {
                     f,
                     "this form of `{function}` is not the seven steps: {what} {output} differs. No code is written. "
                 )?;
-                match suspect {
-                    Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => {
-                        f.write_str("A graph in a plan file that has been edited does that")
-                    }
-                    Suspect { planned: false, .. } => f.write_str("Please report this robot"),
-                }
+                suspect.advise(f, "A graph in a plan file that has been edited does that", "Please report this robot")
             }
             Self::Imprecise { function, rounding, suspect } => {
                 let what = match function {
@@ -203,11 +207,7 @@ impl fmt::Display for CompileError {
                     "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
                     {what}. "
                 )?;
-                match suspect {
-                    Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => f.write_str("`form = \"seven_steps\"` needs no plan"),
-                    Suspect { planned: false, .. } => f.write_str("`form = \"seven_steps\"` does not"),
-                }
+                suspect.advise(f, "`form = \"seven_steps\"` needs no plan", "`form = \"seven_steps\"` does not")
             }
             Self::TwoOfOneName { function, name } => write!(
                 f,

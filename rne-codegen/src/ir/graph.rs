@@ -134,8 +134,7 @@ impl Graph {
 
     /// The residue of a reference.
     pub(crate) fn residue(&self, at: Ref) -> Residue {
-        let residue = self.nodes[at.index()].residue;
-        if at.is_negative() { -residue } else { residue }
+        self.nodes[at.index()].residue.signed(at.is_negative())
     }
 
     /// Whether it is the constant 0: the number, not what rounds to it.
@@ -183,15 +182,12 @@ impl Graph {
             }
             _ => (Residue::ZERO, Residue::ZERO),
         };
-        (if angle.is_negative() { -sine } else { sine }, cosine)
+        (sine.signed(angle.is_negative()), cosine)
     }
 
     /// The residue of a node at a point, when those before it are `images`.
     pub(crate) fn image_at(&self, op: Op, residues: &[Residue], point: &SamplePoint) -> Residue {
-        let of = |at: Ref| {
-            let residue = residues[at.index()];
-            if at.is_negative() { -residue } else { residue }
-        };
+        let of = |at: Ref| at.residue(residues);
         match op {
             Op::Constant(place) => self.numbers.get(place).0.residue,
             Op::Input(input) => point.argument(input),

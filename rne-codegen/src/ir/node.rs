@@ -30,6 +30,11 @@ impl Ref {
         Self(self.0 ^ u32::from(negative))
     }
 
+    /// Its residue, when those of the nodes are `values`.
+    pub(crate) fn residue(self, values: &[Residue]) -> Residue {
+        values[self.index()].signed(self.is_negative())
+    }
+
     /// The reference in another graph, whose nodes for those of this graph are listed.
     pub(crate) fn mapped(self, residues: &[Self]) -> Self {
         residues[self.index()].signed(self.is_negative())

@@ -25,14 +25,12 @@ impl Residue {
     /// The image of an integer.
     #[must_use]
     pub const fn integer(value: u64) -> Self {
-        let (p, q) = (MASK + 1 - BELOW[0], MASK + 1 - BELOW[1]);
-        Self([value % p, value % q])
+        Self::residues(value, value)
     }
 
     /// Residues in the two fields, each reduced.
     pub(crate) const fn residues(first: u64, second: u64) -> Self {
-        let (p, q) = (MASK + 1 - BELOW[0], MASK + 1 - BELOW[1]);
-        Self([first % p, second % q])
+        Self([first % prime(0), second % prime(1)])
     }
 
     /// Whether it is the image of zero.
@@ -48,6 +46,11 @@ impl Residue {
             [0, second] => second > MASK / 2,
             [first, _] => first > MASK / 2,
         }
+    }
+
+    /// The image, negated if `negative`.
+    pub(crate) fn signed(self, negative: bool) -> Self {
+        if negative { -self } else { self }
     }
 
     /// A well-mixed key of 64 bits.

@@ -12,7 +12,9 @@ use crate::wrap::{TIED, WIDTH, fill};
 /// The argument arrays of a function, by names that are no functions of the C library.
 pub(crate) fn inputs(program: &Program) -> Vec<ArgumentArray> {
     let mut arrays = program.arrays_without_parameters();
-    arrays.iter_mut().for_each(|array| array.name = array_name(array.name));
+    for array in &mut arrays {
+        array.name = array_name(array.name);
+    }
     arrays
 }
 
