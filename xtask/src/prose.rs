@@ -310,7 +310,9 @@ fn sources(folders: &[&str]) -> Result<Vec<String>> {
             let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
             if entry.file_type()?.is_dir() {
                 open.push(path);
-            } else if path.ends_with(".rs") && !EMITTED.contains(&path.as_str()) {
+            } else if Path::new(&path).extension().is_some_and(|extension| extension == "rs")
+                && !EMITTED.contains(&path.as_str())
+            {
                 found.push(path);
             }
         }
