@@ -92,28 +92,22 @@ impl Interpreter {
     /// Runs the program. `constant` turns a number of the program into a `T`, `sin_cos` gives (sine, cosine).
     ///
     /// Returns the outputs in the program's order; `None` when an argument array is too short.
-    pub fn run<T>(
+    pub fn run<T: Real>(
         &self,
         arguments: &Arguments<'_, T>,
         constant: impl Fn(f64) -> T,
         sin_cos: impl Fn(T) -> (T, T),
-    ) -> Option<Vec<T>>
-    where
-        T: Real,
-    {
+    ) -> Option<Vec<T>> {
         self.run_named(arguments, |_, value| Some(constant(value)), sin_cos)
     }
 
     /// As [`Interpreter::run`], with constants by their names: the name of a constant that is just 0 is `None`.
-    pub(crate) fn run_named<T>(
+    pub(crate) fn run_named<T: Real>(
         &self,
         arguments: &Arguments<'_, T>,
         constant: impl Fn(Option<Name>, f64) -> Option<T>,
         sin_cos: impl Fn(T) -> (T, T),
-    ) -> Option<Vec<T>>
-    where
-        T: Real,
-    {
+    ) -> Option<Vec<T>> {
         let mut slots: Vec<T> = Vec::with_capacity(self.values.len());
         // the cosine of an angle comes after its sine
         let mut turn: Option<(ValueId, (T, T))> = None;

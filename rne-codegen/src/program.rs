@@ -223,16 +223,14 @@ impl Program {
         for (id, _) in self.values.iter().take_while(is_leaf) {
             moving.value(id);
         }
-        let mut statement = |of: &Statement| Statement { value: moving.value(of.value), ..of.clone() };
-        let angles = self.angles.iter().map(&mut statement).collect();
+        let angles = moving.statements(&self.angles);
         let mut turn = |of: &SineCosine| SineCosine { angle: moving.value(of.angle), ..of.clone() };
         let sines_and_cosines = self.sines_and_cosines.iter().map(&mut turn).collect();
         let is_turn = |(_, value): &(ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
         for (id, _) in self.values.iter().filter(is_turn) {
             moving.value(id);
         }
-        let mut statement = |of: &Statement| Statement { value: moving.value(of.value), ..of.clone() };
-        let statements = self.statements.iter().map(&mut statement).collect();
+        let statements = moving.statements(&self.statements);
         let mut output = |of: &Output| Output { value: moving.value(of.value), ..of.clone() };
         let outputs = self.outputs.iter().map(&mut output).collect();
         let values = moving.values;
@@ -310,5 +308,9 @@ impl Moving<'_> {
         let new = self.values.push(self.old.name(id), value);
         self.new[id.index()] = Some(new);
         new
+    }
+
+    fn statements(&mut self, old: &[Statement]) -> Vec<Statement> {
+        old.iter().map(|of| Statement { value: self.value(of.value), ..of.clone() }).collect()
     }
 }
