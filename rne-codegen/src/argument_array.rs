@@ -1,8 +1,7 @@
 //! The arguments of a generated function.
 
 use crate::function::{Argument, ArgumentPart, Length};
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
+use crate::ir::{Axis, Name, Quantity};
 use crate::program::Program;
 
 /// An argument array and the names of its elements; `None` for an element that is not used.

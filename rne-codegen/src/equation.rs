@@ -3,8 +3,7 @@
 //! A [`Program`](crate::Program) has the code that is left. Its equations say what the code is left of:
 //! `w2_x = rot2_xx * w1_x + rot2_yx * w1_y + ..`, where the base does not move and a turn leaves an axis alone.
 
-use crate::ir::fold_report::{Causes, Fold, Place};
-use crate::ir::name::Name;
+use crate::ir::{Causes, Fold, Name, Place};
 use crate::values::{Operator, Sign};
 
 /// A component of a quantity and the formula that gives it.
@@ -40,11 +39,11 @@ pub enum Term {
 /// An operation of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operation {
-    /// Which one.
+    /// The operator.
     pub operator: Operator,
     /// Left and right.
     pub operands: [Term; 2],
-    /// What became of it.
+    /// Its fate in the code.
     pub fold: Fold,
     /// All that makes it a zero, or leaves one operand alone; `None` where nothing of the arm does.
     pub causes: Option<Causes>,

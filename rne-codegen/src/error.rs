@@ -5,7 +5,7 @@ use std::fmt;
 use rne_model::Robot;
 
 use crate::function::Function;
-use crate::ir::name::Name;
+use crate::ir::Name;
 
 /// Why a robot cannot be compiled.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub enum CompileError {
         function: Function,
         /// The first number returned that differs, counted from 1: for torques, the joint.
         output: usize,
-        /// What may be the cause.
+        /// The probable cause.
         suspect: Suspect,
     },
     /// Code that rounds too far away from the seven steps; it is never emitted.
@@ -31,7 +31,7 @@ pub enum CompileError {
         function: Function,
         /// The largest difference, relative to the largest number returned.
         rounding: f64,
-        /// What may be the cause.
+        /// The probable cause.
         suspect: Suspect,
     },
     /// Two variables of one name, of which the second would shadow the first; it is never emitted.
@@ -41,7 +41,7 @@ pub enum CompileError {
         /// The name.
         name: String,
     },
-    /// A function of so many joints that no compiler would take its code.
+    /// A function whose code no compiler would take, for the arm has too many joints.
     TooLarge {
         /// The function.
         function: Function,
@@ -63,24 +63,24 @@ pub enum CompileError {
         function: Function,
         /// The word of the graph, counted from 1.
         word: usize,
-        /// What is wrong there.
+        /// The mistake, in words.
         message: String,
     },
 }
 
-/// What helps against an error of a plan. Each interface says it in its own words: the command line names its options.
+/// A remedy for an error of a plan. Each interface says it in its own words: the command line names its options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
     /// A search that leaves out what is wrong in the plan and finds the rest anew.
     SearchAfresh,
-    /// The same with rewriting, so that the graph is written anew too.
+    /// Such a search with rewriting, so that the graph is written anew too.
     RewriteAfresh,
     /// A search from the plan at hand on, which counts the operations anew.
     CountAnew,
 }
 
-/// What may be the cause when a form is refused.
+/// The probable cause of the refusal of a form.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Suspect {
@@ -93,7 +93,6 @@ pub struct Suspect {
 /// A number of a robot that is very large or very small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extreme {
-    /// What it is, and its link.
     what: &'static str,
     link: usize,
     value: f64,
@@ -138,6 +137,16 @@ impl fmt::Display for Extreme {
     }
 }
 
+impl Suspect {
+    /// Says what helps: about the number, where one is the cause, else by who made the plan.
+    fn advise(&self, f: &mut fmt::Formatter<'_>, of_plan_file: &str, of_build: &str) -> fmt::Result {
+        match &self.number {
+            Some(number) => write!(f, "{number}"),
+            None => f.write_str(if self.planned { of_plan_file } else { of_build }),
+        }
+    }
+}
+
 impl CompileError {
     /// Whether a form was written and refused, for it is another function than the seven steps or a worse one.
     #[must_use]
@@ -145,7 +154,7 @@ impl CompileError {
         matches!(self, Self::NotIdentical { .. } | Self::Imprecise { .. })
     }
 
-    /// What helps, where that is another plan.
+    /// The remedy for the error, where another plan is one.
     #[must_use]
     pub const fn remedy(&self) -> Option<Remedy> {
         match self {
@@ -185,13 +194,7 @@ impl fmt::Display for CompileError {
                     f,
                     "this form of `{function}` is not the seven steps: {what} {output} differs. No code is written. "
                 )?;
-                match suspect {
-                    Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => {
-                        f.write_str("A graph in a plan file that has been edited does that")
-                    }
-                    Suspect { planned: false, .. } => f.write_str("Please report this robot"),
-                }
+                suspect.advise(f, "A graph in a plan file that has been edited does that", "Please report this robot")
             }
             Self::Imprecise { function, rounding, suspect } => {
                 let what = match function {
@@ -204,11 +207,7 @@ impl fmt::Display for CompileError {
                     "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
                     {what}. "
                 )?;
-                match suspect {
-                    Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => f.write_str("`form = \"seven_steps\"` needs no plan"),
-                    Suspect { planned: false, .. } => f.write_str("`form = \"seven_steps\"` does not"),
-                }
+                suspect.advise(f, "`form = \"seven_steps\"` needs no plan", "`form = \"seven_steps\"` does not")
             }
             Self::TwoOfOneName { function, name } => write!(
                 f,

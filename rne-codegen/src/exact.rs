@@ -4,8 +4,7 @@ use rne_model::Robot;
 
 use crate::formulate;
 use crate::function::Function;
-use crate::ir::name::Name;
-use crate::ir::{Builder, Embedding, Graph, Input, Op, Policy, Ref, Residue, SamplePoint};
+use crate::ir::{Builder, Embedding, Graph, Input, Name, Op, Policy, Residue, SamplePoint};
 
 /// The plain formulas of a function, evaluated at random points of two prime fields. Sines and cosines are random
 /// points of the circle there. Nothing is rounded, so a rank or an identity that is found at a few points needs no
@@ -29,7 +28,7 @@ impl ExactFunction {
         Self { graph: builder.finish(outputs).graph }
     }
 
-    /// What the function returns at a point, in the order of its layout. Points are counted from 1.
+    /// The numbers that the function returns at a point, in the order of its layout. Points are counted from 1.
     #[must_use]
     pub fn at(&self, point: u64) -> Vec<Residue> {
         self.at_point(&SamplePoint::new(self.graph.embedding(), point))
@@ -43,11 +42,7 @@ impl ExactFunction {
 
     pub(crate) fn at_point(&self, point: &SamplePoint) -> Vec<Residue> {
         let residues = self.residues(point);
-        let residue = |at: &Ref| {
-            let residue = residues[at.index()];
-            if at.is_negative() { -residue } else { residue }
-        };
-        self.graph.outputs.iter().map(residue).collect()
+        self.graph.outputs.iter().map(|at| at.residue(&residues)).collect()
     }
 
     /// Whether the formulas divide by what is zero at a point.

@@ -1,6 +1,6 @@
 //! The values of a program as they are written: a value with a name by that name, another one where it is used.
 
-use crate::ir::name::Name;
+use crate::ir::Name;
 use crate::values::{Negated, Operator, Value, ValueId, Values};
 
 /// A value of a program, as it is written in one place.
@@ -12,7 +12,7 @@ pub struct Expression<'p> {
     is_definition: bool,
 }
 
-/// What is written of a value in one place.
+/// The way in which a value is written in one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ExpressionKind<'p> {
     /// The name of an argument, a constant or an earlier statement.
@@ -44,7 +44,7 @@ impl Values {
 }
 
 impl<'p> Expression<'p> {
-    /// What is written.
+    /// The way in which the value is written here.
     #[must_use]
     pub fn kind(self) -> ExpressionKind<'p> {
         let used = |id: ValueId| self.values.used(id);

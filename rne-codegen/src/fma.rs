@@ -16,7 +16,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::ir::name::Name;
+use crate::ir::Name;
 use crate::latency::{self, Latency};
 use crate::program::{Output, Program, Statement};
 use crate::values::{Contraction, Operator, Sign, Value, ValueId, Values};
@@ -64,7 +64,7 @@ pub fn instructions(program: &Program) -> usize {
     instructions.sum()
 }
 
-/// Which products are fused with what they are added to.
+/// The choice of the products that are fused with what they are added to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fusing {
     /// All.
@@ -152,7 +152,7 @@ struct Sums<'p> {
     program: &'p Program,
     /// How many values come before the statements: counted once, for it is asked of every value.
     before_statements: usize,
-    /// Which node a value is.
+    /// By value: its node.
     terms: Vec<Term>,
     /// By node: the terms of a sum.
     terms_of: Vec<Option<Vec<Term>>>,
@@ -235,7 +235,7 @@ impl<'p> Sums<'p> {
         Term::plus(named)
     }
 
-    /// What statements are made of: arguments, constants, angles, sines and cosines.
+    /// Whether a value is an argument, a constant, an angle, a sine or a cosine: statements are made of them.
     fn is_leaf(&self, id: ValueId) -> bool {
         id.index() < self.before_statements
     }

@@ -2,8 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::ir::name::Name;
-use crate::ir::quantity::{Component, Quantity};
+use crate::ir::{Component, Name, Quantity};
 use crate::program::Program;
 use crate::values::{Contraction, Negated, Operator, Value, ValueId, Values};
 
@@ -20,7 +19,7 @@ pub struct Arguments<'a, T> {
     pub force: [T; 3],
     /// Moment that the last link exerts at the tip, N m.
     pub moment: [T; 3],
-    /// What is fixed to the tip: mass, kg; centre of mass x, y, z from the origin of the tip frame, m; inertia about it
+    /// The payload at the tip: mass, kg; centre of mass x, y, z from the origin of the tip frame, m; inertia about it
     /// xx, yy, zz, xy, xz, yz, kg m², all in tip axes.
     pub payload: [T; 10],
     /// Joint torques.
@@ -57,7 +56,7 @@ pub struct Interpreter {
     outputs: Vec<ValueId>,
 }
 
-/// What a number of the interpreter can do.
+/// A number of the interpreter.
 pub trait Real:
     Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
@@ -93,28 +92,22 @@ impl Interpreter {
     /// Runs the program. `constant` turns a number of the program into a `T`, `sin_cos` gives (sine, cosine).
     ///
     /// Returns the outputs in the program's order; `None` when an argument array is too short.
-    pub fn run<T>(
+    pub fn run<T: Real>(
         &self,
         arguments: &Arguments<'_, T>,
         constant: impl Fn(f64) -> T,
         sin_cos: impl Fn(T) -> (T, T),
-    ) -> Option<Vec<T>>
-    where
-        T: Real,
-    {
+    ) -> Option<Vec<T>> {
         self.run_named(arguments, |_, value| Some(constant(value)), sin_cos)
     }
 
     /// As [`Interpreter::run`], with constants by their names: the name of a constant that is just 0 is `None`.
-    pub(crate) fn run_named<T>(
+    pub(crate) fn run_named<T: Real>(
         &self,
         arguments: &Arguments<'_, T>,
         constant: impl Fn(Option<Name>, f64) -> Option<T>,
         sin_cos: impl Fn(T) -> (T, T),
-    ) -> Option<Vec<T>>
-    where
-        T: Real,
-    {
+    ) -> Option<Vec<T>> {
         let mut slots: Vec<T> = Vec::with_capacity(self.values.len());
         // the cosine of an angle comes after its sine
         let mut turn: Option<(ValueId, (T, T))> = None;

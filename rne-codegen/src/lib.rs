@@ -50,10 +50,10 @@ pub use function::{
     Own, Record, Returned, Shape,
 };
 pub use interpret::{Arguments, Interpreter, Real};
-pub use ir::Residue;
-pub use ir::fold_report::{Cause, Causes, Fold, FoldReport, Line, Operation, Place};
-pub use ir::name::{Name, WithRespectTo};
-pub use ir::quantity::{Axis, Component, Quantity, Step};
+pub use ir::{
+    Axis, Cause, Causes, Component, Fold, FoldReport, Line, Name, Operation, Place, Quantity, Residue, Step,
+    WithRespectTo,
+};
 pub use named::UnknownName;
 pub use pipeline::Target;
 pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, SineCosine, Statement};
@@ -81,7 +81,7 @@ use crate::prove::Reference;
 #[derive(Clone, Debug)]
 pub struct Compiler<'r> {
     robot: &'r Robot,
-    /// Those of a plan file, or those that the build makes by itself when they are first needed.
+    /// The plans of a plan file, or those that the build makes by itself when they are first needed.
     plans: OnceLock<PlanSet>,
     target: Target,
     intermediates: Vec<Quantity>,

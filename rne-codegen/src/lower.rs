@@ -6,23 +6,19 @@ mod writing;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use rne_model::Robot;
+use writing::Writing;
 
 use crate::CompileError;
 use crate::function::{Form, Function};
-use crate::ir::fold_report::{Operation, Place};
-use crate::ir::name::Name;
-use crate::ir::quantity::{Quantity, Step};
-use crate::ir::{ExactAngle, Number, Op, Ref, Traced};
+use crate::ir::{ExactAngle, Name, Number, Op, Operation, Place, Quantity, Ref, Step, Traced};
 use crate::program::{Constant, Exactly, Program, Resolution, ResolvedAs};
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 use crate::values::{Sign, Value, Values};
-
-use writing::Writing;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);
 
-/// What the program is of.
+/// The robot, function and form of a program.
 pub(crate) struct Heading<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) function: Function,
@@ -261,7 +257,7 @@ impl<'w> Lowering<'w> {
         self.written.graph.number(at.magnitude()).map_or(0.0, Number::to_f64)
     }
 
-    /// What a constant under its name is.
+    /// The exact value of a constant under its name.
     fn exactly(&self, constant: &Constant, at: Ref) -> (Number, Option<ExactAngle>) {
         let at = at.magnitude().signed(constant.value < 0.0);
         let is_angle = matches!(constant.name.quantity, Quantity::Theta | Quantity::GroupTheta);
@@ -337,8 +333,8 @@ impl<'w> Lowering<'w> {
         self.written.trace.births[id.index()].as_ref().map_or_else(own, |birth| birth.place)
     }
 
-    /// What gets statements of its own, in no order, and what is returned: a torque, and whatever is computed for a
-    /// returned value alone, has a statement.
+    /// The values with statements of their own, in no order, and those that are returned: a torque, and whatever is
+    /// computed for a returned value alone, has a statement.
     fn definitions(&self, outputs: &[(Name, Ref)]) -> (Vec<Definition>, Vec<(Name, Returned)>) {
         let mut found = Vec::new();
         for (id, node) in self.live_nodes() {
@@ -398,13 +394,13 @@ struct Definition {
     position: Position,
     place: Place,
     name: Name,
-    /// What its name stands for.
+    /// The value that has the name.
     at: Ref,
     /// Whether it computes the node, which may have another name else.
     is_node: bool,
 }
 
-/// What is returned: what a statement of that name computes, or a value.
+/// A result: what a statement of that name computes, or a value.
 enum Returned {
     Statement,
     Value(Ref),

@@ -41,7 +41,7 @@ macro_rules! named {
 }
 pub(crate) use named;
 
-/// A name that is none of those allowed.
+/// A name that is not allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownName {
     pub(crate) found: String,

@@ -6,20 +6,18 @@ use crate::error::CompileError;
 use crate::fma;
 use crate::formulate;
 use crate::function::{Argument, Form, Function};
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Cost, Embedding, Policy, Traced};
+use crate::ir::{Builder, Cost, Embedding, Name, Policy, Quantity, Traced};
 use crate::lower::{Heading, lower};
 use crate::plan::{self, Plan};
 use crate::program::{Exactly, Program, Proof};
 use crate::prove::{self, Reference};
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 
 /// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
 /// nothing folds. Its text is some 15 MB.
 pub(crate) const LARGEST: usize = 500_000;
 
-/// What a program is arranged for.
+/// The purpose that a program is arranged for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
     /// The shortest wait for the result of one call ([`fma::ordered_for_latency`]); the fewest instructions where a
@@ -131,7 +129,7 @@ impl<'r> Reference<'r> {
     }
 
     /// Whether a formulation can be proved, and how many times less precise than the seven steps it is in single
-    /// precision, on the average of so many states; `None` when it is another function.
+    /// precision, on the average of random states; `None` when it is another function.
     ///
     /// # Errors
     /// When it cannot be lowered.

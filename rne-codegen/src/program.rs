@@ -8,10 +8,8 @@ use crate::CompileError;
 use crate::equation::Equation;
 use crate::expression::Expression;
 use crate::function::{Form, Function};
-use crate::ir::fold_report::{Causes, FoldReport, Place};
-use crate::ir::name::Name;
-use crate::ir::{ExactAngle, Number};
-use crate::reduced::algorithm::Algorithm;
+use crate::ir::{Causes, ExactAngle, FoldReport, Name, Number, Place};
+use crate::reduced::Algorithm;
 use crate::refusal::Refusal;
 use crate::values::{Operator, Sign, Value, ValueId, Values};
 
@@ -39,9 +37,9 @@ pub struct Program {
     pub statements: Vec<Statement>,
     /// The values returned, in the order of [`Function::layout`], then what was asked to be kept.
     pub outputs: Vec<Output>,
-    /// What every quantity of the recursion became, in its order.
+    /// The fate of every quantity of the recursion, in its order.
     pub resolutions: Vec<Resolution>,
-    /// What became of every operation of the recursion.
+    /// The fate of every operation of the recursion.
     pub fold_report: FoldReport,
     /// Its formulas before folding, component by component in the order in which they are computed; only of the seven
     /// steps, and only when they were asked for ([`crate::Compiler::with_equations`]).
@@ -68,15 +66,15 @@ pub struct Proof {
     /// The largest difference of a torque from the seven steps there in double precision, relative to the largest
     /// torque.
     pub rounding: f64,
-    /// The same in single precision, from double precision.
+    /// The largest difference in single precision, from double precision.
     pub single: f64,
-    /// The same of the seven steps themselves in single precision.
+    /// The largest difference of the seven steps themselves in single precision.
     pub single_of_seven_steps: f64,
     /// (products, sums) of the seven steps before folding.
     pub before: (usize, usize),
 }
 
-/// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
+/// The exact constants of a program: each as a number and, if it is an angle, as a turn.
 pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A named constant. A number that is two entries of the table stands under each name that the statements use.
@@ -121,16 +119,16 @@ pub struct Output {
     pub value: ValueId,
 }
 
-/// What a component of a quantity became.
+/// The fate of a component of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolution {
     /// The component.
     pub name: Name,
-    /// What it became.
+    /// Its fate in the code.
     pub value: ResolvedAs,
 }
 
-/// What a component of a quantity became in the code.
+/// The fate of a component of a quantity in the code.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResolvedAs {
     /// It is computed by the statement of its own name.
@@ -206,7 +204,7 @@ impl Program {
         })
     }
 
-    /// What the statements compute, then what is returned.
+    /// The expressions of the statements, then those that are returned.
     pub fn expressions(&self) -> impl Iterator<Item = Expression<'_>> {
         let statements = self.statements.iter().map(|statement| self.values.defined(statement.value));
         statements.chain(self.outputs.iter().map(|output| self.values.used(output.value)))
@@ -225,16 +223,14 @@ impl Program {
         for (id, _) in self.values.iter().take_while(is_leaf) {
             moving.value(id);
         }
-        let mut statement = |of: &Statement| Statement { value: moving.value(of.value), ..of.clone() };
-        let angles = self.angles.iter().map(&mut statement).collect();
+        let angles = moving.statements(&self.angles);
         let mut turn = |of: &SineCosine| SineCosine { angle: moving.value(of.angle), ..of.clone() };
         let sines_and_cosines = self.sines_and_cosines.iter().map(&mut turn).collect();
         let is_turn = |(_, value): &(ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
         for (id, _) in self.values.iter().filter(is_turn) {
             moving.value(id);
         }
-        let mut statement = |of: &Statement| Statement { value: moving.value(of.value), ..of.clone() };
-        let statements = self.statements.iter().map(&mut statement).collect();
+        let statements = moving.statements(&self.statements);
         let mut output = |of: &Output| Output { value: moving.value(of.value), ..of.clone() };
         let outputs = self.outputs.iter().map(&mut output).collect();
         let values = moving.values;
@@ -312,5 +308,9 @@ impl Moving<'_> {
         let new = self.values.push(self.old.name(id), value);
         self.new[id.index()] = Some(new);
         new
+    }
+
+    fn statements(&mut self, old: &[Statement]) -> Vec<Statement> {
+        old.iter().map(|of| Statement { value: self.value(of.value), ..of.clone() }).collect()
     }
 }

@@ -9,9 +9,7 @@ use rne_model::{JointKind, Robot};
 use crate::exact::ExactFunction;
 use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Embedding, Input, Residue, SamplePoint, operators};
+use crate::ir::{Axis, Embedding, Input, Name, Quantity, Residue, SamplePoint, operators};
 use crate::program::{Exactly, Program, Proof};
 use crate::refusal::largest_rounding;
 use crate::{CompileError, Suspect};
@@ -28,7 +26,7 @@ const SINGULAR: f64 = 0.1;
 /// torques at least.
 const LEAST_SCALE: f64 = 1e-2;
 
-/// What programs are held against: the seven steps, compiled.
+/// The seven steps, compiled: programs are compared with them.
 #[derive(Debug)]
 pub struct Reference<'r> {
     robot: &'r Robot,
@@ -124,10 +122,6 @@ pub fn divides_by_zero(robot: &Robot, function: Function) -> bool {
     ExactFunction::with(robot, function, embedding).divides_by_zero(&SamplePoint::new(embedding, 1))
 }
 
-fn signed((sine, cosine): (Residue, Residue), negative: bool) -> (Residue, Residue) {
-    (if negative { -sine } else { sine }, cosine)
-}
-
 /// The addition theorem.
 fn composed((s, c): (Residue, Residue), (sine, cosine): (Residue, Residue)) -> (Residue, Residue) {
     (s * cosine + c * sine, c * cosine - s * sine)
@@ -149,7 +143,7 @@ impl Value {
 
 operators! { Value:
     a + b => Self { number: a.number + b.number, turn: composed(a.turn, b.turn) };
-    -a => Self { number: -a.number, turn: signed(a.turn, true) };
+    -a => Self { number: -a.number, turn: (-a.turn.0, a.turn.1) };
     a - b => a + -b;
     a * b => Self::number(a.number * b.number);
     a / b => Self::number(a.number * b.number.inverse().unwrap_or(Residue::ZERO));
@@ -171,7 +165,7 @@ fn argument(robot: &Robot, point: &SamplePoint, name: Name) -> Value {
     Value::number(point.argument(Input::new(name)))
 }
 
-/// What a program returns at a point.
+/// The results of a program at a point.
 fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &SamplePoint) -> Option<Vec<Residue>> {
     let dof = robot.dof();
     let joints = |quantity| -> Vec<Value> {
@@ -239,7 +233,8 @@ struct Errors {
 }
 
 /// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
-/// where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
+/// without limits, |q̇| ≤ 2, |q̈| ≤ 4.
+#[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
 fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Program, states: usize) -> Vec<Errors> {
     let mut all = Vec::with_capacity(states);
     let steps = Interpreter::new(faithful);
@@ -247,13 +242,11 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
     let reduced = Interpreter::new(program);
     // as they stand in the file, and rounded
     let parameters = robot.run_time.values(robot);
-    #[allow(clippy::cast_possible_truncation)]
     let parameters_in_single: Vec<f32> = parameters.iter().map(|&value| value as f32).collect();
     let parameters: Vec<f64> = parameters_in_single.iter().copied().map(f64::from).collect();
     let mut rng = fastrand::Rng::with_seed(2024);
     for _ in 0..states {
         // numbers of single precision, so that both precisions are given the same state
-        #[allow(clippy::cast_possible_truncation)]
         let mut between = |low: f64, high: f64| f64::from((low + (high - low) * rng.f64()) as f32);
         let q: Vec<f64> = robot
             .joints
@@ -280,13 +273,10 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             torques.iter().zip(&expected).map(difference).fold(0.0, larger)
         };
         let single = |code: &Interpreter| {
-            #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
             let round = |values: &[f64]| values.iter().map(|&x| x as f32).collect::<Vec<f32>>();
             let (q, qd, qdd) = (round(&q), round(&qd), round(&qdd));
-            #[allow(clippy::cast_possible_truncation)]
             let wrench = wrench.map(|x| x as f32);
             let arguments = state([&q, &qd, &qdd], wrench, &parameters_in_single);
-            #[allow(clippy::cast_possible_truncation)]
             let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
         };

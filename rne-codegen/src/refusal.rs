@@ -1,4 +1,4 @@
-//! What was tried before a function got the code that it has, and why it was refused.
+//! Forms that were tried before a function got the code that it has, and why they were refused.
 
 use std::fmt;
 
@@ -20,7 +20,7 @@ pub(crate) const fn largest_rounding(function: Function) -> f64 {
 /// A reduced form of a function that was refused, so that the function has another one, or the seven steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// What was refused.
+    /// The form that was refused.
     pub attempt: Attempt,
     /// Why.
     pub reason: Reason,
@@ -38,7 +38,7 @@ pub enum Attempt {
     EveryValueOnce,
 }
 
-/// Which choices of a plan are not made.
+/// The choices of a plan that are not made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
     /// Every choice of the plan is made.
@@ -63,7 +63,7 @@ pub enum Reason {
     Longer {
         /// Its operations.
         operations: usize,
-        /// Those of the seven steps.
+        /// The operations of the seven steps.
         of_seven_steps: usize,
     },
 }

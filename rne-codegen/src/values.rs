@@ -4,7 +4,7 @@
 //! native code take it as it is, text nests a value without a name where it is used
 //! ([`Expression`](crate::Expression)).
 
-use crate::ir::name::Name;
+use crate::ir::Name;
 
 /// A value of a program, by its place in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -76,7 +76,7 @@ pub struct Contraction {
     pub factors: [ValueId; 2],
     /// z.
     pub addend: ValueId,
-    /// What a difference negates.
+    /// The part that a difference negates.
     pub negated: Option<Negated>,
 }
 

@@ -7,8 +7,8 @@ use syn::{ItemUse, UseTree};
 const CHECKED: [&str; 6] = ["reduced", "plan", "lower", "fma", "latency", "compile"];
 
 /// What the checker needs of the representation: to write the seven steps, and to take residues.
-const OF_THE_REPRESENTATION: [&str; 10] =
-    ["name", "quantity", "operators", "Builder", "Graph", "Residue", "Input", "Op", "SamplePoint", "Policy"];
+const OF_THE_REPRESENTATION: [&str; 11] =
+    ["Axis", "Name", "Quantity", "operators", "Builder", "Graph", "Residue", "Input", "Op", "SamplePoint", "Policy"];
 
 #[derive(Default)]
 struct Paths(Vec<Vec<String>>);

@@ -5,10 +5,10 @@ use std::ops::{Add, Range};
 
 use rne_codegen::Name;
 
-/// What a part of a text is.
+/// The kind of a part of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// What opens a declaration.
+    /// The word that opens a declaration.
     Keyword,
     /// A number's name: its quantity, joint and axis.
     Name(Name),
@@ -34,7 +34,7 @@ impl Annotated {
         parts.into_iter().reduce(|all, part| all + between + part).unwrap_or_default()
     }
 
-    /// Writes another one behind it.
+    /// Appends another text.
     pub(super) fn push(&mut self, other: &Self) {
         let before = self.text.len();
         self.text.push_str(&other.text);
@@ -42,7 +42,7 @@ impl Annotated {
         self.spans.extend(other.spans.iter().map(behind));
     }
 
-    /// Writes words, operators or brackets behind it.
+    /// Appends words, operators or brackets.
     pub(super) fn push_str(&mut self, text: &str) {
         self.text.push_str(text);
     }

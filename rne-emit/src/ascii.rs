@@ -1,6 +1,19 @@
 //! Text in ASCII alone, for compilers, editors and terminals that know nothing else. Code is ASCII as it is; what
 //! changes are comments and formulas.
 
+/// Exponents, and what each of them is on the line.
+const RAISED: [&str; 2] = ["ᵀ⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "T-+0123456789"];
+
+/// Letters with dots in one character: the letter, and how many dots it has.
+const DOTTED: [(char, char, usize); 5] = [('Ṁ', 'M', 1), ('ċ', 'c', 1), ('ḋ', 'd', 1), ('ẋ', 'x', 1), ('ẍ', 'x', 2)];
+
+/// Letters and their spellings, pair by pair.
+const SPELLINGS: &str = "\
+    α alpha β beta γ gamma Δ Delta δ delta ε epsilon θ theta Θ Theta λ lambda μ mu π pi ρ rho Σ sum σ sigma τ tau φ phi \
+    ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 … ... \
+    ’ ' ‘ ' “ \" ” \" ä a à a á a â a å a ç c è e é e ê e ë e ï i í i ñ n ö o ó o ô o ø o ü u ú u û u Ä A É E Ö O Ü U \
+    ß ss";
+
 /// A text with every letter that is not ASCII written out: ω is `w`, ω̇ `dw` and q̈ `qdd` as in the code, so θ̈ is
 /// `thetadd`; × is `x`, ᵀ `^T`, s⁻² `s^-2`. What has no such spelling, as a letter of a title may, is `_`.
 #[must_use]
@@ -9,41 +22,32 @@ pub fn ascii(text: &str) -> String {
     let mut characters = text.chars().peekable();
     let mut was_raised = false;
     while let Some(c) = characters.next() {
-        if let Some(raised) = raised(c) {
+        let raised = RAISED[0].chars().zip(RAISED[1].chars()).find(|(from, _)| *from == c);
+        if let Some((_, raised)) = raised {
             written.extend((!was_raised).then_some('^').into_iter().chain([raised]));
-            was_raised = true;
-            continue;
-        }
-        was_raised = false;
-        let mut dots = 0;
-        while let Some(more) = characters.peek().and_then(|mark| dots_of(*mark)) {
-            dots += more;
-            characters.next();
-        }
-        // one character for a letter and its dot
-        let (c, dots) = match c {
-            'Ṁ' => ('M', dots + 1),
-            'ċ' => ('c', dots + 1),
-            'ḋ' => ('d', dots + 1),
-            'ẋ' => ('x', dots + 1),
-            'ẍ' => ('x', dots + 2),
-            c => (c, dots),
-        };
-        let dots = "d".repeat(dots);
-        match c {
-            c if dots.is_empty() && c.is_ascii() => written.push(c),
-            'q' => written.extend(["q", &dots]),
-            'θ' => written.extend(["theta", &dots]),
-            c => {
-                written.push_str(&dots);
-                let mut ascii = [0; 4];
-                let spelling = if c.is_ascii() { &*c.encode_utf8(&mut ascii) } else { spelling(c) };
-                // no `*` after a `/`: compilers warn of comments inside comments
-                written.push_str(if spelling == "*" && written.ends_with('/') { " *" } else { spelling });
+        } else {
+            let (c, mut dots) =
+                DOTTED.into_iter().find(|(dotted, ..)| *dotted == c).map_or((c, 0), |(_, letter, dots)| (letter, dots));
+            while let Some(more) = characters.peek().and_then(|mark| dots_of(*mark)) {
+                dots += more;
+                characters.next();
             }
+            write_letter(c, &"d".repeat(dots), &mut written);
         }
+        was_raised = raised.is_some();
     }
     written
+}
+
+fn write_letter(c: char, dots: &str, written: &mut String) {
+    match c {
+        'q' => written.extend(["q", dots]),
+        'θ' => written.extend(["theta", dots]),
+        c if c.is_ascii() => written.extend([dots, c.encode_utf8(&mut [0])]),
+        // no `*` after a `/`: compilers warn of comments inside comments
+        '·' if dots.is_empty() && written.ends_with('/') => written.push_str(" *"),
+        c => written.extend([dots, spelling(c)]),
+    }
 }
 
 /// The dots that a mark puts above the letter before it.
@@ -55,80 +59,12 @@ const fn dots_of(mark: char) -> Option<usize> {
     }
 }
 
-/// What an exponent is on the line.
-const fn raised(c: char) -> Option<char> {
-    Some(match c {
-        'ᵀ' => 'T',
-        '⁻' => '-',
-        '⁺' => '+',
-        '⁰' => '0',
-        '¹' => '1',
-        '²' => '2',
-        '³' => '3',
-        '⁴' => '4',
-        '⁵' => '5',
-        '⁶' => '6',
-        '⁷' => '7',
-        '⁸' => '8',
-        '⁹' => '9',
-        _ => return None,
-    })
-}
-
 fn spelling(c: char) -> &'static str {
+    let mut words = SPELLINGS.split(' ');
     match c {
-        'α' => "alpha",
-        'β' => "beta",
-        'γ' => "gamma",
-        'Δ' => "Delta",
-        'δ' => "delta",
-        'ε' => "epsilon",
-        'θ' => "theta",
-        'Θ' => "Theta",
-        'λ' => "lambda",
-        'μ' => "mu",
-        'π' => "pi",
-        'ρ' => "rho",
-        'Σ' => "sum",
-        'σ' => "sigma",
-        'τ' => "tau",
-        'φ' => "phi",
-        'ψ' => "psi",
-        'Ω' => "Omega",
-        'ω' => "w",
-        '∂' => "d",
-        '·' => "*",
-        '×' => "x",
-        '−' | '–' | '—' | '─' => "-",
-        '±' => "+-",
-        '≤' => "<=",
-        '≥' => ">=",
-        '→' => "->",
-        '√' => "sqrt",
-        '∫' => "int",
-        '½' => "1/2",
-        '₀' => "0",
-        '₁' => "1",
-        '₂' => "2",
-        '₃' => "3",
         '°' => " deg",
-        '…' => "...",
-        '’' | '‘' => "'",
-        '“' | '”' => "\"",
-        'ä' | 'à' | 'á' | 'â' | 'å' => "a",
-        'ç' => "c",
-        'è' | 'é' | 'ê' | 'ë' => "e",
-        'ï' | 'í' => "i",
-        'ñ' => "n",
-        'ö' | 'ó' | 'ô' | 'ø' => "o",
-        'ü' | 'ú' | 'û' => "u",
-        'Ä' => "A",
-        'É' => "E",
-        'Ö' => "O",
-        'Ü' => "U",
-        'ß' => "ss",
         '\u{A0}' => " ",
-        _ => "_",
+        _ => words.find(|word| word.chars().eq([c])).and_then(|_| words.next()).unwrap_or("_"),
     }
 }
 

@@ -1,9 +1,8 @@
 //! Why a program that is not the seven steps can be trusted, in words.
 
-use rne_codegen::Form;
-use rne_codegen::{Program, Proof};
+use rne_codegen::{Form, Program, Proof};
 
-/// What the form is, its proof and its choices, one sentence or choice per line.
+/// The form of a program, its proof and its choices, one sentence or choice per line.
 #[must_use]
 pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
     let meaning = if program.function.returns_torques() {
@@ -38,8 +37,8 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
     lines
 }
 
-/// Which reduced forms of a function were refused, and why; then what the function has instead. No line where nothing
-/// was refused.
+/// The reduced forms of a function that were refused, and why; then what the function has instead. No line where
+/// nothing was refused.
 #[must_use]
 pub fn refusals(program: &Program) -> Vec<String> {
     if program.refusals.is_empty() {

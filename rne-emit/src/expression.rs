@@ -2,9 +2,10 @@
 
 use std::cell::Cell;
 
+use rne_codegen::{Expression, ExpressionKind, Negated, Operator};
+
 use super::annotated::{Annotated, Part};
 use super::syntax::Syntax;
-use rne_codegen::{Expression, ExpressionKind, Negated, Operator};
 
 /// Where an operand stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -100,7 +101,7 @@ pub(super) struct Measure {
     pub(super) kind: Kind,
 }
 
-/// What a part of an expression is.
+/// The kind of a part of an expression.
 pub(super) enum Kind {
     /// A name, or zero.
     Word(Annotated),

@@ -1,19 +1,18 @@
 //! The formulas of the seven steps and of the reduced form, for the comments of generated code.
 
-use rne_model::JointKind::{self, Prismatic, Revolute};
-
 use rne_codegen::{Quantity, Step};
+use rne_model::JointKind::{self, Prismatic, Revolute};
 
 /// A formula of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Formula {
-    /// What it gives.
+    /// The quantity that it gives.
     pub quantity: Quantity,
     /// The formula, in the letters of the lecture.
     pub text: String,
 }
 
-/// What formulas give, and how they are written; `{i}`, `{p}` and `{n}` are a joint, the one before and the next.
+/// Quantities and their formulas; `{i}`, `{p}` and `{n}` are a joint, the one before and the next.
 type Templates = &'static [(Quantity, &'static str)];
 
 /// The formulas of a step for joint `joint`, in the letters of the lecture; of a link without mass that has a first
@@ -55,7 +54,7 @@ pub(super) fn formulas(step: Step, kind: JointKind, joint: usize, has_first_mome
     of_joint(templates, joint)
 }
 
-/// The formulas of a step for a payload, as the link behind the last; `{p}` is the last one, R turns tip axes into its
+/// The formulas of a step for a payload, as the link after the last; `{p}` is the last one, R turns tip axes into its
 /// own.
 pub(super) fn payload_formulas(step: Step, joint: usize) -> Vec<Formula> {
     let templates: Templates = match step {

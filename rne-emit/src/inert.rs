@@ -4,7 +4,7 @@
 
 use rne_model::{Robot, one_line};
 
-/// What a robot is called in a heading: its title, or its name where it has none.
+/// The name of a robot in a heading: its title, or its name where it has none.
 #[must_use]
 pub fn title(robot: &Robot) -> String {
     let title = robot.title.as_deref().map(one_line).filter(|title| !title.trim().is_empty());

@@ -43,7 +43,7 @@ pub use tokens::Body;
 mod tests {
     use rne_codegen::{Compiler, Form, Function};
 
-    /// What renderers call a variable of their own is the name of no number.
+    /// No number has the name of a variable that renderers add.
     #[test]
     fn variables_of_the_renderers_are_reserved() {
         let robot = rne_model::Robot::from_yaml(rne_robots::find("planar2").unwrap().yaml).unwrap();

@@ -6,11 +6,12 @@
 
 use std::collections::HashMap;
 
+use rne_codegen::{Expression, Operator};
+
 use super::annotated::Annotated;
 use super::expression::{Infix as _, Kind, Measured, Operand};
 use super::syntax::Syntax;
 use super::wrap::WIDTH;
-use rne_codegen::{Expression, Operator};
 
 /// `START EXPRESSION;`, where the start is `let NAME =` or the like, broken where it is too long.
 pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expression: Expression<'_>) -> Annotated {
@@ -29,19 +30,19 @@ struct Room {
 }
 
 impl Room {
-    /// Behind so many columns.
+    /// The room after `columns` columns.
     fn behind(self, columns: usize) -> Option<Self> {
         let width = self.width.checked_sub(columns)?;
         Some(Self { width, used: self.used + columns, ..self })
     }
 
-    /// With so many columns behind it.
+    /// The room with `columns` columns after it.
     fn before(self, columns: usize) -> Option<Self> {
         let width = self.width.checked_sub(columns)?;
         Some(Self { width, ..self })
     }
 
-    /// A line of its own, indented by four more, with the same behind it.
+    /// A line of its own, indented by four more, with the same columns after it.
     fn next_line(self) -> Option<Self> {
         let behind = WIDTH.saturating_sub(self.used + self.width);
         let indent = self.indent + 4;
@@ -67,7 +68,7 @@ impl Extent {
         Self { breaks: 0, first: columns, last: columns, blanks: 0 }
     }
 
-    /// A text with another one behind it.
+    /// The extent of a text and another one after it.
     const fn then(self, other: Self) -> Self {
         let first = if self.breaks == 0 { self.first + other.first } else { self.first };
         let (last, blanks) =
@@ -85,7 +86,7 @@ struct Layout {
 
 enum Piece {
     Text(&'static str),
-    /// A new line with so many blanks.
+    /// A new line with this number of blanks.
     NewLine(usize),
     /// A part, as it is laid out in a room.
     Part(usize, Room),
@@ -126,7 +127,7 @@ impl Layout {
 /// The layouts of the parts of an expression.
 struct LineBreaks {
     measured: Measured,
-    /// What has been tried. `None` where there is no room.
+    /// The layouts that have been tried. `None` where there is no room.
     layouts: HashMap<(usize, Room), Option<Layout>>,
 }
 
@@ -164,8 +165,8 @@ impl LineBreaks {
         text + ";"
     }
 
-    /// What a part takes, over several lines if need be: the operands of its outermost operator each on a line of its
-    /// own, and so on inside those that are still too long. `None` where there is no room for it.
+    /// The extent of a part, over several lines if need be: the operands of its outermost operator each on a line of
+    /// its own, and so on inside those that are still too long. `None` where there is no room for it.
     fn extent(&mut self, part: usize, room: Room) -> Option<Extent> {
         let measure = self.measured.visit(part);
         if measure.width <= room.width || matches!(measure.kind, Kind::Word(_) | Kind::Call(..)) {

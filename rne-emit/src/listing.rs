@@ -4,6 +4,10 @@
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 
+use rne_codegen::{
+    Argument, Cause, Causes, Constant, Expression, Fold, FoldReport, Form, Function, Name, Place, Program, Quantity,
+    Resolution, ResolvedAs, Sign, SineCosine, Statement, Step, WithRespectTo,
+};
 use rne_model::{JointKind, Robot};
 
 use super::annotated::{Annotated, Part};
@@ -14,13 +18,8 @@ use super::syntax::Syntax;
 use super::table::angle;
 use super::text::returned;
 use super::wrap::{TIED, WIDTH, fill};
-use rne_codegen::{Argument, Form, Function};
-use rne_codegen::{Cause, Causes, Fold, FoldReport, Place};
-use rne_codegen::{Constant, Expression, Program, Resolution, ResolvedAs, Sign, SineCosine, Statement};
-use rne_codegen::{Name, WithRespectTo};
-use rne_codegen::{Quantity, Step};
 
-/// Which part of a program to list, and how much to say.
+/// The part of a program to list, and how much to say.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Selection {
     /// One joint only, counted from 1.
@@ -29,7 +28,7 @@ pub struct Selection {
     pub step: Option<Step>,
     /// Say what components became that are no statement, and what folded.
     pub explain: bool,
-    /// Name at most so many reasons why operations are gone, the commonest first.
+    /// Largest number of reasons why operations are gone that are named, the commonest first.
     pub reasons: Option<usize>,
 }
 
@@ -46,7 +45,7 @@ impl Selection {
 /// A program, or a part of it, for reading.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Listing<'a> {
-    /// What stands together.
+    /// The sections, in order.
     pub sections: Vec<Section<'a>>,
 }
 
@@ -63,35 +62,35 @@ pub struct Section<'a> {
 /// A line of a listing. Every [`Name`] in it has a quantity, a joint and an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Line<'a> {
-    /// What the section is.
+    /// The heading of the section.
     Heading(String),
     /// A formula of its step.
     Formula(Formula),
     /// A number that stands in no table.
     Constant(Constant),
-    /// Which sine and cosine stand at the head of the function.
+    /// A sine and cosine at the head of the function.
     SineCosine(&'a SineCosine, Expression<'a>),
     /// A statement and what it computes.
     Statement(&'a Statement, Expression<'a>),
-    /// What components became that are no statement.
+    /// The fate of components that have no statement.
     Resolution {
         /// The components.
         names: Vec<Name>,
-        /// What they became, with the sign or word between.
+        /// Their fate, with the sign or word between.
         became: Annotated,
     },
     /// How many operations are left, and why the others are gone.
     Folds(Folds),
-    /// What the function returns.
+    /// The results of the function.
     Returned(Annotated),
 }
 
-/// What folding made of the operations of a step.
+/// The effect of folding on the operations of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Folds {
     /// Products and sums of the formulas.
     pub before: (usize, usize),
-    /// Those that are left.
+    /// Products and sums that are left.
     pub left: (usize, usize),
     /// How many are gone for which reason, the commonest first.
     pub reasons: Vec<(usize, String)>,
@@ -333,7 +332,7 @@ fn by_title(program: &Program, joint: usize, step: Step, by: WithRespectTo) -> S
     }
 }
 
-/// The heading of what is none of the seven steps: the function's own, or what several functions share.
+/// The heading of a formula beyond the seven steps: the function's own, or what several functions share.
 fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
     if let Some(own) = program.function.own(quantity) {
         return (own.heading)(joint);

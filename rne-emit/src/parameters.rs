@@ -2,11 +2,8 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Name, Program, Quantity};
 use rne_model::{Entry, Formula, Robot};
-
-use rne_codegen::Name;
-use rne_codegen::Program;
-use rne_codegen::Quantity;
 
 /// More numbers of the table than this are counted, not named.
 const MOST_NAMED: usize = 4;
@@ -26,22 +23,22 @@ pub(super) struct Parameter {
 }
 
 impl Parameter {
-    /// Those of a robot in their order, as members of a struct in a language with these keywords.
+    /// The parameters of a robot in their order, as members of a struct in a language with these keywords.
     pub(super) fn of(robot: &Robot, keywords: &str) -> Vec<Self> {
         let run_time = &robot.run_time;
         let parameter = |(index, (name, value)): (usize, (&String, f64))| {
             let depends = || run_time.entries.iter().filter(move |(_, formula)| formula.depends_on(index));
-            let mut units = depends().filter(|(_, formula)| is_added(formula, index)).map(|(entry, _)| unit(*entry));
+            let mut units = depends().filter(|(_, formula)| is_added(formula, index)).map(|(entry, _)| words(*entry).1);
             let first = units.next();
             // numbers of two units: the file knows what that means
             let unit = first.filter(|first| units.all(|other| other == *first));
-            let entries = depends().map(|(entry, _)| words(*entry)).collect();
+            let entries = depends().map(|(entry, _)| words(*entry).0).collect();
             Self { name: name.clone(), value, member: member(name, &run_time.names, keywords), unit, entries }
         };
         run_time.names.iter().zip(run_time.values(robot)).enumerate().map(parameter).collect()
     }
 
-    /// What it is, for the documentation of its member: its value in the file, its unit, what depends on it.
+    /// The documentation of its member: its value in the file, its unit, what depends on it.
     pub(super) fn about(&self) -> String {
         let mut text = String::new();
         if self.name != self.member {
@@ -112,43 +109,30 @@ fn is_added(formula: &Formula, parameter: usize) -> bool {
     }
 }
 
-const fn unit(entry: Entry) -> &'static str {
+/// A number of the table in words, and its unit.
+fn words(entry: Entry) -> (String, &'static str) {
+    let axis = |axis: usize| ["x", "y", "z"].get(axis).copied().unwrap_or_default();
     match entry {
-        Entry::Gravity(_) => "m/s²",
-        Entry::BaseXyz(_) | Entry::ToolXyz(_) | Entry::D(_) | Entry::A(_) | Entry::Com(..) => "m",
-        Entry::Mass(_) => "kg",
-        Entry::FirstMoment(..) => "kg m",
-        Entry::Inertia(..) | Entry::MotorInertia(_) => "kg m²",
-        Entry::ThetaSine(_) | Entry::ThetaCosine(_) | Entry::AlphaSine(_) | Entry::AlphaCosine(_) => "1",
-        Entry::GearRatio(_) => "turns of the motor per turn of the joint",
-        Entry::Viscous(_) => "N m s/rad",
-        Entry::CoulombPositive(_) | Entry::CoulombNegative(_) => "N m",
-    }
-}
-
-/// A number of the table in words.
-fn words(entry: Entry) -> String {
-    const AXES: [&str; 3] = ["x", "y", "z"];
-    let axis = |axis: usize| AXES.get(axis).copied().unwrap_or_default();
-    match entry {
-        Entry::Gravity(of) => format!("{} of gravity", axis(of)),
-        Entry::BaseXyz(of) => format!("{} of the base", axis(of)),
-        Entry::ToolXyz(of) => format!("{} of the tool", axis(of)),
-        Entry::D(joint) => format!("d{}", joint + 1),
-        Entry::A(joint) => format!("a{}", joint + 1),
-        Entry::ThetaSine(joint) => format!("sin θ{}", joint + 1),
-        Entry::ThetaCosine(joint) => format!("cos θ{}", joint + 1),
-        Entry::AlphaSine(joint) => format!("sin α{}", joint + 1),
-        Entry::AlphaCosine(joint) => format!("cos α{}", joint + 1),
-        Entry::Mass(joint) => format!("m{}", joint + 1),
-        Entry::Com(joint, of) => format!("{} of the centre of mass of link {}", axis(of), joint + 1),
-        Entry::FirstMoment(joint, of) => format!("{} of the first moment of link {}", axis(of), joint + 1),
-        Entry::Inertia(joint, element) => format!("I{} of link {}", element.key(), joint + 1),
-        Entry::MotorInertia(joint) => format!("inertia of motor {}", joint + 1),
-        Entry::GearRatio(joint) => format!("gear ratio of motor {}", joint + 1),
-        Entry::Viscous(joint) => format!("viscous friction of motor {}", joint + 1),
-        Entry::CoulombPositive(joint) => format!("Coulomb friction of motor {}, speed positive", joint + 1),
-        Entry::CoulombNegative(joint) => format!("Coulomb friction of motor {}, speed negative", joint + 1),
+        Entry::Gravity(of) => (format!("{} of gravity", axis(of)), "m/s²"),
+        Entry::BaseXyz(of) => (format!("{} of the base", axis(of)), "m"),
+        Entry::ToolXyz(of) => (format!("{} of the tool", axis(of)), "m"),
+        Entry::D(joint) => (format!("d{}", joint + 1), "m"),
+        Entry::A(joint) => (format!("a{}", joint + 1), "m"),
+        Entry::ThetaSine(joint) => (format!("sin θ{}", joint + 1), "1"),
+        Entry::ThetaCosine(joint) => (format!("cos θ{}", joint + 1), "1"),
+        Entry::AlphaSine(joint) => (format!("sin α{}", joint + 1), "1"),
+        Entry::AlphaCosine(joint) => (format!("cos α{}", joint + 1), "1"),
+        Entry::Mass(joint) => (format!("m{}", joint + 1), "kg"),
+        Entry::Com(joint, of) => (format!("{} of the centre of mass of link {}", axis(of), joint + 1), "m"),
+        Entry::FirstMoment(joint, of) => (format!("{} of the first moment of link {}", axis(of), joint + 1), "kg m"),
+        Entry::Inertia(joint, element) => (format!("I{} of link {}", element.key(), joint + 1), "kg m²"),
+        Entry::MotorInertia(joint) => (format!("inertia of motor {}", joint + 1), "kg m²"),
+        Entry::GearRatio(joint) => {
+            (format!("gear ratio of motor {}", joint + 1), "turns of the motor per turn of the joint")
+        }
+        Entry::Viscous(joint) => (format!("viscous friction of motor {}", joint + 1), "N m s/rad"),
+        Entry::CoulombPositive(joint) => (format!("Coulomb friction of motor {}, speed positive", joint + 1), "N m"),
+        Entry::CoulombNegative(joint) => (format!("Coulomb friction of motor {}, speed negative", joint + 1), "N m"),
     }
 }
 

@@ -1,12 +1,10 @@
 //! The steps of a program with the lecture's equations, in a few lines: for the documentation of a method.
 
+use rne_codegen::{Form, Program, Statement, Step};
 use rne_model::{JointKind, Robot};
 
 use super::formula::{ANY, formulas, reduced_formulas};
 use super::listing::recursion;
-use rne_codegen::Form;
-use rne_codegen::Step;
-use rne_codegen::{Program, Statement};
 
 /// The formulas of the steps in which a program computes something, for joint i between h = i - 1 and j = i + 1: a line
 /// each, with the number of its step. None of what is made by another algorithm.
@@ -45,8 +43,9 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use rne_codegen::{Compiler, Function};
+
+    use super::*;
 
     const PUMA_560: &str = include_str!("../../robots/puma560.yaml");
     const STANFORD: &str = include_str!("../../robots/stanford.yaml");

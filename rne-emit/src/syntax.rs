@@ -1,4 +1,4 @@
-//! What differs between the languages in which statements are written.
+//! Differences between the languages in which statements are written.
 
 /// The number type of C code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -47,7 +47,7 @@ pub(super) enum Syntax<'a> {
 }
 
 impl Syntax<'_> {
-    /// What stands before the name of a value.
+    /// The words before the name of a value.
     pub(super) fn declaration(self) -> String {
         match self {
             Self::Rust => "let".to_owned(),

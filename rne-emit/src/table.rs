@@ -1,9 +1,8 @@
 //! The Denavit-Hartenberg table for people.
 
+use rne_codegen::Program;
 use rne_model::{Angle, JointKind, QuarterTurns, Robot, one_line};
 use unicode_width::UnicodeWidthStr;
-
-use rne_codegen::Program;
 
 /// The table of a robot as text: one line per joint, aligned, angles as multiples of π where they are right angles.
 pub(super) fn dh_table(robot: &Robot) -> String {
@@ -38,7 +37,7 @@ pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> Vec<String> {
     lines.iter().map(|line| row(line).trim_end().to_owned()).collect()
 }
 
-/// What folding made of a program: its function, products, sums, divisions, angles.
+/// The effect of folding on a program: its function, products, sums, divisions, angles.
 pub(super) fn counts(program: &Program) -> [String; 5] {
     let ((products, sums), after) = (program.before(), program.operations());
     let [products, sums] =
@@ -46,7 +45,7 @@ pub(super) fn counts(program: &Program) -> [String; 5] {
     [program.function.to_string(), products, sums, after.div.to_string(), after.sincos.to_string()]
 }
 
-/// What folding made of each program, as a table of Markdown.
+/// The effect of folding on each program, as a table of Markdown.
 #[must_use]
 pub fn operations_table(programs: &[Program]) -> String {
     let row = |[function, products, sums, _, angles]: [String; 5]| {

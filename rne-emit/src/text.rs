@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use rne_codegen::{ArgumentArray, Layout, Name, Program};
 use rne_model::Robot;
 
 use super::annotated::Annotated;
@@ -16,10 +17,6 @@ use super::parameters::{self, Parameter};
 use super::syntax::Syntax;
 use super::table::operations_table;
 use super::wrap::{WIDTH, fill};
-use rne_codegen::ArgumentArray;
-use rne_codegen::Layout;
-use rne_codegen::Name;
-use rne_codegen::Program;
 
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]
@@ -87,7 +84,7 @@ fn record_of_parameters(robot: &Robot) -> String {
 /// rustfmt breaks longer patterns of arrays.
 const PATTERN: usize = 62;
 
-/// What the generated functions ask of a number type; the body of a function refers to nothing else.
+/// The trait that the generated functions ask of a number type; the body of a function refers to nothing else.
 fn scalar(programs: &[Program]) -> String {
     let divides = programs.iter().any(|program| program.operations().div > 0);
     let chooses = programs.iter().any(Program::chooses_by_sign);
@@ -273,7 +270,7 @@ fn names(names: impl Iterator<Item = Option<Name>>) -> String {
     names.map(|name| name.map_or_else(|| "_".to_owned(), |name| name.to_string())).collect::<Vec<_>>().join(", ")
 }
 
-/// What a function returns, for a line that is indented by four.
+/// The results of a function, for a line that is indented by four.
 pub(super) fn returned(program: &Program) -> Option<Annotated> {
     let mut outputs =
         program.outputs.iter().map(|output| Piece::Number(line(Syntax::Rust, program.values.used(output.value))));

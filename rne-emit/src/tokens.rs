@@ -5,14 +5,12 @@ use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{ToTokens, quote};
+use rne_codegen::{
+    ArgumentArray, Expression, ExpressionKind, Name, Negated, Program, Record, Statement, ValueId, fma, fma::Fusing,
+};
 
 use super::expression::{Infix as _, Position, needs_parentheses};
 use super::syntax::Syntax;
-use rne_codegen::ArgumentArray;
-use rne_codegen::Name;
-use rne_codegen::Record;
-use rne_codegen::fma::{self, Fusing};
-use rne_codegen::{Expression, ExpressionKind, Negated, Program, Statement, ValueId};
 
 /// The body of a program's function: everything between its braces.
 ///
@@ -22,7 +20,7 @@ use rne_codegen::{Expression, ExpressionKind, Negated, Program, Statement, Value
 pub struct Body<'a> {
     program: Cow<'a, Program>,
     scalar: &'a TokenStream,
-    /// What has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
+    /// The path of what has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
     arithmetic: &'a TokenStream,
     /// Where the types of records are; tuples stand for them without.
     library: Option<&'a TokenStream>,
@@ -35,19 +33,19 @@ impl<'a> Body<'a> {
         Self { program: Cow::Borrowed(program), scalar, arithmetic: scalar, library: None }
     }
 
-    /// The same with `mul_add`, `sin_cos` and `sin_cos_array` of the type or the trait at `arithmetic`.
+    /// The body with `mul_add`, `sin_cos` and `sin_cos_array` of the type or the trait at `arithmetic`.
     #[must_use]
     pub fn with_arithmetic(self, arithmetic: &'a TokenStream) -> Self {
         Self { arithmetic, ..self }
     }
 
-    /// The same with poses and other records as types of the crate at `library`, where they are tuples otherwise.
+    /// The body with poses and other records as types of the crate at `library`, where they are tuples otherwise.
     #[must_use]
     pub fn with_records_of(self, library: &'a TokenStream) -> Self {
         Self { library: Some(library), ..self }
     }
 
-    /// The same with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product
+    /// The body with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product
     /// and sum on any other. Where the call waits for a sum that is sooner there without, the two stay apart.
     ///
     /// Results differ in the last digits from target to target, so the seven steps are not written so.
@@ -56,7 +54,7 @@ impl<'a> Body<'a> {
         Self { program: Cow::Owned(fma::fused(&self.program, Fusing::Soonest)), ..self }
     }
 
-    /// The same with `mul_add` wherever a product is added: the fewest instructions.
+    /// The body with `mul_add` wherever a product is added: the fewest instructions.
     #[must_use]
     pub fn all_fused(self) -> Self {
         Self { program: Cow::Owned(fma::fused(&self.program, Fusing::All)), ..self }
@@ -85,7 +83,7 @@ impl<'a> Body<'a> {
         quote!(#arguments #constants #statements [#(#turns),*])
     }
 
-    /// What follows the first part, when the arguments `sin` and `cos` are references to the sines and cosines of its
+    /// The part after the angles, when the arguments `sin` and `cos` are references to the sines and cosines of its
     /// angles.
     #[must_use]
     pub fn beyond_angles(&self) -> TokenStream {
@@ -168,7 +166,7 @@ impl<'a> Body<'a> {
         quote!(#statements #outputs)
     }
 
-    /// What is returned, in its layout; what was asked to be kept as well makes it a list.
+    /// The results, in their layout; what was asked to be kept as well makes it a list.
     fn returned(&self) -> TokenStream {
         let outputs = || self.program.outputs.iter().map(|output| self.used(output.value));
         let layout = self.program.function.layout(self.program.dof);

@@ -8,7 +8,7 @@ pub(super) const WIDTH: usize = 100;
 /// A blank at which no line breaks.
 pub(super) const TIED: &str = "\u{A0}";
 
-/// Words in lines of so many columns, the first behind `first`, those below it behind `others`. A word that is longer
+/// Words in lines of `width` columns, the first after `first`, those below it behind `others`. A word that is longer
 /// than a line stays whole.
 pub(super) fn fill(text: &str, width: usize, first: &str, others: &str) -> String {
     let options = Options::new(width)

@@ -1,14 +1,10 @@
-//! What motors behind gears add: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇). Rotor gyroscopics are left out.
+//! Torques that motors with gears add: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇). Rotor gyroscopics are left out.
 
 use rne_model::{Entry, Robot};
 
+use crate::formulate::JointState;
 use crate::formulate::arm::number;
-use crate::formulate::joint::JointState;
-use crate::ir::Builder;
-use crate::ir::Symbol;
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Cause, Name, Quantity, Symbol};
 
 /// The torques of the motors, base to tip; zero where a joint has none. Rotors that belong to the arm are in its own.
 pub(crate) fn torques<'s>(builder: &'s Builder, robot: &Robot, states: &[JointState<'s>]) -> Vec<Symbol<'s>> {

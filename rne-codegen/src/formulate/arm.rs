@@ -15,11 +15,7 @@
 use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot, Transform};
 
 use crate::function::Argument;
-use crate::ir::Builder;
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Matrix, Symbol, Vector};
+use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// Where a joint, or the tip frame, is mounted on its parent link: the constants between a link and what it carries.
 pub(crate) struct Mount<'s> {
@@ -133,7 +129,7 @@ impl<'s> Arm<'s> {
         }
     }
 
-    /// What a link carries on the way to the tip: the next joint, or the tip.
+    /// The mount of what a link carries on the way to the tip: the next joint, or the tip.
     pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
         self.links.iter().find(|link| link.parent == Some(index)).map_or(&self.tip, |link| &link.mount)
     }

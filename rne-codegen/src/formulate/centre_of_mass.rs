@@ -11,12 +11,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::Arm;
-use crate::formulate::kinematics::Frames;
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Symbol, Vector};
+use crate::formulate::{Arm, Frames};
+use crate::ir::{Builder, Cause, Name, Quantity, Symbol, Vector};
 
 /// In the world. `frames` start at the base, in world axes; `centres` lead from the joints to the centres of mass.
 pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vector<'s> {
@@ -77,7 +73,7 @@ fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) 
         .collect()
 }
 
-/// What a link has in the centre of mass, μ_i c_i, and what a first moment beside its mass has.
+/// The part of a link in the centre of mass, μ_i c_i, with that of a first moment beside its mass.
 fn with_first_moment<'s>(
     arm: &Arm<'s>,
     frames: &Frames<'s>,
@@ -88,8 +84,8 @@ fn with_first_moment<'s>(
     arm.links[index].first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
 }
 
-/// What part of the mass each link has, and one by the mass: constants, unless a mass is given at run time. Of an arm
-/// without mass, what is not finite: a product with its zeros would fold.
+/// The part of the mass that each link has, and one by the mass: constants, unless a mass is given at run time. Of an
+/// arm without mass, what is not finite: a product with its zeros would fold.
 fn parts<'s>(arm: &Arm<'s>) -> Result<(Vec<Symbol<'s>>, Symbol<'s>), Symbol<'s>> {
     let builder = arm.builder;
     let line = builder.joint(arm.links.len());

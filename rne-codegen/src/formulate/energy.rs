@@ -3,14 +3,8 @@
 //! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇²; V = -Σ m_i g · c_i, with c_i from the origin of
 //! frame 0; of a first moment h beside the mass + ċ_i · (ω_i × h_i) in T and - g · R_i h_i in V
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::JointState;
-use crate::formulate::kinematics::Frames;
-use crate::formulate::seven_steps::Motion;
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Symbol, Vector};
+use crate::formulate::{Arm, Frames, JointState, Motion};
+use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
 
 pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[Motion<'s>]) -> Symbol<'s> {
     let builder = arm.builder;

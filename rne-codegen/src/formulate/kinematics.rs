@@ -10,13 +10,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::{Arm, Mount};
-use crate::formulate::joint::JointState;
-use crate::formulate::seven_steps::{self, Motion, Turning};
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Matrix, Vector};
+use crate::formulate::{Arm, JointState, Motion, Mount, Turning, seven_steps};
+use crate::ir::{Axis, Cause, Matrix, Name, Quantity, Vector};
 
 /// A frame in the world.
 #[derive(Clone, Copy)]

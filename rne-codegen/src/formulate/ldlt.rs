@@ -3,9 +3,7 @@
 //! For each column j: D_j = M_jj - Σ L_jk c_jk, c_ij = M_ij - Σ L_ik c_jk, L_ij = c_ij / D_j, with sums over k < j.
 //! Then L y = b, z = y / D and Lᵀ x = z. A singular M divides by zero: the numbers are not finite then, nothing worse.
 
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Symbol};
+use crate::ir::{Builder, Name, Quantity, Symbol};
 
 /// The solution of M x = b; row i of `upper` holds the elements (i, i) to (i, n) of M.
 pub(crate) fn solved<'s>(builder: &'s Builder, upper: &[Vec<Symbol<'s>>], b: &[Symbol<'s>]) -> Vec<Symbol<'s>> {

@@ -1,4 +1,4 @@
-//! Which formulas a function of a robot is made of: the seven steps and what stands beside them, written on a builder.
+//! Formulas of each function of a robot: the seven steps and what stands beside them, written on a builder.
 
 pub(crate) mod actuation;
 pub(crate) mod arm;
@@ -13,20 +13,18 @@ pub(crate) mod payload;
 pub(crate) mod regressor;
 pub(crate) mod seven_steps;
 
+pub(crate) use arm::{Arm, Link, Mount};
+pub(crate) use joint::{Joint, JointState, Wrench};
+pub(crate) use kinematics::{Frame, Frames};
+pub(crate) use payload::Payload;
+pub(crate) use seven_steps::{Load, Motion, Turning};
+
 use rne_model::Robot;
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::{JointState, Wrench};
-use crate::formulate::kinematics::{Frame, Frames};
-use crate::formulate::payload::Payload;
-use crate::formulate::seven_steps::{Load, Motion};
 use crate::function::{Argument, Function};
-use crate::ir::fold_report::Cause;
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Component, Quantity};
-use crate::ir::{Builder, Ref, Symbol, Vector};
+use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
-/// What a function of a robot returns, by name, in the order of its layout. Zeros of the function are put in before
+/// The results of a function of a robot, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.
 pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> Vec<(Name, Ref)> {
     let derivation = Derivation::new(builder, robot, function);
@@ -38,9 +36,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         | Function::GravityTorques
         | Function::BiasTorques
         | Function::InverseDynamicsOnMovingBase => derivation.torques(),
-        Function::MassMatrix => derivation.mass_matrix(),
+        Function::MassMatrix => mass_matrix(&derivation.upper_half()),
         Function::CoriolisMatrix => derivation.coriolis_matrix(),
-        Function::ForwardDynamics => derivation.forward_dynamics(),
+        Function::ForwardDynamics => forward_dynamics(builder, &derivation.upper_half(), derivation.tau()),
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
         Function::Jacobian => derivation.jacobian(),
@@ -50,18 +48,17 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::CentreOfMass => derivation.centre_of_mass(),
         Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
         Function::Regressor => derivation.regressor(),
-        Function::InverseDynamicsDerivatives => derivation.derivatives(),
+        Function::InverseDynamicsDerivatives => derivatives(builder, &derivation.tau()),
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::MomentumAndRate => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
-        Function::InverseMassMatrix => {
-            inverse_mass_matrix(builder, &mass_matrix::upper_half(&derivation.arm, &derivation.states))
-        }
+        Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
 
-type Outputs<'s> = Vec<(Name, Symbol<'s>)>;
+/// The results of a function, by name, in the order of its layout.
+pub(crate) type Outputs<'s> = Vec<(Name, Symbol<'s>)>;
 
 /// A function being written.
 struct Derivation<'s, 'r> {
@@ -141,37 +138,14 @@ impl<'s, 'r> Derivation<'s, 'r> {
         by_joint(Quantity::Torque, self.tau())
     }
 
-    fn mass_matrix(&self) -> Outputs<'s> {
-        let upper = mass_matrix::upper_half(&self.arm, &self.states);
-        square(self.states.len(), |row, column| {
-            let (row, column) = (row.min(column), row.max(column));
-            let name = Name { by: Some(WithRespectTo::RateDot(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
-            (name, upper[row][column - row])
-        })
+    /// The upper half of M.
+    fn upper_half(&self) -> Vec<Vec<Symbol<'s>>> {
+        mass_matrix::upper_half(&self.arm, &self.states)
     }
 
-    /// ½ ∂(bias torques)/∂q̇
     fn coriolis_matrix(&self) -> Outputs<'s> {
         let torques = self.tau();
-        let dof = torques.len();
-        let half = self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
-        let columns = self.builder.derivatives(&torques, (1..=dof).map(WithRespectTo::Rate));
-        square(dof, |row, column| {
-            let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
-            let line = self.builder.joint(row + 1);
-            let value = line.within(Quantity::CoriolisElement, || columns[column][row] * half);
-            (name, self.builder.name(name, value))
-        })
-    }
-
-    fn forward_dynamics(&self) -> Outputs<'s> {
-        let upper = mass_matrix::upper_half(&self.arm, &self.states);
-        let rest = |(index, torque): (usize, Symbol<'s>)| {
-            let applied = self.builder.argument(Name::scalar(Quantity::AppliedTorque, index + 1));
-            self.builder.joint(index + 1).within(Quantity::Reduced, || applied - torque)
-        };
-        let rest: Vec<_> = self.tau().into_iter().enumerate().map(rest).collect();
-        by_joint(Quantity::RateDot, ldlt::solved(self.builder, &upper, &rest))
+        coriolis_matrix(self.builder, &torques, self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5))
     }
 
     fn tip_pose(&self) -> Outputs<'s> {
@@ -228,19 +202,6 @@ impl<'s, 'r> Derivation<'s, 'r> {
         outputs
     }
 
-    fn derivatives(&self) -> Outputs<'s> {
-        let torques = self.tau();
-        let dof = torques.len();
-        let by = |kind: fn(usize) -> WithRespectTo| {
-            let columns = self.builder.derivatives(&torques, (1..=dof).map(kind));
-            square(dof, |row, column| {
-                let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
-                (name, columns[column][row])
-            })
-        };
-        [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
-    }
-
     fn joint_wrenches(&self) -> Outputs<'s> {
         let wrenches = self.loads().into_iter().enumerate();
         let named = wrenches.flat_map(|(index, Load { wrench: Wrench { force, moment }, .. })| {
@@ -258,6 +219,52 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn actuator_torques(&self) -> Outputs<'s> {
         by_joint(Quantity::ActuatorTorque, actuation::torques(self.builder, self.robot, &self.states))
     }
+}
+
+/// M by its upper half: row i of `upper` holds the elements (i, i) to (i, n).
+pub(crate) fn mass_matrix<'s>(upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
+    square(upper.len(), |row, column| {
+        let (row, column) = (row.min(column), row.max(column));
+        (torque_by(row, WithRespectTo::RateDot(column + 1)), upper[row][column - row])
+    })
+}
+
+/// ½ ∂(bias torques)/∂q̇
+pub(crate) fn coriolis_matrix<'s>(builder: &'s Builder, torques: &[Symbol<'s>], half: Symbol<'s>) -> Outputs<'s> {
+    let columns = builder.derivatives(torques, (1..=torques.len()).map(WithRespectTo::Rate));
+    square(torques.len(), |row, column| {
+        let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
+        let line = builder.joint(row + 1);
+        (name, builder.name(name, line.within(Quantity::CoriolisElement, || columns[column][row] * half)))
+    })
+}
+
+/// M⁻¹ (τ - bias)
+pub(crate) fn forward_dynamics<'s>(
+    builder: &'s Builder,
+    upper: &[Vec<Symbol<'s>>],
+    bias: Vec<Symbol<'s>>,
+) -> Outputs<'s> {
+    let rest = |(index, torque): (usize, Symbol<'s>)| {
+        let applied = builder.argument(Name::scalar(Quantity::AppliedTorque, index + 1));
+        builder.joint(index + 1).within(Quantity::Reduced, || applied - torque)
+    };
+    let rest: Vec<_> = bias.into_iter().enumerate().map(rest).collect();
+    by_joint(Quantity::RateDot, ldlt::solved(builder, upper, &rest))
+}
+
+/// ∂τ/∂q, then ∂τ/∂q̇
+pub(crate) fn derivatives<'s>(builder: &'s Builder, torques: &[Symbol<'s>]) -> Outputs<'s> {
+    let by = |kind: fn(usize) -> WithRespectTo| {
+        let columns = builder.derivatives(torques, (1..=torques.len()).map(kind));
+        square(torques.len(), |row, column| (torque_by(row, kind(column + 1)), columns[column][row]))
+    };
+    [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
+}
+
+/// The name of the derivative of a torque, whose joint is counted from 0.
+pub(crate) fn torque_by(row: usize, by: WithRespectTo) -> Name {
+    Name { by: Some(by), ..Name::scalar(Quantity::Torque, row + 1) }
 }
 
 /// M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹: column j is solved from row j on, and the rest is its mirror. Row i of `upper` holds the elements
@@ -279,7 +286,7 @@ pub(crate) fn inverse_mass_matrix<'s>(builder: &'s Builder, upper: &[Vec<Symbol<
 }
 
 /// Elements of an n × n matrix by rows.
-pub(crate) fn square<S>(dof: usize, element: impl Fn(usize, usize) -> (Name, S)) -> Vec<(Name, S)> {
+pub(crate) fn square<'s>(dof: usize, element: impl Fn(usize, usize) -> (Name, Symbol<'s>)) -> Outputs<'s> {
     (0..dof)
         .flat_map(|row| (0..dof).map(move |column| (row, column)))
         .map(|(row, column)| element(row, column))
@@ -287,7 +294,7 @@ pub(crate) fn square<S>(dof: usize, element: impl Fn(usize, usize) -> (Name, S))
 }
 
 /// One number per joint.
-fn by_joint(quantity: Quantity, numbers: Vec<Symbol<'_>>) -> Outputs<'_> {
+pub(crate) fn by_joint(quantity: Quantity, numbers: Vec<Symbol<'_>>) -> Outputs<'_> {
     let numbers = numbers.into_iter().enumerate();
     numbers.map(|(index, number)| (Name::scalar(quantity, index + 1), number)).collect()
 }

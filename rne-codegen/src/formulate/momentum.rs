@@ -24,12 +24,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::{Joint, JointState};
-use crate::formulate::seven_steps::Motion;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Symbol, Vector};
+use crate::formulate::{Arm, Joint, JointState, Motion};
+use crate::ir::{Name, Quantity, Symbol, Vector};
 
 /// A link and all that it carries: as one body, about its joint, in its axes or in those of its parent.
 #[derive(Clone, Copy)]

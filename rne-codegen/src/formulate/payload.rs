@@ -8,15 +8,11 @@
 //! f = m (c̈ - g)                   n = I ω̇ + ω × (I ω) + c × f          about the origin of the tip frame
 //! ```
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::Wrench;
-use crate::formulate::seven_steps::Motion;
+use crate::formulate::{Arm, Motion, Wrench};
 use crate::function::Argument;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Matrix, Symbol, Vector};
+use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
 
-/// What is known of a payload, in tip axes.
+/// A payload, in tip axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Payload<'s> {
     pub(crate) mass: Symbol<'s>,
@@ -40,7 +36,7 @@ impl<'s> Payload<'s> {
         })
     }
 
-    /// What the last link exerts on it, at the tip, in tip axes.
+    /// The wrench that the last link exerts on it, at the tip, in tip axes.
     pub(crate) fn wrench(&self, arm: &Arm<'s>, last: &Motion<'s>) -> Wrench<'s> {
         let Self { mass, com, inertia } = *self;
         let dof = arm.links.len();

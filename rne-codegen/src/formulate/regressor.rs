@@ -9,13 +9,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::Arm;
-use crate::formulate::joint::JointState;
-use crate::formulate::seven_steps::{Motion, Turning};
-use crate::ir::fold_report::Cause;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Matrix, Symbol, Vector};
+use crate::formulate::{Arm, JointState, Motion, Turning};
+use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// Parameters of a link.
 pub(crate) const PARAMETERS: usize = 10;
@@ -67,7 +62,7 @@ pub(crate) fn regressor<'s>(
     rows
 }
 
-/// Of an element of Y; all counted from 0.
+/// The name of an element of Y; joint, link and parameter are counted from 0.
 pub(crate) fn element_name(joint: usize, link: usize, parameter: usize) -> Name {
     Name { indices: [link + 1, parameter + 1], ..Name::scalar(Quantity::RegressorElement, joint + 1) }
 }

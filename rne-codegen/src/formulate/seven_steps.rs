@@ -9,11 +9,9 @@
 //! in [`super::joint`]. A link without mass may have a first moment h about the point that its centre of mass would be,
 //! as in a set of base parameters: its terms stand apart, for no body has them.
 
-use crate::formulate::arm::{Arm, Mount, identity};
-use crate::formulate::joint::{Joint, JointState, Wrench};
-use crate::ir::fold_report::Cause;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
+use crate::formulate::arm::identity;
+use crate::formulate::{Arm, Joint, JointState, Mount, Wrench};
+use crate::ir::{Builder, Cause, JointLines, Matrix, Quantity, Symbol, Vector};
 
 /// How a link turns, in its frame: what steps 1 and 2 find.
 #[derive(Clone, Copy)]
@@ -34,14 +32,15 @@ pub(crate) struct Motion<'s> {
     pub(crate) gravity: Vector<'s>,
 }
 
-/// What the parent exerts on link i, and the actuator.
+/// The wrench that the parent exerts on link i, and the torque of the actuator.
 #[derive(Clone, Copy)]
 pub(crate) struct Load<'s> {
     pub(crate) wrench: Wrench<'s>,
     pub(crate) torque: Symbol<'s>,
 }
 
-/// What a link hands on to a joint k that it carries, or to what the tip touches: f_{i,k} and n_{i,k} in its frame.
+/// The wrench that a link hands on to a joint k that it carries, or to what the tip touches: f_{i,k} and n_{i,k} in its
+/// frame.
 #[derive(Clone)]
 struct Carried<'s> {
     wrench: Wrench<'s>,
@@ -72,7 +71,7 @@ impl<'s> Wrench<'s> {
         Self { force: builder.zeros(Cause::FreeTip), moment: builder.zeros(Cause::FreeTip) }
     }
 
-    /// The same for the link of `line`, on which it acts where `mount` is.
+    /// The wrench in the axes of the link of `line`, on which it acts where `mount` is.
     fn carried(&self, line: JointLines<'s>, rotation: Matrix<'s>, mount: &Mount<'s>) -> Carried<'s> {
         let force = line.vector(Quantity::ChildForce, || rotation * self.force);
         let moment = line.vector(Quantity::ChildMoment, || rotation * self.moment);
@@ -80,7 +79,7 @@ impl<'s> Wrench<'s> {
     }
 }
 
-/// What the actuators of all joints deliver, base to tip, when the last link exerts `tip` on its environment.
+/// The torques of all joints, base to tip, when the last link exerts `tip` on its environment.
 pub(crate) fn inverse_dynamics<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],

@@ -20,7 +20,7 @@ pub enum Answer {
 /// Numbers in rows and columns that have names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnswerTable {
-    /// What they are, and their units if those are the same for all robots.
+    /// Meaning of the numbers, and their units if those are the same for all robots.
     pub about: &'static str,
     /// Their units, where the kinds of the joints decide.
     pub unit: Option<MatrixUnit>,
@@ -39,7 +39,7 @@ impl AnswerTable {
 /// The names of rows or columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Labels {
-    /// Those of the joints.
+    /// The names of the joints.
     Joints,
     /// These.
     Names(&'static [&'static str]),

@@ -1,7 +1,7 @@
 //! The arguments of functions, and the arrays that they are passed in.
 
 use super::Length;
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 
 /// An argument of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub struct ArgumentPart {
     pub name: &'static str,
     /// How many numbers it has for a state.
     pub length: Length,
-    /// What its numbers are.
+    /// The quantity that its numbers are.
     pub quantity: Quantity,
 }
 
@@ -89,7 +89,7 @@ impl Argument {
         PARTS.iter().filter(move |part| part.argument == self)
     }
 
-    /// How many numbers it has for a state of an arm with so many joints.
+    /// Numbers that it has for a state of an arm with `dof` joints.
     #[must_use]
     pub fn elements(self, dof: usize) -> usize {
         self.parts().map(|part| part.length.of(dof)).sum()
@@ -97,7 +97,7 @@ impl Argument {
 }
 
 impl Length {
-    /// The length for so many joints.
+    /// The length for `dof` joints.
     #[must_use]
     pub const fn of(self, dof: usize) -> usize {
         match self {

@@ -1,23 +1,23 @@
-//! What the table has of each function.
+//! Entries of the table of functions.
 
 use super::table::{Capability, Function};
 use super::{Answer, Argument, Returned};
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 
-/// What a caller must know of a function.
+/// The signature of a function, and the words for its callers.
 #[derive(Debug)]
 pub(super) struct Signature {
-    /// What it computes, for the first line of its documentation.
+    /// The first line of its documentation.
     pub(super) summary: &'static str,
-    /// What else a caller must know: shapes, units, frames and signs that the names do not tell.
+    /// Shapes, units, frames and signs that the names do not tell.
     pub(super) details: &'static str,
-    /// What it takes, in order.
+    /// Its arguments, in order.
     pub(super) arguments: &'static [Argument],
-    /// What it returns.
+    /// Its result.
     pub(super) returned: Returned,
 }
 
-/// What else there is to know of a function.
+/// Properties of a function.
 #[derive(Debug)]
 #[allow(clippy::struct_excessive_bools)] // each is a property by itself
 pub struct Entry {
@@ -27,7 +27,7 @@ pub struct Entry {
     pub capability: Capability,
     /// The argument of C behind which the result is written. A single number is returned.
     pub output: &'static str,
-    /// What a listing says above the returned numbers.
+    /// The words of a listing above the returned numbers.
     pub listed: &'static str,
     /// The quantities that its listing shows under headings of its own.
     pub own: &'static [Own],
@@ -44,23 +44,23 @@ pub struct Entry {
     pub is_irreducible: bool,
     /// Whether it solves by the mass matrix, so that its numbers are worth nothing where that is nearly singular.
     pub inverts_mass: bool,
-    /// What it means that its numbers are not finite, for a function that divides.
+    /// The meaning of numbers that are not finite, for a function that divides.
     pub divides: Option<&'static str>,
 }
 
 /// A quantity in the listing of a function.
 #[derive(Debug)]
 pub struct Own {
-    /// Which.
+    /// The quantity.
     pub quantity: Quantity,
-    /// What stands above its statements at a joint.
+    /// The heading above its statements at a joint.
     pub heading: fn(usize) -> String,
-    /// What its names stand for, where that is not what they stand for elsewhere.
+    /// The meaning of its names in this function, where it differs from the usual one.
     pub meaning: Option<&'static str>,
 }
 
 impl Entry {
-    /// What most functions have in common.
+    /// The entry that most functions have in common.
     pub(super) const fn of(function: Function, capability: Capability) -> Self {
         Self {
             function,
@@ -78,7 +78,7 @@ impl Entry {
         }
     }
 
-    /// What functions that return the torques of the joints have in common.
+    /// The entry that functions which return joint torques have in common.
     pub(super) const fn torques(function: Function, capability: Capability) -> Self {
         Self { output: "tau", returns_torques: true, ..Self::of(function, capability) }
     }
@@ -95,7 +95,7 @@ impl Own {
         Self::meaning(quantity, meaning, |_| String::new())
     }
 
-    /// The same, whose names stand for something else here.
+    /// A quantity under a heading, whose names have another meaning in this function.
     pub(super) const fn meaning(quantity: Quantity, meaning: &'static str, heading: fn(usize) -> String) -> Self {
         Self { quantity, heading, meaning: Some(meaning) }
     }

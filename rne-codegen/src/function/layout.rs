@@ -5,7 +5,7 @@
 pub enum Shape {
     /// One number.
     Number,
-    /// So many of the same.
+    /// Elements of one shape.
     Array(Length, &'static Self),
     /// Named parts.
     Record(Record, &'static [Self]),
@@ -82,7 +82,7 @@ pub enum Length {
 }
 
 impl Shape {
-    /// The shape for so many joints.
+    /// The shape for `dof` joints.
     #[must_use]
     pub fn layout(&self, dof: usize) -> Layout {
         match self {
@@ -99,7 +99,7 @@ impl Shape {
 pub enum Layout {
     /// One number.
     Number,
-    /// So many of the same.
+    /// Elements of one shape.
     Array(usize, Box<Self>),
     /// Named parts.
     Record(Record, Vec<Self>),
@@ -153,7 +153,7 @@ impl Layout {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there is no number.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -6,7 +6,7 @@ mod entry;
 mod layout;
 mod table;
 
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 use crate::named::named;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
@@ -25,7 +25,7 @@ impl Capability {
 }
 
 impl Function {
-    /// Those of the trait `InverseDynamics`: torques of an arm whose base stands still.
+    /// The functions of the trait `InverseDynamics`: torques of an arm whose base stands still.
     pub const TORQUES: [Self; 6] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWithWrench,
@@ -46,13 +46,13 @@ impl Function {
         self.entry().capability
     }
 
-    /// What it computes, for the first line of its documentation.
+    /// The first line of its documentation.
     #[must_use]
     pub const fn summary(self) -> &'static str {
         SIGNATURES[self as usize].summary
     }
 
-    /// What else a caller must know: shapes, units, frames and signs that the names do not tell.
+    /// Shapes, units, frames and signs that the names do not tell.
     #[must_use]
     pub const fn details(self) -> &'static str {
         SIGNATURES[self as usize].details
@@ -94,7 +94,7 @@ impl Function {
         SIGNATURES[self as usize].returned.shape()
     }
 
-    /// The shape of what it returns for so many joints.
+    /// The shape of its result for `dof` joints.
     #[must_use]
     pub fn layout(self, dof: usize) -> Layout {
         self.shape().layout(dof)
@@ -106,7 +106,7 @@ impl Function {
         &self.entry().answer
     }
 
-    /// What is told of a quantity in its listing alone.
+    /// The heading and meaning that a quantity has in its listing alone.
     pub fn own(self, quantity: Quantity) -> Option<&'static Own> {
         self.entry().own.iter().find(|own| own.quantity == quantity)
     }
@@ -123,7 +123,7 @@ impl Function {
         self.entry().inverts_mass
     }
 
-    /// What it means that its numbers are not finite, for a function that divides.
+    /// The meaning of numbers that are not finite, for a function that divides.
     #[must_use]
     pub const fn divides(self) -> Option<&'static str> {
         self.entry().divides

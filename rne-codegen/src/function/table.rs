@@ -1,11 +1,11 @@
-//! One entry per function: all that is told of it elsewhere than in its formulas.
+//! The table of functions: one entry for each, with all but its formulas.
 //!
 //! A function is added by a line of `functions!` and an entry here, its formulas in `formulate`, and the runtime's own
 //! implementation. The entries stand in the order of the variants. A new function is the last one, whatever its
 //! capability, so that the others keep their places, which are the ids of the C library.
 
 use super::{Answer, AnswerTable, Argument, Entry, Labels, MatrixUnit, Own, Returned, Signature};
-use crate::ir::quantity::Quantity;
+use crate::ir::Quantity;
 use crate::named::named;
 
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
@@ -147,7 +147,7 @@ macro_rules! signatures {
 functions!(signatures);
 
 named! {
-    /// What a robot can compute, named as the trait that a struct derives.
+    /// A capability of a robot, named as the trait that a struct derives.
     Capability, "capability" {
         /// Torques from motion.
         InverseDynamics = "InverseDynamics",

@@ -37,7 +37,7 @@ impl Graph {
         let (a, b) = if a.index() > b.index() { (b, a) } else { (a, b) };
         let negative = a.is_negative();
         let op = Op::Sum(a.signed(negative), b.signed(negative));
-        let (at, outcome) = self.intern(op, if negative { -residue } else { residue });
+        let (at, outcome) = self.intern(op, residue.signed(negative));
         (at.signed(negative), outcome)
     }
 
@@ -51,7 +51,7 @@ impl Graph {
             (a, b) = (-b, -a);
             negative = !negative;
         }
-        let (at, outcome) = self.intern(Op::Sum(a, b), if negative { -residue } else { residue });
+        let (at, outcome) = self.intern(Op::Sum(a, b), residue.signed(negative));
         (at.signed(negative), outcome)
     }
 
@@ -132,9 +132,7 @@ impl Graph {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ir::name::Name;
-    use crate::ir::quantity::Quantity;
-    use crate::ir::{Embedding, Input, Number};
+    use crate::ir::{Embedding, Input, Name, Number, Quantity};
 
     fn inputs(policy: Policy) -> (Graph, Ref, Ref) {
         let mut graph = Graph::new(policy, Embedding::default());

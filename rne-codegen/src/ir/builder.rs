@@ -1,24 +1,20 @@
-//! What formulas are written on: a graph, and the trace beside it where one is kept.
+//! The sheet that formulas are written on: a graph, and the trace beside it where one is kept.
 
 use std::cell::{Cell, RefCell};
 
 use rne_model::{Angle, Joint};
 
-use super::trace::{Birth, Definition, Trace, Traced};
 use super::{
-    CausesId, Embedding, ExactAngle, Graph, Input, Matrix, Number, Outcome, Policy, Ref, Symbol, TermId, Vector,
-    Written, WrittenTerms,
+    Axis, Birth, Cause, CausesId, Definition, Embedding, ExactAngle, Graph, Input, Matrix, Name, Number, Operation,
+    Outcome, Place, Policy, Quantity, Ref, Symbol, TermId, Trace, Traced, Vector, WithRespectTo, Written, WrittenTerms,
 };
 use crate::function::Function;
-use crate::ir::fold_report::{Cause, Operation, Place};
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Quantity};
 use crate::values::Operator;
 
-/// What moves in the formulas that are being written.
+/// The motion of the joints in the formulas that are being written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Moving {
-    /// What the function takes.
+    /// The joints move as the arguments say.
     #[default]
     AsGiven,
     /// This joint, counted from 0, accelerates with 1, and nothing moves: a column of the mass matrix.
@@ -35,7 +31,7 @@ pub(crate) struct Builder {
     pub(crate) function: Function,
     /// The variable of the derivatives that are being written.
     by: Cell<Option<WithRespectTo>>,
-    /// What moves in the formulas that are being written.
+    /// The motion of the joints in the formulas that are being written.
     pub(crate) moving: Cell<Moving>,
 }
 
@@ -45,7 +41,7 @@ impl Builder {
         Self { trace: Some(RefCell::default()), ..Self::untraced(policy, embedding, function) }
     }
 
-    /// The same, and formulas are kept as they are written, before anything folds.
+    /// An empty graph with a trace that keeps formulas as they are written, before anything folds.
     pub(crate) fn explained(policy: Policy, embedding: Embedding, function: Function) -> Self {
         let mut trace = Trace::default();
         trace.terms = Some(WrittenTerms::default());
@@ -243,7 +239,7 @@ impl Builder {
         Symbol { term, ..symbol }
     }
 
-    /// The symbol of what an operation gave, which the trace is told of.
+    /// The symbol of the result of an operation, which enters the trace.
     fn recorded<'s>(
         &'s self,
         (at, outcome): (Ref, Outcome),
@@ -290,7 +286,7 @@ impl Builder {
         value
     }
 
-    /// What has been traced so far: where each node was created, and the names.
+    /// The trace so far: where each node was created, and the names.
     pub(super) fn told(&self) -> (Vec<Option<Birth>>, Vec<Definition>) {
         let Some(trace) = &self.trace else { return Default::default() };
         let trace = &mut *trace.borrow_mut();
@@ -313,7 +309,7 @@ impl Builder {
         }
     }
 
-    /// What a quantity is where rates stand for accelerations; `None` for what has no name then.
+    /// The meaning of a quantity where rates stand for accelerations; `None` for what has no name then.
     fn meant(&self, quantity: Quantity) -> Option<Quantity> {
         if self.moving.get() == Moving::RatesForAccelerations { quantity.of_momentum() } else { Some(quantity) }
     }
@@ -336,7 +332,7 @@ impl Builder {
         trace.borrow_mut().enter(self.graph.borrow().len(), place, axis)
     }
 
-    /// What was written, when these are its results.
+    /// The finished graph with these results, and its trace.
     pub(crate) fn finish(self, outputs: Vec<Ref>) -> Traced {
         let mut graph = self.graph.into_inner();
         graph.outputs = outputs;

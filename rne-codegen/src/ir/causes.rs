@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::ir::fold_report::{Alternatives, Cause, Causes};
+use super::{Alternatives, Cause, Causes};
 
 /// The index of [`Causes`] in the trace that knows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -13,7 +13,7 @@ impl CausesId {
     pub(crate) const ARITHMETIC: Self = Self(0);
 }
 
-/// What numbers are zero or one because of, each kept once, and what they give together.
+/// The causes of zeros and ones, each kept once, and what they give together.
 pub(crate) struct KnownCauses {
     list: Vec<Alternatives>,
     ids: HashMap<Alternatives, CausesId>,
@@ -53,12 +53,12 @@ impl KnownCauses {
         self.alternatives(id).best()
     }
 
-    /// Of a sum of two zeros.
+    /// The causes of a sum of two zeros.
     pub(crate) fn both(&mut self, a: CausesId, b: CausesId) -> CausesId {
         self.joined((a, b, true), Alternatives::and)
     }
 
-    /// Of a product of two zeros.
+    /// The causes of a product of two zeros.
     pub(crate) fn either(&mut self, a: CausesId, b: CausesId) -> CausesId {
         self.joined((a, b, false), Alternatives::or)
     }

@@ -2,11 +2,10 @@
 
 use rne_model::Angle;
 
-use super::numbers::{Source, canonical};
-use super::{ExactAngle, Graph, Number, Op, Policy, Ref};
+use super::{ExactAngle, Graph, Number, Op, Policy, Ref, numbers::Source, numbers::canonical};
 
 impl Graph {
-    /// What a reference to a constant is exactly.
+    /// The exact number of a reference to a constant.
     pub(crate) fn number(&self, at: Ref) -> Option<Number> {
         let Op::Constant(place) = self.op(at) else { return None };
         let (number, _) = self.numbers.get(place);
@@ -55,7 +54,7 @@ impl Graph {
         places.filter(|place| !self.turns.contains_key(place)).collect()
     }
 
-    /// What a constant is as an angle.
+    /// The turn of a constant that is an angle.
     pub(crate) fn turn(&self, at: Ref) -> Option<ExactAngle> {
         let Op::Constant(place) = self.op(at) else { return None };
         let magnitude = || self.embedding().turn(&Angle::new(self.numbers.get(place).0.to_f64()));

@@ -1,4 +1,4 @@
-//! What a graph costs: the operations of what it returns.
+//! The cost of a graph: the operations of its results.
 
 use super::{Graph, Op, Ref, mark_live};
 
@@ -23,7 +23,7 @@ impl Cost {
         self.mul + self.add
     }
 
-    /// What a search makes small.
+    /// The number that a search minimises.
     #[must_use]
     pub const fn weight(&self) -> usize {
         self.total() + Self::ANGLE * self.sincos

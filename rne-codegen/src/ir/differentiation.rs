@@ -2,11 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::{Birth, Builder, Definition, Input, Op, Ref, Symbol, mark_live};
-use crate::ir::fold_report::{Cause, Place};
-use crate::ir::name::{Name, WithRespectTo};
+use super::{Birth, Builder, Cause, Definition, Input, Name, Op, Place, Ref, Symbol, WithRespectTo, mark_live};
 
-/// What is differentiated: the graph as it was before.
+/// The graph that is differentiated, as it was before.
 struct Formulas {
     ops: Vec<Op>,
     births: Vec<Option<Birth>>,

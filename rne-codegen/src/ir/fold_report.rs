@@ -1,11 +1,10 @@
-//! What was folded, and because of what: data for listings, not a log.
+//! Operations that were folded, and the causes: data for listings, not a log.
 
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Quantity, Step};
+use super::{Axis, Name, Quantity, Step, WithRespectTo};
 
 /// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -104,7 +103,7 @@ impl Causes {
         Self(all.into())
     }
 
-    /// Those that hold for this arm and not for every arm.
+    /// The causes that hold for this arm and not for every arm.
     fn facts(&self) -> impl Iterator<Item = Cause> {
         self.iter().filter(|cause| !cause.is_geometry())
     }
@@ -121,7 +120,7 @@ impl Causes {
 pub(crate) struct Alternatives(Vec<Causes>);
 
 impl Alternatives {
-    /// So many are kept; the fewest causes are found among them.
+    /// Sets that are kept; the fewest causes are found among them.
     const MOST: usize = 8;
 
     pub(crate) fn one(cause: Cause) -> Self {
@@ -220,7 +219,7 @@ pub enum Operation {
     Sum,
 }
 
-/// What became of operations that the unfolded recursion performs.
+/// The fate of operations that the unfolded recursion performs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Fold {
     /// It stands in the generated code.
@@ -248,7 +247,7 @@ pub struct Place {
     pub step: Step,
     /// The quantity that was being computed.
     pub quantity: Quantity,
-    /// Of which variable it was the derivative.
+    /// The variable by which it was differentiated.
     pub by: Option<WithRespectTo>,
 }
 
@@ -259,7 +258,7 @@ pub struct Line {
     pub place: Place,
     /// Product or sum.
     pub operation: Operation,
-    /// What became of them.
+    /// Their fate.
     pub fold: Fold,
     /// How many.
     pub count: usize,

@@ -14,21 +14,23 @@ use std::collections::HashMap;
 
 use hashbrown::HashTable;
 
-use super::numbers::{Numbers, canonical, key};
-use super::{Embedding, ExactAngle, Input, Node, Number, Op, Ref, Residue, SamplePoint};
+use super::{
+    Embedding, ExactAngle, Input, Node, Number, Op, Ref, Residue, SamplePoint, numbers::Numbers, numbers::canonical,
+    numbers::key,
+};
 
-/// What the constructors of a graph may fold.
+/// The rule by which the constructors of a graph fold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Policy {
-    /// What is exact in floating point.
+    /// Only identities that are exact in floating point fold.
     Structure,
-    /// What is equal as numbers.
+    /// Equal numbers fold.
     Value,
-    /// The same, and equal values are one node.
+    /// Equal numbers fold, and equal values are one node.
     Numbered,
 }
 
-/// What became of an operation.
+/// The result of writing an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// A new node: it will be computed, unless it turns out dead.
@@ -61,7 +63,7 @@ pub(crate) struct Graph {
     pub(super) policy: Policy,
     /// Where the residues are taken, and how constants are read there.
     pub(crate) point: SamplePoint,
-    /// What constants are that are angles, by their places.
+    /// The turns of constants that are angles, by their places.
     pub(super) turns: HashMap<u32, ExactAngle>,
     /// Indices of nodes by operation and by value. Looked up, never iterated.
     structures: HashTable<u32>,
@@ -132,8 +134,7 @@ impl Graph {
 
     /// The residue of a reference.
     pub(crate) fn residue(&self, at: Ref) -> Residue {
-        let residue = self.nodes[at.index()].residue;
-        if at.is_negative() { -residue } else { residue }
+        self.nodes[at.index()].residue.signed(at.is_negative())
     }
 
     /// Whether it is the constant 0: the number, not what rounds to it.
@@ -181,15 +182,12 @@ impl Graph {
             }
             _ => (Residue::ZERO, Residue::ZERO),
         };
-        (if angle.is_negative() { -sine } else { sine }, cosine)
+        (sine.signed(angle.is_negative()), cosine)
     }
 
     /// The residue of a node at a point, when those before it are `images`.
     pub(crate) fn image_at(&self, op: Op, residues: &[Residue], point: &SamplePoint) -> Residue {
-        let of = |at: Ref| {
-            let residue = residues[at.index()];
-            if at.is_negative() { -residue } else { residue }
-        };
+        let of = |at: Ref| at.residue(residues);
         match op {
             Op::Constant(place) => self.numbers.get(place).0.residue,
             Op::Input(input) => point.argument(input),
@@ -202,7 +200,7 @@ impl Graph {
         }
     }
 
-    /// What no operation computes: by value where values are looked up.
+    /// A node that no operation computes: by value where values are looked up.
     pub(super) fn leaf(&mut self, op: Op, residue: Residue) -> Ref {
         if self.policy == Policy::Structure {
             return self.intern(op, residue).0;

@@ -1,7 +1,6 @@
 //! The arguments of a function, as a graph holds them: by the million in a search, so small ones.
 
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Component, Quantity};
+use super::{Axis, Component, Name, Quantity};
 
 /// One number that is given to a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,4 +1,4 @@
-//! What a result depends on.
+//! The nodes that results depend on.
 
 use super::{Node, Op, Ref};
 
@@ -7,7 +7,7 @@ pub(crate) fn mark_live(nodes: &[Node], outputs: &[Ref], live: &mut Vec<bool>) {
     mark(nodes, outputs, live, |_| true);
 }
 
-/// The same, but for what they depend on by an angle alone.
+/// Marks what the outputs depend on otherwise than by an angle.
 pub(crate) fn mark_live_outside_angles(nodes: &[Node], outputs: &[Ref], live: &mut Vec<bool>) {
     mark(nodes, outputs, live, |op| !matches!(op, Op::Sine(_) | Op::Cosine(_)));
 }

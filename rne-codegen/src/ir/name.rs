@@ -2,24 +2,23 @@
 
 use std::fmt;
 
-use crate::ir::quantity::{Axis, Component, Indices, Quantity};
+use super::{Axis, Component, Indices, Quantity};
 
 /// The full name of a number: `w2_z` is component z of ω of link 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Name {
-    /// What it is.
+    /// The quantity.
     pub quantity: Quantity,
     /// The joint, counted from 1; 0 for the base and for what belongs to no joint, n + 1 for the tip.
     pub joint: usize,
-    /// Which component.
+    /// The component of the quantity.
     pub component: Component,
-    /// What else counts it, from 1; 0 where nothing does: the column of a matrix whose row is the joint, the first
-    /// joint of a group, link and parameter of the regressor, which coefficient of friction, which acceleration of the
-    /// tip.
+    /// Further indices, from 1; 0 for no index: the column of a matrix whose row is the joint, the first joint of a
+    /// group, link and parameter of the regressor, which coefficient of friction, which acceleration of the tip.
     pub indices: [usize; 2],
     /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
     pub part: usize,
-    /// Of which variable it is the derivative, if it is one: `w3_x_q2` is ∂ω₃ₓ/∂q₂.
+    /// The variable of the derivative, if it is one: `w3_x_q2` is ∂ω₃ₓ/∂q₂.
     pub by: Option<WithRespectTo>,
 }
 
@@ -53,8 +52,8 @@ impl Name {
         Self { quantity, joint, component: Component::Scalar, indices: [0; 2], part: 0, by: None }
     }
 
-    /// What a payload is given by, at the tip `tip` = n + 1: mass; centre of mass x, y, z; inertia xx, yy, zz, xy, xz,
-    /// yz.
+    /// The names of the numbers of a payload, at the tip `tip` = n + 1: mass; centre of mass x, y, z; inertia xx, yy,
+    /// zz, xy, xz, yz.
     pub(crate) const fn of_payload(tip: usize) -> [Self; 10] {
         use Axis::{X, Y, Z};
         let [com, inertia] = [Quantity::Com, Quantity::Inertia];

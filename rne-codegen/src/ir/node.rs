@@ -30,7 +30,12 @@ impl Ref {
         Self(self.0 ^ u32::from(negative))
     }
 
-    /// What stands for it among `images` of nodes in another graph.
+    /// Its residue, when those of the nodes are `values`.
+    pub(crate) fn residue(self, values: &[Residue]) -> Residue {
+        values[self.index()].signed(self.is_negative())
+    }
+
+    /// The reference in another graph, whose nodes for those of this graph are listed.
     pub(crate) fn mapped(self, residues: &[Self]) -> Self {
         residues[self.index()].signed(self.is_negative())
     }
@@ -44,7 +49,7 @@ impl Neg for Ref {
     }
 }
 
-/// What a node is. Operands always stand before the nodes that use them.
+/// The operation of a node. Operands always stand before the nodes that use them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Op {
     /// A constant, never negative: its place among the numbers.
@@ -82,7 +87,7 @@ impl Op {
         matches!(self, Self::Sum(..) | Self::Product(..) | Self::Quotient(..) | Self::BySign(_))
     }
 
-    /// The same for operations that are one whatever the order of their operands.
+    /// The operation with its operands sorted, where their order does not matter.
     pub(super) fn sorted(self) -> Self {
         match self {
             // the sign of a difference is that of the second operand, which a swap would move

@@ -2,8 +2,7 @@
 
 use rne_model::{Angle, Double, InertiaReference, Joint, QuarterTurns, decimal_digits};
 
-use super::operators;
-use super::residue::Residue;
+use super::{operators, residue::Residue};
 
 /// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -58,8 +57,8 @@ impl Number {
         self.value.to_f64()
     }
 
-    /// Of a number and its negative, the same one is always called negative: where the value does not tell, for it is
-    /// lost to cancellation or out of range, the image does.
+    /// Whether it is the negative one of a number and its negative: where the value does not tell, for it is lost to
+    /// cancellation or out of range, the image does.
     pub(crate) fn is_negative(self) -> bool {
         let value = self.value.high;
         if value == 0.0 || value.is_nan() { self.residue.is_negative() } else { value < 0.0 }
@@ -195,8 +194,8 @@ impl Embedding {
         }
     }
 
-    /// The same when a coordinate of the centre of mass may be an unknown, so that second moments about the origin and
-    /// about the centre of mass cannot both be what they are. One that is zero about either point is zero there
+    /// The inertia when a coordinate of the centre of mass may be an unknown, so that second moments about the origin
+    /// and about the centre of mass cannot both be what they are. One that is zero about either point is zero there
     /// whatever the unknown is, so that nothing is zero in value alone. The others are what the file says.
     fn inertia_of_unknown(&self, joint: &Joint, written: &[[Number; 3]; 3]) -> [[Number; 3]; 3] {
         let known = Self { unknown: None, ..*self };

@@ -55,7 +55,7 @@ impl Numbers {
 /// A residue without its sign, and whether it was the negative one.
 pub(crate) fn canonical(residue: Residue) -> (Residue, bool) {
     let negative = residue.is_negative();
-    (if negative { -residue } else { residue }, negative)
+    (residue.signed(negative), negative)
 }
 
 /// A key of a residue that its negative has as well.

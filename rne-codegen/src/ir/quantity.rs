@@ -1,4 +1,5 @@
-//! What a number of the recursion means: its step, quantity, joint and axis, and the name these give it in the code.
+//! The meaning of a number of the recursion: its step, quantity, joint and axis, and the name these give it in the
+//! code.
 
 use std::fmt;
 
@@ -21,7 +22,7 @@ pub enum Step {
     Wrenches,
     /// 7: torque τ.
     Torque,
-    /// What a function makes of them, beyond the lecture.
+    /// Formulas of a function beyond the lecture.
     Beyond,
 }
 
@@ -52,7 +53,7 @@ impl Step {
         self as usize
     }
 
-    /// What the step computes, in words.
+    /// The title of the step, in words.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -90,7 +91,7 @@ impl fmt::Display for Axis {
     }
 }
 
-/// Which component of a quantity.
+/// A component of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Component {
     /// The quantity is one number.
@@ -112,7 +113,7 @@ impl Component {
     }
 }
 
-/// Which indices stand behind the beginning of a name.
+/// The indices that follow the beginning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Indices {
     /// None: there is one of it.
@@ -152,7 +153,7 @@ impl Indices {
     }
 }
 
-/// What there is to know of a quantity; the methods of [`Quantity`] tell what each of these is.
+/// A row of the table of quantities; the methods of [`Quantity`] document its columns.
 struct Row {
     prefix: &'static str,
     indices: Indices,
@@ -372,7 +373,8 @@ impl Quantity {
         self.row().has_statements
     }
 
-    /// What it is in a recursion that has rates in the place of accelerations; `None` for what has no name then.
+    /// The quantity that it becomes in a recursion that has rates in the place of accelerations; `None` for what has no
+    /// name then.
     pub(crate) const fn of_momentum(self) -> Option<Self> {
         Some(match self {
             Self::Omega | Self::OmegaUnturned | Self::Gradient | Self::GradientUnturned => return None,
@@ -399,7 +401,7 @@ impl Quantity {
         self.row().prefix
     }
 
-    /// What follows in its names.
+    /// The indices in its names.
     pub(crate) const fn indices(self) -> Indices {
         self.row().indices
     }
@@ -432,7 +434,7 @@ impl Quantity {
         }
     }
 
-    /// What its name stands for, for the legend of a listing.
+    /// The meaning of its name, for the legend of a listing.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         self.row().meaning

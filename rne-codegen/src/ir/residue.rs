@@ -25,14 +25,12 @@ impl Residue {
     /// The image of an integer.
     #[must_use]
     pub const fn integer(value: u64) -> Self {
-        let (p, q) = (MASK + 1 - BELOW[0], MASK + 1 - BELOW[1]);
-        Self([value % p, value % q])
+        Self::residues(value, value)
     }
 
     /// Residues in the two fields, each reduced.
     pub(crate) const fn residues(first: u64, second: u64) -> Self {
-        let (p, q) = (MASK + 1 - BELOW[0], MASK + 1 - BELOW[1]);
-        Self([first % p, second % q])
+        Self([first % prime(0), second % prime(1)])
     }
 
     /// Whether it is the image of zero.
@@ -41,7 +39,8 @@ impl Residue {
         self == Self::ZERO
     }
 
-    /// Of an image and its negative, one is the negative one: images have no order, this only picks one of the two.
+    /// Whether it is the negative one of an image and its negative: images have no order, this only picks one of the
+    /// two.
     pub(crate) fn is_negative(self) -> bool {
         match self.0 {
             [0, second] => second > MASK / 2,
@@ -49,13 +48,18 @@ impl Residue {
         }
     }
 
+    /// The image, negated if `negative`.
+    pub(crate) fn signed(self, negative: bool) -> Self {
+        if negative { -self } else { self }
+    }
+
     /// A well-mixed key of 64 bits.
     pub(crate) fn key(self) -> u64 {
         self.0[0].wrapping_mul(0x9E37_79B9_7F4A_7C15)
     }
 
-    /// What stands for a value that is chosen by a sign, of which no field knows anything: the same for the same
-    /// operands, and its negative for both values negated.
+    /// The image of a value that is chosen by a sign, of which no field knows anything: the same for the same operands,
+    /// and its negative for both values negated.
     pub(crate) fn by_sign([x, positive, negative]: [Self; 3]) -> Self {
         if positive.is_zero() && negative.is_zero() {
             return Self::ZERO;

@@ -1,7 +1,6 @@
 //! Random values for the arguments of a function: where two functions are compared.
 
-use super::{Embedding, Input, Residue};
-use crate::ir::quantity::Quantity;
+use super::{Embedding, Input, Quantity, Residue};
 
 /// Random values for all arguments: what a function of the robot is compared at.
 #[derive(Clone, Copy, Debug)]

@@ -4,8 +4,7 @@ use std::ops::{Add, Mul};
 
 use rne_model::QuarterTurns;
 
-use super::{Builder, CausesId, Number, Ref, TermId, operators};
-use crate::ir::quantity::Axis;
+use super::{Axis, Builder, CausesId, Number, Ref, TermId, operators};
 
 /// A number of a graph that is being written.
 #[derive(Clone, Copy)]
@@ -48,7 +47,7 @@ operators! { Symbol<'_>:
     -a => a.signed(true);
 }
 
-/// Sine and cosine of an angle that is so many right angles larger.
+/// Sine and cosine of an angle that is larger by `turns`.
 pub(crate) fn by_quarters<'s>((s, c): (Symbol<'s>, Symbol<'s>), turns: QuarterTurns) -> (Symbol<'s>, Symbol<'s>) {
     match turns {
         QuarterTurns::Zero => (s, c),

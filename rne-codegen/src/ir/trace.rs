@@ -1,13 +1,12 @@
-//! What is told of a graph beside it, for those who read the code: names, places, causes, and what became of every
-//! operation. A search, which counts thousands of plans, keeps none.
+//! The trace of a graph, for those who read the code: names, places, causes, and what became of every operation. A
+//! search, which counts thousands of plans, keeps none.
 
 use std::collections::HashMap;
 
-use super::causes::{CausesId, KnownCauses};
-use super::{Graph, Outcome, Ref, Side, Symbol, TermId, WrittenTerms};
-use crate::ir::fold_report::{Cause, Causes, Fold, FoldReport, Operation, Place};
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Component};
+use super::{
+    Axis, Cause, Causes, CausesId, Component, Fold, FoldReport, Graph, Name, Operation, Outcome, Place, Ref, Side,
+    Symbol, TermId, WrittenTerms, causes::KnownCauses,
+};
 
 /// A name given to a value, in the order in which the names were given.
 #[derive(Clone, Debug)]

@@ -1,8 +1,6 @@
 //! Value numbering: the live part of a graph written once more, with equal values as one node.
 
-use super::{Birth, Definition, Graph, Op, Policy, Ref, Trace, Traced, mark_live};
-use crate::ir::fold_report::Place;
-use crate::ir::quantity::{Component, Quantity, Step};
+use super::{Birth, Component, Definition, Graph, Op, Place, Policy, Quantity, Ref, Step, Trace, Traced, mark_live};
 
 /// Writes what is live of `from` into `to`, a numbered graph, in its order: of equal values the first one stays.
 ///
@@ -12,7 +10,7 @@ pub(crate) fn number_values(from: &Graph, to: &mut Graph, live: &mut Vec<bool>, 
 }
 
 impl Traced {
-    /// The same with its trace: a name stays with its value, wherever that is computed now.
+    /// Numbers the values of a graph and its trace: a name stays with its value, wherever that is computed now.
     pub(crate) fn numbered(self) -> Self {
         let Self { graph, trace: told } = self;
         let mut numbered = Graph::new(Policy::Numbered, graph.embedding());

@@ -1,8 +1,7 @@
 //! Formulas as they were written, kept beside the graph, where half of their terms have no node: what folds is gone
 //! there.
 
-use super::{CausesId, Outcome, Ref};
-use crate::ir::name::Name;
+use super::{CausesId, Name, Outcome, Ref};
 use crate::values::Operator;
 
 /// A term that was written down; [`TermId::NONE`] is a leaf, of which the graph knows all.
@@ -19,7 +18,7 @@ impl TermId {
 pub(crate) enum Written {
     /// A node: a number, an argument, or what was written on the graph alone.
     Node(Ref, CausesId),
-    /// What has a name.
+    /// A term with a name.
     Named(Name),
     /// -a
     Negative(TermId),

@@ -4,8 +4,7 @@ use std::collections::HashSet;
 
 use super::{Lowering, sign};
 use crate::equation::{Equation, Operation, Term};
-use crate::ir::fold_report::{Causes, Fold};
-use crate::ir::{CausesId, Number, Op, Outcome, Ref, TermId, Written};
+use crate::ir::{Causes, CausesId, Fold, Number, Op, Outcome, Ref, TermId, Written};
 use crate::values::Operator;
 
 impl Lowering<'_> {
@@ -53,7 +52,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// What became of an operation, and because of what.
+    /// The fate of an operation, and its causes.
     fn fold(&self, at: Ref, outcome: Outcome, reason: CausesId) -> (Fold, Option<Causes>) {
         let causes = self.causes(reason);
         match outcome {
@@ -71,7 +70,7 @@ impl Lowering<'_> {
         self.written.trace.causes.get(id).clone()
     }
 
-    /// What was written on the graph alone, as it stands there.
+    /// The term of a node that was written on the graph alone.
     fn of_node(&self, at: Ref, causes: &Causes) -> Term {
         let negative = at.is_negative();
         let at = at.magnitude();

@@ -3,10 +3,7 @@
 use std::collections::HashMap;
 
 use super::{Definition, Lowering, Returned};
-use crate::ir::fold_report::Place;
-use crate::ir::name::Name;
-use crate::ir::quantity::{Quantity, Step};
-use crate::ir::{Op, Ref};
+use crate::ir::{Name, Op, Place, Quantity, Ref, Step};
 use crate::program::{Output, SineCosine, Statement};
 use crate::values::{Operator, Value, ValueId, Values};
 

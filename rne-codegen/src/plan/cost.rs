@@ -1,15 +1,14 @@
-//! What a plan costs: the form is written, equal values are merged, and what is left is counted.
+//! The cost of a plan: the form is written, equal values are merged, and what is left is counted.
 
 use rne_model::{JointKind, Robot};
 
+use crate::formulate::Outputs;
 use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
 use crate::plan::{OriginShift, Plan, Scale};
-use crate::reduced::algorithm::{self, Algorithm};
-use crate::reduced::forward::Arm;
-use crate::reduced::joint_frames::{FrameChoice, JointFrames};
-use crate::reduced::regrouping::{Offers, Parameters, is_parallel, parameters};
+use crate::reduced::regrouping::{is_parallel, parameters};
+use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
 
 /// A table and what it offers.
 #[derive(Clone, Debug)]
@@ -22,7 +21,7 @@ pub(crate) struct FramedRobot {
 /// The choices that a robot leaves open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OpenChoices {
-    /// Those of each joint, base to tip.
+    /// The choices of each joint, base to tip.
     pub joints: Vec<OpenJoint>,
     /// The different lengths of the robot, in which lengths and forces can be measured.
     pub lengths: Vec<Scale>,
@@ -96,6 +95,18 @@ impl FramedRobot {
             .then(|| parameters(&self.joint_frames, &self.offers, plan))?
     }
 
+    /// The results of the builder's function under a plan.
+    fn outputs<'s>(
+        &self,
+        builder: &'s Builder,
+        plan: &Plan,
+        parameters: &Parameters,
+        algorithm: Algorithm,
+    ) -> Option<Outputs<'s>> {
+        let bodies_per = algorithm.bodies_per();
+        algorithm::write(&Arm { builder, bodies_per, joint_frames: &self.joint_frames, plan, parameters }, algorithm)
+    }
+
     /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
     pub(crate) fn written(&self, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Formulation> {
         if plan.gyrostat && function.takes(Argument::Payload) {
@@ -104,8 +115,8 @@ impl FramedRobot {
         }
         let parameters = self.parameters(plan)?;
         let builder = Builder::traced(Policy::Value, self.joint_frames.embedding, function);
-        let arm = Arm { joint_frames: &self.joint_frames, plan, parameters: &parameters };
-        let (names, outputs) = algorithm::write(&builder, &arm, function, algorithm)?
+        let (names, outputs) = self
+            .outputs(&builder, plan, &parameters, algorithm)?
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
@@ -149,22 +160,19 @@ impl Evaluator {
         }
     }
 
-    /// What a plan costs; `None` when it does not apply to the robot.
+    /// The cost of a plan; `None` when it does not apply to the robot.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
         self.cost_of(plan, Algorithm::Rnea)
     }
 
-    /// What a plan costs when the function is written in one of its ways.
+    /// The cost of a plan when the function is written in one of its ways.
     pub(crate) fn cost_of(&mut self, plan: &Plan, algorithm: Algorithm) -> Option<Cost> {
         let Self { frames, builder, numbered, live, map } = self;
         let frame = frames.iter().find(|frame| frame.is_of(plan))?;
         let parameters = frame.parameters(plan)?;
         builder.restart(frame.joint_frames.embedding);
-        let arm = Arm { joint_frames: &frame.joint_frames, plan, parameters: &parameters };
-        let outputs: Vec<Ref> = algorithm::write(builder, &arm, builder.function, algorithm)?
-            .into_iter()
-            .map(|(_, symbol)| symbol.at)
-            .collect();
+        let outputs = frame.outputs(builder, plan, &parameters, algorithm)?;
+        let outputs: Vec<Ref> = outputs.into_iter().map(|(_, symbol)| symbol.at).collect();
         let graph = builder.graph.get_mut();
         graph.outputs = outputs;
         number_values(graph, numbered, live, map);

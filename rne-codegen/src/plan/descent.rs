@@ -65,7 +65,7 @@ impl<'v> Descent<'v> {
         self.veto = Some(Box::new(veto));
     }
 
-    /// What `inverse_dynamics` costs by a plan; `None` where the plan does not fit the robot, or uses a trick that is
+    /// The cost of `inverse_dynamics` by a plan; `None` where the plan does not fit the robot, or uses a trick that is
     /// left out.
     pub fn cost(&mut self, plan: &Plan) -> Option<Cost> {
         if self.without.iter().any(|trick| trick.is_in(plan)) {
@@ -155,7 +155,7 @@ impl<'v> Descent<'v> {
 /// Candidates of a greedy search that concern all joints.
 const OF_THE_ARM: usize = 12;
 
-/// The candidates of a greedy search, in their order; `None` behind the last.
+/// The candidates of a greedy search, in their order; `None` after the last.
 fn greedy_candidate(open: &OpenChoices, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
     let dof = plan.joints.len();
     let mut other = plan.clone();

@@ -8,7 +8,7 @@ use crate::function::{Argument, Function};
 use crate::plan::cost::Evaluator;
 use crate::plan::descent::default_plan;
 use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Rewritten, Scale};
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 use crate::refusal::LeftOut;
 
 /// The choices by which a robot's functions are compiled in the reduced form.
@@ -89,7 +89,7 @@ impl PlanSet {
     }
 }
 
-/// What may be better for an arm with a payload: what is best for the last link alone need not be for both.
+/// Changes that may be better for an arm with a payload: what is best for the last link alone need not be for both.
 const FOR_A_PAYLOAD: [fn(&mut Plan); 6] = [
     // the payload would be turned with it
     |plan| plan.turned_last_frame = false,

@@ -19,7 +19,7 @@ const FACTORS: std::ops::Range<f64> = 1e-4..1e4;
 /// The graph of a function while algebra makes it smaller.
 #[derive(Clone, Debug)]
 pub struct Rewriting {
-    /// What will stand in the plan file, but for the graph as text.
+    /// The entry of the plan file, but for the graph as text.
     of: Rewritten,
     graph: Graph,
     /// Places of the numbers of the graph as the plan gives it.
@@ -40,7 +40,7 @@ impl Rewriting {
         Ok(Self { of: Rewritten { operations: graph.cost(&mut Vec::new()), ..of }, graph, given })
     }
 
-    /// What the graph costs.
+    /// The cost of the graph.
     #[must_use]
     pub const fn cost(&self) -> Cost {
         self.of.operations
@@ -68,7 +68,7 @@ pub(super) struct Annealing<C> {
     current: Graph,
     next: Graph,
     live: Vec<bool>,
-    /// What is live otherwise than as an angle.
+    /// By node: whether it is live otherwise than as an angle.
     computed: Vec<bool>,
     map: Vec<Ref>,
     cost: C,

@@ -13,7 +13,7 @@ use crate::plan::descent::default_plan;
 use crate::plan::rewriting::Annealing;
 use crate::program::Exactly;
 use crate::prove;
-use crate::reduced::algorithm::Algorithm;
+use crate::reduced::Algorithm;
 use crate::{CompileError, Compiler, Form, Function, Operator, Program, Value};
 
 fn robot(name: &str) -> Robot {

@@ -38,7 +38,7 @@ named! {
 }
 
 impl Trick {
-    /// What it does, in one line, with its formula.
+    /// Its effect in one line, with its formula.
     #[must_use]
     pub const fn formula(self) -> &'static str {
         match self {

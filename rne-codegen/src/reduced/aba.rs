@@ -13,19 +13,15 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::{ExactAngle, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::wrench::Wrench;
-
-use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::inward::{BodiesPer, Inward, Symmetric, Turned, full};
-use crate::reduced::rnea_derivatives::{Station, matter, stations};
-
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector, square};
+use crate::reduced::inward::full;
+use crate::reduced::rnea_derivatives::{matter, stations};
+use crate::reduced::{Arm, Gradient, Inward, Outward, Station, Symmetric, Turned, Wrench};
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 
-/// What is behind a joint, as its motion resists it.
+/// The links from a joint on, as they resist its motion.
 #[derive(Clone, Copy)]
 struct Articulated<'s> {
     angular: Symmetric<'s>,
@@ -34,12 +30,12 @@ struct Articulated<'s> {
     bias: Wrench<'s>,
 }
 
-/// What the way out needs of a joint again.
+/// The numbers of a joint that the way out needs again.
 #[derive(Clone, Copy)]
 struct Pivot<'s> {
     /// U: angular and linear part.
     resistance: [Vector<'s>; 2],
-    /// What velocities alone do to ω̇ and a.
+    /// The parts of ω̇ and a by velocities alone.
     drift: [Vector<'s>; 2],
     inverse: Symbol<'s>,
     rest: Symbol<'s>,
@@ -104,9 +100,10 @@ impl<'s> Articulated<'s> {
     }
 
     /// Gives way along its joint.
-    fn released(self, builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> (Self, Pivot<'s>) {
-        let (row, rows) = (&arm.rows()[index], arm.rows());
-        let rate = builder.rate(rows, index);
+    fn released(self, arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> (Self, Pivot<'s>) {
+        let builder = arm.builder;
+        let row = &arm.rows()[index];
+        let rate = arm.rate(index);
         let torque = builder.torque(index);
         let torque = if row.reversed { -torque } else { torque };
         let zeros = builder.no_vector();
@@ -143,7 +140,8 @@ impl<'s> Articulated<'s> {
 }
 
 /// The link alone.
-fn rigid<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Articulated<'s> {
+fn rigid<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> Articulated<'s> {
+    let builder = arm.builder;
     let matter = matter(arm, index);
     let s = matter.s.map(|row| row.map(|x| builder.number(x)));
     let (h, m, zero) = (builder.vector(matter.h), builder.number(matter.mass), builder.zero());
@@ -159,11 +157,11 @@ fn rigid<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Statio
 }
 
 /// The accelerations of the joints.
-pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: BodiesPer) -> Vec<Symbol<'s>> {
-    let rows = arm.rows();
+pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
+    let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
-    let stations = stations(builder, arm, bodies_per, Number::ONE);
-    let grouped = |index: usize| arm.is_grouped(bodies_per, index);
+    let stations = stations(arm, Number::ONE);
+    let grouped = |index: usize| arm.is_grouped(index);
     let mut pivots = Vec::with_capacity(dof);
     // in the axes of link i or, behind a parallel axis, in N of its group
     let mut behind: Option<Articulated<'s>> = None;
@@ -173,14 +171,14 @@ pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_p
         let (offset, d) = arm.lengths(index, Number::ONE);
         let (offset, twist) = (builder.vector(offset), Turned::AboutX(builder.fixed_turn(row.alpha)));
         let turn = Turned::AboutZ(station.turn);
-        let own = rigid(builder, arm, index, station);
+        let own = rigid(arm, index, station);
         let is_unturned = index + 1 < dof && grouped(index + 1);
         let here = match (row.kind, behind) {
             (Revolute, Some(behind)) if is_unturned => own.turned(turn).plus(behind),
             (Revolute, behind) => behind.map_or(own, |behind| own.plus(behind)).turned(turn),
             (Prismatic, behind) => behind.map_or(own, |behind| own.plus(behind)),
         };
-        let (given, pivot) = here.released(builder, arm, index, station);
+        let (given, pivot) = here.released(arm, index, station);
         pivots.push(pivot);
         // the point of link i-1 at this joint's origin moves on to the origin of link i-1
         let omega = station.before.omega;
@@ -194,7 +192,7 @@ pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_p
                 given.moved(builder.along_z(d), omega).turned(twist).moved(offset, stations[index - 1].own.omega)
             }
             Prismatic => {
-                let q = builder.position(rows, index) + builder.number(d);
+                let q = arm.position(index) + builder.number(d);
                 let given = given.moved(builder.vector(row.axis) * q, omega);
                 let given = if row.carried {
                     given
@@ -206,64 +204,58 @@ pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_p
         });
     }
     pivots.reverse();
-    outward(builder, arm, bodies_per, &stations, &pivots)
+    outward(arm, &stations, &pivots)
+}
+
+/// How a link accelerates, in some axes.
+#[derive(Clone, Copy)]
+struct Accelerated<'s> {
+    omega: Vector<'s>,
+    omega_dot: Vector<'s>,
+    acceleration: Vector<'s>,
+}
+
+impl<'s> Outward<'s> for Accelerated<'s> {
+    fn turned_back(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+        Self { omega: f(self.omega), omega_dot: f(self.omega_dot), acceleration: f(self.acceleration) }
+    }
+
+    fn at(self, p: Vector<'s>) -> Self {
+        let Self { omega, omega_dot, acceleration } = self;
+        Self { acceleration: acceleration + omega_dot.cross(p) + omega.cross(omega.cross(p)), ..self }
+    }
 }
 
 /// The way out: each joint's acceleration from that of the link before it.
-fn outward<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    bodies_per: BodiesPer,
-    stations: &[Station<'s>],
-    pivots: &[Pivot<'s>],
-) -> Vec<Symbol<'s>> {
-    let rows = arm.rows();
-    let (mut omega_dot, mut acceleration) = (builder.no_vector(), builder.vector(arm.joint_frames.gravity.map(|g| -g)));
-    let mut unturned = (omega_dot, acceleration);
+fn outward<'s>(arm: &Arm<'_, 's>, stations: &[Station<'s>], pivots: &[Pivot<'s>]) -> Vec<Symbol<'s>> {
+    let (builder, rows) = (arm.builder, arm.rows());
+    let gravity = builder.vector(arm.joint_frames.gravity.map(|g| -g));
+    let mut last = Accelerated { omega: builder.no_vector(), omega_dot: builder.no_vector(), acceleration: gravity };
+    // in frame N of the joint before, and the turn from there
+    let (mut unturned, mut turn) = (last, builder.fixed_turn(ExactAngle::NONE));
     let mut accelerations = Vec::with_capacity(rows.len());
-    // to a point p of a link that turns with ω
-    let at = |(omega_dot, acceleration): (Vector<'s>, Vector<'s>), p: Vector<'s>, omega: Vector<'s>| {
-        (omega_dot, acceleration + omega_dot.cross(p) + omega.cross(omega.cross(p)))
-    };
     for (index, (row, (station, pivot))) in rows.iter().zip(stations.iter().zip(pivots)).enumerate() {
         builder.at(Quantity::OmegaDot, index + 1);
-        let (offset, d) = arm.lengths(index, Number::ONE);
-        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
-        let theta = builder.fixed_turn(row.theta);
-        let before = match row.kind {
-            Revolute if arm.is_grouped(bodies_per, index) => {
-                let turned = stations[index - 1].turn.about_z(offset);
-                at(unturned, turned + builder.along_z(d), station.before.omega)
-            }
-            _ => {
-                let own = index.checked_sub(1).map_or(builder.no_vector(), |last| stations[last].own.omega);
-                let (omega_dot, acceleration) = at((omega_dot, acceleration), offset, own);
-                let turn = |v: Vector<'s>| match row.kind {
-                    Revolute => twist.back_about_x(v),
-                    Prismatic if row.carried => v,
-                    Prismatic => theta.back_about_z(twist.back_about_x(v)),
-                };
-                let p = match row.kind {
-                    Revolute => builder.along_z(d),
-                    Prismatic => builder.vector(row.axis) * (builder.position(rows, index) + builder.number(d)),
-                };
-                at((turn(omega_dot), turn(acceleration)), p, station.before.omega)
-            }
-        };
-        let (angular, linear) = (before.0 + pivot.drift[0], before.1 + pivot.drift[1]);
+        let before = arm.outward(index, last, unturned, turn);
+        let (angular, linear) = (before.omega_dot + pivot.drift[0], before.acceleration + pivot.drift[1]);
         // U · (ω̇' + drift, a' + drift): what the drift does to n° and f° has been added for the links before only
         let resisted = pivot.resistance[0].dot(angular) + pivot.resistance[1].dot(linear);
         let own = (pivot.rest - resisted) * pivot.inverse;
         accelerations.push(if row.reversed { -own } else { own });
+        turn = station.turn;
+        let omega = station.own.omega;
         match row.kind {
             Revolute => {
-                unturned = (angular.plus_z(own), linear);
-                omega_dot = station.turn.back_about_z(unturned.0);
-                acceleration = station.turn.back_about_z(unturned.1);
+                unturned = Accelerated {
+                    omega: before.omega.plus_z(arm.rate(index)),
+                    omega_dot: angular.plus_z(own),
+                    acceleration: linear,
+                };
+                last = Accelerated { omega, ..unturned.turned_back(|v| turn.back_about_z(v)) };
             }
             Prismatic => {
-                (omega_dot, acceleration) = (angular, linear + builder.vector(row.axis) * own);
-                unturned = (omega_dot, acceleration);
+                last = Accelerated { omega, omega_dot: angular, acceleration: linear + builder.vector(row.axis) * own };
+                unturned = last;
             }
         }
     }

@@ -1,22 +1,13 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
-use crate::reduced::aba;
-use crate::reduced::backward::{torques, torques_with};
-use crate::reduced::crba::{self, BodiesPer};
-use crate::reduced::forward::{Arm, motions};
-use crate::reduced::joint_frames::JointFrames;
-use crate::reduced::momentum;
-use crate::reduced::payload::Load;
-use crate::reduced::rnea_derivatives::sensitivity;
-
-use crate::formulate::inverse_mass_matrix;
-use crate::formulate::ldlt;
-use crate::formulate::payload::Payload;
-use crate::formulate::square;
+use crate::formulate::{self, Outputs, Payload, by_joint, square, torque_by};
 use crate::function::Function;
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol};
+use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
+use crate::reduced::backward::torques;
+use crate::reduced::crba::BodiesPer;
+use crate::reduced::forward::motions;
+use crate::reduced::rnea_derivatives::sensitivity;
+use crate::reduced::{Arm, JointFrames, Load, aba, crba, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,8 +87,8 @@ impl Algorithm {
         }
     }
 
-    /// The ways of a function for so many joints that are worth counting. Those that write the recursion anew for every
-    /// joint grow faster than composite bodies, and lose long before `MANY`.
+    /// The ways of a function that are worth counting for an arm of `joints` joints. Those that write the recursion
+    /// anew for every joint grow faster than composite bodies, and lose long before `MANY`.
     pub(crate) fn of_so_many(function: Function, joints: usize) -> Vec<Self> {
         const MANY: usize = 10;
         let is_of_columns = |algorithm: Self| {
@@ -108,7 +99,15 @@ impl Algorithm {
         Self::of(function).iter().copied().filter(|algorithm| joints < MANY || !is_of_columns(*algorithm)).collect()
     }
 
-    /// In words, for the choices of a program; nothing is said of the recursion.
+    /// How it gathers bodies, where it has some.
+    pub(crate) const fn bodies_per(self) -> BodiesPer {
+        match self {
+            Self::Crba(bodies_per) | Self::Aba(bodies_per) => bodies_per,
+            Self::Rnea | Self::UnitColumns | Self::UnturnedPayload => BodiesPer::Group,
+        }
+    }
+
+    /// The words for the choices of a program; none for the recursion.
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
             Self::Rnea => None,
@@ -124,90 +123,39 @@ impl Algorithm {
 
 /// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout; `None` for
 /// what has no reduced recursion.
-pub(crate) fn write<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    function: Function,
-    algorithm: Algorithm,
-) -> Option<Vec<(Name, Symbol<'s>)>> {
-    let by_joint = |quantity: Quantity, values: Vec<Symbol<'s>>| -> Vec<(Name, Symbol<'s>)> {
-        values.into_iter().enumerate().map(|(index, value)| (Name::scalar(quantity, index + 1), value)).collect()
-    };
-    Some(match (function, algorithm) {
-        (Function::GravityTorques, Algorithm::Crba(bodies_per)) => {
-            by_joint(Quantity::Torque, crba::gravity_torques(builder, arm, bodies_per))
-        }
-        (Function::MomentumAndRate, algorithm) => {
-            let bodies_per = if let Algorithm::Crba(bodies_per) = algorithm { bodies_per } else { BodiesPer::Group };
-            let [momenta, rates] = momentum::momentum_and_rate(builder, arm, bodies_per);
+pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outputs<'s>> {
+    let builder = arm.builder;
+    let dof = arm.rows().len();
+    let upper_half = || mass_matrix(arm, algorithm);
+    let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
+    Some(match (builder.function, algorithm) {
+        (Function::GravityTorques, Algorithm::Crba(_)) => by_joint(Quantity::Torque, crba::gravity_torques(arm)),
+        (Function::MomentumAndRate, _) => {
+            let [momenta, rates] = momentum::momentum_and_rate(arm);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
-        (Function::MassMatrix, _) => {
-            let upper = mass_matrix(builder, arm, algorithm);
-            square(arm.rows().len(), |row, column| {
-                let (row, column) = (row.min(column), row.max(column));
-                let by = Some(WithRespectTo::RateDot(column + 1));
-                (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, upper[row][column - row])
-            })
-        }
-        (Function::InverseMassMatrix, _) => inverse_mass_matrix(builder, &mass_matrix(builder, arm, algorithm)),
-        (Function::ForwardDynamics, Algorithm::Aba(bodies_per)) => {
-            by_joint(Quantity::RateDot, aba::forward_dynamics(builder, arm, bodies_per))
-        }
-        (Function::ForwardDynamics, _) => {
-            let upper = mass_matrix(builder, arm, algorithm);
-            let bias = recursion(builder, arm);
-            let rest: Vec<_> = bias
-                .into_iter()
-                .enumerate()
-                .map(|(index, torque)| {
-                    builder.at(Quantity::Reduced, index + 1);
-                    builder.torque(index) - torque
-                })
-                .collect();
-            by_joint(Quantity::RateDot, ldlt::solved(builder, &upper, &rest))
-        }
-        (Function::InverseDynamicsDerivatives, Algorithm::Crba(bodies_per)) => {
-            let found = sensitivity(builder, arm, bodies_per, Number::integer(2));
+        (Function::MassMatrix, _) => formulate::mass_matrix(&upper_half()),
+        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &upper_half()),
+        (Function::ForwardDynamics, Algorithm::Aba(_)) => by_joint(Quantity::RateDot, aba::forward_dynamics(arm)),
+        (Function::ForwardDynamics, _) => formulate::forward_dynamics(builder, &upper_half(), recursion(arm)),
+        (Function::InverseDynamicsDerivatives, Algorithm::Crba(_)) => {
+            let found = sensitivity(arm, Number::integer(2));
             let by = |kind: fn(usize) -> WithRespectTo, matrix: &[Vec<Symbol<'s>>]| {
-                square(arm.rows().len(), |row, column| {
-                    let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
-                    builder.name(name, matrix[row][column]);
-                    (name, matrix[row][column])
-                })
+                square(dof, |row, column| named(torque_by(row, kind(column + 1)), matrix[row][column]))
             };
             [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
         }
-        (Function::CoriolisMatrix, Algorithm::Crba(bodies_per)) => {
-            let found = sensitivity(builder, arm, bodies_per, Number::ONE);
-            square(arm.rows().len(), |row, column| {
-                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
-                builder.name(name, found.by_rate[row][column]);
-                (name, found.by_rate[row][column])
+        (Function::CoriolisMatrix, Algorithm::Crba(_)) => {
+            let found = sensitivity(arm, Number::ONE);
+            square(dof, |row, column| {
+                named(Name::indexed(Quantity::CoriolisElement, row + 1, column + 1), found.by_rate[row][column])
             })
         }
-        (Function::InverseDynamicsDerivatives, _) => {
-            let torques = recursion(builder, arm);
-            let by = |kind: fn(usize) -> WithRespectTo| {
-                let columns = builder.derivatives(&torques, (1..=torques.len()).map(kind));
-                square(torques.len(), |row, column| {
-                    let by = Some(kind(column + 1));
-                    (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, columns[column][row])
-                })
-            };
-            [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
-        }
+        (Function::InverseDynamicsDerivatives, _) => formulate::derivatives(builder, &recursion(arm)),
         (Function::CoriolisMatrix, _) => {
-            let torques = recursion(builder, arm);
+            let torques = recursion(arm);
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
-            let columns = builder.derivatives(&torques, (1..=torques.len()).map(WithRespectTo::Rate));
-            square(torques.len(), |row, column| {
-                builder.at(Quantity::CoriolisElement, row + 1);
-                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
-                let element = columns[column][row] * half;
-                builder.name(name, element);
-                (name, element)
-            })
+            formulate::coriolis_matrix(builder, &torques, half)
         }
         (
             Function::InverseDynamics
@@ -218,33 +166,31 @@ pub(crate) fn write<'s>(
             | Function::BiasTorques,
             algorithm,
         ) => {
-            let moved = motions(builder, arm);
+            let moved = motions(arm);
             let unturned = algorithm == Algorithm::UnturnedPayload;
-            let payload = Payload::argument(builder, arm.rows().len()).map(|payload| Load { payload, unturned });
-            by_joint(Quantity::Torque, torques_with(builder, arm, &moved, payload))
+            let payload = Payload::argument(builder, dof).map(|payload| Load { payload, unturned });
+            by_joint(Quantity::Torque, torques(arm, &moved, payload))
         }
         // `Algorithm::of` matches them all
         _ => return None,
     })
 }
 
-fn recursion<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Symbol<'s>> {
-    let moved = motions(builder, arm);
-    torques(builder, arm, &moved)
+fn recursion<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
+    torques(arm, &motions(arm), None)
 }
 
 /// The upper half of M.
-fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s>>> {
-    let Algorithm::UnitColumns = algorithm else {
-        let bodies_per = if let Algorithm::Crba(bodies_per) = algorithm { bodies_per } else { BodiesPer::Joint };
-        return crba::mass_matrix(builder, arm, bodies_per);
-    };
+fn mass_matrix<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s>>> {
+    if algorithm != Algorithm::UnitColumns {
+        return crba::mass_matrix(arm);
+    }
     let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
-    let still = Arm { joint_frames: &joint_frames, plan: arm.plan, parameters: arm.parameters };
+    let still = Arm { joint_frames: &joint_frames, ..*arm };
     let dof = arm.rows().len();
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
     for column in 0..dof {
-        let torques = builder.accelerating(column, || recursion(builder, &still));
+        let torques = arm.builder.accelerating(column, || recursion(&still));
         for (row, torque) in torques.into_iter().take(column + 1).enumerate() {
             rows[row].push(torque);
         }

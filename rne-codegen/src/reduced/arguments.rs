@@ -1,13 +1,12 @@
-//! What the formulas of the reduced form start from: arguments in the frames of its rows, and turns.
+//! Start of the formulas of the reduced form: arguments in the frames of its rows, and turns.
 
-use crate::function::Argument;
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, ExactAngle, Moving, Number, Symbol, Vector, by_quarters};
-use crate::reduced::joint_frames::JointFrame;
 use rne_model::QuarterTurns;
 
-use crate::reduced::link_parameters::Triple;
+use crate::function::Argument;
+use crate::ir::{
+    Axis, Builder, ExactAngle, Moving, Name, Number, Quantity, Symbol, Vector, WithRespectTo, by_quarters,
+};
+use crate::reduced::{Arm, JointFrame, Triple};
 
 /// The name of what belongs to a group of joints, or to a single one.
 fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {
@@ -47,22 +46,17 @@ impl Builder {
         self.vector([Number::ZERO, Number::ZERO, x])
     }
 
-    /// An argument of a joint, counted from 0, in the direction of its row.
-    fn of_joint(&self, quantity: Quantity, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
-        self.argument(Name::scalar(quantity, joint + 1)).signed(rows[joint].reversed)
+    /// A turn by a constant angle.
+    pub(crate) fn fixed_turn(&self, turn: ExactAngle) -> SymbolicTurn<'_> {
+        SymbolicTurn { s: self.number(turn.sin), c: self.number(turn.cos) }
     }
 
-    /// q of a prismatic joint.
-    pub(crate) fn position(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
-        self.of_joint(Quantity::Position, rows, joint)
-    }
-
-    /// What `formulas` are when one joint accelerates with 1 and nothing moves.
+    /// Writes `formulas` where one joint accelerates with 1 and nothing moves.
     pub(crate) fn accelerating<R>(&self, joint: usize, formulas: impl FnOnce() -> R) -> R {
         self.moving(Moving::OneAccelerates(joint), || self.by(Some(WithRespectTo::RateDot(joint + 1)), formulas))
     }
 
-    /// What `formulas` are when the joints move so.
+    /// Writes `formulas` where the joints move so.
     pub(crate) fn moving<R>(&self, moving: Moving, formulas: impl FnOnce() -> R) -> R {
         let outer = self.moving.replace(moving);
         let value = formulas();
@@ -70,48 +64,9 @@ impl Builder {
         value
     }
 
-    pub(crate) fn rate(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
-        if !self.function.takes(Argument::Rates) || self.moving.get() != Moving::AsGiven {
-            return self.zero();
-        }
-        self.of_joint(Quantity::Rate, rows, joint)
-    }
-
-    pub(crate) fn rate_dot(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
-        match self.moving.get() {
-            Moving::OneAccelerates(accelerating) if accelerating == joint => self.one().signed(rows[joint].reversed),
-            Moving::RatesForAccelerations => self.of_joint(Quantity::Rate, rows, joint),
-            Moving::AsGiven if self.function.takes(Argument::Accelerations) => {
-                self.of_joint(Quantity::RateDot, rows, joint)
-            }
-            _ => self.zero(),
-        }
-    }
-
     /// τ of an actuator.
     pub(crate) fn torque(&self, joint: usize) -> Symbol<'_> {
         self.argument(Name::scalar(Quantity::AppliedTorque, joint + 1))
-    }
-
-    /// Force and moment at the tip, if the function has them.
-    pub(crate) fn wrench(&self, dof: usize) -> Option<(Vector<'_>, Vector<'_>)> {
-        let vector = |quantity| Vector(Axis::ALL.map(|axis| self.argument(Name::vector(quantity, dof + 1, axis))));
-        self.function.takes(Argument::Wrench).then(|| (vector(Quantity::JointForce), vector(Quantity::JointMoment)))
-    }
-
-    /// The turn by the summed angle of joints `first` to `last`.
-    pub(crate) fn turn(&self, rows: &[JointFrame], first: usize, last: usize) -> SymbolicTurn<'_> {
-        if self.function.takes(Argument::Sines) {
-            return self.given_turn(rows, first, last);
-        }
-        // an angle does not change with what else is derived or accelerated
-        self.by(None, || self.turn_by_angle(rows, first, last))
-    }
-
-    fn turn_by_angle(&self, rows: &[JointFrame], first: usize, last: usize) -> SymbolicTurn<'_> {
-        let ((s, c), quarters) = self.turned(rows, first, last);
-        let (s, c) = by_quarters((s.signed(rows[first].reversed), c), quarters);
-        SymbolicTurn { s, c }
     }
 
     /// Sine and cosine of the variable part of a turn, and the right angles that are left.
@@ -126,20 +81,69 @@ impl Builder {
         let name = |group, single, x| self.name(group_name(group, single, first, last), x);
         ((name(Quantity::GroupSine, Quantity::Sine, s), name(Quantity::GroupCosine, Quantity::Cosine, c)), quarters)
     }
+}
 
-    /// The same from sines and cosines that are arguments, by the addition theorem.
-    fn given_turn(&self, rows: &[JointFrame], first: usize, last: usize) -> SymbolicTurn<'_> {
-        let theta = rows[first..=last].iter().fold(ExactAngle::NONE, |turn, row| turn.then(row.theta));
-        (first..=last).fold(self.fixed_turn(theta), |SymbolicTurn { s, c }, joint| {
-            let sine = self.of_joint(Quantity::Sine, rows, joint);
-            let cosine = self.argument(Name::scalar(Quantity::Cosine, joint + 1));
-            SymbolicTurn { s: s * cosine + c * sine, c: c * cosine - s * sine }
+/// The arguments of the function in the frames of the rows. Joints are counted from 0.
+impl<'s> Arm<'_, 's> {
+    /// An argument of a joint in the direction of its row.
+    fn of_joint(&self, quantity: Quantity, joint: usize) -> Symbol<'s> {
+        self.builder.argument(Name::scalar(quantity, joint + 1)).signed(self.rows()[joint].reversed)
+    }
+
+    /// q of a prismatic joint.
+    pub(crate) fn position(&self, joint: usize) -> Symbol<'s> {
+        self.of_joint(Quantity::Position, joint)
+    }
+
+    pub(crate) fn rate(&self, joint: usize) -> Symbol<'s> {
+        let builder = self.builder;
+        if !builder.function.takes(Argument::Rates) || builder.moving.get() != Moving::AsGiven {
+            return builder.zero();
+        }
+        self.of_joint(Quantity::Rate, joint)
+    }
+
+    pub(crate) fn rate_dot(&self, joint: usize) -> Symbol<'s> {
+        let builder = self.builder;
+        match builder.moving.get() {
+            Moving::OneAccelerates(only) if only == joint => builder.one().signed(self.rows()[joint].reversed),
+            Moving::RatesForAccelerations => self.of_joint(Quantity::Rate, joint),
+            Moving::AsGiven if builder.function.takes(Argument::Accelerations) => {
+                self.of_joint(Quantity::RateDot, joint)
+            }
+            _ => builder.zero(),
+        }
+    }
+
+    /// Force and moment at the tip, if the function has them.
+    pub(crate) fn wrench(&self) -> Option<(Vector<'s>, Vector<'s>)> {
+        let (builder, tip) = (self.builder, self.rows().len() + 1);
+        let vector = |quantity| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, tip, axis))));
+        builder.function.takes(Argument::Wrench).then(|| (vector(Quantity::JointForce), vector(Quantity::JointMoment)))
+    }
+
+    /// The turn by the summed angle of joints `first` to `last`.
+    pub(crate) fn turn(&self, first: usize, last: usize) -> SymbolicTurn<'s> {
+        let (builder, rows) = (self.builder, self.rows());
+        if builder.function.takes(Argument::Sines) {
+            return self.given_turn(first, last);
+        }
+        // an angle does not change with what else is derived or accelerated
+        builder.by(None, || {
+            let ((s, c), quarters) = builder.turned(rows, first, last);
+            let (s, c) = by_quarters((s.signed(rows[first].reversed), c), quarters);
+            SymbolicTurn { s, c }
         })
     }
 
-    /// A turn by a constant angle.
-    pub(crate) fn fixed_turn(&self, turn: ExactAngle) -> SymbolicTurn<'_> {
-        SymbolicTurn { s: self.number(turn.sin), c: self.number(turn.cos) }
+    /// The turn from sines and cosines that are arguments, by the addition theorem.
+    fn given_turn(&self, first: usize, last: usize) -> SymbolicTurn<'s> {
+        let theta = self.rows()[first..=last].iter().fold(ExactAngle::NONE, |turn, row| turn.then(row.theta));
+        (first..=last).fold(self.builder.fixed_turn(theta), |SymbolicTurn { s, c }, joint| {
+            let sine = self.of_joint(Quantity::Sine, joint);
+            let cosine = self.builder.argument(Name::scalar(Quantity::Cosine, joint + 1));
+            SymbolicTurn { s: s * cosine + c * sine, c: c * cosine - s * sine }
+        })
     }
 }
 

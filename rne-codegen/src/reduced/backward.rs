@@ -8,21 +8,16 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::choices::{JointPlan, Moment, Side};
-use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
+use crate::ir::{Axis, Builder, Name, Number, Quantity, Symbol, Vector};
+use crate::reduced::forward::{along_axis, plus};
 use crate::reduced::inward::full;
-use crate::reduced::joint_frames::JointFrame;
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::payload::Load;
 use crate::reduced::regrouping::is_parallel;
-use crate::reduced::wrench::Wrench;
+use crate::reduced::{
+    Arm, Gradient, JointFrame, JointPlan, Load, Moment, Motion, Moved, PseudoInertia, ScaledTwist, Side, SymbolicTurn,
+    Wrench,
+};
 
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Number, Symbol, Vector};
-
-/// What the link behind exerts, about the origin of its frame.
+/// The wrench that the next link exerts, about the origin of its frame.
 #[derive(Clone, Copy)]
 struct Child<'s> {
     wrench: Wrench<'s>,
@@ -32,23 +27,13 @@ struct Child<'s> {
     arm: [Number; 3],
 }
 
-/// The torques, base to tip.
-pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s>]) -> Vec<Symbol<'s>> {
-    torques_with(builder, arm, moved, None)
+/// The torques, base to tip, with what the last link carries.
+pub(crate) fn torques<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Symbol<'s>> {
+    inward(arm, moved, payload).into_iter().map(|carried| carried.torque).collect()
 }
 
-/// The same with what the last link carries.
-pub(crate) fn torques_with<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    moved: &[Moved<'s>],
-    payload: Option<Load<'s>>,
-) -> Vec<Symbol<'s>> {
-    inward(builder, arm, moved, payload).into_iter().map(|carried| carried.torque).collect()
-}
-
-/// A joint's torque, and the wrench that is behind it: of the link and all that it carries, about the origin of its
-/// frame. A part of it is in the link's frame, the other one in frame N; none is told of a spin.
+/// A joint's torque, and the wrench at the joint: of the link and all that it carries, about the origin of its frame. A
+/// part of it is in the link's frame, the other one in frame N; none is told of a spin.
 pub(crate) struct Carried<'s> {
     pub(crate) torque: Symbol<'s>,
     pub(crate) own: Wrench<'s>,
@@ -56,14 +41,9 @@ pub(crate) struct Carried<'s> {
 }
 
 /// The way back, base to tip.
-pub(crate) fn inward<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    moved: &[Moved<'s>],
-    payload: Option<Load<'s>>,
-) -> Vec<Carried<'s>> {
-    let rows = arm.rows();
-    let tip = tip_wrench(builder, arm);
+pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Carried<'s>> {
+    let (builder, rows) = (arm.builder, arm.rows());
+    let tip = tip_wrench(arm);
     let mut found = Vec::with_capacity(rows.len());
     let mut child: Option<Child<'s>> = None;
     for index in (0..rows.len()).rev() {
@@ -72,22 +52,22 @@ pub(crate) fn inward<'s>(
         let tip = tip.filter(|_| index + 1 == rows.len());
         let nothing = Wrench::zero(builder);
         let ((torque, next), own, unturned) = if arm.is_spin(index) {
-            (spin(builder, arm, index, link, tip), nothing, nothing)
+            (spin(arm, index, link, tip), nothing, nothing)
         } else {
             let payload = payload.filter(|_| index + 1 == rows.len());
-            let (own, unturned) = own_wrench(builder, arm, index, link, payload);
+            let (own, unturned) = own_wrench(arm, index, link, payload);
             let own = tip.map_or(own, |tip| own.plus(tip));
-            let (own, unturned) = with_child(builder, arm, index, link, child, own, unturned);
+            let (own, unturned) = with_child(arm, index, link, child, own, unturned);
             match rows[index].kind {
                 Prismatic => {
                     let own = own.plus(unturned);
-                    (origin_shift(builder, arm, index, link, own), own, nothing)
+                    (origin_shift(arm, index, link, own), own, nothing)
                 }
-                Revolute => (turn(builder, arm, index, link, own, unturned), own, unturned),
+                Revolute => (turn(arm, index, link, own, unturned), own, unturned),
             }
         };
         builder.at(Quantity::Torque, index + 1);
-        let torque = torque + builder.rate_dot(rows, index).times(arm.joint_frames.rotors[index]);
+        let torque = torque + arm.rate_dot(index).times(arm.joint_frames.rotors[index]);
         let torque = if rows[index].reversed { -torque } else { torque };
         builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
         found.push(Carried { torque, own, unturned });
@@ -97,9 +77,10 @@ pub(crate) fn inward<'s>(
     found
 }
 
-/// What the last link exerts at the tip, about the origin of its frame and in its axes.
-fn tip_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Option<Wrench<'s>> {
-    let (force, moment) = builder.wrench(arm.rows().len())?;
+/// The wrench that the last link exerts at the tip, about the origin of its frame and in its axes.
+fn tip_wrench<'s>(arm: &Arm<'_, 's>) -> Option<Wrench<'s>> {
+    let builder = arm.builder;
+    let (force, moment) = arm.wrench()?;
     let tip = &arm.joint_frames.tip;
     let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
     let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
@@ -111,15 +92,14 @@ fn tip_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Option<Wrench<'s>> {
 
 /// A last link that is a sphere without mass: it keeps its spin, and q itself is not needed (section 5.6).
 fn spin<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     tip: Option<Wrench<'s>>,
 ) -> (Symbol<'s>, Option<Child<'s>>) {
-    let rows = arm.rows();
+    let (builder, rows) = (arm.builder, arm.rows());
     let c = arm.parameters.sphere.unwrap_or_default();
-    let (momentum, rate_dot) = (builder.rate(rows, index).times(c), builder.rate_dot(rows, index).times(c));
+    let (momentum, rate_dot) = (arm.rate(index).times(c), arm.rate_dot(index).times(c));
     let ([wx, wy, _], [_, _, dz]) = (link.own.omega.0, link.own.omega_dot.0);
     let torque = dz.times(c) + rate_dot;
     let (offset, d) = arm.lengths(index, length_inward(arm));
@@ -137,18 +117,18 @@ fn spin<'s>(
 }
 
 /// 1/μ: lengths of the way back.
-fn length_inward(arm: &Arm<'_>) -> Number {
+fn length_inward(arm: &Arm<'_, '_>) -> Number {
     arm.parameters.mu.inverse().unwrap_or(Number::ONE)
 }
 
 /// F and N of the link itself: the part in its frame, and the part in frame N.
 fn own_wrench<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     payload: Option<Load<'s>>,
 ) -> (Wrench<'s>, Wrench<'s>) {
+    let builder = arm.builder;
     let JointPlan { moment, switches: on, .. } = arm.plan.joints[index];
     let matter = &arm.parameters.links[index];
     let is_revolute = arm.rows()[index].kind != Prismatic;
@@ -156,14 +136,14 @@ fn own_wrench<'s>(
     let (mut own, mut unturned) = (Wrench::zero(builder), Wrench::zero(builder));
     let h = builder.vector(matter.h);
     if on.first_moment_unturned && is_revolute {
-        unturned = first_moment(builder, arm, &link.unturned, matter, link.group_turn.about_z(h));
+        unturned = first_moment(arm, &link.unturned, matter, link.group_turn.about_z(h));
     } else {
-        own = first_moment(builder, arm, &link.own, matter, h);
+        own = first_moment(arm, &link.own, matter, h);
     }
     if let Some(load) = payload {
         // second moments of both at once
         let to_unturned = load.unturned && is_revolute;
-        let both = load.with_link(builder, arm, link, matter, to_unturned);
+        let both = load.with_link(arm, link, matter, to_unturned);
         if to_unturned { unturned = unturned.plus(both) } else { own = own.plus(both) }
     } else if on.second_moment_unturned && is_revolute {
         let s = turned_second_moment(builder, matter, link.group_turn);
@@ -175,16 +155,10 @@ fn own_wrench<'s>(
 }
 
 /// F = m a + U h and h × a.
-fn first_moment<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    motion: &Motion<'s>,
-    matter: &PseudoInertia,
-    h: Vector<'s>,
-) -> Wrench<'s> {
+fn first_moment<'s>(arm: &Arm<'_, 's>, motion: &Motion<'s>, matter: &PseudoInertia, h: Vector<'s>) -> Wrench<'s> {
     let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
     let per_length = lambda.inverse().unwrap_or(Number::ONE);
-    let mass = builder.number(matter.mass * mu * per_length);
+    let mass = arm.builder.number(matter.mass * mu * per_length);
     Wrench {
         force: motion.acceleration * mass + motion.gradient.of(h.times(mu)),
         moment: h.times(per_length).cross(motion.acceleration),
@@ -252,8 +226,7 @@ fn turned_second_moment<'s>(
 
 /// Adds what the link behind exerts.
 fn with_child<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     child: Option<Child<'s>>,
@@ -261,7 +234,7 @@ fn with_child<'s>(
     unturned: Wrench<'s>,
 ) -> (Wrench<'s>, Wrench<'s>) {
     let Some(child) = child else { return (own, unturned) };
-    let p = builder.vector(child.arm);
+    let p = arm.builder.vector(child.arm);
     let Wrench { force, moment } = child.wrench;
     let to_unturned = arm.plan.joints[index].switches.wrench_unturned && arm.rows()[index].kind != Prismatic;
     match (child.unturned, to_unturned) {
@@ -281,13 +254,13 @@ fn with_child<'s>(
 
 /// A revolute joint: its torque, and what its link exerts on the one before.
 fn turn<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     own: Wrench<'s>,
     unturned: Wrench<'s>,
 ) -> (Symbol<'s>, Option<Child<'s>>) {
+    let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
     let JointPlan { inward_offset, switches: on, .. } = arm.plan.joints[index];
@@ -326,19 +299,19 @@ fn turn<'s>(
 
 /// A prismatic joint.
 fn origin_shift<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
     wrench: Wrench<'s>,
 ) -> (Symbol<'s>, Option<Child<'s>>) {
+    let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
     let per_force = length_inward(arm);
     let (offset, d) = arm.lengths(index, per_force);
     builder.name_vector(Quantity::ReducedForce, joint, wrench.force);
     builder.name_vector(Quantity::ReducedMoment, joint, wrench.moment);
-    let q = builder.position(rows, index).times(per_force) + builder.number(d);
+    let q = arm.position(index).times(per_force) + builder.number(d);
     let u = builder.vector(row.axis);
     let torque = u.dot(wrench.force).times(per_force);
     if row.carried {

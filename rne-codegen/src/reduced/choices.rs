@@ -3,8 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::reduced::joint_frames::FrameChoice;
-use crate::reduced::link_parameters::Entry;
+use crate::reduced::{Entry, FrameChoice};
 
 /// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -26,10 +25,10 @@ pub struct Plan {
     pub joints: Vec<JointPlan>,
 }
 
-/// What one joint chooses.
+/// The choices of one joint.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
 pub struct JointPlan {
-    /// Which three parameters the rods on this axis annul (section 4.5).
+    /// The three parameters that the rods on this axis annul (section 4.5).
     pub targets: [RegroupingTarget; 3],
     /// Where on its axis the frame's origin sits (section 5.4).
     pub origin_shift: OriginShift,
@@ -145,7 +144,7 @@ named! {
 }
 
 impl RegroupingTarget {
-    /// What each of the three rods of an axis may annul.
+    /// The parameters that each of the three rods of an axis may annul.
     pub const CHOICES: [&'static [Self]; 3] = [
         &[Self::Own, Self::Hx, Self::Hy],
         &[Self::Own, Self::Hy, Self::Hx, Self::Syz, Self::Sxz],
@@ -181,9 +180,9 @@ named! {
         AnnulS23 = "annul_s23",
         /// The offsets of all parallel axes behind this one are gathered here.
         GroupInward = "group_inward",
-        /// The same for the next axis alone.
+        /// The offset of the next axis alone is gathered here.
         NextOffset = "next_offset",
-        /// The same, less the own offset.
+        /// The offset of the next axis less the own one.
         NextLessOwn = "next_less_own",
         /// The offsets of the parallel axes up to this one are handed on.
         GroupOutward = "group_outward",
@@ -216,13 +215,13 @@ named! {
     }
 }
 
-/// What a scale of lengths or forces is taken from.
+/// The number of the arm that a scale of lengths or forces is taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, PartialOrd, Ord)]
 pub enum Scale {
     /// For lengths: none. For forces: that of lengths.
     #[default]
     Default,
-    /// None.
+    /// No scale.
     One,
     /// The length a of a row, counted from 1.
     A(usize),

@@ -13,18 +13,14 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::forward::Arm;
-use crate::reduced::inward::{Carried, Inward, Symmetric, Turned};
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::regrouping::group_start;
-use crate::reduced::wrench::Wrench;
+use crate::formulate::torque_by;
+use crate::reduced::inward::Carried;
+use crate::reduced::{Arm, FirstMoment, Inward, PseudoInertia, Symmetric, Turned, Wrench};
 
 pub(crate) use crate::reduced::inward::BodiesPer;
 
-use crate::ir::name::{Name, WithRespectTo};
-use crate::ir::quantity::Axis::{self, X, Y, Z};
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector};
+use crate::ir::Axis::{self, X, Y, Z};
+use crate::ir::{Builder, Name, Number, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The matter of all links from one on. Its mass is a number.
 #[derive(Clone, Copy)]
@@ -65,7 +61,7 @@ impl<'s> Composite<'s> {
         self.around.unwrap_or_else(|| self.s[0] + self.s[1])
     }
 
-    /// What gives its points the accelerations b + e × r.
+    /// The wrench that gives its points the accelerations b + e × r.
     pub(crate) fn carried(&self, builder: &'s Builder, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
         let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
         // J = tr(S) 1 - S
@@ -77,13 +73,13 @@ impl<'s> Composite<'s> {
         Wrench { force: b * builder.number(self.mass) + e.cross(self.h), moment: momentum + self.h.cross(b) }
     }
 
-    /// What accelerates it about the z axis with 1 rad/s².
+    /// The wrench that accelerates it about the z axis with 1 rad/s².
     pub(crate) fn turning(&self, builder: &'s Builder) -> Wrench<'s> {
         let ([hx, hy, _], [_, _, _, _, xz, yz]) = (self.h.0, self.s);
         Wrench { force: Vector([-hy, hx, builder.zero()]), moment: Vector([-xz, -yz, self.around()]) }
     }
 
-    /// What accelerates it along u with 1 m/s².
+    /// The wrench that accelerates it along u with 1 m/s².
     pub(crate) fn sliding(&self, u: Vector<'s>, builder: &'s Builder) -> Wrench<'s> {
         Wrench { force: u * builder.number(self.mass), moment: self.h.cross(u) }
     }
@@ -148,8 +144,8 @@ fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>,
 }
 
 /// The upper half of M: row i holds its elements (i, i) to (i, n).
-pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: BodiesPer) -> Vec<Vec<Symbol<'s>>> {
-    let rows = arm.rows();
+pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
+    let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
     let mut matrix: Vec<Vec<Symbol<'s>>> = vec![vec![builder.zero(); dof]; dof];
     let mut carried: Carried<Composite<'s>, Column<'s>> = Carried::NOTHING;
@@ -176,17 +172,14 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: B
         }
         let Carried { behind, columns, unturned } = carried;
         let with = |body: Composite<'s>| behind.map_or(body, |behind| body.plus(behind));
+        let turn = || Turned::AboutZ(arm.turn_of_group(index));
         let (whole, mut columns) = match row.kind {
             Prismatic => (with(own), columns),
+            Revolute if unturned => (with(own.turned(turn())), columns),
             Revolute => {
-                let turn = Turned::AboutZ(arm.turn_of_group(builder, bodies_per, index));
-                if unturned {
-                    (with(own.turned(turn)), columns)
-                } else {
-                    let whole = with(own);
-                    let columns = columns.into_iter().map(|column| column.turned(turn)).collect();
-                    (whole.turned(turn), columns)
-                }
+                let (turn, whole) = (turn(), with(own));
+                let columns = columns.into_iter().map(|column| column.turned(turn)).collect();
+                (whole.turned(turn), columns)
             }
         };
         let column = match row.kind {
@@ -195,93 +188,68 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: B
         };
         matrix[index][index] = along(&column);
         columns.push((index, column));
-        carried = Carried { behind: Some(whole), columns, unturned: arm.is_grouped(bodies_per, index) };
+        carried = Carried { behind: Some(whole), columns, unturned: arm.is_grouped(index) };
         if row.kind == Revolute {
             name(builder, index + 1, &carried);
         }
         if index > 0 {
-            carried = arm.inward(builder, bodies_per, index, carried);
+            carried = arm.inward(index, carried);
         }
     }
-    (0..dof)
-        .map(|row| {
-            (row..dof)
-                .map(|column| {
-                    let element = matrix[row][column].signed(rows[row].reversed != rows[column].reversed);
-                    let element =
-                        if row == column { element + builder.number(arm.joint_frames.rotors[row]) } else { element };
-                    let by = Some(WithRespectTo::RateDot(column + 1));
-                    builder.name(Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, element);
-                    element
-                })
-                .collect()
-        })
-        .collect()
+    let element = |row: usize, column: usize| {
+        let element = matrix[row][column].signed(rows[row].reversed != rows[column].reversed);
+        let element = if row == column { element + builder.number(arm.joint_frames.rotors[row]) } else { element };
+        builder.name(torque_by(row, WithRespectTo::RateDot(column + 1)), element);
+        element
+    };
+    (0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect()
 }
 
 /// Torques against gravity, by the first moments of the composite bodies alone: τ = (h × a)_z.
-pub(crate) fn gravity_torques<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: BodiesPer) -> Vec<Symbol<'s>> {
-    let rows = arm.rows();
+pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
+    let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
     // acceleration of the base in the frame N of each joint, or of its group
     let mut fields: Vec<Vector<'s>> = Vec::with_capacity(dof);
     let mut own = builder.vector(arm.joint_frames.gravity.map(|g| -g));
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::OriginAcceleration, index + 1);
-        let twist = builder.fixed_turn(row.alpha);
-        let grouped = arm.is_grouped(bodies_per, index);
         let field = match fields.last() {
-            Some(field) if grouped => *field,
-            _ => twist.back_about_x(own),
+            Some(field) if arm.is_grouped(index) => *field,
+            _ => builder.fixed_turn(row.alpha).back_about_x(own),
         };
         own = match row.kind {
-            Revolute => arm.turn_of_group(builder, bodies_per, index).back_about_z(field),
+            Revolute => arm.turn_of_group(index).back_about_z(field),
             Prismatic if row.carried => own,
             Prismatic => builder.fixed_turn(row.theta).back_about_z(field),
         };
         fields.push(if row.kind == Revolute { field } else { own });
     }
     let mut torques = vec![builder.zero(); dof];
-    // first moment of what is behind, in the axes of link i or in its frame N
-    let (mut h, mut mass, mut unturned) = (builder.no_vector(), Number::ZERO, false);
+    // what is behind, in the axes of link i or in its frame N
+    let mut behind = FirstMoment { mass: Number::ZERO, h: builder.no_vector() };
+    let mut unturned = false;
     for (index, (row, matter)) in rows.iter().zip(&arm.parameters.links).enumerate().rev() {
         builder.at(Quantity::ReducedMoment, index + 1);
         if arm.is_spin(index) {
             continue;
         }
-        mass = mass + matter.mass;
-        let (offset, d) = arm.lengths(index, Number::ONE);
-        let twist = builder.fixed_turn(row.alpha);
-        let (own, field) = (builder.vector(matter.h), fields[index]);
-        let m = builder.number(mass);
+        let (own, h, field) = (builder.vector(matter.h), behind.h, fields[index]);
+        behind.mass = behind.mass + matter.mass;
         let torque = match row.kind {
             Revolute => {
-                let turn = arm.turn_of_group(builder, bodies_per, index);
-                h = if unturned { h + turn.about_z(own) } else { turn.about_z(h + own) };
-                let ([hx, hy, _], [ax, ay, _]) = (h.0, field.0);
-                let torque = hx * ay - hy * ax;
-                let along = builder.along_z(d);
-                unturned = arm.is_grouped(bodies_per, index);
-                if unturned {
-                    let before = builder.turn(rows, group_start(rows, index), index - 1);
-                    h = h + (before.about_z(builder.vector(offset)) + along) * m;
-                } else {
-                    h = twist.about_x(h + along * m) + builder.vector(offset) * m;
-                }
-                torque
+                let turn = arm.turn_of_group(index);
+                behind.h = if unturned { h + turn.about_z(own) } else { turn.about_z(h + own) };
+                let ([hx, hy, _], [ax, ay, _]) = (behind.h.0, field.0);
+                hx * ay - hy * ax
             }
             Prismatic => {
-                let u = builder.vector(row.axis);
-                let torque = u.dot(field) * m;
-                let q = builder.position(rows, index) + builder.number(d);
-                h = h + own + u * (q * m);
-                if !row.carried {
-                    h = twist.about_x(builder.fixed_turn(row.theta).about_z(h));
-                }
-                h = h + builder.vector(offset) * m;
-                torque
+                behind.h = h + own;
+                builder.vector(row.axis).dot(field) * builder.number(behind.mass)
             }
         };
+        behind = arm.inward(index, behind);
+        unturned = arm.is_grouped(index);
         torques[index] = torque.signed(row.reversed);
         builder.name(Name::scalar(Quantity::Torque, index + 1), torques[index]);
     }

@@ -10,13 +10,10 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::choices::{JointPlan, Plan, Side};
-use crate::reduced::joint_frames::{JointFrame, JointFrames};
-use crate::reduced::regrouping::{Parameters, group_start, is_parallel};
-
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Matrix, Number, Symbol, Vector};
+use crate::ir::{Builder, Matrix, Number, Quantity, Symbol, Vector};
+use crate::reduced::inward::BodiesPer;
+use crate::reduced::regrouping::{group_start, is_parallel};
+use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
 #[derive(Clone, Copy)]
@@ -66,12 +63,12 @@ impl<'s> Gradient<'s> {
 pub(crate) struct Motion<'s> {
     pub(crate) omega: Vector<'s>,
     pub(crate) omega_dot: Vector<'s>,
-    /// Of the frame's origin, less gravity, times λ.
+    /// Acceleration of the frame's origin, less gravity, times λ.
     pub(crate) acceleration: Vector<'s>,
     pub(crate) gradient: Gradient<'s>,
 }
 
-/// What the way back needs to know of a link.
+/// The motion of a link, as the way back needs it.
 #[derive(Clone, Copy)]
 pub(crate) struct Moved<'s> {
     /// In the link's frame.
@@ -96,14 +93,18 @@ struct Group<'s> {
     rate_dot: Symbol<'s>,
 }
 
-/// The arm under a plan, as both ways see it.
-pub(crate) struct Arm<'a> {
+/// The arm under a plan, as its formulas see it.
+#[derive(Clone, Copy)]
+pub(crate) struct Arm<'a, 's> {
+    pub(crate) builder: &'s Builder,
+    /// How algorithms of bodies gather these.
+    pub(crate) bodies_per: BodiesPer,
     pub(crate) joint_frames: &'a JointFrames,
     pub(crate) plan: &'a Plan,
     pub(crate) parameters: &'a Parameters,
 }
 
-impl<'a> Arm<'a> {
+impl<'a> Arm<'a, '_> {
     pub(crate) fn rows(&self) -> &'a [JointFrame] {
         &self.joint_frames.rows
     }
@@ -134,13 +135,13 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
 }
 
 /// The motion of all links.
-pub(crate) fn motions<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Moved<'s>> {
+pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
     let lambda = arm.parameters.lambda;
-    let zeros = builder.no_vector();
+    let zeros = arm.builder.no_vector();
     let at_rest = Motion {
         omega: zeros,
         omega_dot: zeros,
-        acceleration: builder.vector(arm.joint_frames.gravity.map(|g| -(g * lambda))),
+        acceleration: arm.builder.vector(arm.joint_frames.gravity.map(|g| -(g * lambda))),
         gradient: Gradient::new(zeros, zeros),
     };
     let mut before = at_rest;
@@ -148,8 +149,8 @@ pub(crate) fn motions<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Moved<'s>>
     let mut group = None;
     for index in 0..arm.rows().len() {
         let link = match arm.rows()[index].kind {
-            Revolute => revolute(builder, arm, index, before, &moved, &mut group),
-            Prismatic => prismatic(builder, arm, index, before, &moved),
+            Revolute => revolute(arm, index, before, &moved, &mut group),
+            Prismatic => prismatic(arm, index, before, &moved),
         };
         before = link.own;
         moved.push(link);
@@ -161,16 +162,15 @@ pub(crate) fn motions<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Moved<'s>>
 ///
 /// It may be formed in the frame N of the link before: then its own part is in N.
 fn joint_point<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     before: Motion<'s>,
     moved: &[Moved<'s>],
     p: [Number; 3],
 ) -> (Vector<'s>, Vector<'s>, bool) {
-    let Some(link) = moved.last() else { return (before.acceleration, builder.no_vector(), false) };
+    let Some(link) = moved.last() else { return (before.acceleration, arm.builder.no_vector(), false) };
     let unturned = arm.plan.joints[index - 1].switches.origin_unturned && arm.rows()[index - 1].kind == Revolute;
-    let p = builder.vector(p);
+    let p = arm.builder.vector(p);
     if unturned {
         let part = link.unturned.gradient.of(link.group_turn.about_z(p));
         (link.group_turn.back_about_z(link.unturned.acceleration + part), part, true)
@@ -197,16 +197,15 @@ struct Revolving<'s, 'a> {
 }
 
 fn revolute<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
+    arm: &Arm<'_, 's>,
     index: usize,
     before: Motion<'s>,
     moved: &[Moved<'s>],
     group: &mut Option<Group<'s>>,
 ) -> Moved<'s> {
-    let rows = arm.rows();
+    let (builder, rows) = (arm.builder, arm.rows());
     let parallel = is_parallel(rows, index);
-    let turn = builder.turn(rows, index, index);
+    let turn = arm.turn(index, index);
     let link = Revolving {
         builder,
         row: &rows[index],
@@ -215,9 +214,9 @@ fn revolute<'s>(
         parallel,
         twist: builder.fixed_turn(rows[index].alpha),
         turn,
-        group_turn: if parallel { builder.turn(rows, group_start(rows, index), index) } else { turn },
-        rate: builder.rate(rows, index),
-        rate_dot: builder.rate_dot(rows, index),
+        group_turn: if parallel { arm.turn(group_start(rows, index), index) } else { turn },
+        rate: arm.rate(index),
+        rate_dot: arm.rate_dot(index),
     };
     if arm.is_spin(index) {
         return link.spin(before);
@@ -227,7 +226,7 @@ fn revolute<'s>(
     let p = if to_parent { plus(offset, along_axis(link.row, d)) } else { offset };
 
     builder.at(Quantity::OriginAcceleration, link.joint);
-    let (point, part, part_unturned) = joint_point(builder, arm, index, before, moved, p);
+    let (point, part, part_unturned) = joint_point(arm, index, before, moved, p);
     let point_unturned = match moved.last() {
         Some(last) if parallel => {
             last.unturned.acceleration + if part_unturned { part } else { last.group_turn.about_z(part) }
@@ -253,7 +252,7 @@ impl<'s> Revolving<'s, '_> {
         Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn }
     }
 
-    /// What frame N takes over from before the group, and the rates of the group so far.
+    /// The motion that frame N takes over from before the group, and the rates of the group so far.
     fn share(&self, before: Motion<'s>, group: &mut Option<Group<'s>>) -> Group<'s> {
         self.builder.at(Quantity::OmegaUnturned, self.joint);
         let shared = match *group {
@@ -377,21 +376,16 @@ fn spun<'s>(omega: Vector<'s>, rate: Symbol<'s>, rate_dot: Symbol<'s>, omega_dot
 }
 
 /// A sliding link turns as the link before: a = Rᵀ (a_{i-1} + U_{i-1} p) + (d + q) U u + 2 q̇ ω × u + q̈ u.
-fn prismatic<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    index: usize,
-    before: Motion<'s>,
-    moved: &[Moved<'s>],
-) -> Moved<'s> {
+fn prismatic<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[Moved<'s>]) -> Moved<'s> {
+    let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
     let lambda = arm.parameters.lambda;
     let (offset, d) = arm.lengths(index, lambda);
     let (twist, turn) = (builder.fixed_turn(row.alpha), builder.fixed_turn(row.theta));
-    let (qd, qdd) = (builder.rate(rows, index).times(lambda), builder.rate_dot(rows, index).times(lambda));
+    let (qd, qdd) = (arm.rate(index).times(lambda), arm.rate_dot(index).times(lambda));
     let twice_rate = qd.times(Number::integer(2));
-    let q = builder.position(rows, index).times(lambda) + builder.number(d);
+    let q = arm.position(index).times(lambda) + builder.number(d);
     let u = builder.vector(row.axis);
 
     builder.at(Quantity::OriginAcceleration, joint);
@@ -401,7 +395,7 @@ fn prismatic<'s>(
             before.acceleration + before.gradient.of(arm_vector) + before.omega.cross(u * twice_rate) + u * qdd;
         Motion { acceleration, ..before }
     } else {
-        let (point, ..) = joint_point(builder, arm, index, before, moved, offset);
+        let (point, ..) = joint_point(arm, index, before, moved, offset);
         let outward = |v: Vector<'s>| turn.back_about_z(twist.back_about_x(v));
         builder.at(Quantity::Omega, joint);
         let omega = builder.name_vector(Quantity::Omega, joint, outward(before.omega));

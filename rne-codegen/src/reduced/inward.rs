@@ -2,11 +2,9 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::ir::{Builder, Number, Symbol, Vector};
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::forward::Arm;
+use crate::ir::{Number, Symbol, Vector};
 use crate::reduced::regrouping::{group_start, is_parallel};
-use crate::reduced::wrench::Wrench;
+use crate::reduced::{Arm, SymbolicTurn, Wrench};
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +58,7 @@ impl<'s> Turned<'s> {
     }
 }
 
-/// What can be given in other axes and about another point.
+/// A quantity that can be given in other axes and about another point.
 pub(crate) trait Inward<'s>: Sized {
     fn turned(self, turn: Turned<'s>) -> Self;
 
@@ -68,7 +66,32 @@ pub(crate) trait Inward<'s>: Sized {
     fn moved(self, t: Vector<'s>) -> Self;
 }
 
-/// What a link carries: the bodies from there on and the columns of their joints, about the origin of its frame, in its
+/// Matter without its second moments.
+#[derive(Clone, Copy)]
+pub(crate) struct FirstMoment<'s> {
+    pub(crate) mass: Number,
+    pub(crate) h: Vector<'s>,
+}
+
+impl<'s> Inward<'s> for FirstMoment<'s> {
+    fn turned(self, turn: Turned<'s>) -> Self {
+        Self { h: turn.of(self.h), ..self }
+    }
+
+    fn moved(self, t: Vector<'s>) -> Self {
+        Self { h: self.h + t * t.0[0].builder.number(self.mass), ..self }
+    }
+}
+
+/// A motion that can be given in the axes of a link farther out and at another of its points.
+pub(crate) trait Outward<'s>: Copy {
+    fn turned_back(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self;
+
+    /// At the point p of the link.
+    fn at(self, p: Vector<'s>) -> Self;
+}
+
+/// The load of a link: the bodies from there on and the columns of their joints, about the origin of its frame, in its
 /// axes or in the frame N of its group.
 pub(crate) struct Carried<B, C> {
     pub(crate) behind: Option<B>,
@@ -77,7 +100,7 @@ pub(crate) struct Carried<B, C> {
 }
 
 impl<B, C> Carried<B, C> {
-    /// Behind the last link.
+    /// The load of the last link.
     pub(crate) const NOTHING: Self = Self { behind: None, columns: Vec::new(), unturned: false };
 
     fn map(self, behind: impl Fn(B) -> B, column: impl Fn(C) -> C) -> Self {
@@ -106,44 +129,52 @@ impl<'s> Inward<'s> for Wrench<'s> {
     }
 }
 
-impl Arm<'_> {
+impl<'s> Arm<'_, 's> {
     /// Whether a joint shares the frame N of the one before it.
-    pub(crate) fn is_grouped(&self, bodies_per: BodiesPer, index: usize) -> bool {
-        bodies_per == BodiesPer::Group && is_parallel(self.rows(), index)
+    pub(crate) fn is_grouped(&self, index: usize) -> bool {
+        self.bodies_per == BodiesPer::Group && is_parallel(self.rows(), index)
     }
 
     /// From the axes of a revolute link to frame N of its group.
-    pub(crate) fn turn_of_group<'s>(
-        &self,
-        builder: &'s Builder,
-        bodies_per: BodiesPer,
-        index: usize,
-    ) -> SymbolicTurn<'s> {
-        let rows = self.rows();
-        builder.turn(rows, if self.is_grouped(bodies_per, index) { group_start(rows, index) } else { index }, index)
+    pub(crate) fn turn_of_group(&self, index: usize) -> SymbolicTurn<'s> {
+        self.turn(if self.is_grouped(index) { group_start(self.rows(), index) } else { index }, index)
+    }
+
+    /// From the link before to the origin of a joint, in frame N (prismatic: in the axes of the sliding link). In the
+    /// frame N of a group `unturned` of the joint before goes on, whose turn is `turn`.
+    pub(crate) fn outward<T: Outward<'s>>(&self, index: usize, last: T, unturned: T, turn: SymbolicTurn<'s>) -> T {
+        let (builder, row) = (self.builder, &self.rows()[index]);
+        let (offset, d) = self.lengths(index, Number::ONE);
+        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
+        match row.kind {
+            Revolute if self.is_grouped(index) => unturned.at(turn.about_z(offset) + builder.along_z(d)),
+            // frame 0 is at joint 1
+            Revolute if index == 0 => last.turned_back(|v| twist.back_about_x(v)),
+            Revolute => last.at(offset).turned_back(|v| twist.back_about_x(v)).at(builder.along_z(d)),
+            Prismatic => {
+                let theta = builder.fixed_turn(row.theta);
+                let last = last.at(offset);
+                let last =
+                    if row.carried { last } else { last.turned_back(|v| theta.back_about_z(twist.back_about_x(v))) };
+                last.at(builder.vector(row.axis) * (self.position(index) + builder.number(d)))
+            }
+        }
     }
 
     /// From frame N of a joint, or the axes of a sliding link, to the axes of the link before and about its origin. The
     /// frame N of a group goes on, but for its origin.
-    pub(crate) fn inward<'s, T: Inward<'s>>(
-        &self,
-        builder: &'s Builder,
-        bodies_per: BodiesPer,
-        index: usize,
-        carried: T,
-    ) -> T {
-        let row = &self.rows()[index];
+    pub(crate) fn inward<T: Inward<'s>>(&self, index: usize, carried: T) -> T {
+        let (builder, row) = (self.builder, &self.rows()[index]);
         let (offset, d) = self.lengths(index, Number::ONE);
         let twist = Turned::AboutX(builder.fixed_turn(row.alpha));
         match row.kind {
-            Revolute if self.is_grouped(bodies_per, index) => {
-                let before = builder.turn(self.rows(), group_start(self.rows(), index), index - 1);
+            Revolute if self.is_grouped(index) => {
+                let before = self.turn(group_start(self.rows(), index), index - 1);
                 carried.moved(before.about_z(builder.vector(offset)) + builder.along_z(d))
             }
             Revolute => carried.moved(builder.along_z(d)).turned(twist).moved(builder.vector(offset)),
             Prismatic => {
-                let q = builder.position(self.rows(), index) + builder.number(d);
-                let carried = carried.moved(builder.vector(row.axis) * q);
+                let carried = carried.moved(builder.vector(row.axis) * (self.position(index) + builder.number(d)));
                 let theta = || Turned::AboutZ(builder.fixed_turn(row.theta));
                 let carried = if row.carried { carried } else { carried.turned(theta()).turned(twist) };
                 carried.moved(builder.vector(offset))

@@ -8,9 +8,8 @@
 use rne_model::{Convention, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Transform};
 
 use crate::ir::{Embedding, ExactAngle, Number};
-use crate::reduced::link_parameters::{
-    IDENTITY, PseudoInertia, Square, Triple, about_x, about_z, apply, compose, transpose,
-};
+use crate::reduced::link_parameters::{about_x, about_z, apply, compose, transpose};
+use crate::reduced::{IDENTITY, PseudoInertia, Square, Triple};
 
 /// One joint and the link that it moves.
 #[derive(Clone, Debug)]

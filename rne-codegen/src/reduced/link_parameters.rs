@@ -142,9 +142,10 @@ pub(crate) fn about_z(turn: ExactAngle) -> Square {
 
 #[cfg(test)]
 mod tests {
+    use rne_model::Angle;
+
     use super::*;
     use crate::ir::Embedding;
-    use rne_model::Angle;
 
     fn numbers<const N: usize>(values: [f64; N]) -> [Number; N] {
         values.map(|value| Embedding::default().decimal(value))

@@ -22,3 +22,16 @@ pub(crate) mod payload;
 pub(crate) mod regrouping;
 pub(crate) mod rnea_derivatives;
 pub(crate) mod wrench;
+
+pub(crate) use algorithm::Algorithm;
+pub(crate) use arguments::SymbolicTurn;
+pub(crate) use choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side};
+pub(crate) use crba::Composite;
+pub(crate) use forward::{Arm, Gradient, Motion, Moved, ScaledTwist};
+pub(crate) use inward::{FirstMoment, Inward, Outward, Symmetric, Turned};
+pub(crate) use joint_frames::{FrameChoice, JointFrame, JointFrames};
+pub(crate) use link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
+pub(crate) use payload::Load;
+pub(crate) use regrouping::{Offers, Parameters};
+pub(crate) use rnea_derivatives::Station;
+pub(crate) use wrench::Wrench;

@@ -12,34 +12,25 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::{Moving, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::backward::{Carried, inward};
-use crate::reduced::crba;
-use crate::reduced::forward::{Arm, Motion, Moved, motions};
-use crate::reduced::inward::BodiesPer;
-use crate::reduced::joint_frames::JointFrames;
-use crate::reduced::wrench::Wrench;
-
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Moving, Number, Symbol, Vector};
+use crate::reduced::forward::motions;
+use crate::reduced::{Arm, JointFrames, Motion, Moved, Wrench, crba};
 
 /// p and its rate without external torques, base to tip.
-pub(crate) fn momentum_and_rate<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    bodies_per: BodiesPer,
-) -> [Vec<Symbol<'s>>; 2] {
-    let gravity = crba::gravity_torques(builder, arm, bodies_per);
+pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
+    let builder = arm.builder;
+    let gravity = crba::gravity_torques(arm);
     let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
-    let weightless = Arm { joint_frames: &joint_frames, plan: arm.plan, parameters: arm.parameters };
+    let weightless = Arm { joint_frames: &joint_frames, ..*arm };
     let (moved, carried) = builder.moving(Moving::RatesForAccelerations, || {
-        let moved = motions(builder, &weightless);
-        let carried = inward(builder, &weightless, &moved, None);
+        let moved = motions(&weightless);
+        let carried = inward(&weightless, &moved, None);
         (moved, carried)
     });
     let rates = carried.iter().zip(&moved).zip(gravity).enumerate().map(|(index, ((carried, link), gravity))| {
         builder.at(Quantity::MomentumRate, index + 1);
-        let rate = builder.torque(index) + of_motion(builder, arm, index, link, carried) - gravity;
+        let rate = builder.torque(index) + of_motion(arm, index, link, carried) - gravity;
         builder.name(Name::scalar(Quantity::MomentumRate, index + 1), rate)
     });
     let rates = rates.collect();
@@ -47,17 +38,11 @@ pub(crate) fn momentum_and_rate<'s>(
 }
 
 /// ∂T/∂q_i
-fn of_motion<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    index: usize,
-    link: &Moved<'s>,
-    carried: &Carried<'s>,
-) -> Symbol<'s> {
+fn of_motion<'s>(arm: &Arm<'_, 's>, index: usize, link: &Moved<'s>, carried: &Carried<'s>) -> Symbol<'s> {
     let row = &arm.rows()[index];
     // a spin is the same at every angle
     if arm.is_spin(index) {
-        return builder.zero();
+        return arm.builder.zero();
     }
     let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
     let per_length = mu.inverse().unwrap_or(Number::ONE);
@@ -72,7 +57,7 @@ fn of_motion<'s>(
             of_frame(&link.own, &carried.own) + of_frame(&link.unturned, &carried.unturned)
         }
         Prismatic => {
-            let turning = link.own.omega_dot.cross(builder.vector(row.axis));
+            let turning = link.own.omega_dot.cross(arm.builder.vector(row.axis));
             turning.dot(carried.own.force).times(per_length)
         }
     };

@@ -6,13 +6,9 @@
 //!
 //! R and t lead from the tip to the frame of the last link, J_n is what regrouping has left of that link's own inertia.
 
-use crate::formulate::payload::Payload;
-use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::forward::{Arm, Motion, Moved};
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::wrench::Wrench;
-
+use crate::formulate::Payload;
 use crate::ir::{Builder, Matrix, Number, Vector};
+use crate::reduced::{Arm, Motion, Moved, PseudoInertia, SymbolicTurn, Wrench};
 
 /// A payload, and the axes in which what it asks for is written.
 #[derive(Clone, Copy)]
@@ -23,15 +19,16 @@ pub(crate) struct Load<'s> {
 }
 
 impl<'s> Load<'s> {
-    /// What the payload asks for, and the second moments of the last link with it: about the origin of the last frame.
+    /// The wrench of the payload, and of the second moments of the last link with it: about the origin of the last
+    /// frame.
     pub(crate) fn with_link(
         &self,
-        builder: &'s Builder,
-        arm: &Arm<'_>,
+        arm: &Arm<'_, 's>,
         link: &Moved<'s>,
         matter: &PseudoInertia,
         unturned: bool,
     ) -> Wrench<'s> {
+        let builder = arm.builder;
         let Payload { mass, com, inertia } = self.payload;
         let tip = &arm.joint_frames.tip;
         let rotation = Matrix(tip.rotation.map(|row| builder.vector(row)));

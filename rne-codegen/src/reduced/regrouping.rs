@@ -4,15 +4,15 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::Number;
-use crate::reduced::choices::{OriginShift, Plan, RegroupingTarget, Scale};
-use crate::reduced::joint_frames::{JointFrame, JointFrames};
-use crate::reduced::link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
+use crate::reduced::{
+    Entry, IDENTITY, JointFrame, JointFrames, OriginShift, Plan, PseudoInertia, RegroupingTarget, Scale, Square, Triple,
+};
 
 /// A pivot of the three equations for the rods of an axis must not be smaller.
 const LEAST_PIVOT: f64 = 1e-5;
-/// A rod must not be larger than so many times the arm's own mass and moments.
+/// Largest rod, in parts of the arm's own mass and moments.
 const LARGEST_ROD: f64 = 1e3;
-/// A slide must not be longer than so many times the arm.
+/// Longest slide, in lengths of the arm.
 const LONGEST_SLIDE: f64 = 5.0;
 /// Bounds of the scales.
 const SCALES: std::ops::Range<f64> = 1e-3..1e3;
@@ -31,7 +31,7 @@ pub(crate) struct Parameters {
     pub(crate) mu: Number,
 }
 
-/// What a table offers to choose from, and how large the arm is.
+/// The choices that a table offers, and the size of the arm.
 #[derive(Clone, Debug)]
 pub(crate) struct Offers {
     /// Per joint, the rules that give different slides.
@@ -245,7 +245,7 @@ fn has_sphere(joint_frames: &JointFrames) -> bool {
     row.kind == Revolute && vanish.iter().all(|x| x.is_zero())
 }
 
-/// What a rule gives, from the links of the plain gauge.
+/// The slide by a rule, from the links of the plain gauge.
 fn origin_shift(rows: &[JointFrame], links: &[PseudoInertia], index: usize, rule: OriginShift) -> Option<Number> {
     let row = &rows[index];
     if rule == OriginShift::None {

@@ -26,16 +26,10 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::arguments::SymbolicTurn;
+use crate::ir::{Builder, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::crba::Composite;
-use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::inward::{BodiesPer, Carried, Inward, Turned};
-use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::wrench::Wrench;
-
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector, square};
+use crate::reduced::inward::Carried;
+use crate::reduced::{Arm, Composite, Gradient, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench};
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
 pub(crate) struct Sensitivity<'s> {
@@ -55,9 +49,9 @@ pub(crate) struct Motion<'s> {
 
 /// A joint on the way out.
 pub(crate) struct Station<'s> {
-    /// Of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
+    /// Motion of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
     pub(crate) before: Motion<'s>,
-    /// Of the link, in its axes.
+    /// Motion of the link, in its axes.
     pub(crate) own: Motion<'s>,
     /// From the axes of the link to N.
     pub(crate) turn: SymbolicTurn<'s>,
@@ -66,7 +60,7 @@ pub(crate) struct Station<'s> {
 /// ∫ r vᵀ dm
 type Moment<'s> = [[Symbol<'s>; 3]; 3];
 
-/// What is behind a joint, about its origin.
+/// The links from a joint on, about its origin.
 #[derive(Clone, Copy)]
 struct Behind<'s> {
     body: Composite<'s>,
@@ -78,7 +72,7 @@ struct Behind<'s> {
     wrench: Wrench<'s>,
 }
 
-/// What joint `joint` contributes to the rows and columns of joints nearer to the base.
+/// The contribution of joint `joint` to the rows and columns of joints nearer to the base.
 #[derive(Clone, Copy)]
 struct Column<'s> {
     joint: usize,
@@ -163,8 +157,8 @@ impl<'s> Inward<'s> for Column<'s> {
     }
 }
 
-impl<'s> Motion<'s> {
-    fn turned(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+impl<'s> Outward<'s> for Motion<'s> {
+    fn turned_back(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
         Self {
             omega: f(self.omega),
             omega_dot: f(self.omega_dot),
@@ -174,7 +168,6 @@ impl<'s> Motion<'s> {
         }
     }
 
-    /// The same link at another of its points.
     fn at(self, p: Vector<'s>) -> Self {
         let gradient = Gradient::new(self.omega, self.omega_dot);
         Self {
@@ -187,13 +180,9 @@ impl<'s> Motion<'s> {
 
 /// The derivatives of the torques. `factor` is that of the velocities: 2 for derivatives; with 1 the derivatives by
 /// rates are the Coriolis matrix, half of them.
-pub(crate) fn sensitivity<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    bodies_per: BodiesPer,
-    factor: Number,
-) -> Sensitivity<'s> {
-    let stations = stations(builder, arm, bodies_per, factor);
+pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<'s> {
+    let builder = arm.builder;
+    let stations = stations(arm, factor);
     let dof = stations.len();
     let rows = arm.rows();
     let zero = builder.zero();
@@ -214,13 +203,13 @@ pub(crate) fn sensitivity<'s>(
         };
         let Carried { behind: Some(behind), mut columns, .. } = here else { break };
         behind.body.name(builder, index + 1);
-        columns.push(column(builder, arm, index, station, &behind));
+        columns.push(column(arm, index, station, &behind));
         for column in &columns {
-            meet(builder, arm, index, station, column, &mut found);
+            meet(arm, index, station, column, &mut found);
         }
-        carried = Carried { behind: Some(behind), columns, unturned: arm.is_grouped(bodies_per, index) };
+        carried = Carried { behind: Some(behind), columns, unturned: arm.is_grouped(index) };
         if index > 0 {
-            carried = arm.inward(builder, bodies_per, index, carried);
+            carried = arm.inward(index, carried);
         }
     }
     for matrix in [&mut found.by_position, &mut found.by_rate] {
@@ -235,7 +224,7 @@ pub(crate) fn sensitivity<'s>(
 
 /// The matter of a link. A last link that is a spinning sphere is one again: what the link before was given for it is
 /// taken back.
-pub(crate) fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
+pub(crate) fn matter(arm: &Arm<'_, '_>, index: usize) -> PseudoInertia {
     let mut matter = arm.parameters.links[index];
     let Some(c) = arm.parameters.sphere else { return matter };
     let half = c * Number::integer(2).inverse().unwrap_or_default();
@@ -250,13 +239,8 @@ pub(crate) fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
 }
 
 /// How all links move.
-pub(crate) fn stations<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    bodies_per: BodiesPer,
-    factor: Number,
-) -> Vec<Station<'s>> {
-    let rows = arm.rows();
+pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<Station<'s>> {
+    let (builder, rows) = (arm.builder, arm.rows());
     let (zeros, zero) = (builder.no_vector(), builder.zero());
     let mut last = Motion {
         omega: zeros,
@@ -265,59 +249,43 @@ pub(crate) fn stations<'s>(
         twice_omega: zeros,
         twice_velocity: zeros,
     };
-    // in frame N of the joint before
-    let mut last_unturned = last;
+    // in frame N of the joint before, and the turn from there
+    let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
+    let (mut unturned, mut turn) = (last, still);
     let mut stations: Vec<Station<'s>> = Vec::with_capacity(rows.len());
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::Omega, index + 1);
-        let (offset, d) = arm.lengths(index, Number::ONE);
-        let twist = builder.fixed_turn(row.alpha);
-        let offset = builder.vector(offset);
-        let (rate, rate_dot) = (builder.rate(rows, index), builder.rate_dot(rows, index));
-        let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
+        let (rate, rate_dot) = (arm.rate(index), arm.rate_dot(index));
+        let before = arm.outward(index, last, unturned, turn);
         match row.kind {
             Revolute => {
-                let grouped = arm.is_grouped(bodies_per, index);
-                let before = match stations.last() {
-                    Some(station) if grouped => last_unturned.at(station.turn.about_z(offset) + builder.along_z(d)),
-                    _ if index == 0 => last.turned(|v| twist.back_about_x(v)),
-                    _ => last.at(offset).turned(|v| twist.back_about_x(v)).at(builder.along_z(d)),
-                };
-                let turn = if arm.is_spin(index) { still } else { arm.turn_of_group(builder, bodies_per, index) };
+                turn = if arm.is_spin(index) { still } else { arm.turn_of_group(index) };
                 let ([wx, wy, _], [dx, dy, dz]) = (before.omega.0, before.omega_dot.0);
                 let omega = before.omega.plus_z(rate);
-                let unturned = Motion {
+                unturned = Motion {
                     omega,
                     omega_dot: Vector([dx + rate * wy, dy - rate * wx, dz + rate_dot]),
                     twice_omega: omega.times(factor),
                     ..before
                 };
-                last = unturned.turned(|v| turn.back_about_z(v));
-                last_unturned = unturned;
-                stations.push(Station { before, own: last, turn });
+                last = unturned.turned_back(|v| turn.back_about_z(v));
             }
             Prismatic => {
-                let theta = builder.fixed_turn(row.theta);
-                let at_axis = last.at(offset);
-                let before =
-                    if row.carried { at_axis } else { at_axis.turned(|v| theta.back_about_z(twist.back_about_x(v))) };
-                let u = builder.vector(row.axis);
-                let before = before.at(u * (builder.position(rows, index) + builder.number(d)));
-                let twice_rate = rate.times(Number::integer(2));
+                let (u, twice_rate) = (builder.vector(row.axis), rate.times(Number::integer(2)));
                 last = Motion {
                     acceleration: before.acceleration + before.omega.cross(u * twice_rate) + u * rate_dot,
                     twice_velocity: before.twice_velocity + u * rate.times(factor),
                     ..before
                 };
-                last_unturned = last;
-                stations.push(Station { before, own: last, turn: still });
+                (unturned, turn) = (last, still);
             }
         }
+        stations.push(Station { before, own: last, turn });
     }
     stations
 }
 
-/// What a link alone contributes, in its axes.
+/// The contribution of a link alone, in its axes.
 fn own<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>) -> Behind<'s> {
     let (h, m) = (builder.vector(matter.h), builder.number(matter.mass));
     let s = matter.s.map(|row| row.map(|x| builder.number(x)));
@@ -349,7 +317,8 @@ struct Twists<'s> {
     deflection: Vector<'s>,
 }
 
-fn twists<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Twists<'s> {
+fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> Twists<'s> {
+    let builder = arm.builder;
     let row = &arm.rows()[index];
     let Motion { omega, omega_dot, acceleration, twice_omega, twice_velocity } = station.before;
     let (zeros, zero) = (builder.no_vector(), builder.zero());
@@ -379,16 +348,11 @@ fn twists<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Stati
     }
 }
 
-/// What a joint contributes to rows and columns of joints nearer to the base.
-fn column<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    index: usize,
-    station: &Station<'s>,
-    behind: &Behind<'s>,
-) -> Column<'s> {
+/// The contribution of a joint to rows and columns of joints nearer to the base.
+fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>, behind: &Behind<'s>) -> Column<'s> {
+    let builder = arm.builder;
     let row = &arm.rows()[index];
-    let twists = twists(builder, arm, index, station);
+    let twists = twists(arm, index, station);
     let body = &behind.body;
     let (zero, g) = (builder.zero(), &behind.moment);
     let Wrench { force, moment } = behind.wrench;
@@ -424,18 +388,11 @@ fn column<'s>(
 }
 
 /// The elements of joint `index` with that of a column, which is farther out or the same.
-fn meet<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'_>,
-    index: usize,
-    station: &Station<'s>,
-    column: &Column<'s>,
-    found: &mut Sensitivity<'s>,
-) {
+fn meet<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>, column: &Column<'s>, found: &mut Sensitivity<'s>) {
     let row = &arm.rows()[index];
-    let twists = twists(builder, arm, index, station);
+    let twists = twists(arm, index, station);
     let Wrench { force, moment } = column.unit;
-    let spin = if row.kind == Revolute { column.spin.0[2] } else { builder.zero() };
+    let spin = if row.kind == Revolute { column.spin.0[2] } else { arm.builder.zero() };
     found.by_position[column.joint][index] =
         moment.dot(twists.angular) + force.dot(twists.linear) + column.spin.dot(twists.deflection);
     found.by_rate[column.joint][index] = moment.dot(twists.rate_angular) + force.dot(twists.rate_linear) + spin;
@@ -444,7 +401,7 @@ fn meet<'s>(
     }
     let along = |wrench: &Wrench<'s>| match row.kind {
         Revolute => wrench.moment.0[2],
-        Prismatic => builder.vector(row.axis).dot(wrench.force),
+        Prismatic => arm.builder.vector(row.axis).dot(wrench.force),
     };
     found.by_position[index][column.joint] = along(&column.by_position);
     found.by_rate[index][column.joint] = along(&column.by_rate);

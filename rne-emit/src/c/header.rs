@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Name, Program, Quantity, Record};
+
 use super::signature::{fields, head, parameters_type, record_type, records};
 use super::{ConstantTooLarge, File, comment, observer};
 use crate::evidence::{evidence, refusals};
@@ -10,10 +12,6 @@ use crate::parameters::{self, Parameter};
 use crate::syntax::Precision;
 use crate::wrap::{TIED, WIDTH, fill};
 use crate::{inert, table};
-use rne_codegen::Name;
-use rne_codegen::Program;
-use rne_codegen::Quantity;
-use rne_codegen::Record;
 
 /// How both files begin.
 pub(super) fn title(file: &File) -> String {
@@ -95,7 +93,7 @@ fn initialiser(name: &str, numbers: &[String]) -> String {
     format!("{start} \\\n{lines}}}\n")
 }
 
-/// The limits of the joints as initialisers of arrays; of what no joint has there is none.
+/// The limits of the joints as initialisers of arrays; a limit that no joint has is left out.
 fn limits(file: &File, upper: &str) -> String {
     let precision = file.precision;
     let largest = match precision {
@@ -168,7 +166,7 @@ fn robot(file: &File) -> String {
     text
 }
 
-/// What holds for all functions.
+/// The contract of all functions.
 fn contract(file: &File) -> String {
     let real = file.precision.c_type();
     let mut text = "//\n".to_owned();

@@ -8,18 +8,15 @@ mod source;
 
 use std::fmt;
 
+use rne_codegen::{Function, Name, Program, Quantity};
 use rne_model::Robot;
 
 use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
-use rne_codegen::Function;
-use rne_codegen::Name;
-use rne_codegen::Program;
-use rne_codegen::Quantity;
 
 pub use prefix::{BadPrefix, Prefix};
-pub(super) use signature::{inputs, record_name, result_elements};
+pub(super) use signature::{array_name, element_type, elements_of, inputs, result_elements};
 #[cfg(test)]
 pub(crate) use source::UNUSED;
 
@@ -32,7 +29,7 @@ pub struct CCode {
 }
 
 impl CCode {
-    /// The same with tests at the end of the source, as [`c_tests`](super::c_tests) writes them.
+    /// The code with tests at the end of the source, as [`c_tests`](super::c_tests) writes them.
     #[must_use]
     pub fn with_tests(self, tests: &str) -> Self {
         Self { body: self.body + tests, ..self }
@@ -85,7 +82,7 @@ pub fn c_code_of_file(
     Ok(CCode { title: header::title(&file), header: header::header(&file)?, body: source::body(&file)? })
 }
 
-/// What is written, and how.
+/// The programs that are written, and how.
 struct File<'a> {
     robot: &'a Robot,
     programs: &'a [Program],

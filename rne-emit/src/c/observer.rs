@@ -5,14 +5,13 @@
 
 use std::fmt::Write;
 
-use super::signature::{parameters_type, record_type};
+use rne_codegen::{Function, Program, Record};
+
+use super::signature::{parameters_type, record_type, wrapped};
 use super::{File, comment};
 use crate::parameters;
-use crate::wrap::{TIED, WIDTH, fill};
-use rne_codegen::Program;
-use rne_codegen::{Function, Record};
 
-/// What the observer is made on, if it is among the programs.
+/// The program that the observer calls, if it is among the programs.
 fn program<'a>(file: &'a File) -> Option<&'a Program> {
     file.programs.iter().find(|program| program.function == Function::MomentumAndRate)
 }
@@ -113,7 +112,7 @@ pub(super) fn definitions(file: &File) -> String {
 /// The shortest period, s, as that of the runtime.
 const SHORTEST_PERIOD: f64 = 1e-30;
 
-/// Of the series: the next one is below a unit in the last place of a double, at 1/2.
+/// Terms of the series: the next one is below a unit in the last place of a double, at 1/2.
 const TERMS: u32 = 14;
 
 fn begin_head(file: &File) -> String {
@@ -129,12 +128,5 @@ fn update_head(file: &File, program: &Program) -> String {
         arguments.push(format!("const {} *parameters", parameters_type(file)));
     }
     arguments.push(format!("{real} external[{dof}]"));
-    let start = format!("void {prefix}_observer_update(");
-    let line = format!("{start}{})", arguments.join(", "));
-    // one column is for the semicolon
-    if line.len() < WIDTH {
-        return line;
-    }
-    let arguments: Vec<String> = arguments.iter().map(|argument| argument.replace(' ', TIED)).collect();
-    start + "\n" + fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ").trim_end()
+    wrapped(&format!("void {prefix}_observer_update("), &arguments)
 }

@@ -1,4 +1,4 @@
-//! What the names of a robot's functions begin with.
+//! Prefix of the names of a robot's functions.
 
 use std::fmt;
 use std::str::FromStr;

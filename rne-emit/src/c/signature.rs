@@ -2,24 +2,29 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{ArgumentArray, Layout, Program, Record};
+
 use super::File;
 use crate::parameters;
+use crate::syntax::Precision;
 use crate::wrap::{TIED, WIDTH, fill};
-use rne_codegen::ArgumentArray;
-use rne_codegen::Program;
-use rne_codegen::{Layout, Record};
 
 /// The argument arrays of a function, by names that are no functions of the C library.
 pub(crate) fn inputs(program: &Program) -> Vec<ArgumentArray> {
     let mut arrays = program.arrays_without_parameters();
     for array in &mut arrays {
-        array.name = match array.name {
-            "sin" => "sine",
-            "cos" => "cosine",
-            name => name,
-        };
+        array.name = array_name(array.name);
     }
     arrays
+}
+
+/// The name of an argument array in C, whose library has functions `sin` and `cos`.
+pub(crate) fn array_name(name: &'static str) -> &'static str {
+    match name {
+        "sin" => "sine",
+        "cos" => "cosine",
+        name => name,
+    }
 }
 
 /// A function's head, without what follows its parentheses.
@@ -37,29 +42,43 @@ pub(super) fn head(file: &File, program: &Program) -> String {
     if layout != Layout::Number {
         arguments.push(declared(file, &layout, program.function.entry().output));
     }
-    let start = format!("{returned} {}_{}(", file.prefix, program.function);
+    wrapped(&format!("{returned} {}_{}(", file.prefix, program.function), &arguments)
+}
+
+/// A head with its arguments, in several lines where it is too long for one.
+pub(super) fn wrapped(start: &str, arguments: &[String]) -> String {
     let line = format!("{start}{})", arguments.join(", "));
     // one column is for the semicolon
     if line.len() < WIDTH {
         return line;
     }
     let arguments: Vec<String> = arguments.iter().map(|argument| argument.replace(' ', TIED)).collect();
-    start + "\n" + &fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ")
+    format!("{start}\n{}", fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    "))
 }
 
-/// A parameter through which a result is written: a record by its address, arrays as what they are.
-fn declared(file: &File, layout: &Layout, name: &str) -> String {
-    let mut lengths = String::new();
-    let mut of = layout;
+/// The lengths of arrays in arrays as C declares them, and their elements.
+pub(crate) fn elements_of(layout: &Layout) -> (String, &Layout) {
+    let (mut lengths, mut of) = (String::new(), layout);
     while let Layout::Array(length, element) = of {
         let _ = write!(lengths, "[{length}]");
         of = element;
     }
-    match of {
-        Layout::Record(record, _) if lengths.is_empty() => format!("{} *{name}", record_type(file, *record)),
-        Layout::Record(record, _) => format!("{} {name}{lengths}", record_type(file, *record)),
-        _ => format!("{} {name}{lengths}", file.precision.c_type()),
+    (lengths, of)
+}
+
+/// The type of an element.
+pub(crate) fn element_type(prefix: &str, precision: Precision, element: &Layout) -> String {
+    match element {
+        Layout::Record(record, _) => record_name(prefix, *record),
+        _ => precision.c_type().to_owned(),
     }
+}
+
+/// A parameter through which a result is written: a record by its address, arrays as what they are.
+fn declared(file: &File, layout: &Layout, name: &str) -> String {
+    let (lengths, of) = elements_of(layout);
+    let star = if matches!(layout, Layout::Record(..)) { "*" } else { "" };
+    format!("{} {star}{name}{lengths}", element_type(file.prefix, file.precision, of))
 }
 
 /// The name of a record's type.
@@ -67,8 +86,7 @@ pub(super) fn record_type(file: &File, record: Record) -> String {
     record_name(file.prefix, record)
 }
 
-/// The same, behind a prefix.
-pub(crate) fn record_name(prefix: &str, record: Record) -> String {
+fn record_name(prefix: &str, record: Record) -> String {
     let name = match record {
         Record::Pose => "pose",
         Record::Wrench => "wrench",
@@ -92,14 +110,11 @@ pub(super) fn fields(file: &File, record: Record, parts: &[Layout]) -> Vec<Strin
 pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
     let mut records: Vec<(Record, Vec<Layout>)> = Vec::new();
     for program in file.programs {
-        let mut layout = program.function.layout(program.dof);
-        while let Layout::Array(_, of) = layout {
-            layout = *of;
-        }
-        if let Layout::Record(record, parts) = layout
-            && records.iter().all(|(other, _)| *other != record)
+        let layout = program.function.layout(program.dof);
+        if let (_, Layout::Record(record, parts)) = elements_of(&layout)
+            && records.iter().all(|(other, _)| other != record)
         {
-            records.push((record, parts));
+            records.push((*record, parts.clone()));
         }
     }
     records

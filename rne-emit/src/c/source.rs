@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{ArgumentArray, Layout, Program};
+
 use super::header::columns;
 use super::signature::{head, inputs, places};
 use super::{ConstantTooLarge, File, observer};
@@ -11,14 +13,11 @@ use crate::listing::{Line, Selection, listing};
 use crate::parameters::{self, Parameter};
 use crate::syntax::Precision;
 use crate::text::legend;
-use rne_codegen::ArgumentArray;
-use rne_codegen::Layout;
-use rne_codegen::Program;
 
 /// Sine and cosine in C; PREFIX stands for the prefix.
 const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_cos_double.c")];
 
-/// What follows the inclusion of the header.
+/// The source after the inclusion of the header.
 pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     let mut text = String::new();
     if file.turns() {

@@ -1,16 +1,16 @@
-//! What the layouts of deep expressions cost, and that a broken statement is the one of a single line.
+//! Tests that deep expressions are laid out in linear time, and that a broken statement is the one of a single line.
 
 use fastrand::Rng;
+use rne_codegen::{
+    Compiler, Contraction, Expression, ExpressionKind, Form, Function, Name, Negated, Operator, Quantity, Value,
+    ValueId, Values,
+};
 
 use super::LineBreaks;
 use crate::annotated::Annotated;
 use crate::expression::line;
 use crate::syntax::{Precision, Syntax};
 use crate::wrap::WIDTH;
-use rne_codegen::Name;
-use rne_codegen::Quantity;
-use rne_codegen::{Compiler, Form, Function};
-use rne_codegen::{Contraction, Expression, ExpressionKind, Negated, Operator, Value, ValueId, Values};
 
 const LANGUAGES: [Syntax<'_>; 2] = [Syntax::Rust, Syntax::C { precision: Precision::Double, prefix: "arm" }];
 
@@ -18,7 +18,7 @@ const LANGUAGES: [Syntax<'_>; 2] = [Syntax::Rust, Syntax::C { precision: Precisi
 /// rooms, and when it is written.
 const VISITS: usize = 6;
 
-/// Writes a statement, and holds it against its one line. How many parts it looked at.
+/// Writes a statement, compares it with its one line, and counts the parts that were looked at.
 fn visits(syntax: Syntax, expression: Expression<'_>) -> usize {
     let mut breaks = LineBreaks::new(syntax, expression);
     let text = breaks.statement("    ", Annotated::from("let x ="));
@@ -67,7 +67,7 @@ fn depth(expression: Expression<'_>) -> usize {
     }
 }
 
-/// A random expression of so many levels, of which one operand of each goes deeper and the others are small.
+/// A random expression of `levels` levels, of which one operand of each goes deeper and the others are small.
 fn random(rng: &mut Rng, levels: usize, values: &mut Values) -> ValueId {
     let name = |rng: &mut Rng, values: &mut Values| {
         let quantity = [Quantity::Mass, Quantity::Position, Quantity::Omega, Quantity::JointMoment][rng.usize(..4)];

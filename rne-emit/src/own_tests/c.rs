@@ -2,15 +2,14 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Function, Layout, Program};
 use rne_model::Robot;
 
 use super::{Golden, Law, floor, program, results};
 use crate::Precision;
-use crate::c::{Prefix, inputs, result_elements};
+use crate::c::{Prefix, array_name, element_type, elements_of, inputs, result_elements};
 use crate::parameters::{self};
 use crate::wrap::{WIDTH, fill};
-use rne_codegen::Program;
-use rne_codegen::{Function, Layout};
 
 /// A function `main` for the end of a source of [`c_code`](crate::c_code), behind `#ifdef RNE_TEST`: it compares
 /// what the programs return at the given states, and tries laws of mechanics. It prints what is wrong, and returns 0
@@ -149,22 +148,16 @@ impl Tests<'_> {
         )
     }
 
-    /// The same, of the program of a function.
+    /// A call of the program of a function.
     fn call_of(&self, function: Function, others: &[(&str, &str)], name: &str) -> Option<String> {
         Some(self.call(program(self.programs, function)?, others, name))
     }
 
     /// A variable for what a function writes, and how it is passed.
     fn declared(&self, program: &Program, name: &str) -> (String, String) {
-        let (mut layout, mut lengths) = (program.function.layout(program.dof), String::new());
-        while let Layout::Array(length, of) = layout {
-            let _ = write!(lengths, "[{length}]");
-            layout = *of;
-        }
-        let kind = match layout {
-            Layout::Record(record, _) => crate::c::record_name(self.prefix, record),
-            _ => self.precision.c_type().to_owned(),
-        };
+        let layout = program.function.layout(program.dof);
+        let (lengths, of) = elements_of(&layout);
+        let kind = element_type(self.prefix, self.precision, of);
         let address = if lengths.is_empty() { format!("&{name}") } else { name.to_owned() };
         (format!("{kind} {name}{lengths}"), address)
     }
@@ -227,10 +220,7 @@ impl Tests<'_> {
                 )
             }
             Law::Gravity | Law::Bias => {
-                let (function, others) = match law {
-                    Law::Gravity => (Function::GravityTorques, &[("qd", "test_zero"), ("qdd", "test_zero")][..]),
-                    _ => (Function::BiasTorques, &[("qdd", "test_zero")][..]),
-                };
+                let (function, others) = law.of_zeros("test_zero");
                 format!(
                     "        double scale;\n{}{}{}        \
                      scale = test_largest(moving, {dof}u, test_largest(expected, {dof}u, 0.0));\n        \
@@ -238,7 +228,7 @@ impl Tests<'_> {
                      test_compare(\"{words}\", state, i, (double)found[i], (double)expected[i], test_tolerance * \
                      scale);\n        }}\n",
                     self.call_of(function, &[], "found")?,
-                    self.call_of(Function::InverseDynamics, others, "expected")?,
+                    self.call_of(Function::InverseDynamics, &others, "expected")?,
                     self.call_of(Function::InverseDynamics, &[], "moving")?
                 )
             }
@@ -268,11 +258,6 @@ impl Tests<'_> {
 }
 
 /// The table of an argument at all states.
-fn array(name: &str) -> String {
-    let name = match name {
-        "sin" => "sine",
-        "cos" => "cosine",
-        name => name,
-    };
-    format!("test_{name}")
+fn array(name: &'static str) -> String {
+    format!("test_{}", array_name(name))
 }

@@ -5,8 +5,7 @@
 mod c;
 mod rust;
 
-use rne_codegen::Function;
-use rne_codegen::Program;
+use rne_codegen::{Function, Program};
 
 pub use c::c_tests;
 pub use rust::rust_tests;
@@ -17,7 +16,7 @@ pub struct Golden {
     /// The numbers of every argument array, by the name that it has in emitted Rust, and `parameters`, where the robot
     /// has some at run time.
     pub arguments: Vec<(&'static str, Vec<f64>)>,
-    /// What each program returns, in the order of its layout, as computed by who knows nothing of the compiler. Empty
+    /// The results of each program, in the order of its layout, as computed by who knows nothing of the compiler. Empty
     /// where there is nothing to compare with: accelerations of a singular mass matrix are not finite.
     pub results: Vec<Vec<f64>>,
     /// How large the terms are of which each program makes its numbers, about: what vanishes for this arm is rounding
@@ -68,6 +67,14 @@ impl Law {
         }
     }
 
+    /// The function that returns the torques of motion where rates, accelerations or both are `zero`, and which.
+    fn of_zeros(self, zero: &str) -> (Function, Vec<(&'static str, &str)>) {
+        match self {
+            Self::Gravity => (Function::GravityTorques, vec![("qd", zero), ("qdd", zero)]),
+            _ => (Function::BiasTorques, vec![("qdd", zero)]),
+        }
+    }
+
     /// The name of its test.
     const fn name(self) -> &'static str {
         match self {
@@ -87,13 +94,14 @@ impl Law {
     }
 }
 
-/// What a program returns at each state; `None` where one of them has nothing to compare with.
+/// The results of a program at each state; `None` where a state has nothing to compare with.
 fn results(golden: &[Golden], program: usize) -> Option<Vec<&[f64]>> {
     let results = golden.iter().map(|state| state.results.get(program).map_or(&[][..], Vec::as_slice));
     results.map(|numbers| (!numbers.is_empty()).then_some(numbers)).collect()
 }
 
-/// What counts as nothing in the numbers of a program, in parts of their tolerance: rounding of terms that cancel.
+/// The size that counts as nothing in the numbers of a program, in parts of their tolerance: rounding of terms that
+/// cancel.
 fn floor(golden: &[Golden], program: usize, part: f64) -> f64 {
     let sizes = golden.iter().filter_map(|state| state.sizes.get(program));
     part * sizes.fold(0.0, |largest: f64, size| largest.max(*size))

@@ -2,13 +2,12 @@
 
 use std::fmt::Write;
 
+use rne_codegen::{Function, Program};
 use rne_model::Robot;
 
 use super::{Golden, Law, MOTION, floor, program, results};
 use crate::parameters::{self, OF_RUST, Parameter};
 use crate::wrap::{WIDTH, fill};
-use rne_codegen::Function;
-use rne_codegen::Program;
 
 /// A module `tests` for the end of a file of [`rust_file`](crate::rust_file): what the programs return at the
 /// given states, in `f64` and to nine digits, and laws of mechanics. It needs `std`, which tests have.
@@ -165,7 +164,7 @@ impl Tests<'_> {
         format!("super::{}({}).flat()", program.function, given.join(", "))
     }
 
-    /// The same, of the program of a function.
+    /// A call of the program of a function.
     fn call_of(&self, function: Function, others: &[(&str, &str)]) -> Option<String> {
         Some(self.call(program(self.programs, function)?, others))
     }
@@ -222,16 +221,13 @@ impl Tests<'_> {
                 )
             }
             Law::Gravity | Law::Bias => {
-                let (function, others) = match law {
-                    Law::Gravity => (Function::GravityTorques, &[("qd", zero.as_str()), ("qdd", &zero)][..]),
-                    _ => (Function::BiasTorques, &[("qdd", zero.as_str())][..]),
-                };
+                let (function, others) = law.of_zeros(&zero);
                 format!(
                     "let found = {};\n            let expected = {};\n            \
                      let scale = largest(&expected).max(largest(&{}));\n            \
                      compare(\"{name}\", index, &found, &expected, 1e-9, scale);",
                     self.call_of(function, &[])?,
-                    self.call_of(Function::InverseDynamics, others)?,
+                    self.call_of(Function::InverseDynamics, &others)?,
                     // torques that vanish but for rounding are measured by others
                     self.call_of(Function::InverseDynamics, &[])?,
                 )

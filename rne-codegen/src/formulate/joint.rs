@@ -1,0 +1,180 @@
+//! Terms that each kind of joint adds to the seven steps.
+//!
+//! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Every law takes what the link would
+//! have if the joint were rigid and returns what it has. A revolute joint turns its link about e by q, so the points of
+//! the link take part in its turning and in nothing else. The link of a prismatic joint slides along e by q and turns
+//! as its parent does.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+use rne_model::QuarterTurns;
+
+use crate::formulate::arm::turned;
+use crate::formulate::{Arm, Link};
+use crate::ir::{Axis, Builder, Cause, JointLines, Matrix, Name, Quantity, Symbol, Vector, by_quarters};
+
+/// A force and a moment.
+#[derive(Clone, Copy)]
+pub(crate) struct Wrench<'s> {
+    pub(crate) force: Vector<'s>,
+    pub(crate) moment: Vector<'s>,
+}
+
+/// Position, rate and acceleration of one joint.
+#[derive(Clone, Copy)]
+pub(crate) struct JointState<'s> {
+    pub(crate) q: Symbol<'s>,
+    pub(crate) qd: Symbol<'s>,
+    pub(crate) qdd: Symbol<'s>,
+    /// Sine and cosine of q, if they are arguments.
+    pub(crate) turn: Option<(Symbol<'s>, Symbol<'s>)>,
+}
+
+/// Joint i with the link that it moves.
+#[derive(Clone, Copy)]
+pub(crate) struct Joint<'a, 's> {
+    /// Counted from 0.
+    pub(crate) index: usize,
+    pub(crate) link: &'a Link<'s>,
+    pub(crate) state: JointState<'s>,
+    pub(crate) lines: JointLines<'s>,
+    /// e_i
+    pub(crate) e: Vector<'s>,
+}
+
+impl<'s> Arm<'s> {
+    /// The joints in these states, parents first.
+    pub(crate) fn joints<'a>(
+        &'a self,
+        states: &'a [JointState<'s>],
+    ) -> impl DoubleEndedIterator<Item = Joint<'a, 's>> + ExactSizeIterator {
+        let (builder, e) = (self.builder, axis(self.builder));
+        let joints = self.links.iter().zip(states).enumerate();
+        joints.map(move |(index, (link, &state))| Joint { index, link, state, lines: builder.joint(index + 1), e })
+    }
+}
+
+impl<'s> Joint<'_, 's> {
+    /// The lines at this joint, for quantities that bear the number of its parent.
+    pub(crate) fn lines_of_parent(&self) -> JointLines<'s> {
+        self.lines.named(self.link.parent.map_or(0, |parent| parent + 1))
+    }
+
+    /// R_i: how the joint is mounted, then Rz(θ_i).
+    pub(crate) fn rotation(&self) -> Matrix<'s> {
+        let about_z = turned(self.lines.builder, Axis::Z, self.sine_and_cosine(), Cause::TurnAboutZ);
+        self.lines.matrix(Quantity::Rotation, || self.link.mount.rotation * about_z)
+    }
+
+    /// Sine and cosine of the constant θ.
+    fn constant_turn(&self) -> (Symbol<'s>, Symbol<'s>) {
+        let fixed = || self.lines.builder.constant_turn(&self.link.theta, Cause::Arithmetic).into();
+        let [s, c] = self.link.varying_turn.unwrap_or_else(fixed);
+        (self.lines.name(Quantity::ThetaSine, s), self.lines.name(Quantity::ThetaCosine, c))
+    }
+}
+
+/// The laws, by the kind of the joint.
+impl<'s> Joint<'_, 's> {
+    /// Sine and cosine of θ_i: θ + q, or the constant θ of a prismatic joint. A right angle θ permutes and negates those
+    /// of q exactly; any other is added to q.
+    fn sine_and_cosine(&self) -> (Symbol<'s>, Symbol<'s>) {
+        let (line, theta) = (self.lines, self.link.theta);
+        match (self.link.kind, self.state.turn, theta.right) {
+            (Prismatic, ..) => self.constant_turn(),
+            (Revolute, Some(turn), Some(turns)) => by_quarters(turn, turns),
+            // the addition theorem
+            (Revolute, Some((s, c)), None) => {
+                let (sin, cos) = self.constant_turn();
+                (
+                    line.scalar(Quantity::TurnedSine, || s * cos + c * sin),
+                    line.scalar(Quantity::TurnedCosine, || c * cos - s * sin),
+                )
+            }
+            (Revolute, None, right) => {
+                let q = self.state.q;
+                let angle = if right.is_some() {
+                    q
+                } else {
+                    line.scalar(Quantity::Angle, || line.entry(Quantity::Theta, theta.radians) + q)
+                };
+                let (s, c) = line.builder.sine_and_cosine(angle);
+                let turn = (line.name(Quantity::Sine, s), line.name(Quantity::Cosine, c));
+                by_quarters(turn, right.unwrap_or(QuarterTurns::Zero))
+            }
+        }
+    }
+
+    /// Where the offset (a, 0, b) of the link leads: (a, 0, b + q) of a prismatic joint.
+    pub(crate) fn offset(&self, offset: Vector<'s>) -> Vector<'s> {
+        match self.link.kind {
+            Revolute => offset,
+            Prismatic => offset.plus_z(self.state.q),
+        }
+    }
+
+    /// d_i: J_i → C_i, a constant of the table unless the joint moves it along its axis.
+    pub(crate) fn centre_of_mass(&self) -> Vector<'s> {
+        let d = || self.offset(self.link.offset) + self.link.com;
+        match self.link.kind {
+            Revolute => self.lines.name_vector(Quantity::D, d()),
+            Prismatic => self.lines.vector(Quantity::D, d),
+        }
+    }
+
+    /// Step 1: ω of the link, from that of its parent.
+    pub(crate) fn angular_velocity(&self, rigid: Vector<'s>) -> Vector<'s> {
+        match self.link.kind {
+            Revolute => rigid + self.e * self.state.qd,
+            Prismatic => rigid,
+        }
+    }
+
+    /// Step 2: ω̇ of the link, from that of its parent and the link's ω.
+    pub(crate) fn angular_acceleration(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
+        match self.link.kind {
+            Revolute => rigid + self.e * self.state.qdd + omega.cross(self.e) * self.state.qd,
+            Prismatic => rigid,
+        }
+    }
+
+    /// Step 3: velocity of a point of the link.
+    pub(crate) fn velocity(&self, rigid: Vector<'s>) -> Vector<'s> {
+        match self.link.kind {
+            Revolute => rigid,
+            Prismatic => rigid + self.e * self.state.qd,
+        }
+    }
+
+    /// Step 4: acceleration of a point of the link.
+    pub(crate) fn acceleration(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
+        match self.link.kind {
+            Revolute => rigid,
+            Prismatic => self.unaccelerated(rigid + self.e * self.state.qdd, omega),
+        }
+    }
+
+    /// Step 4 where the joint does not accelerate.
+    pub(crate) fn unaccelerated(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
+        match self.link.kind {
+            Revolute => rigid,
+            Prismatic => {
+                let two = || self.lines.builder.entry(Name::scalar(Quantity::Two, 0), 2.0);
+                let twice_rate = || self.lines.scalar(Quantity::TwiceRate, || two() * self.state.qd);
+                rigid + omega.cross(self.e) * twice_rate()
+            }
+        }
+    }
+
+    /// Step 7: the part of the joint's wrench that the actuator delivers.
+    pub(crate) fn actuator(&self, wrench: &Wrench<'s>) -> Symbol<'s> {
+        match self.link.kind {
+            Revolute => wrench.moment.z(),
+            Prismatic => wrench.force.z(),
+        }
+    }
+}
+
+/// e, the joint's axis in its frame.
+fn axis(builder: &Builder) -> Vector<'_> {
+    Vector([0.0, 0.0, 1.0].map(|value| builder.constant(value, Cause::JointAxis)))
+}
