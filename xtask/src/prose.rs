@@ -34,6 +34,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/capabilities.md",
     "docs/command-line.md",
     "docs/crate.md",
+    "docs/embedded.md",
     "docs/firmware.md",
     "docs/fleet.md",
     "docs/functions.md",
