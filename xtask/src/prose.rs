@@ -27,6 +27,7 @@ pub(crate) struct Prose {
 
 /// Documents that are not written by a program. Lengthen this list with a page after it is rewritten.
 const DOCUMENTS: &[&str] = &[
+    "ARCHITECTURE.md",
     "CONTRIBUTING.md",
     "README.md",
     "docs/accuracy.md",
@@ -58,6 +59,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/teaching.md",
     "docs/urdf.md",
     "docs/watch.md",
+    "robots/README.md",
 ];
 
 /// Folders of sources whose first sentences are checked. Lengthen this list with a crate after it is rewritten.
