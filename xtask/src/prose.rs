@@ -30,6 +30,7 @@ const DOCUMENTS: &[&str] = &[
     "ARCHITECTURE.md",
     "CONTRIBUTING.md",
     "README.md",
+    "benches/peers/README.md",
     "docs/accuracy.md",
     "docs/c-library.md",
     "docs/capabilities.md",
