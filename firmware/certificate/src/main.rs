@@ -199,7 +199,8 @@ compiler writes them by calls that clear and copy memory. Apart from these calls
 compared with the host like the results of the other functions.";
 
 const C: &str = "\
-The code is written by `rne emit --lang c`, uses `float`, and is compiled with `-Wall -Wextra -Wconversion -Werror
--pedantic`. Sine and cosine are one function, which is called for each angle. The instructions include all of these
-calls; the bytes include one copy of the function. The functions of the PUMA 560 in the table above are compared in the
-same way. Every bit agrees, whether sines and cosines are inputs (`inverse_dynamics_from_sin_cos`) or not.";
+The code is written by `rne emit --lang c`, uses `float`, and is compiled with
+`-Wall -Wextra -Wconversion -Werror -pedantic`. Sine and cosine are one function, which is called for each angle. The
+instructions include all of these calls; the bytes include one copy of the function. The functions of the PUMA 560 in
+the table above are compared in the same way. Every bit agrees, whether sines and cosines are inputs
+(`inverse_dynamics_from_sin_cos`) or not.";
