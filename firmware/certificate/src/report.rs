@@ -80,7 +80,7 @@ impl Report {
         let _ = match self.wasm {
             Some(numbers) => writeln!(
                 text,
-                "{WASM}, in Node: {numbers} torques of all robots in both forms, in `f32` and `f64`, have the host's bits."
+                "{WASM}, in Node: {numbers} torques (all robots, both forms, `f32` and `f64`) have the host's bits."
             ),
             None => writeln!(text, "{WITHOUT_NODE}"),
         };
