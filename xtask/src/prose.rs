@@ -27,13 +27,16 @@ pub(crate) struct Prose {
 
 /// Documents that are not written by a program. Lengthen this list with a page after it is rewritten.
 const DOCUMENTS: &[&str] = &[
+    "ARCHITECTURE.md",
     "CONTRIBUTING.md",
     "README.md",
+    "benches/peers/README.md",
     "docs/accuracy.md",
     "docs/c-library.md",
     "docs/capabilities.md",
     "docs/command-line.md",
     "docs/crate.md",
+    "docs/embedded.md",
     "docs/firmware.md",
     "docs/fleet.md",
     "docs/functions.md",
@@ -57,6 +60,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/teaching.md",
     "docs/urdf.md",
     "docs/watch.md",
+    "robots/README.md",
 ];
 
 /// Folders of sources whose first sentences are checked. Lengthen this list with a crate after it is rewritten.

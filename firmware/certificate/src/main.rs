@@ -177,26 +177,30 @@ fn summary(report: &Report) -> Result<()> {
 const OBSERVER: u64 = 1000;
 
 const M4F: &str = "\
-The target `thumbv7em-none-eabihf`, as `firmware/example` is built. Where a sum has a product among its terms, the
-compiler takes `vmla.f32`, which rounds both.";
+The target is `thumbv7em-none-eabihf`, as in `firmware/example`. Where a term of a sum is a product, the compiler uses
+`vmla.f32`, which rounds both the product and the sum.";
 
 const M7F: &str = "\
-The processor has double precision; the code has none. Built for this processor, the compiler schedules for it.";
+The processor has double precision, but the code does not use it. The compiler schedules the instructions for this
+processor.";
 
 const FUSED: &str = "\
-The feature `core_float_math`, for a nightly compiler: `core` has `f32::math::mul_add` as an unstable feature alone,
-inline assembly refuses the registers, and `libm`'s is software. The reduced form then takes `vfma.f32`, which rounds
-once, and so do sines and cosines of both forms. That the host, whose base set of instructions has no such one, rounds
-otherwise is why results differ; the unit is that of the largest torque of the state, whose terms cancel. What it saves
-is little: without it the compiler takes `vmla.f32`, as short and as slow. So it is no default.";
+The feature `core_float_math` needs a nightly compiler. On a stable compiler there is no fused multiply-add:
+`f32::math::mul_add` of `core` is unstable, inline assembly does not accept the registers, and `libm` computes in
+software. With the feature, the reduced form uses `vfma.f32`, which rounds once; sines and cosines of both forms use it
+too. The results differ because the host rounds products and sums separately: its base instruction set has no fused
+multiply-add. The unit in the column `results` is one ulp of the largest torque of the state; the terms of this torque
+may cancel. The feature saves little, because `vmla.f32` is as short and as slow as `vfma.f32`. So the feature is not a
+default.";
 
 const METHODS: &str = "\
-`inverse_dynamics` is in the tables above. `regressor` is not here: the compiler writes its 360 numbers, most of them
-zero, by calls that clear and copy memory, and nothing else keeps it from being straight. Its results are compared like
-those of the others.";
+The tables above contain `inverse_dynamics`. This table omits `regressor`: most of its 360 numbers are zero, and the
+compiler writes them by calls that clear and copy memory. Apart from these calls its code has no branch. Its results are
+compared with the host like the results of the other functions.";
 
 const C: &str = "\
-`rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one
-function here, which is called for each angle: instructions are those of all calls, bytes those of one copy. The
-functions of the PUMA 560 in the table before are compared in the same way and agree in every bit, with their sines and
-cosines given (`inverse_dynamics_from_sin_cos`) or not.";
+The code is written by `rne emit --lang c`, uses `float`, and is compiled with
+`-Wall -Wextra -Wconversion -Werror -pedantic`. Sine and cosine are one function, which is called for each angle. The
+instructions include all of these calls; the bytes include one copy of the function. The functions of the PUMA 560 in
+the table above are compared in the same way. Every bit agrees, whether sines and cosines are inputs
+(`inverse_dynamics_from_sin_cos`) or not.";

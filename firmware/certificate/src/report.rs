@@ -74,13 +74,13 @@ impl Report {
             "\n## RISC-V and WebAssembly\n\n\
              - `riscv32imafc-unknown-none-elf`: {} functions are built, and none calls, branches or computes in double \
              precision.\n  PUMA 560: {seven_steps} instructions in `seven_steps`, {reduced} in `reduced`. \
-             They are read, not run.\n",
+             The code is read, but not run.\n",
             riscv.functions
         );
         let _ = match self.wasm {
             Some(numbers) => writeln!(
                 text,
-                "{WASM}, in Node: {numbers} torques of all robots, in both forms, in `f32` and `f64`: the host's bits."
+                "{WASM}, in Node: {numbers} torques (all robots, both forms, `f32` and `f64`) have the host's bits."
             ),
             None => writeln!(text, "{WITHOUT_NODE}"),
         };
@@ -99,51 +99,53 @@ pub(crate) fn is_same(committed: &str, document: &str) -> bool {
 }
 
 const WASM: &str = "- `wasm32-unknown-unknown`";
-const WITHOUT_NODE: &str = "- `wasm32-unknown-unknown`: left out, there was no Node.";
+const WITHOUT_NODE: &str = "- `wasm32-unknown-unknown`: not compared, because there is no Node.";
 
 const HEAD: &str = "\
 # Generated code on microcontrollers
 
-Written by `cargo xtask certificate --update`; `cargo xtask certificate` builds, reads and runs everything again and
-fails if something below is no longer so.
+`cargo xtask certificate --update` writes this page. `cargo xtask certificate` builds, reads and runs everything again,
+and fails if a certified property no longer holds.
 
-Every shipped robot, in `f32`, sines and cosines included. The image is built for a board, its instructions are read by
-`objdump`, and it runs on that board in QEMU ({qemu}).
+The page covers every shipped robot, in `f32`, with sines and cosines. The image is built for a board, and `objdump`
+lists its instructions. The image then runs on that board in QEMU
+({qemu}).
 
 | certified of each function | how |
 |---|---|
-| no call: no panic, no allocator, no formatting, no library | no instruction calls; four functions that are faulty on purpose (an index that can panic, a loop, an `f64`, a call) are in the image and must be refused |
-| no branch | no instruction branches, but for jumps over the constants that stand between the instructions |
-| no double precision | no instruction of the M4F has it, and software would be a call |
-| instructions | read; where there is no branch, each is executed once. For `inverse_dynamics`, SysTick in QEMU, one instruction lasting 1024 ns, must count the same, to the instruction |
-| bytes of code and constants | the function's symbol; constants are the literal pools in it |
-| bytes of stack | the compiler's own record of the frame (`-Z emit-stack-sizes`); as nothing is called, it is all |
-| results | at {states} states, against the same code on an x86-64 host: identical, bit by bit, but with fused multiply-add, where the difference is in units in the last place of the largest torque of the state |
-| growth | more than 2 % over this document in instructions, size or stack fails, for the same compiler |
+| no call: no panic, no allocator, no formatting, no library | no instruction is a call. The image also contains four functions that are faulty on purpose (an index that can panic, a loop, an `f64`, a call); the check must refuse them |
+| no branch | no instruction is a branch, except jumps over the constants that lie between the instructions |
+| no double precision | the M4F has no instruction for double precision, and software arithmetic would need a call |
+| instructions | counted in the listing; without branches, each instruction runs once. For `inverse_dynamics`, the timer SysTick in QEMU must give exactly the same count, with 1024 ns per instruction |
+| bytes of code and constants | size of the function's symbol; the constants are the literal pools in it |
+| bytes of stack | size of the stack frame that the compiler records (`-Z emit-stack-sizes`); it is the whole stack use because the function calls nothing |
+| results | compared at {states} states with the same code on an x86-64 host. They must be bit-identical. With fused multiply-add they may differ; the difference is given in units in the last place (ulp) of the largest torque of the state |
+| growth | the check fails if instructions, size or stack grow by more than 2 % over this page, for the same compiler |
 
 ## Worst case
 
-There is one path, so the count is the worst case, for any input: NaN, infinities, subnormal numbers. It does not hold
+Each function has only one path. So the count is also the worst case, for every input: NaN, infinities, subnormal
+numbers. The count does not apply to the following:
 
-- for time: QEMU counts instructions, not what they take. Flash without a cache makes the processor wait for code and
-  constants; the M7 executes two instructions at once where it can. On the Cortex-M4, `vmla` and `vfma` take three
-  cycles where `vmul` and `vadd` take one each (Arm, Cortex-M4 Technical Reference Manual, FPU instruction set): with
-  `-C target-cpu=cortex-m4` the compiler writes them apart, which is more instructions and may be less time. Measure on
-  your board; DWT's cycle counter is there for that, in silicon, not in QEMU.
-- for your own sine and cosine: a `Scalar` of your own, or `RNE_SIN_COS` in C. The kernel that is counted here is that
-  of the crate, `f32` alone, for angles up to 10⁵ rad; beyond, results mean nothing, and take as long.
-- for the dev profile, whose code has the calls and the checks that an optimiser removes. This is `--release`, with
-  `opt-level` 3.
-- for more than sixteen angles: their sines and cosines are a loop of sixteen at a time.
+- time: QEMU counts instructions and does not measure their duration. Without a cache, the processor waits for code and
+  constants from flash. The M7 executes two instructions at once where it can. On the Cortex-M4, `vmla` and `vfma` take
+  three cycles, and `vmul` and `vadd` take one cycle each (Arm, Cortex-M4 Technical Reference Manual, FPU instruction
+  set). With `-C target-cpu=cortex-m4` the compiler uses separate `vmul` and `vadd`: more instructions, but possibly
+  less time. Measure the time on your board with the cycle counter of the DWT unit; QEMU has no such counter.
+- your own sine and cosine: a `Scalar` of your own, or `RNE_SIN_COS` in C. The counts here include the sine and cosine
+  of the crate, in `f32` only, for angles up to 10⁵ rad. Larger angles take the same time, but give wrong results.
+- the dev profile: its code contains the calls and checks that an optimiser removes. The counts here are for `--release`
+  with `opt-level` 3.
+- more than sixteen angles: a loop computes their sines and cosines, sixteen at a time.
 
 ";
 
 const LOOP: &str = "\
 ## Compared with a loop over a baked-in table
 
-The same recursion, in the same image: `rne::Arm` without `std`, its table a constant in `f32` in flash. Its torques are
-{agreement} of those of the seven steps: what the compiler computes of the table in double precision and rounds once,
-the loop computes in `f32`.
+`rne::Arm` without `std` computes the same recursion in the same image. Its table is a constant in `f32` in flash. Its
+torques are {agreement} of the torques of the seven steps. The difference comes from constants: the compiler computes
+them from the table in double precision and rounds once, and the loop computes them in `f32`.
 
 ";
 
