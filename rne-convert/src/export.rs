@@ -55,7 +55,7 @@ impl fmt::Display for NoUrdf {
             ),
             Self::TooLarge { what, number } => write!(
                 f,
-                "{what} would be {number:e}, and no number of a URDF that `rne import` reads is above {LARGEST:e}; \
+                "{what} would be {number:e}, and an import refuses numbers of a URDF above {LARGEST:e}; \
                  check the units of the robot file: lengths are metres and masses kilograms"
             ),
         }

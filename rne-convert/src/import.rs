@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use rne_model::{
-    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Report, Robot, Row, RunTime, Transform,
+    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot, Row, RunTime,
+    Transform,
 };
 
 use crate::chain::{Chain, Extracted, Selection, extract};
@@ -166,8 +167,8 @@ impl Urdf {
             );
             let several =
                 if lumped.len() > 1 { format!(" (lumped of {})", crate::source::names(lumped)) } else { String::new() };
-            let help = format!("correct the inertia{several}, or take it as it is with --keep-unphysical");
-            return Err(self.source.error(span, message, help));
+            let help = format!("correct the inertia{several}, or keep it");
+            return Err(self.source.error_with(span, message, help, &Remedy::KeepUnphysical));
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::ops::Range;
 use std::path::Path;
 
-use rne_model::Report;
+use rne_model::{Remedy, Report};
 
 /// A text and what messages call it.
 #[derive(Clone, Debug)]
@@ -17,6 +17,11 @@ impl Source {
     /// The name of the file without its folders: where they are matters to messages alone.
     pub(crate) fn file_name(&self) -> &str {
         Path::new(&self.file).file_name().and_then(OsStr::to_str).unwrap_or(&self.file)
+    }
+
+    /// A mistake against which a choice of the caller helps.
+    pub(crate) fn error_with(&self, span: &Range<usize>, message: String, help: String, remedy: &Remedy) -> Report {
+        self.error(span, message, help).with_remedy(remedy)
     }
 
     /// A mistake at some bytes of the text.

@@ -345,7 +345,9 @@ impl Slip {
             Self::NoFirstSlide => {
                 "known of the C code of the Robotics Toolbox for MATLAB; its MATLAB code is right".to_owned()
             }
-            Self::RotorInertia => "the file's links alone; with rotors: `--rotors`, `#[robot(rotors)]`".to_owned(),
+            Self::RotorInertia => {
+                "the file's links alone; the rotors of its motors are added only where they are asked for".to_owned()
+            }
             Self::MotorTorques => "the joints' torques alone; the motors' are `actuator_torques`".to_owned(),
             Self::WrenchReversed => {
                 "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w".to_owned()

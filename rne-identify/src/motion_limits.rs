@@ -144,7 +144,7 @@ mod tests {
             MotionLimits::of(&arm(limits), asked).map(|_| ()).unwrap_err().to_string()
         };
         let said = refused("", &AskedLimits::default());
-        assert!(said.contains("slide") && said.contains("position") && said.contains("--range"), "{said}");
+        assert!(said.contains("slide") && said.contains("position") && said.contains("give a range"), "{said}");
         for limits in ["position: [1, 1]", "position: [0, 1], velocity: 0", "position: [0, 1], effort: 0"] {
             let said = refused(&format!("limits: {{{limits}}},"), &AskedLimits::default());
             assert!(said.contains("slide") && said.contains("no room"), "{said}");
@@ -152,7 +152,7 @@ mod tests {
         for (list, words) in [(vec![1.0, 2.0], "2 numbers"), (vec![-1.0], "above 0"), (vec![f64::NAN], "above 0")] {
             let asked = AskedLimits { velocity: Some(list), ..AskedLimits::default() };
             let said = refused("limits: {position: [0, 1]},", &asked);
-            assert!(said.contains("--velocity") && said.contains(words), "{said}");
+            assert!(said.starts_with("velocity") && said.contains(words), "{said}");
         }
     }
 }

@@ -97,7 +97,7 @@ pub use check::{Checked, Reader};
 #[cfg(feature = "std")]
 pub use data_file::{MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
-pub use diagnostic::{Diagnostic, Report, Severity};
+pub use diagnostic::{Diagnostic, Remedy, Report, Severity};
 #[cfg(feature = "std")]
 pub use double::{Double, decimal_digits};
 #[cfg(feature = "std")]

@@ -105,6 +105,12 @@ impl ClosedForm {
         self.table.rows.len()
     }
 
+    /// The number of joints from the base whose closed form fits a page, where that of all does not.
+    #[must_use]
+    pub fn shorter(&self) -> Option<usize> {
+        self.shorter
+    }
+
     /// Whether the equations are short enough to be read; otherwise there is the recursion in letters.
     #[must_use]
     pub fn is_closed(&self) -> bool {

@@ -4,7 +4,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use rne::compiled::ArmError;
-use rne_model::Report;
+use rne_model::{Remedy, Report};
 
 create_exception!(
     rne,
@@ -16,6 +16,7 @@ create_exception!(rne, EvaluationError, PyValueError, "A function cannot be comp
 
 /// What is wrong with a file.
 pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
+    let report = &report.clone().worded(in_keywords);
     let error = RobotFileError::new_err(report.render(false));
     let first = report.errors().next();
     let value = error.value(py);
@@ -24,6 +25,18 @@ pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
         .and_then(|()| value.setattr("column", first.map(|first| first.column)))
         .and_then(|()| value.setattr("file", &report.name));
     told.err().unwrap_or(error)
+}
+
+/// A remedy as keywords of `rne.load`.
+fn in_keywords(remedy: &Remedy) -> Option<String> {
+    Some(match remedy {
+        Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),
+        Remedy::NameTip => "name the tip with tip=\"LINK\"".to_owned(),
+        Remedy::LockJoint { joint } => format!("lock={{{joint:?}: VALUE}} holds it still"),
+        Remedy::LockOthers => "lock={\"JOINT\": VALUE} holds one, lock_others=True holds all at zero".to_owned(),
+        Remedy::KeepUnphysical => "keep_unphysical=True keeps it".to_owned(),
+        _ => return None,
+    })
 }
 
 /// Why there is no arm.

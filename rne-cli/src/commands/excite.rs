@@ -23,6 +23,7 @@ use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::render::remedy;
 use crate::values::numbers::{List, exact, rounded};
 
 /// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.
@@ -164,7 +165,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 fn failure(error: &ExcitationError) -> Failure {
-    if error.is_of_request() { Failure::usage(error) } else { Failure::input(error) }
+    let text = remedy::of_excitation(error);
+    if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
 }
 
 /// No motion is within the effort limits: where gravity alone is beyond them, a slower one is no way out.
@@ -193,7 +195,11 @@ fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError
             middle.words(robot, limits)
         )
     } else if most.part > 1.0 {
-        format!("{error}; {}; use a smaller --range to avoid this posture", most.words(robot, limits))
+        format!(
+            "{}; {}; use a smaller --range to avoid this posture",
+            remedy::of_excitation(error),
+            most.words(robot, limits)
+        )
     } else {
         return failure(error);
     })
