@@ -117,6 +117,6 @@ pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
 pub use source::{is_control, one_line};
 #[cfg(feature = "std")]
-pub use spelling::did_you_mean;
+pub use spelling::{did_you_mean, nearest_name, no_shipped_robot};
 #[cfg(feature = "std")]
 pub use urdf::is_urdf;

@@ -133,7 +133,7 @@ pub unsafe extern "C" fn rne_arm_load_urdf(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_builtin(name: *const c_char, arm: *mut *mut Arm) -> Status {
     // SAFETY: the caller's promise of both pointers.
-    unsafe { made(arm, || Arm::of_box(text(name, "name")?)) }
+    unsafe { made(arm, || Arm::of_name(text(name, "name")?)) }
 }
 
 /// Frees an arm, and the names that it gave out; NULL is let pass. No other call may be using it, or use it later.

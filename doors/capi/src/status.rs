@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use rne_convert::OpenError;
 use rne_machine::{ArmError, EvaluationError};
 use rne_model::{Remedy, Report};
 
@@ -70,6 +71,13 @@ fn in_arguments(remedy: &Remedy) -> Option<String> {
 impl From<Report> for Failure {
     fn from(report: Report) -> Self {
         Self::new(Status::InvalidFile, report.worded(in_arguments).render(false))
+    }
+}
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        let is_plan = matches!(error, OpenError::Plan { .. });
+        Self::new(if is_plan { Status::InvalidFile } else { Status::UnreadableFile }, error.to_string())
     }
 }
 

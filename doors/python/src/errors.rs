@@ -1,9 +1,12 @@
 //! What goes wrong, as Python's exceptions: the same words as on the command line.
 
+use std::path::Path;
+
 use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use rne::compiled::ArmError;
+use rne_convert::OpenError;
 use rne_model::{Remedy, Report};
 
 create_exception!(
@@ -43,16 +46,27 @@ fn in_keywords(remedy: &Remedy) -> Option<String> {
 pub(crate) fn of_arm(py: Python<'_>, error: &ArmError) -> PyErr {
     match error {
         ArmError::Invalid(report) => of_report(py, report),
-        ArmError::Unreadable { path, error: cause } => match cause.raw_os_error() {
-            // so that Python makes it a FileNotFoundError where it is one
-            Some(number) => {
-                let words = cause.to_string();
-                let words = words.split(" (os error").next().unwrap_or_default().to_owned();
-                PyOSError::new_err((number, words, path.display().to_string()))
-            }
-            None => PyOSError::new_err(error.to_string()),
-        },
+        ArmError::Unreadable { path, error: cause } => of_system(path, cause, ""),
         _ => RobotFileError::new_err(error.to_string()),
+    }
+}
+
+/// Why no description of an arm was opened.
+pub(crate) fn of_opening(error: OpenError) -> PyErr {
+    match &error {
+        OpenError::NotFound { path, hint: Some(hint), error } => of_system(path, error, &format!("; {hint}")),
+        OpenError::NotFound { path, error, .. } | OpenError::Unreadable { path, error } => of_system(path, error, ""),
+        _ => RobotFileError::new_err(error.to_string()),
+    }
+}
+
+/// An error of the system with a hint, so that Python makes it a FileNotFoundError where it is one.
+fn of_system(path: &Path, error: &std::io::Error, hint: &str) -> PyErr {
+    let words = error.to_string();
+    let words = words.split(" (os error").next().unwrap_or_default().to_owned() + hint;
+    match error.raw_os_error() {
+        Some(number) => PyOSError::new_err((number, words, path.display().to_string())),
+        None => PyOSError::new_err(format!("cannot read {}: {words}", path.display())),
     }
 }
 

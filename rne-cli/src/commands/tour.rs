@@ -10,7 +10,6 @@ use rne_model::{Reader, Robot};
 
 use crate::commands::ops;
 use crate::files::plan_file::Compiler;
-use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, QUIET, TITLE, TYPED};
 use crate::render::heading;
@@ -33,7 +32,7 @@ const QD: [f64; 6] = [0.9, -0.5, 0.4, 1.2, -0.3, 0.7];
 const QDD: [f64; 6] = [-1.1, 0.6, 0.8, -0.9, 1.4, 0.35];
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
-    let file = robot_file::shipped(NAME)?;
+    let file = rne_convert::shipped(NAME).map_err(Failure::input)?;
     let robot = Reader::new(NAME).read(file.yaml).map_err(|report| Failure::from(&report))?.robot;
     let program = codegen::Compiler::new(&robot)
         .compile(Function::InverseDynamics, Form::SevenSteps)

@@ -103,7 +103,7 @@ type Cells<'a> = BTreeMap<&'static str, Cell<'a>>;
 
 /// Reads a worksheet of a robot. `axes` are those asked for; without any, the file's count.
 pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Filled, Failure> {
-    let name = if input_file::is_standard_input(path) { "<standard input>".into() } else { path.display().to_string() };
+    let name = input_file::name(path);
     let bytes = input_file::read(path, LONGEST)
         .map_err(|error| Failure::input(format_args!("the worksheet {name} cannot be read: {error}")))?;
     if bytes.len() > LONGEST {
