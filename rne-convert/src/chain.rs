@@ -12,16 +12,16 @@ use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted, some};
 use crate::urdf::{Joint, Link, Mimic, Urdf};
 
-/// So many leaves are listed where the tip must be named.
+/// Largest number of leaves that are listed where the tip must be named.
 const LISTED: usize = 60;
 
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
 
-/// Which chain of a tree is meant.
+/// The chain that is taken out of a tree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Selection {
-    /// The link that stands still; the root, unless given.
+    /// The fixed link at the base [default: the root].
     pub base: Option<String>,
     /// The link at the end of the arm; needed where the tree has several leaves.
     pub tip: Option<String>,
@@ -43,7 +43,7 @@ pub(crate) struct Chain {
     pub(crate) tip: Pose,
 }
 
-/// A joint and the link that it moves, whose frame stands on the joint.
+/// A joint and the link that it moves, whose frame is at the joint.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainJoint {
     pub(crate) name: String,
@@ -71,7 +71,7 @@ pub(crate) struct Extracted {
     pub(crate) lumped: Vec<Vec<String>>,
     /// Joints that are held, and where.
     pub(crate) held: Vec<(String, f64)>,
-    /// Movable joints on what stands still: nothing of them reaches the arm.
+    /// Movable joints on fixed links, which do not belong to the arm.
     pub(crate) aside: Vec<String>,
     pub(crate) snapped: Vec<Snapped>,
     /// Links whose bodies are in the arm.
@@ -281,7 +281,7 @@ fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Repo
     Ok(locks)
 }
 
-/// Refuses to hold a joint at a value that is no position.
+/// Refuses a value that is not a position of a joint.
 fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
     let is_angle = joint.kind != crate::urdf::Kind::Prismatic;
     let is_position = if is_angle { value.abs() < LARGEST_ANGLE } else { value.abs() <= LARGEST };
@@ -356,7 +356,7 @@ impl Walk<'_> {
         Ok(place * moved)
     }
 
-    /// Where a joint is held, if it is. One that follows a held one is held by it.
+    /// The position at which a joint is held, if it is held. One that follows a held one is held by it.
     fn held(&mut self, index: usize) -> Result<Option<f64>, Report> {
         if !self.selection.lock_others && !self.locks.contains_key(&index) {
             return Ok(None);
@@ -367,7 +367,7 @@ impl Walk<'_> {
         Ok(Some(value))
     }
 
-    /// Where what decides it holds a joint.
+    /// The position at which a joint is held by the joints that it follows.
     fn held_by(&self, (mimics, leader): (Vec<&Mimic>, usize)) -> f64 {
         let start = self.locks.get(&leader).copied().unwrap_or(0.0);
         mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)
@@ -443,7 +443,7 @@ impl Walk<'_> {
         });
     }
 
-    /// Whether a link, or anything behind it, has mass or inertia.
+    /// Whether a link, or a link after it, has mass or inertia.
     fn carries_mass(&self, link: usize) -> bool {
         let mut open = vec![link];
         while let Some(index) = open.pop() {

@@ -1,4 +1,4 @@
-//! From a table to a URDF, so that any reader of URDF can be held against rne.
+//! From a table to a URDF, so that any reader of URDF can be compared with rne.
 
 use std::error::Error;
 use std::fmt::{self, Write as _};
@@ -24,7 +24,7 @@ pub struct Exported {
     pub remarks: Vec<String>,
 }
 
-/// Why a robot has no URDF.
+/// The reason why a robot has no URDF.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NoUrdf {
@@ -210,7 +210,7 @@ impl Names {
     }
 }
 
-/// Text for a comment of XML, in which `--` must not stand.
+/// Text for a comment of XML, which must not contain `--`.
 fn comment(text: &str) -> String {
     let mut text = one_line(text);
     while text.contains("--") {

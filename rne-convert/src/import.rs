@@ -17,10 +17,10 @@ use crate::source::{quoted, some};
 use crate::table::{FAR, NEARLY_PARALLEL, Table, table};
 use crate::urdf::Urdf;
 
-/// How a URDF becomes a table.
+/// Options of the conversion from a URDF to a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Which chain of the tree is meant.
+    /// The chain that is taken out of the tree.
     pub selection: Selection,
     /// The rows of the table.
     pub convention: Convention,
@@ -30,7 +30,7 @@ pub struct Options {
     pub keep_unphysical: bool,
     /// The acceleration of gravity in the axes of the root link, m/s².
     pub gravity: [f64; 3],
-    /// The name of the robot, `[a-z][a-z0-9_]*`; made of that of the URDF unless given.
+    /// The name of the robot, `[a-z][a-z0-9_]*` [default: made of that of the URDF].
     pub name: Option<String>,
 }
 
@@ -69,7 +69,7 @@ pub struct Account {
     pub tip: String,
     /// Joints that are held, and where, rad or m.
     pub held: Vec<(String, f64)>,
-    /// Movable joints that stand on what does not move; nothing of them reaches the arm.
+    /// Movable joints on fixed links, which do not belong to the arm.
     pub aside: Vec<String>,
     /// Per joint the links with mass that were lumped into one body.
     pub lumped: Vec<(String, Vec<String>)>,

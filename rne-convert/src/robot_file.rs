@@ -64,7 +64,7 @@ pub fn write(robot: &Robot) -> String {
     text
 }
 
-/// A line with its units behind it.
+/// Writes a line with its units after it.
 fn noted(text: &mut String, line: &str, units: &str) {
     let _ = writeln!(text, "{line}   # {units}");
 }

@@ -36,7 +36,7 @@ impl Source {
     }
 }
 
-/// So many names stand in a message; of the others it says how many there are.
+/// Largest number of names in a message, which counts the others.
 const NAMED: usize = 24;
 
 /// Names for a message: `a`, `b` and 3 more.

@@ -25,19 +25,19 @@ pub enum ExcitationError {
     NotPositive(&'static str),
     /// A sliding joint has no limits.
     NoPosition {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
     },
     /// Limits of the file leave a joint no room to move.
     NoRoom {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
-        /// Which limits.
+        /// The kind of limits: `position`, `velocity` or `effort`.
         what: &'static str,
     },
     /// No motion was found within the effort limit of a joint.
     Effort {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
         /// N m or N, of the motion that came nearest.
         needed: f64,
@@ -51,7 +51,7 @@ pub enum ExcitationError {
 }
 
 impl ExcitationError {
-    /// Whether what was asked is at fault, not the robot file.
+    /// Whether the request is at fault, not the robot file.
     #[must_use]
     pub fn is_of_request(&self) -> bool {
         matches!(self, Self::Period | Self::Harmonics | Self::Length { .. } | Self::NotPositive(_))

@@ -11,7 +11,7 @@ use crate::structure::{FRICTION, Structure};
 const MASS: f64 = 3.0;
 /// m: as thick as links are.
 const RADIUS: f64 = 0.06;
-/// Unknowns are kept finite by knowing them to so many times their scale.
+/// Deviation of the prior knowledge that keeps unknowns finite, in multiples of their scale.
 const PRIOR_DEVIATIONS: f64 = 30.0;
 /// s: no torque lags more.
 const DELAY: f64 = 0.05;
@@ -87,7 +87,7 @@ fn span(robot: &Robot, joint: usize) -> Vector3<f64> {
     }
 }
 
-/// How large unknowns are, in orders of magnitude.
+/// Orders of magnitude of the unknowns.
 #[derive(Clone, Debug)]
 pub struct Scales {
     /// The magnitude of each base parameter for plausible links.

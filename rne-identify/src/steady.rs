@@ -10,9 +10,9 @@ use crate::least_squares::{LeastSquares, effort};
 use crate::r_factor::RFactor;
 use crate::structure::Structure;
 
-/// A segment stands out where its residual is so many times the median one of its joint.
+/// A segment is an outlier if its residual is this many times the median of its joint.
 const SUSPECT: f64 = 7.0;
-/// A segment with more than so many times the median counts less.
+/// A segment whose residual is above this many times the median counts less.
 const BEND: f64 = 2.0;
 const ROUNDS: usize = 10;
 /// Weights that change by less have settled.

@@ -178,7 +178,7 @@ fn order(term: &Flat) -> Vec<(Class, Vec<(Factor, i32)>)> {
         .collect()
 }
 
-/// The factors that all terms have with the same exponent: (1/3) a² + (1/2) a b stays as it is.
+/// The factors that all terms have with the same exponent: (1/3) a² + (1/2) a b is not changed.
 fn common_factors(terms: &[Flat]) -> BTreeMap<Factor, i32> {
     let Some((first, rest)) = terms.split_first() else { return BTreeMap::new() };
     let mut common = first.factors.clone();

@@ -60,7 +60,18 @@ const DOCUMENTS: &[&str] = &[
 ];
 
 /// Folders of sources whose first sentences are checked. Lengthen this list with a crate after it is rewritten.
-const SOURCES: &[&str] = &["src", "rne-machine/src", "rne-macro/src", "rne-model/src", "rne-runtime/src"];
+const SOURCES: &[&str] = &[
+    "src",
+    "rne-convert/src",
+    "rne-diagnose/src",
+    "rne-identify/src",
+    "rne-machine/src",
+    "rne-macro/src",
+    "rne-model/src",
+    "rne-runtime/src",
+    "rne-symbolic/src",
+    "rne-watch/src",
+];
 
 /// Folders of libraries, whose strings name no option and no command of the command line: users of Python, C and SQL
 /// read them too.
