@@ -246,7 +246,7 @@ fn printable(text: &str) -> String {
 fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     let mut notes = Vec::new();
     for (joint, value) in &told.held {
-        notes.push(format!("- the joint {} is held at {}", printable(joint), robot_file::number(*value)));
+        notes.push(format!("- the joint {} is held at {}", printable(joint), rne_model::exact_digits(*value)));
     }
     notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
     if let Some(Difference { position, torque, .. }) = change {

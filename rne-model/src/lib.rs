@@ -115,7 +115,7 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
-pub use source::{is_control, one_line};
+pub use source::{exact_digits, is_control, one_line, six_digits};
 #[cfg(feature = "std")]
 pub use spelling::{did_you_mean, nearest_name, no_shipped_robot};
 #[cfg(feature = "std")]

@@ -8,7 +8,7 @@
 //! The torques of the environment on the arm are the negative of what the actuators deliver for them: in free motion
 //! and in quasi-static contact `external` is about -`residual`, through a low-pass.
 
-use rne_logs::Motion;
+use rne_logs::{Motion, median};
 use rne_model::{Friction, Joint, Robot};
 use rne_runtime::{DynArm, DynObserverState, WrongLength};
 
@@ -286,9 +286,8 @@ fn still(qd: &[Vec<f64>]) -> Vec<f64> {
 
 /// The median of the steps.
 fn usual_step(time: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_unstable_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(1.0)
+    let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if steps.is_empty() { 1.0 } else { median(steps) }
 }
 
 /// Refuses a motion that cannot be watched.

@@ -9,7 +9,7 @@ use rne_model::Convention;
 
 use crate::files::file_name::Format;
 use crate::files::input_file;
-use crate::files::output_file;
+use crate::files::output_file::Output;
 use crate::files::robot_file::not_opened;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED};
@@ -59,12 +59,8 @@ pub(crate) struct Arguments {
     /// Name of the robot [default: as in the URDF]
     #[arg(long, value_parser = robot_name)]
     name: Option<String>,
-    /// Robot file to write [default: standard output]
-    #[arg(short, long = "output", value_name = "FILE")]
-    out: Option<PathBuf>,
-    /// Overwrite an existing file
-    #[arg(long, requires = "out")]
-    force: bool,
+    #[command(flatten)]
+    output: Output,
 }
 
 /// Reads `JOINT=VALUE`.
@@ -95,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
     let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
-    output_file::deliver(arguments.out.as_deref(), Format::RobotFile, text, remark, &[&arguments.file], arguments.force)
+    arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 
 /// The text, and what messages call its file. A robot file is refused where its text is read.

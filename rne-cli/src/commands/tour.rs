@@ -6,7 +6,7 @@ use std::path::Path;
 use rne::{DynArm, InverseDynamics as _};
 use rne_codegen::{self as codegen, Form, Function, Program, Step};
 use rne_emit::Selection;
-use rne_model::{Reader, Robot};
+use rne_model::{Reader, Robot, exact_digits};
 
 use crate::commands::ops;
 use crate::files::plan_file::Compiler;
@@ -17,7 +17,7 @@ use crate::render::highlight;
 use crate::render::layout::{Align, PAGE, columns, wrap};
 use crate::render::letters::Letters;
 use crate::terminal;
-use crate::values::numbers::{at_the_point, exact};
+use crate::values::numbers::at_the_point;
 
 /// The shipped robot of the tour.
 const NAME: &str = "puma560";
@@ -125,7 +125,7 @@ fn code(text: &mut String, robot: &Robot, program: &Program, joint: usize, steps
 
 fn torques(robot: &Robot, generated: &[f64], runtime: &[f64]) -> String {
     let column = |title: &str, values: &[f64]| -> Vec<String> {
-        let texts: Vec<String> = values.iter().copied().map(exact).collect();
+        let texts: Vec<String> = values.iter().copied().map(exact_digits).collect();
         std::iter::once(title.to_owned()).chain(at_the_point(&texts)).collect()
     };
     let difference: Vec<f64> = generated.iter().zip(runtime).map(|(a, b)| a - b).collect();
