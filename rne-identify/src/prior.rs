@@ -25,6 +25,14 @@ pub struct PriorLink {
     pub is_of_file: bool,
 }
 
+impl PriorLink {
+    /// Magnitudes of the ten inertial parameters: products of the mass with powers of the radius of gyration.
+    pub(crate) fn scales(&self) -> [f64; PER_LINK] {
+        let (size, mass) = (size(&self.pseudo_inertia), self.pseudo_inertia[(3, 3)]);
+        [0, 1, 1, 1, 2, 2, 2, 2, 2, 2].map(|power| mass * size.powi(power))
+    }
+}
+
 /// The links of a robot as they are supposed to be, all of them bodies.
 #[must_use]
 pub fn links(robot: &Robot) -> Vec<PriorLink> {
@@ -103,16 +111,7 @@ impl Scales {
         let links = links(robot);
         let mut values = DVector::zeros(parameters.regrouping.ncols());
         for (link, prior) in links.iter().enumerate() {
-            let size = size(&prior.pseudo_inertia);
-            let mass = prior.pseudo_inertia[(3, 3)];
-            for index in 0..PER_LINK {
-                let power = match index {
-                    0 => 0,
-                    1..=3 => 1,
-                    _ => 2,
-                };
-                values[link * PER_LINK + index] = mass * size.powi(power);
-            }
+            values.as_mut_slice()[link * PER_LINK..][..PER_LINK].copy_from_slice(&prior.scales());
         }
         if parameters.rotors {
             for joint in 0..robot.dof() {
