@@ -5,7 +5,7 @@ use rne_model::Report;
 use serde::Serialize;
 
 use crate::palette::{ERROR, coloured};
-use crate::render::plan_remedy;
+use crate::render::remedy;
 
 /// Exit status when the input is at fault.
 pub(crate) const INPUT: u8 = 1;
@@ -71,12 +71,12 @@ impl Failure {
 
     /// The robot is valid but cannot be compiled.
     pub(crate) fn compile(file: &str, error: &CompileError) -> Self {
-        Self::input(format_args!("{file}: {}", plan_remedy::sentence(error)))
+        Self::input(format_args!("{file}: {}", remedy::of_compiler(error)))
     }
 
     /// A mistake of a plan file, with what helps.
     pub(crate) fn plan(report: Report, remedy: Remedy) -> Self {
-        Self::from(&plan_remedy::helped(report, remedy))
+        Self::from(&remedy::of_plan(report, remedy))
     }
 }
 
@@ -96,6 +96,7 @@ impl From<&Report> for Failure {
 
 /// A report in colours.
 pub(crate) fn rendered(report: &Report) -> String {
+    let report = remedy::worded(report);
     coloured(&report.render(false), &report.render(true))
 }
 

@@ -31,7 +31,7 @@ impl Body {
         beside.seen_from(Pose::new(link.com, [0.0; 3]))
     }
 
-    /// Whether it has a first moment and no mass: then it is no body, and a URDF has no place for it.
+    /// Whether there is a first moment without mass, which no body and no URDF has.
     pub(crate) fn is_massless_moment(&self) -> bool {
         self.mass.high == 0.0 && self.moment != Vector::ZERO
     }
@@ -56,7 +56,7 @@ impl Body {
         Self { mass: self.mass, moment: moment + t * self.mass, inertia }
     }
 
-    /// The centre of mass; the origin where there is no mass.
+    /// The centre of mass; the origin if there is no mass.
     pub(crate) fn centre(&self) -> Vector {
         if self.mass.high == 0.0 { Vector::ZERO } else { self.moment * (Double::new(1.0) / self.mass) }
     }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use rne_model::{LARGEST_ANGLE, Limits, Motor, Report, did_you_mean};
+use rne_model::{LARGEST_ANGLE, Limits, Motor, Remedy, Report, did_you_mean, one_line};
 
 use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
@@ -12,16 +12,16 @@ use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted, some};
 use crate::urdf::{Joint, Link, Mimic, Urdf};
 
-/// So many leaves are listed where the tip must be named.
+/// Largest number of leaves that are listed where the tip must be named.
 const LISTED: usize = 60;
 
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
 
-/// Which chain of a tree is meant.
+/// The chain that is taken out of a tree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Selection {
-    /// The link that stands still; the root, unless given.
+    /// The fixed link at the base [default: the root].
     pub base: Option<String>,
     /// The link at the end of the arm; needed where the tree has several leaves.
     pub tip: Option<String>,
@@ -43,7 +43,7 @@ pub(crate) struct Chain {
     pub(crate) tip: Pose,
 }
 
-/// A joint and the link that it moves, whose frame stands on the joint.
+/// A joint and the link that it moves, whose frame is at the joint.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainJoint {
     pub(crate) name: String,
@@ -71,7 +71,7 @@ pub(crate) struct Extracted {
     pub(crate) lumped: Vec<Vec<String>>,
     /// Joints that are held, and where.
     pub(crate) held: Vec<(String, f64)>,
-    /// Movable joints on what stands still: nothing of them reaches the arm.
+    /// Movable joints on fixed links, which do not belong to the arm.
     pub(crate) aside: Vec<String>,
     pub(crate) snapped: Vec<Snapped>,
     /// Links whose bodies are in the arm.
@@ -122,9 +122,9 @@ pub(crate) fn extract(
             quoted(&walk.told.base),
             quoted(&walk.told.tip)
         );
-        let help =
-            "a chain holds them still: say where with --lock JOINT=VALUE, or all others at zero with --lock-others";
-        return Err(urdf.source.error(&urdf.joints[walk.loose[0]].span, message, help.to_owned()));
+        let span = &urdf.joints[walk.loose[0]].span;
+        let help = "a chain holds them still, each at a position of its own or all at zero".to_owned();
+        return Err(urdf.source.error_with(span, message, help, &Remedy::LockOthers));
     }
     if let Some(&(first, _)) = walk.followers.first() {
         let name = |joint: usize| &urdf.joints[joint].name;
@@ -133,15 +133,18 @@ pub(crate) fn extract(
             .iter()
             .map(|&(joint, leader)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader))));
         let message = format!("joints off the chain follow joints of the chain that move: {}", some(each));
-        let help = format!(
-            "what they carry has mass, and no row of a table can say that it moves along; where that mass may stand \
-             still, hold each of them by its name, such as --lock {}=VALUE",
-            rne_model::one_line(name(first))
-        );
-        return Err(urdf.source.error(&urdf.joints[first].span, message, help));
+        let help = "what they carry has mass, and no row of a table can say that it moves along; where that mass may \
+                    stand still, hold each of them by its name"
+            .to_owned();
+        return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
     walk.told.snapped = walk.snapping.found;
     Ok((chain, walk.told))
+}
+
+/// The remedy against a joint that must not move.
+fn lock(joint: &str) -> Remedy {
+    Remedy::LockJoint { joint: one_line(joint) }
 }
 
 impl Urdf {
@@ -214,9 +217,8 @@ fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<usize, Report>
         return Ok(leaf);
     }
     let message = format!("{} has {} leaves, so the tip must be named", quoted(&urdf.links[base].name), leaves.len());
-    let help =
-        format!("name one, or a link before it, with --tip; in the order of the text:\n{}", listed(urdf, &leaves));
-    Err(urdf.source.error(&urdf.links[base].span, message, help))
+    let help = format!("the tip is one of these links, or a link before it:\n{}", listed(urdf, &leaves));
+    Err(urdf.source.error_with(&urdf.links[base].span, message, help, &Remedy::NameTip))
 }
 
 /// The links behind `base` that carry no other, with the number of movable joints in between.
@@ -279,7 +281,7 @@ fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Repo
     Ok(locks)
 }
 
-/// Refuses to hold a joint at a value that is no position.
+/// Refuses a value that is not a position of a joint.
 fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
     let is_angle = joint.kind != crate::urdf::Kind::Prismatic;
     let is_position = if is_angle { value.abs() < LARGEST_ANGLE } else { value.abs() <= LARGEST };
@@ -336,7 +338,7 @@ impl Walk<'_> {
         refuse_value(self.urdf, joint, value)?;
         self.told.held.push((joint.name.clone(), value));
         if let Some((lower, upper)) = joint.limits.position.filter(|(lower, upper)| !is_within(value, *lower, *upper)) {
-            let name = rne_model::one_line(&joint.name);
+            let name = one_line(&joint.name);
             self.told.remarks.push(format!(
                 "the joint {name} is held at {value}, which is outside of its limits, from {lower} to {upper}"
             ));
@@ -354,7 +356,7 @@ impl Walk<'_> {
         Ok(place * moved)
     }
 
-    /// Where a joint is held, if it is. One that follows a held one is held by it.
+    /// The position at which a joint is held, if it is held. One that follows a held one is held by it.
     fn held(&mut self, index: usize) -> Result<Option<f64>, Report> {
         if !self.selection.lock_others && !self.locks.contains_key(&index) {
             return Ok(None);
@@ -365,7 +367,7 @@ impl Walk<'_> {
         Ok(Some(value))
     }
 
-    /// Where what decides it holds a joint.
+    /// The position at which a joint is held by the joints that it follows.
     fn held_by(&self, (mimics, leader): (Vec<&Mimic>, usize)) -> f64 {
         let start = self.locks.get(&leader).copied().unwrap_or(0.0);
         mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)
@@ -382,7 +384,7 @@ impl Walk<'_> {
         let Some((mimics, leader)) = leader else { return };
         let followed = self.held_by((mimics, leader));
         if (followed - value).abs() > 1e-9 * followed.abs().max(1.0) {
-            let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| rne_model::one_line(name));
+            let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
             self.told.remarks.push(format!(
                 "the joint {name} is held at {value}, although it follows {leader}, which holds it at {followed}"
             ));
@@ -397,9 +399,8 @@ impl Walk<'_> {
         while let Some(mimic) = joints[leader].mimic.as_ref().filter(|_| !self.locks.contains_key(&leader)) {
             let joint = &joints[leader];
             let error = |message: String| {
-                let name = rne_model::one_line(&joint.name);
-                let help = format!("correct its `mimic`, or hold it where you say with --lock {name}=VALUE");
-                self.urdf.source.error(&joint.span, message, help)
+                let help = "correct its `mimic`, or hold it still".to_owned();
+                self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name))
             };
             leader = mimic.leader.ok_or_else(|| {
                 let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
@@ -432,7 +433,7 @@ impl Walk<'_> {
             self.followers.push((index, leader));
             return;
         }
-        let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| rne_model::one_line(name));
+        let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
         self.told.remarks.push(if is_locked {
             format!("the joint {name} is held still, although it follows {leader}, which moves")
         } else {
@@ -442,7 +443,7 @@ impl Walk<'_> {
         });
     }
 
-    /// Whether a link, or anything behind it, has mass or inertia.
+    /// Whether a link, or a link after it, has mass or inertia.
     fn carries_mass(&self, link: usize) -> bool {
         let mut open = vec![link];
         while let Some(index) = open.pop() {
@@ -534,12 +535,11 @@ impl Walk<'_> {
         }
         if let Some(mimic) = &joint.mimic {
             let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
-            let help = format!(
+            let help =
                 "its torque belongs to that joint, which no row of a table can say; end the chain before it, or \
-                 hold it still with --lock {}=VALUE",
-                rne_model::one_line(&joint.name)
-            );
-            return error(message, help);
+                        hold it still"
+                    .to_owned();
+            return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
         }
         if joint.axis == [0.0; 3] {
             return error(format!("the axis of the joint {name} has no direction"), "write such as 0 0 1".to_owned());
@@ -551,7 +551,7 @@ impl Walk<'_> {
     fn remark(&mut self, index: usize) {
         self.told.joints.insert(index);
         let joint = &self.urdf.joints[index];
-        let name = rne_model::one_line(&joint.name);
+        let name = one_line(&joint.name);
         if !joint.has_axis {
             self.told.remarks.push(format!("the joint {name} has no element `axis`; its axis is then 1 0 0"));
         }

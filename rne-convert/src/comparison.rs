@@ -1,4 +1,4 @@
-//! How much two arms differ, over many states.
+//! Differences between two arms, over many states.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::Robot;

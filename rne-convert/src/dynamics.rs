@@ -1,4 +1,4 @@
-//! The dynamics of a chain as it stands, in the frames of its links: what a table is held against.
+//! The dynamics of a chain in the frames of its links, with which a table is compared.
 //!
 //! Newton-Euler about the origin of each link's frame. It knows no Denavit-Hartenberg frames and shares no formula with
 //! the recursion of rne.

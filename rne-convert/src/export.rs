@@ -1,15 +1,14 @@
-//! From a table to a URDF, so that any reader of URDF can be held against rne.
+//! From a table to a URDF, so that any reader of URDF can be compared with rne.
 
 use std::error::Error;
 use std::fmt::{self, Write as _};
 
-use rne_model::{Joint, Motor, Robot, one_line};
+use rne_model::{Joint, Motor, Robot, exact_digits, one_line};
 
 use crate::body::Body;
 use crate::chain::{Chain, ChainJoint};
 use crate::conventions::of_robot;
 use crate::geometry::{Pose, rounded};
-use crate::robot_file::number;
 use crate::scan::LARGEST;
 
 /// A robot as a URDF.
@@ -24,7 +23,7 @@ pub struct Exported {
     pub remarks: Vec<String>,
 }
 
-/// Why a robot has no URDF.
+/// The reason why a robot has no URDF.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NoUrdf {
@@ -55,7 +54,7 @@ impl fmt::Display for NoUrdf {
             ),
             Self::TooLarge { what, number } => write!(
                 f,
-                "{what} would be {number:e}, and no number of a URDF that `rne import` reads is above {LARGEST:e}; \
+                "{what} would be {number:e}, and an import refuses numbers of a URDF above {LARGEST:e}; \
                  check the units of the robot file: lengths are metres and masses kilograms"
             ),
         }
@@ -84,7 +83,7 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     let mut remarks = Vec::new();
     let [x, y, z] = gravity;
     if x != 0.0 || y != 0.0 || (z + 9.81).abs() > 1e-14 {
-        let [x, y, z] = gravity.map(number);
+        let [x, y, z] = gravity.map(exact_digits);
         remarks.push(format!(
             "gravity is [{x}, {y}, {z}] m/s² in the axes of `world`; where that is not the default, set it: \
              model.gravity.linear = np.array([{x}, {y}, {z}])"
@@ -210,7 +209,7 @@ impl Names {
     }
 }
 
-/// Text for a comment of XML, in which `--` must not stand.
+/// Text for a comment of XML, which must not contain `--`.
 fn comment(text: &str) -> String {
     let mut text = one_line(text);
     while text.contains("--") {
@@ -221,7 +220,7 @@ fn comment(text: &str) -> String {
 }
 
 fn vector(values: [f64; 3]) -> String {
-    values.map(number).join(" ")
+    values.map(exact_digits).join(" ")
 }
 
 fn origin(pose: Pose) -> String {
@@ -249,10 +248,10 @@ fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (
     let position = if kind == "continuous" {
         String::new()
     } else {
-        format!("lower=\"{}\" upper=\"{}\" ", number(lower), number(upper))
+        format!("lower=\"{}\" upper=\"{}\" ", exact_digits(lower), exact_digits(upper))
     };
     let dynamics = joint.motor.as_ref().and_then(Friction::of).map_or_else(String::new, |at_joint| {
-        let [damping, friction] = [at_joint.damping, at_joint.friction].map(number);
+        let [damping, friction] = [at_joint.damping, at_joint.friction].map(exact_digits);
         format!("    <dynamics damping=\"{damping}\" friction=\"{friction}\"/>\n")
     });
     let _ = writeln!(
@@ -261,8 +260,8 @@ fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (
          <child link=\"{child}\"/>\n    {}\n    <axis xyz=\"0 0 1\"/>\n    \
          <limit {position}effort=\"{}\" velocity=\"{}\"/>\n{dynamics}  </joint>",
         origin(joint.place),
-        number(limits.effort.unwrap_or(0.0)),
-        number(limits.velocity.unwrap_or(0.0))
+        exact_digits(limits.effort.unwrap_or(0.0)),
+        exact_digits(limits.velocity.unwrap_or(0.0))
     );
 }
 
@@ -275,12 +274,12 @@ fn link(text: &mut String, name: &str, body: &Body) {
          <mass value=\"{}\"/>\n      <inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" \
          iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n    </inertial>\n  </link>",
         vector(link.com),
-        number(rounded(body.mass, 1.0)),
-        number(i.xx),
-        number(i.xy),
-        number(i.xz),
-        number(i.yy),
-        number(i.yz),
-        number(i.zz)
+        exact_digits(rounded(body.mass, 1.0)),
+        exact_digits(i.xx),
+        exact_digits(i.xy),
+        exact_digits(i.xz),
+        exact_digits(i.yy),
+        exact_digits(i.yz),
+        exact_digits(i.zz)
     );
 }

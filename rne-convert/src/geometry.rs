@@ -58,7 +58,7 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
-    /// The vector of length 1; `None` where there is no direction.
+    /// The unit vector; `None` if the vector is zero.
     pub(crate) fn direction(self) -> Option<Self> {
         // Scaled first, so that no square vanishes.
         let largest = self.to_f64().into_iter().map(f64::abs).fold(0.0, f64::max);
@@ -134,7 +134,7 @@ fn exact(right: QuarterTurns) -> (Double, Double) {
     (Double::new(sin), Double::new(cos))
 }
 
-/// Which multiple of pi/12 an angle is, within 4 units in the last place: then no text could say it better.
+/// The multiple of pi/12 that an angle is, within 4 units in the last place: then no text could say it better.
 pub(crate) fn twelfths_of_pi(radians: f64) -> Option<f64> {
     let twelfths = (radians * 12.0 / std::f64::consts::PI).round();
     let nearest = twelfths * std::f64::consts::PI / 12.0;

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use rne_model::{
-    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Report, Robot, Row, RunTime, Transform,
+    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot, Row, RunTime,
+    Transform,
 };
 
 use crate::chain::{Chain, Extracted, Selection, extract};
@@ -16,10 +17,10 @@ use crate::source::{quoted, some};
 use crate::table::{FAR, NEARLY_PARALLEL, Table, table};
 use crate::urdf::Urdf;
 
-/// How a URDF becomes a table.
+/// Options of the conversion from a URDF to a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Which chain of the tree is meant.
+    /// The chain that is taken out of the tree.
     pub selection: Selection,
     /// The rows of the table.
     pub convention: Convention,
@@ -29,7 +30,7 @@ pub struct Options {
     pub keep_unphysical: bool,
     /// The acceleration of gravity in the axes of the root link, m/s².
     pub gravity: [f64; 3],
-    /// The name of the robot, `[a-z][a-z0-9_]*`; made of that of the URDF unless given.
+    /// The name of the robot, `[a-z][a-z0-9_]*` [default: made of that of the URDF].
     pub name: Option<String>,
 }
 
@@ -68,7 +69,7 @@ pub struct Account {
     pub tip: String,
     /// Joints that are held, and where, rad or m.
     pub held: Vec<(String, f64)>,
-    /// Movable joints that stand on what does not move; nothing of them reaches the arm.
+    /// Movable joints on fixed links, which do not belong to the arm.
     pub aside: Vec<String>,
     /// Per joint the links with mass that were lumped into one body.
     pub lumped: Vec<(String, Vec<String>)>,
@@ -166,8 +167,8 @@ impl Urdf {
             );
             let several =
                 if lumped.len() > 1 { format!(" (lumped of {})", crate::source::names(lumped)) } else { String::new() };
-            let help = format!("correct the inertia{several}, or take it as it is with --keep-unphysical");
-            return Err(self.source.error(span, message, help));
+            let help = format!("correct the inertia{several}, or keep it");
+            return Err(self.source.error_with(span, message, help, &Remedy::KeepUnphysical));
         }
         Ok(())
     }
@@ -245,7 +246,7 @@ fn printable(text: &str) -> String {
 fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     let mut notes = Vec::new();
     for (joint, value) in &told.held {
-        notes.push(format!("- the joint {} is held at {}", printable(joint), robot_file::number(*value)));
+        notes.push(format!("- the joint {} is held at {}", printable(joint), rne_model::exact_digits(*value)));
     }
     notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
     if let Some(Difference { position, torque, .. }) = change {

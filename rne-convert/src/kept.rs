@@ -11,17 +11,17 @@ use crate::urdf::Urdf;
 /// Imports, the latest last, by what they were made of.
 static KEPT: Mutex<VecDeque<(Content, Arc<Imported>)>> = Mutex::new(VecDeque::new());
 
-/// How many of them are kept.
+/// Largest number of imports that are kept.
 const MOST: usize = 32;
 
-/// How many bytes of URDFs are kept with them: two of the largest that are read.
+/// Largest number of bytes of URDFs that are kept with them: two of the largest that are read.
 const MOST_BYTES: usize = 32 << 20;
 
 /// All that decides an import. Meshes and other files that a URDF names are never opened, and a document type, by which
 /// XML includes others, is refused: a text is all of it.
 #[derive(Debug, PartialEq, Eq)]
 struct Content {
-    /// It stands in the robot file, and in reports.
+    /// The name of the file, which is written into the robot file and into reports.
     file: String,
     text: String,
     /// As `Debug` writes them, which tells -0.0 from 0.0 and has every field, later ones too.

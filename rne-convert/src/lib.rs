@@ -1,8 +1,9 @@
 //! Other descriptions of an arm into a Denavit-Hartenberg table, and back.
 //!
-//! Strings in, data out: nothing here opens a file or prints. [`Urdf::import`] makes a robot file of a chain of a URDF,
-//! [`convert()`] writes a table in the other convention, [`export()`] writes it as a URDF, [`robot_file::write`] is the
-//! writer of robot files. [`import()`] is for programs that read one URDF many times: it keeps what it made.
+//! Strings in, data out: nothing here prints, and only [`Description::open`] opens a file, in one order for every door.
+//! [`Urdf::import`] makes a robot file of a chain of a URDF, [`convert()`] writes a table in the other convention,
+//! [`export()`] writes it as a URDF, [`robot_file::write`] is the writer of robot files. [`import()`] is for programs
+//! that read one URDF many times: it keeps what it made.
 //!
 //! Numbers are turned in twice the precision and rounded once. So a length that is 0.4318 in the URDF is 0.4318 in the
 //! table, and what is zero on paper is zero: the compiler folds it away.
@@ -13,6 +14,7 @@ mod body;
 mod chain;
 mod comparison;
 mod conventions;
+mod description;
 mod dynamics;
 mod export;
 mod geometry;
@@ -28,6 +30,7 @@ mod urdf;
 pub use chain::Selection;
 pub use comparison::Difference;
 pub use conventions::{Converted, convert};
+pub use description::{Description, OpenError, shipped, shipped_at};
 pub use export::{Exported, NoUrdf, export};
 pub use import::{Account, Imported, Options};
 pub use kept::import;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_model::{Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform};
+use rne_model::{Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform, exact_digits};
 
 use crate::snap::angle_text;
 
@@ -44,7 +44,7 @@ pub fn write(robot: &Robot) -> String {
     if !robot.parameters.is_empty() {
         let _ = writeln!(text, "parameters:");
         for (name, value) in &robot.parameters {
-            let _ = writeln!(text, "  {name}: {}", number(*value));
+            let _ = writeln!(text, "  {name}: {}", exact_digits(*value));
         }
     }
     let _ = writeln!(text, "convention: {}", robot.convention.name());
@@ -64,7 +64,7 @@ pub fn write(robot: &Robot) -> String {
     text
 }
 
-/// A line with its units behind it.
+/// Writes a line with its units after it.
 fn noted(text: &mut String, line: &str, units: &str) {
     let _ = writeln!(text, "{line}   # {units}");
 }
@@ -87,8 +87,8 @@ fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
     let dh = format!(
         "    dh: {{theta: {}, d: {}, a: {}, alpha: {}}}",
         angle(dh.theta.radians),
-        number(dh.d),
-        number(dh.a),
+        exact_digits(dh.d),
+        exact_digits(dh.a),
         angle(dh.alpha.radians)
     );
     line(text, dh, "rad, m");
@@ -96,7 +96,7 @@ fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
     let Link { mass, com, first_moment, .. } = row.link;
     if row.link != Link::default() || written != Inertia::default() || about != InertiaReference::Com {
         text.push_str("    link:\n");
-        line(text, format!("      mass: {}", number(mass)), "kg");
+        line(text, format!("      mass: {}", exact_digits(mass)), "kg");
         if com != [0.0; 3] {
             line(text, format!("      com: {}", list(&com)), "m");
         }
@@ -131,23 +131,23 @@ fn transform(placement: &Transform) -> String {
 fn inertia(tensor: &Inertia) -> String {
     let Inertia { xx, yy, zz, xy, xz, yz } = *tensor;
     let elements = [("xx", xx), ("yy", yy), ("zz", zz), ("xy", xy), ("xz", xz), ("yz", yz)];
-    pairs(elements.iter().filter(|(_, value)| *value != 0.0).map(|(key, value)| (*key, number(*value))))
+    pairs(elements.iter().filter(|(_, value)| *value != 0.0).map(|(key, value)| (*key, exact_digits(*value))))
 }
 
 fn limited(limits: &Limits, is_revolute: bool) -> String {
-    let degrees = |value: f64| if is_revolute { in_degrees(value) } else { number(value) };
+    let degrees = |value: f64| if is_revolute { in_degrees(value) } else { exact_digits(value) };
     let position = limits.position.map(|(low, high)| ("position", format!("[{}, {}]", degrees(low), degrees(high))));
     let velocity = limits.velocity.map(|velocity| ("velocity", degrees(velocity)));
-    let effort = limits.effort.map(|effort| ("effort", number(effort)));
+    let effort = limits.effort.map(|effort| ("effort", exact_digits(effort)));
     pairs([position, velocity, effort].into_iter().flatten())
 }
 
 fn motor_text(motor: &Motor, joint: &Joint) -> String {
     let Motor { inertia, gear_ratio, viscous, coulomb } = *motor;
-    let given = |key, value: f64, default: f64| (value != default).then(|| (key, number(value)));
+    let given = |key, value: f64, default: f64| (value != default).then(|| (key, exact_digits(value)));
     let coulomb = (coulomb != [0.0; 2]).then(|| ("coulomb", list(&coulomb)));
-    let width = joint.coulomb_width.map(|width| ("coulomb_width", number(width)));
-    let displacement = joint.coulomb_displacement.map(|length| ("coulomb_displacement", number(length)));
+    let width = joint.coulomb_width.map(|width| ("coulomb_width", exact_digits(width)));
+    let displacement = joint.coulomb_displacement.map(|length| ("coulomb_displacement", exact_digits(length)));
     let parts = [
         given("inertia", inertia, 0.0),
         given("gear_ratio", gear_ratio, 1.0),
@@ -165,30 +165,23 @@ fn pairs<'a>(pairs: impl Iterator<Item = (&'a str, String)>) -> String {
 }
 
 fn list(values: &[f64]) -> String {
-    let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
+    let values: Vec<String> = values.iter().map(|value| exact_digits(*value)).collect();
     format!("[{}]", values.join(", "))
 }
 
-/// A number with all digits that it needs to be read back; zero has no sign.
-pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else if value.abs() < 1e-4 || value.abs() >= 1e9 {
-        format!("{value:e}")
-    } else {
-        format!("{value}")
-    }
-}
-
 fn angle(value: f64) -> String {
-    angle_text(value).unwrap_or_else(|| number(value))
+    angle_text(value).unwrap_or_else(|| exact_digits(value))
 }
 
 /// An angle, or an angular velocity, in whole degrees where that is the same number.
 fn in_degrees(value: f64) -> String {
     let degrees = value.to_degrees().round();
     let text = format!("{}deg({})", if value < 0.0 { "-" } else { "" }, degrees.abs());
-    if value != 0.0 && degrees.abs() <= 720.0 && rne_model::number(&text) == Ok(value) { text } else { number(value) }
+    if value != 0.0 && degrees.abs() <= 720.0 && rne_model::number(&text) == Ok(value) {
+        text
+    } else {
+        exact_digits(value)
+    }
 }
 
 /// Whether a text means itself without quotation marks, within a line.

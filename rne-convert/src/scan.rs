@@ -137,7 +137,7 @@ const ELEMENTS: &[Element] = &[
     element("dynamics", "joint", &[optional("damping", Kind::Number), optional("friction", Kind::Number)]),
 ];
 
-/// Elements that are known and do not matter here, by what they stand in.
+/// Elements that are known and do not matter here, by the element that contains them.
 const PASSED_OVER: &[(&str, &[&str])] = &[
     ("robot", &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco"]),
     ("link", &["visual", "collision", "contact"]),
@@ -296,7 +296,7 @@ impl Scanner<'_> {
         Ok(element)
     }
 
-    /// Where it is kept what was seen of an element: with its link, its joint or the robot.
+    /// The record of an element: that of its link, its joint or the robot.
     fn owner(&mut self, element: &Element) -> &mut Seen {
         let Scanned { robot, links, joints, .. } = &mut self.scanned;
         let owner = match (element.name, element.parent) {
@@ -394,14 +394,14 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// Where a part of a tag stands in the text.
+    /// The place of a part of a tag in the text.
     fn within(&self, tag: &Range<usize>, part: &str) -> Range<usize> {
         let found = self.source.text.get(tag.clone()).and_then(|tag| tag.find(part));
         found.map_or(tag.clone(), |at| tag.start + at..tag.start + at + part.len())
     }
 }
 
-/// Why a value cannot be that of an attribute.
+/// The reason why a value does not fit an attribute.
 fn fault(kind: Kind, value: &str) -> Option<&'static str> {
     let number = |word: &str| word.parse::<f64>().ok();
     let fine = |word: &str| number(word).is_some_and(|x| x.abs() <= LARGEST);

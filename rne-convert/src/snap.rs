@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::geometry::{Vector, twelfths_of_pi};
 
-/// How near a multiple of pi/12 an angle must lie to be taken for it, rad.
+/// Largest distance of an angle from the multiple of pi/12 by which it is replaced, rad.
 pub const TOLERANCE: f64 = 2e-4;
 
 /// An angle or an axis that was taken for the one that was meant.

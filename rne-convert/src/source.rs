@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::ops::Range;
 use std::path::Path;
 
-use rne_model::Report;
+use rne_model::{Remedy, Report};
 
 /// A text and what messages call it.
 #[derive(Clone, Debug)]
@@ -19,6 +19,11 @@ impl Source {
         Path::new(&self.file).file_name().and_then(OsStr::to_str).unwrap_or(&self.file)
     }
 
+    /// A mistake against which a choice of the caller helps.
+    pub(crate) fn error_with(&self, span: &Range<usize>, message: String, help: String, remedy: &Remedy) -> Report {
+        self.error(span, message, help).with_remedy(remedy)
+    }
+
     /// A mistake at some bytes of the text.
     pub(crate) fn error(
         &self,
@@ -31,7 +36,7 @@ impl Source {
     }
 }
 
-/// So many names stand in a message; of the others it says how many there are.
+/// Largest number of names in a message, which counts the others.
 const NAMED: usize = 24;
 
 /// Names for a message: `a`, `b` and 3 more.

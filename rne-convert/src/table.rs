@@ -43,9 +43,9 @@ pub(crate) struct Table {
 
 /// The common normal of the axes of two neighbouring joints.
 struct Normal {
-    /// Where it begins, on the first axis.
+    /// The point at which it begins, on the first axis.
     from: Vector,
-    /// Where it ends, on the second.
+    /// The point at which it ends, on the second axis.
     to: Vector,
     /// Its direction, of length 1.
     x: Vector,

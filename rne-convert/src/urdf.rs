@@ -21,7 +21,7 @@ pub struct Urdf {
     pub(crate) root: usize,
     /// Kinds of elements and attributes that are not known, in words.
     pub(crate) unknown: Vec<String>,
-    /// Those of them that stand beside links and joints.
+    /// The unknown elements beside links and joints.
     pub(crate) beside: BTreeSet<usize>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Link {
     pub(crate) inertia: Inertia,
     /// The joint that moves it.
     pub(crate) parent: Option<usize>,
-    /// The joints that stand on it.
+    /// The joints whose parent it is.
     pub(crate) children: Vec<usize>,
 }
 
@@ -109,7 +109,7 @@ pub(crate) struct Joint {
     pub(crate) negative: Vec<(&'static str, f64)>,
     pub(crate) kind: Kind,
     pub(crate) mimic: Option<Mimic>,
-    /// The link on which it stands.
+    /// The parent link.
     pub(crate) parent: usize,
     /// The link that it moves.
     pub(crate) child: usize,

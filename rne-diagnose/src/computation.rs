@@ -15,7 +15,7 @@ pub(crate) struct Computation {
     pub(crate) reversed: Vec<usize>,
     /// For revolute joints: of the positions, of the velocities and accelerations.
     scales: [f64; 2],
-    /// So many times the constant part is added to a joint variable.
+    /// Factor of the constant part that is added to a joint variable.
     offsets: f64,
     pub(crate) velocity_factor: f64,
     pub(crate) acceleration_factor: f64,
@@ -59,8 +59,8 @@ impl Computation {
         }
     }
 
-    /// One with slips, made in the order of [`Slip`]; `None` where they make nothing that could be computed: the
-    /// lecture's formulas are of standard tables.
+    /// The computation with slips, made in the order of [`Slip`]; `None` if it cannot be computed: the lecture's
+    /// formulas are of standard tables.
     pub(crate) fn with(robot: &Robot, slips: &[Slip]) -> Option<Self> {
         let mut this = Self::right(robot);
         let mut slips = slips.to_vec();
@@ -76,7 +76,7 @@ impl Computation {
         self.scales = [factor, if all { factor } else { 1.0 }];
     }
 
-    /// Adds the constant part of each joint's variable so many times.
+    /// Adds a multiple of the constant part to each joint's variable.
     pub(crate) fn offset(&mut self, times: f64) {
         self.offsets = times;
     }

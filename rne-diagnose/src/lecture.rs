@@ -1,4 +1,4 @@
-//! The seven steps as the slides of lecture 38 write them, with every slip of the transcript where it stands.
+//! The seven steps as the slides of lecture 38 write them, with every slip of the transcript at its place.
 //!
 //! Frame i sits on the axis of joint i and is fixed to link i-1; the vectors of link i are written in it, so e_i is
 //! always (0, 0, 1), and a_i, d_i, r_i and I_i are computed again at every angle:

@@ -62,7 +62,7 @@ misprints! {
 }
 
 impl Misprint {
-    /// Those that change torques; step 3, the velocity, is used by none.
+    /// The misprints that change torques; no torque uses step 3, the velocity.
     pub const IN_TORQUES: [Self; 15] = [
         Self::NoGyroscopicMoment,
         Self::CoriolisOnce,

@@ -17,7 +17,7 @@ pub struct Observation {
     pub wrench: Option<Wrench<f64>>,
     /// The torques in question.
     pub tau: Vec<f64>,
-    /// How far a torque may be off for it to count as the same: half of its last digit, at least. Rounding, 1e-9 of the
+    /// Largest deviation of a torque that counts as equal: half of its last digit, at least. Rounding, 1e-9 of the
     /// largest torque, is added to it.
     pub resolution: Vec<f64>,
 }
@@ -33,7 +33,7 @@ impl Observation {
         pairs.map(|((a, b), own)| (a - b).abs() - own).all(|excess| excess <= rounding)
     }
 
-    /// The largest difference from the torques, relative to the largest torque; infinite where a torque is none.
+    /// The largest difference from the torques, relative to the largest torque; infinite if a torque is not a number.
     pub(crate) fn error(&self, tau: &[f64]) -> f64 {
         if tau.iter().any(|tau| !tau.is_finite()) {
             return f64::INFINITY;

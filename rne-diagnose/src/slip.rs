@@ -207,14 +207,14 @@ fn each_link(robot: &mut Robot, change: impl Fn(&mut Link)) {
     robot.joints.iter_mut().for_each(|joint| change(&mut joint.row.link));
 }
 
-/// The inertia with m (c² 1 - c cᵀ) added, so many times.
+/// The inertia with a multiple of m (c² 1 - c cᵀ) added.
 fn shifted(link: &Link, times: f64) -> Inertia {
     let (c, own) = (Vector3::from(link.com), Matrix3::from(link.inertia.rows()));
     let j = own + (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * (link.mass * times);
     Inertia { xx: j[(0, 0)], yy: j[(1, 1)], zz: j[(2, 2)], xy: j[(0, 1)], xz: j[(0, 2)], yz: j[(1, 2)] }
 }
 
-/// Moves each centre of mass by the way to the other end of its link, so many times. Where a joint slides there, or
+/// Moves each centre of mass by a multiple of the vector to the other end of its link. Where a joint slides there, or
 /// there is no joint, the link has no other end.
 fn move_com(robot: &mut Robot, times: f64) {
     let rows: Vec<_> = robot.rows().map(|row| (row.kind, row.dh)).collect();
@@ -345,7 +345,9 @@ impl Slip {
             Self::NoFirstSlide => {
                 "known of the C code of the Robotics Toolbox for MATLAB; its MATLAB code is right".to_owned()
             }
-            Self::RotorInertia => "the file's links alone; with rotors: `--rotors`, `#[robot(rotors)]`".to_owned(),
+            Self::RotorInertia => {
+                "the file's links alone; the rotors of its motors are added only where they are asked for".to_owned()
+            }
             Self::MotorTorques => "the joints' torques alone; the motors' are `actuator_torques`".to_owned(),
             Self::WrenchReversed => {
                 "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w".to_owned()

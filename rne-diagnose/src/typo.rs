@@ -2,7 +2,7 @@
 
 use rne_model::{Angle, JointKind, Robot};
 
-/// One number of the table with the other sign. Joints count from 0, axes are 0 to 2 for x, y, z.
+/// A number of the table with the other sign. Joints count from 0, axes are 0 to 2 for x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Typo {
     /// `alpha` of a row.
@@ -54,7 +54,7 @@ impl Typo {
         }
     }
 
-    /// Which number it is, and what it is in the file.
+    /// The name of the number, its value in the file and its unit.
     fn number(self, robot: &Robot) -> (String, f64, &'static str) {
         let of_row = |key: &str| {
             let kind = robot.rows().nth(self.joint()).map_or(JointKind::Revolute, |row| row.kind);

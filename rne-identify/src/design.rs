@@ -26,7 +26,7 @@ const NOISE_OF_LIMIT: f64 = 0.01;
 const NOISE_OF_EFFORT: f64 = 0.05;
 /// Squares of singular values that are less than this part of the largest one are rounding.
 const ROUNDING: f64 = 1e-13;
-/// N m or N: noise is no less.
+/// Smallest noise of a torque that is assumed, N m or N.
 const SMALLEST: f64 = 1e-6;
 
 /// The equations of a robot along motions.
@@ -46,8 +46,7 @@ pub(crate) struct Design {
 type Rows = Vec<DMatrix<f64>>;
 
 impl Design {
-    /// Rows are weighted by one over the effort limits, as if noise were so large, where every joint has one; else all
-    /// are equal.
+    /// Weights the rows of each joint by one over its effort limit if every joint has one, otherwise all alike.
     pub(crate) fn new(robot: &Robot, limits: &[MotionLimits], harmonics: usize, friction: bool, rotors: bool) -> Self {
         let options =
             Options { friction, rotors, delay: false, cutoff: None, widths: vec![WIDTH], displacements: Vec::new() };
@@ -67,7 +66,7 @@ impl Design {
         &self.structure
     }
 
-    /// How many instants have rows.
+    /// Number of instants that have rows.
     pub(crate) fn instants(&self) -> usize {
         self.grid.points()
     }

@@ -18,20 +18,20 @@ use crate::identification::UNKNOWN;
 use crate::motion_limits::MotionLimits;
 use crate::random::Random;
 
-/// So often a search begins anew, with so many evaluations at least.
+/// Number of times that a search begins anew, with at least `ROUND` evaluations each.
 const ROUNDS: u64 = 5;
 const ROUND: u64 = 500;
-/// One of so many evaluations is a random start.
+/// One of this many evaluations is a random start.
 const STARTS: u64 = 10;
 /// Deviation of the first change, of coefficients of order one.
 const FIRST: f64 = 0.3;
 /// The change after a success and, four of which undo it, after a failure.
 const GROWTH: f64 = 1.5;
 const DECAY: f64 = 0.903_602_003_6;
-/// Changes are no smaller.
+/// Smallest change of a coefficient.
 const SMALLEST: f64 = 1e-4;
 
-/// How a motion is looked for.
+/// Options of the search for a motion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ExcitationOptions {
@@ -39,13 +39,13 @@ pub struct ExcitationOptions {
     pub period: f64,
     /// Harmonics of each joint's series, 2 or more.
     pub harmonics: usize,
-    /// How many motions are tried.
+    /// Number of motions that are tried.
     pub evaluations: u64,
     /// The seed of the random numbers.
     pub seed: u64,
     /// Whether friction is among the unknowns.
     pub friction: bool,
-    /// Whether the inertia of rotors is.
+    /// Whether the inertia of rotors is among the unknowns.
     pub rotors: bool,
 }
 
@@ -55,7 +55,7 @@ impl Default for ExcitationOptions {
     }
 }
 
-/// How far a search is.
+/// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ExcitationProgress {
@@ -63,7 +63,7 @@ pub struct ExcitationProgress {
     pub evaluations: u64,
     /// The condition number of the best of them; infinite before one is within the effort limits.
     pub condition: f64,
-    /// How many base parameters it would excite.
+    /// Number of base parameters that it would excite.
     pub excited: usize,
 }
 
@@ -77,10 +77,10 @@ pub struct Excitation {
     /// first random start, or, where that was beyond them, whichever came first. The search computes it of products of
     /// the columns, exact to half the digits.
     pub first_condition: f64,
-    /// That of the motion: largest over smallest singular value of the columns, each of length one, of base parameters
-    /// and friction. Rows of a joint are divided by its effort limit where every joint has one.
+    /// Condition number of the motion: largest over smallest singular value of the columns, each of length one, of base
+    /// parameters and friction. Rows of a joint are divided by its effort limit where every joint has one.
     pub condition: f64,
-    /// How many instants of a period have rows, evenly from its start on.
+    /// Number of instants of a period that have rows, evenly from its start on.
     pub instants: usize,
     /// The use that each joint makes of its limits.
     pub joints: Vec<JointUse>,
@@ -96,7 +96,7 @@ pub struct Excitation {
 pub struct JointUse {
     /// The limits.
     pub limits: MotionLimits,
-    /// Where the motion starts and ends, rad or m.
+    /// Position in which the motion starts and ends, rad or m.
     pub start: f64,
     /// Bounds of the whole motion.
     pub bounds: MotionBounds,
@@ -104,7 +104,7 @@ pub struct JointUse {
     pub effort: Option<f64>,
 }
 
-/// How well a base parameter would be known.
+/// Precision with which a log of the motion would determine a base parameter.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BaseExcitation {
@@ -130,7 +130,7 @@ impl BaseExcitation {
     }
 }
 
-/// How bad a motion is: first by what is beyond effort limits.
+/// Rank of a motion: first by how far it is beyond effort limits.
 ///
 /// Columns of length one tell nothing of how large they are: of a motion that hardly moves they may be as good. So the
 /// condition number is multiplied by what the motion falls short of exciting everything, the geometric mean over the
@@ -161,7 +161,7 @@ struct Tried {
     point: Point,
     motion: Fourier,
     score: Score,
-    /// None where it is beyond the effort limits.
+    /// Absent if the motion is beyond the effort limits.
     quality: Option<Quality>,
 }
 

@@ -25,19 +25,19 @@ pub enum ExcitationError {
     NotPositive(&'static str),
     /// A sliding joint has no limits.
     NoPosition {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
     },
     /// Limits of the file leave a joint no room to move.
     NoRoom {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
-        /// Which limits.
+        /// The kind of limits: `position`, `velocity` or `effort`.
         what: &'static str,
     },
     /// No motion was found within the effort limit of a joint.
     Effort {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
         /// N m or N, of the motion that came nearest.
         needed: f64,
@@ -51,7 +51,7 @@ pub enum ExcitationError {
 }
 
 impl ExcitationError {
-    /// Whether what was asked is at fault, not the robot file.
+    /// Whether the request is at fault, not the robot file.
     #[must_use]
     pub fn is_of_request(&self) -> bool {
         matches!(self, Self::Period | Self::Harmonics | Self::Length { .. } | Self::NotPositive(_))
@@ -64,19 +64,19 @@ impl fmt::Display for ExcitationError {
             Self::Period => f.write_str("a period is a number of seconds above 0"),
             Self::Harmonics => f.write_str("a motion from rest to rest takes 2 harmonics or more"),
             Self::Length { what, found, joints } => {
-                write!(f, "--{what} has {found} numbers, and the robot {joints} joints; one number is for all of them")
+                write!(f, "{what} has {found} numbers, and the robot {joints} joints; one number is for all of them")
             }
-            Self::NotPositive(what) => write!(f, "--{what} takes finite numbers above 0"),
+            Self::NotPositive(what) => write!(f, "{what} takes finite numbers above 0"),
             Self::NoPosition { joint } => write!(
                 f,
                 "{joint} slides and has no position limits; write `limits: {{position: [LOWER, UPPER]}}` (m) in the \
-                 robot file, or give --range"
+                 robot file, or give a range"
             ),
             Self::NoRoom { joint, what } => write!(f, "the {what} limits of {joint} leave it no room to move"),
             Self::Effort { joint, needed, limit } => write!(
                 f,
                 "no motion was found within the effort limits: {joint} would need {needed:.3} of {limit:.3}; a slower \
-                 one, by --seconds, --velocity or --acceleration, needs less, or a smaller --range"
+                 or smaller motion needs less"
             ),
             Self::Indistinct => f.write_str(
                 "no motion was found that tells the base parameters from each other: the limits are too narrow, or \

@@ -140,16 +140,7 @@ impl Problem {
         let priors = prior::links(&structure.robot);
         let mut scale = DVector::from_element(map.ncols(), 1.0);
         for (link, prior) in priors.iter().enumerate() {
-            let mass = prior.pseudo_inertia[(3, 3)];
-            let size = (prior.pseudo_inertia.fixed_view::<3, 3>(0, 0).trace() / mass).sqrt();
-            for index in 0..PER_LINK {
-                let power = match index {
-                    0 => 0,
-                    1..=3 => 1,
-                    _ => 2,
-                };
-                scale[link * PER_LINK + index] = mass * size.powi(power);
-            }
+            scale.as_mut_slice()[link * PER_LINK..][..PER_LINK].copy_from_slice(&prior.scales());
         }
         let mut expected = Vec::with_capacity(positive);
         for joint in 0..of_rotors {

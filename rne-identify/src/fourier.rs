@@ -60,7 +60,7 @@ impl Grid {
         Self((0..points).map(|point| Scalar::sin_cos(angle(point))).collect())
     }
 
-    /// On which a series of so many harmonics has its extremes, but for [`beyond`].
+    /// Grid on which a series of this number of harmonics has its extremes, but for [`beyond`].
     pub(crate) fn dense(harmonics: usize) -> Self {
         Self::new(DENSE * harmonics)
     }
@@ -159,7 +159,7 @@ impl Fourier {
         &self.joints
     }
 
-    /// Positions, velocities and accelerations of all joints after so many periods, which need not be whole.
+    /// Positions, velocities and accelerations of all joints after a number of periods, which need not be whole.
     #[must_use]
     pub fn after(&self, periods: f64) -> [Vec<f64>; 3] {
         let frequency = TAU / self.period;

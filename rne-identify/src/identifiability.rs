@@ -1,4 +1,4 @@
-//! Which inertial parameters the torques can see, exactly.
+//! The inertial parameters that the torques can see, computed exactly.
 //!
 //! The regressor is written as the compiler writes any function, and its graph is evaluated at random points of two
 //! prime fields: sines and cosines are random points of the circle there, and nothing is rounded. The rows that a point
@@ -21,24 +21,24 @@ const ORDER: [usize; PARAMETERS] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
 /// Points that must not add to the rank before it is believed; one would do.
 const IDLE: usize = 2;
 
-/// Regrouped parameters count as so many whole numbers, at most.
+/// Largest factor of a regrouped parameter that counts as a whole number.
 const LARGEST_WHOLE: i32 = 8;
 
 /// A parameter that torques may depend on linearly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Parameter {
-    /// Of a link, both counted from 0: the place in (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz), about the
-    /// origin of the link frame.
+    /// A parameter of a link, both counted from 0: the place in (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz),
+    /// about the origin of the link frame.
     Link(usize, usize),
     /// The inertia of a rotor, at its joint, counted from 0.
     Rotor(usize),
 }
 
-/// What the torques see of a parameter.
+/// Effect of a parameter on the torques.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Visibility {
-    /// It stands for a base parameter.
+    /// The parameter represents a base parameter.
     Kept,
     /// It is a part of these base parameters, each given by its place among [`Identifiability::kept`]; with its factor
     /// where that is a small whole number.
@@ -47,7 +47,7 @@ pub enum Visibility {
     WithoutEffect,
 }
 
-/// Which parameters of a robot's links and rotors the torques can see.
+/// Effect of each parameter of a robot's links and rotors on the torques.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Identifiability {
@@ -56,7 +56,7 @@ pub struct Identifiability {
 }
 
 impl Identifiability {
-    /// The parameters that stand for base parameters: as many as the regressor has rank.
+    /// The parameters that represent base parameters: as many as the rank of the regressor.
     #[must_use]
     pub fn kept(&self) -> Vec<Parameter> {
         let kept = self.parameters.iter().filter(|(_, visibility)| *visibility == Visibility::Kept);

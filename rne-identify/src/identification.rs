@@ -1,4 +1,4 @@
-//! From a geometry and logs to a robot: passes over the logs, the fit, the bodies, and what is said of them.
+//! From a geometry and logs to a robot: passes over the logs, the fit, the bodies, and the report on them.
 
 use std::ops::Range;
 
@@ -33,13 +33,13 @@ const NOISE: f64 = 0.5;
 /// change.
 const UNEXPLAINED: Range<f64> = 0.9..10.0;
 
-/// N m or N: efforts of which none is larger are no torques.
+/// Efforts that are all smaller than this, in N m or N, are not torques.
 const LEAST_EFFORT: f64 = 1e-9;
 
 /// Digits of what is written.
 const DIGITS: i32 = 8;
 
-/// A robot that was identified, with everything that is said of it.
+/// A robot that was identified, with the report on it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Identification {
@@ -55,7 +55,7 @@ pub struct Identification {
     pub bases: Vec<BaseReport>,
     /// Every joint.
     pub joints: Vec<JointReport>,
-    /// How much the torques lag behind the positions, s, with its deviation.
+    /// Delay of the torques against the positions, s, with its deviation.
     pub delay: Option<(f64, f64)>,
     /// States that were read, and rows of each joint that were made of them.
     pub states: u64,
@@ -98,9 +98,9 @@ impl BaseReport {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointReport {
-    /// Noise behind the filter, N m or N.
+    /// Noise after the filter, N m or N.
     pub noise: f64,
-    /// Effort behind the filter, root mean square, N m or N; at least 1e-6.
+    /// Effort after the filter, root mean square, N m or N; at least 1e-6.
     pub effort: f64,
     /// Rows so far from all others that they do not count: of a push, of a sensor that failed.
     pub rejected: Option<Rejected>,
@@ -111,7 +111,7 @@ pub struct JointReport {
     /// The lesser deviation of the two of Coulomb friction over the joint's effort, root mean square: below 0.5
     /// friction counts as excited; else the robot has that of the file. Infinite without friction.
     pub friction_uncertainty: f64,
-    /// How Coulomb friction changes its sign.
+    /// Transition of Coulomb friction between its two signs.
     pub transition: Option<FrictionTransition>,
     /// An offset that least squares find to be larger than Coulomb friction, and the latter, N m or N: a spring, a
     /// counterweight, a sensor. A robot file holds as much of it as there is Coulomb friction, and nothing of the rest.

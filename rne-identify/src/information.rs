@@ -30,7 +30,7 @@ const WINDOW: usize = 2048;
 /// Segments of time that are kept apart, at most; beyond that neighbours merge.
 const SEGMENTS: usize = 64;
 
-/// A segment lasts so many widths of the filter at least; without filter it has so many states.
+/// Shortest segment, in widths of the filter; without a filter, in states.
 const LENGTH: f64 = 20.0;
 const STATES_UNFILTERED: u64 = 64;
 
@@ -59,7 +59,7 @@ pub struct Information {
     pub(crate) rejected: Vec<Option<Rejected>>,
 }
 
-/// Why a motion says nothing of a robot.
+/// The reason why a motion gives no information on a robot.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MotionError {
@@ -80,7 +80,7 @@ pub enum MotionError {
     TooFew {
         /// Rows of each joint.
         rows: u64,
-        /// How many are needed.
+        /// The number of states that are needed.
         needed: u64,
         /// s, of the motions together.
         duration: f64,
@@ -180,25 +180,25 @@ impl Information {
         self.length == UNORDERED
     }
 
-    /// How many states it has read.
+    /// Number of states that were read.
     #[must_use]
     pub fn states(&self) -> u64 {
         self.states
     }
 
-    /// How many rows it has of each joint.
+    /// Number of rows of each joint.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.segments.iter().filter_map(|segment| Some(segment.first()?.rows())).sum()
     }
 
-    /// How long the motions were, s.
+    /// Duration of the motions, s.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// How many numbers it keeps, whatever the logs were: what its memory is proportional to.
+    /// Number of numbers that are kept, whatever the length of the logs: memory is proportional to it.
     #[must_use]
     pub fn size(&self) -> usize {
         self.segments.iter().flatten().map(|factor| factor.columns() * factor.columns()).sum()
@@ -249,7 +249,7 @@ impl Information {
         self.compress();
     }
 
-    /// How large unknowns are, where efforts are as large as in the logs.
+    /// Magnitudes of the unknowns for efforts as large as in the logs.
     #[must_use]
     pub fn scales(&self, structure: &Structure) -> Scales {
         let efforts: Vec<f64> = self.total(structure).iter().map(effort).collect();

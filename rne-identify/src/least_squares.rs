@@ -18,10 +18,11 @@ const LEAST_NOISE: f64 = 1e-12;
 /// which is as small, they would outweigh all other joints.
 const NOT_MEASURED: f64 = 1e-8;
 
-/// Rows of joints tell deviations where there are so many times as many as unknowns.
+/// Rows of joints give deviations if there are this many times as many as unknowns.
 const ENOUGH: usize = 2;
 
-/// An offset is larger than Coulomb friction by so many deviations, and by that part of the effort, root mean square.
+/// An offset counts if it exceeds Coulomb friction by this number of deviations, and by this part of the effort, root
+/// mean square.
 const BEYOND: [f64; 2] = [4.0, 0.02];
 
 /// The least-squares estimate of the unknowns.
@@ -166,9 +167,9 @@ impl LeastSquares {
     }
 }
 
-/// Errors behind the filter depend on each other across the ends of segments, too: white noise behind a Gaussian
-/// kernel of width σ has the correlation exp(-t²/4σ²), of which segments of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ
-/// times ∫ exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
+/// Errors after the filter are correlated across the ends of segments, too: white noise after a Gaussian kernel of
+/// width σ has the correlation exp(-t²/4σ²), of which segments of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ times ∫
+/// exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
 const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 
 /// The quantile 0.975 of Student's t, by Cornish and Fisher's expansion: to 0.002 from five degrees of freedom on.

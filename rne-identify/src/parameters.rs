@@ -19,14 +19,14 @@ const STATES: usize = 60;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Base {
-    /// The parameter that stands for it.
+    /// The parameter that represents it.
     pub kept: Parameter,
     /// The parameters that are regrouped into it, with factors.
     pub regrouped: Vec<(f64, Parameter)>,
 }
 
 impl Base {
-    /// The name of the parameter that stands for it, joints counted from 1: `Jzz2`, `Jm3`.
+    /// The name of the parameter that represents it, joints counted from 1: `Jzz2`, `Jm3`.
     #[must_use]
     pub fn name(&self) -> String {
         name(self.kept)
@@ -49,7 +49,7 @@ impl Base {
 /// The base parameters of a robot's geometry, and the map to them from the parameters of its links and rotors.
 #[derive(Clone, Debug)]
 pub struct Parameters {
-    /// One per independent column of the regressor, base to tip, then rotors.
+    /// Base parameters, one for each independent column of the regressor, base to tip, then rotors.
     pub bases: Vec<Base>,
     /// Rank × (10 · links + rotors): base parameters of link parameters, link by link as (m, m cx, m cy, m cz, Jxx,
     /// Jxy, Jxz, Jyy, Jyz, Jzz), then the rotors'.
@@ -106,7 +106,7 @@ impl Parameters {
         Self { bases, regrouping, rotors }
     }
 
-    /// How many base parameters there are.
+    /// Number of base parameters.
     #[must_use]
     pub fn rank(&self) -> usize {
         self.bases.len()

@@ -14,7 +14,7 @@ const WINDOW: usize = 4096;
 /// Speeds, rad/s or m/s, that part errors: standing still, creeping, slow, fast.
 pub const SPEEDS: [f64; 3] = [0.02, 0.1, 0.5];
 
-/// Torques of a robot file, held against those of logs in memory that does not grow with them.
+/// Comparison of the torques of a robot file with those of logs, in memory that does not grow with them.
 #[derive(Clone, Debug)]
 pub struct Prediction {
     robot: Robot,
@@ -23,7 +23,7 @@ pub struct Prediction {
     sums: Vec<Sums>,
 }
 
-/// How far predicted torques of a joint are from measured ones.
+/// Differences between the predicted and measured torques of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointError {
@@ -35,13 +35,13 @@ pub struct JointError {
     pub unfiltered: f64,
     /// The error of unfiltered predictions against efforts as the log is read, after its own filter, which is wider.
     pub as_read: f64,
-    /// Root mean square of measured minus predicted behind the low-pass, N m or N.
+    /// Root mean square of measured minus predicted torques after the low-pass, N m or N.
     pub residual: f64,
     /// Deviation of the measured effort, N m or N.
     pub deviation: f64,
     /// Root mean square of what is left at speeds up to each of [`SPEEDS`], and above; NaN where the joint was at none.
     pub by_speed: [f64; 4],
-    /// How many states.
+    /// Number of states.
     pub states: u64,
 }
 
@@ -65,7 +65,7 @@ struct Deviation {
     squares: f64,
 }
 
-/// Measured and predicted torques behind the low-pass, by joint, and the speed.
+/// Measured and predicted torques after the low-pass, by joint, and the speed.
 type Pairs = Vec<Vec<(f64, f64)>>;
 
 impl Prediction {
@@ -97,7 +97,7 @@ impl Prediction {
         Ok(torques)
     }
 
-    /// Measured and predicted torques of a motion behind the low-pass, joint by joint.
+    /// Measured and predicted torques of a motion after the low-pass, joint by joint.
     ///
     /// # Errors
     /// When the motion is of another robot.
@@ -141,7 +141,7 @@ impl Prediction {
         Ok(())
     }
 
-    /// The states about which the whole kernel finds samples; all, where there are none.
+    /// The states about which the whole kernel finds samples; all states if there are no such states.
     fn inner(&self, time: &[f64]) -> std::ops::Range<usize> {
         let reach = self.cutoff.map_or(0.0, |cutoff| Kernel::of_cutoff(cutoff).reach());
         let (Some(first), Some(last)) = (time.first(), time.last()) else { return 0..0 };
@@ -175,7 +175,7 @@ pub fn prediction_errors<'a>(
 }
 
 impl Deviation {
-    /// The number of so many, by B. P. Welford, Technometrics 4, 1962.
+    /// Takes number `count` into the deviation, by B. P. Welford, Technometrics 4, 1962.
     #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³ states
     fn take(&mut self, number: f64, count: u64) {
         let from = number - self.mean;

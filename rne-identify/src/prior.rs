@@ -11,7 +11,7 @@ use crate::structure::{FRICTION, Structure};
 const MASS: f64 = 3.0;
 /// m: as thick as links are.
 const RADIUS: f64 = 0.06;
-/// Unknowns are kept finite by knowing them to so many times their scale.
+/// Deviation of the prior knowledge that keeps unknowns finite, in multiples of their scale.
 const PRIOR_DEVIATIONS: f64 = 30.0;
 /// s: no torque lags more.
 const DELAY: f64 = 0.05;
@@ -23,6 +23,14 @@ pub struct PriorLink {
     pub pseudo_inertia: Matrix4<f64>,
     /// Whether it is the file's, and no guess.
     pub is_of_file: bool,
+}
+
+impl PriorLink {
+    /// Magnitudes of the ten inertial parameters: products of the mass with powers of the radius of gyration.
+    pub(crate) fn scales(&self) -> [f64; PER_LINK] {
+        let (size, mass) = (size(&self.pseudo_inertia), self.pseudo_inertia[(3, 3)]);
+        [0, 1, 1, 1, 2, 2, 2, 2, 2, 2].map(|power| mass * size.powi(power))
+    }
 }
 
 /// The links of a robot as they are supposed to be, all of them bodies.
@@ -87,7 +95,7 @@ fn span(robot: &Robot, joint: usize) -> Vector3<f64> {
     }
 }
 
-/// How large unknowns are, in orders of magnitude.
+/// Orders of magnitude of the unknowns.
 #[derive(Clone, Debug)]
 pub struct Scales {
     /// The magnitude of each base parameter for plausible links.
@@ -103,16 +111,7 @@ impl Scales {
         let links = links(robot);
         let mut values = DVector::zeros(parameters.regrouping.ncols());
         for (link, prior) in links.iter().enumerate() {
-            let size = size(&prior.pseudo_inertia);
-            let mass = prior.pseudo_inertia[(3, 3)];
-            for index in 0..PER_LINK {
-                let power = match index {
-                    0 => 0,
-                    1..=3 => 1,
-                    _ => 2,
-                };
-                values[link * PER_LINK + index] = mass * size.powi(power);
-            }
+            values.as_mut_slice()[link * PER_LINK..][..PER_LINK].copy_from_slice(&prior.scales());
         }
         if parameters.rotors {
             for joint in 0..robot.dof() {

@@ -50,13 +50,13 @@ impl RFactor {
         (0..columns).flat_map(move |row| (row..columns).map(move |column| self.triangle[(row, column)]))
     }
 
-    /// How many numbers a row has.
+    /// Number of columns.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.triangle.ncols()
     }
 
-    /// How many rows it has absorbed.
+    /// Number of rows that were absorbed.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.rows

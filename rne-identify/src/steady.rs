@@ -5,14 +5,16 @@
 //! to be far off any more. Segments of time are kept apart anyway: those that stand out from the others count less
 //! until the others agree, which takes no other pass over the logs. From there on rows are told from each other.
 
+use rne_logs::median;
+
 use crate::information::Information;
 use crate::least_squares::{LeastSquares, effort};
 use crate::r_factor::RFactor;
 use crate::structure::Structure;
 
-/// A segment stands out where its residual is so many times the median one of its joint.
+/// A segment is an outlier if its residual is this many times the median of its joint.
 const SUSPECT: f64 = 7.0;
-/// A segment with more than so many times the median counts less.
+/// A segment whose residual is above this many times the median counts less.
 const BEND: f64 = 2.0;
 const ROUNDS: usize = 10;
 /// Weights that change by less have settled.
@@ -23,7 +25,7 @@ const ROUNDING: f64 = 1e-6;
 /// The fit of the segments that agree with each other, where others stand out from them; `None` where none does.
 pub(crate) fn steady(structure: &Structure, information: &Information, fit: &LeastSquares) -> Option<LeastSquares> {
     let before = residuals(structure, information, fit);
-    let is_suspect = |of_joint: &Vec<f64>| of_joint.iter().any(|left| *left > SUSPECT * median(of_joint));
+    let is_suspect = |of_joint: &Vec<f64>| of_joint.iter().any(|left| *left > SUSPECT * median(of_joint.clone()));
     if !before.iter().any(is_suspect) {
         return None;
     }
@@ -67,15 +69,8 @@ fn residuals(structure: &Structure, information: &Information, fit: &LeastSquare
 
 fn weights(residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let of_joint = |of_joint: &Vec<f64>| {
-        let most = BEND * median(of_joint);
+        let most = BEND * median(of_joint.clone());
         of_joint.iter().map(|left| if *left > most { (most / left).powi(2) } else { 1.0 }).collect()
     };
     residuals.iter().map(of_joint).collect()
-}
-
-/// The median of at least one number; the lower one of two in the middle.
-fn median(of: &[f64]) -> f64 {
-    let mut sorted = of.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len().saturating_sub(1) / 2).copied().unwrap_or_default()
 }

@@ -17,7 +17,7 @@ pub struct Options {
     /// Inertia of rotors behind their gears. Without, the rotors of the file are known, and their torque is not that of
     /// links.
     pub rotors: bool,
-    /// How much the torques lag behind the positions.
+    /// Whether the delay of the torques against the positions is an unknown.
     pub delay: bool,
     /// Hz: what both sides of the equations of motion pass; `None`: nothing is filtered.
     pub cutoff: Option<f64>,
@@ -44,7 +44,7 @@ impl Options {
         Kernel::of_cutoff(cutoff).reach()
     }
 
-    /// How Coulomb friction may change its sign; at once, where no way was offered.
+    /// The ways in which Coulomb friction may change its sign; a step, if no way was offered.
     #[must_use]
     pub fn transitions(&self) -> Vec<FrictionTransition> {
         let widths = self.widths.iter().map(|width| FrictionTransition::Speed(*width));
@@ -174,7 +174,7 @@ impl Structure {
         }
     }
 
-    /// How many unknowns there are: base parameters, friction joint by joint, the delay.
+    /// Number of unknowns: base parameters, friction joint by joint, the delay.
     pub(crate) fn count(&self) -> usize {
         let friction = if self.options.friction { FRICTION * self.dof() } else { 0 };
         self.parameters.rank() + friction + usize::from(self.options.delay)

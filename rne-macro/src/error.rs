@@ -60,8 +60,15 @@ pub(crate) fn describe(mut report: Report) -> String {
     } else {
         "robot file"
     };
+    let report = report.worded(|remedy| match remedy {
+        rne_model::Remedy::ImportUrdf { file } => {
+            let file = file.as_deref().unwrap_or("FILE");
+            Some(format!("`rne import {file} -o robot.yaml` makes a robot file of a URDF"))
+        }
+        _ => None,
+    });
     let report = match (what, robot_of(Path::new(&report.name))) {
-        ("plan of this robot", Some(robot)) => report.with_remedy(&format!(
+        ("plan of this robot", Some(robot)) => report.with_help(&format!(
             "`rne search {} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a build \
              chooses by itself",
             robot.display()

@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use std::{env, fmt, fs, io};
 
 use proc_macro2::Span;
-use rne_model::{did_you_mean, golden_of, misnamed_golden_of, plan_of, read_file};
+use rne_model::{golden_of, misnamed_golden_of, no_shipped_robot, plan_of, read_file};
 use syn::LitStr;
 
 /// A robot file that has been read.
@@ -128,10 +128,7 @@ fn beside(file: &RobotFile, name: fn(&Path) -> PathBuf) -> Result<Option<RobotFi
 pub(crate) fn shipped(name: &str) -> Result<(RobotFile, Option<RobotFile>), String> {
     let Some(robot) = rne_robots::find(name) else {
         let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
-        let near = names.iter().find(|known| known.starts_with(name) && !name.is_empty()).copied();
-        let near = near.or_else(|| did_you_mean(name, names.iter().copied()));
-        let meant = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-        return Err(format!("there is no shipped robot `{name}`{meant}\nthere are {}", names.join(", ")));
+        return Err(no_shipped_robot(name, &names));
     };
     let file = |extension: &str, text: &str| RobotFile {
         absolute: None,

@@ -13,7 +13,7 @@ use crate::document::{Content, Entry, Node, Scalar, Style};
 use crate::expression::{Expression, Meaning, Names};
 use crate::keys::Mapping;
 use crate::quantity::Quantity;
-use crate::source::{inside, one_line, quoted, rounded};
+use crate::source::{inside, one_line, quoted, six_digits};
 use crate::spelling::{LONGEST_WORD, did_you_mean};
 
 /// Reads a mapping by a table of its keys, one line each:
@@ -179,7 +179,7 @@ impl<'t> Context<'t> {
         let raw = self.raw(node);
         match raw.parse::<f64>() {
             Ok(_) => quoted(raw),
-            Err(_) => format!("{} = {}", quoted(raw), rounded(value)),
+            Err(_) => format!("{} = {}", quoted(raw), six_digits(value)),
         }
     }
 }

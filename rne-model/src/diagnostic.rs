@@ -5,6 +5,29 @@ use std::ops::Range;
 
 use crate::render;
 
+/// A choice of the caller that helps against a mistake: each door says it in its own words, as an option of the command
+/// line or a keyword of Python.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// A URDF was read as a robot file and must be imported.
+    ImportUrdf {
+        /// The file, where messages name one.
+        file: Option<String>,
+    },
+    /// The tree of a URDF has several ends: the link at the tip must be named.
+    NameTip,
+    /// A joint of a URDF can be held still by its name.
+    LockJoint {
+        /// The name of the joint.
+        joint: String,
+    },
+    /// The movable joints off the chain can be held still, each by its name or all at zero.
+    LockOthers,
+    /// A body whose inertia no physical body has can be kept.
+    KeepUnphysical,
+}
+
 /// How grave a [`Diagnostic`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
@@ -34,14 +57,17 @@ pub struct Diagnostic {
     pub line: usize,
     /// Column of the first byte of `span`, from 1, in characters.
     pub column: usize,
-    /// The remedy.
+    /// The remedy in words that hold for every door.
     pub help: Option<String>,
+    /// The choice of the caller that helps: [`Report::worded`] adds it to the help.
+    pub remedy: Option<Box<Remedy>>,
 }
 
 impl Diagnostic {
     /// An error. Line and column follow from the span when the report is finished.
     pub(crate) fn error(span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, message: message.into(), label: None, span, line: 1, column: 1, help: None }
+        let (label, help, remedy) = (None, None, None);
+        Self { severity: Severity::Error, message: message.into(), label, span, line: 1, column: 1, help, remedy }
     }
 
     /// A warning.
@@ -62,8 +88,22 @@ impl Diagnostic {
         Self { help: Some(help.into()), ..self }
     }
 
+    pub(crate) fn remedy(self, remedy: Remedy) -> Self {
+        Self { remedy: Some(Box::new(remedy)), ..self }
+    }
+
     pub(crate) fn maybe_help(self, help: Option<String>) -> Self {
         Self { help: help.or(self.help), ..self }
+    }
+
+    /// Adds a sentence to the help, before a list.
+    fn add_help(&mut self, words: &str) {
+        self.help = Some(match self.help.take() {
+            Some(question) if question.ends_with('?') => format!("{question} {words}"),
+            Some(list) if list.contains('\n') => format!("{words}; {list}"),
+            Some(help) => format!("{help}; {words}"),
+            None => words.to_owned(),
+        });
     }
 }
 
@@ -95,16 +135,31 @@ impl Report {
         problems.finish(name, text)
     }
 
-    /// Adds a remedy to the help of each diagnostic.
+    /// Gives each diagnostic a remedy.
     #[must_use]
-    pub fn with_remedy(mut self, remedy: &str) -> Self {
+    pub fn with_remedy(mut self, remedy: &Remedy) -> Self {
         for found in &mut self.diagnostics {
-            found.help = Some(match found.help.take() {
-                Some(question) if question.ends_with('?') => format!("{question} {remedy}"),
-                Some(help) => format!("{help}; {remedy}"),
-                None => remedy.to_owned(),
-            });
+            found.remedy = Some(Box::new(remedy.clone()));
         }
+        self
+    }
+
+    /// Adds each remedy to its help, in the words of a door.
+    #[must_use]
+    pub fn worded(mut self, words: impl Fn(&Remedy) -> Option<String>) -> Self {
+        for found in &mut self.diagnostics {
+            if let Some(words) = found.remedy.as_deref().and_then(&words) {
+                found.add_help(&words);
+                found.remedy = None;
+            }
+        }
+        self
+    }
+
+    /// Adds a sentence to the help of each diagnostic.
+    #[must_use]
+    pub fn with_help(mut self, help: &str) -> Self {
+        self.diagnostics.iter_mut().for_each(|found| found.add_help(help));
         self
     }
 

@@ -97,7 +97,7 @@ pub use check::{Checked, Reader};
 #[cfg(feature = "std")]
 pub use data_file::{MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
-pub use diagnostic::{Diagnostic, Report, Severity};
+pub use diagnostic::{Diagnostic, Remedy, Report, Severity};
 #[cfg(feature = "std")]
 pub use double::{Double, decimal_digits};
 #[cfg(feature = "std")]
@@ -115,8 +115,8 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
-pub use source::{is_control, one_line};
+pub use source::{exact_digits, is_control, one_line, six_digits};
 #[cfg(feature = "std")]
-pub use spelling::did_you_mean;
+pub use spelling::{did_you_mean, nearest_name, no_shipped_robot};
 #[cfg(feature = "std")]
 pub use urdf::is_urdf;

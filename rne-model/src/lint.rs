@@ -13,7 +13,7 @@ use crate::document::{Content, Node};
 use crate::expression::Names as _;
 use crate::inertia::TOLERANCE;
 use crate::resistance::{self, Unresisted};
-use crate::source::{is_invisible, quoted, rounded};
+use crate::source::{is_invisible, quoted, six_digits};
 use crate::{Angle, Convention, Joint, JointKind, Limits, QuarterTurns, Transform};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
@@ -49,7 +49,7 @@ pub(crate) fn angle(cx: &Context, node: &Node, value: f64) {
     if (value - right).abs() <= NEARLY && Angle::new(value).right.is_none() {
         let spelling = right_angle_spelling(right);
         let message =
-            format!("the angle {shown} is {} rad off the right angle `{spelling}`", rounded((value - right).abs()));
+            format!("the angle {shown} is {} rad off the right angle `{spelling}`", six_digits((value - right).abs()));
         cx.report(Diagnostic::lint(node.span.clone(), message).label("rounded?").help(format!(
             "write `{spelling}` if that is meant: its sine and cosine are exactly 0 and ±1, and the code gets shorter"
         )));
@@ -93,7 +93,7 @@ pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
     // neither a square nor the sum of two numbers overflows in what is shown
     let size = libm::hypot(libm::hypot(x, y), z).min(f64::MAX);
     if size != 0.0 && !GRAVITY.contains(&size) {
-        let message = format!("gravity accelerates by {} m/s²; on Earth it is 9.81 m/s²", rounded(size));
+        let message = format!("gravity accelerates by {} m/s²; on Earth it is 9.81 m/s²", six_digits(size));
         let label = if GRAVITY.contains(&(size / 1000.0)) {
             "millimetres?"
         } else if GRAVITY.contains(&(size * 9.81)) {
@@ -118,7 +118,7 @@ pub(crate) fn gravity_upwards(cx: &Context, node: &Node, [x, y, z]: [f64; 3], ba
         cx.report(Diagnostic::lint(node.span.clone(), message).label("upwards?").help(format!(
             "the acceleration of gravity points down: is `[0, 0, {}]` meant? where z of frame 0 points down, as in an \
              arm that hangs from the ceiling, say so with `base: {{rpy: [pi, 0, 0]}}`",
-            rounded(-z)
+            six_digits(-z)
         )));
     }
 }
@@ -156,9 +156,9 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: 
         let message = format!(
             "no body has this inertia: of its principal moments {}, {} and {} kg m² the largest exceeds the sum of the \
              other two",
-            rounded(a),
-            rounded(b),
-            rounded(c)
+            six_digits(a),
+            six_digits(b),
+            six_digits(c)
         );
         cx.report(Diagnostic::note(place, message).label("violates the triangle inequality").help(
             "published tables do have such tensors, and dynamics works with them; if the numbers are your own, \
@@ -182,7 +182,7 @@ pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, ..]: [f64
     let message = format!(
         "the inertia is not positive semidefinite, as `physical: false` says: its smallest eigenvalue about the centre \
          of mass is {} kg m²",
-        rounded(smallest)
+        six_digits(smallest)
     );
     cx.report(Diagnostic::lint(place, message).label("not the inertia of a body").help(
         "inverse dynamics works with it; the mass matrix may not be positive definite, and then there is no forward \
@@ -197,7 +197,7 @@ pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [
     }
     let radius = libm::sqrt(largest / mass);
     if radius > WIDEST_GYRATION {
-        let (mass, shown) = (rounded(mass), rounded(radius));
+        let (mass, shown) = (six_digits(mass), six_digits(radius));
         let message = format!(
             "the inertia has a radius of gyration of {shown} m: as if the {mass} kg of the link lay that far from its \
              centre of mass"
@@ -303,8 +303,8 @@ pub(crate) fn position_limits(cx: &Context, position: &Node, kind: JointKind, li
         let message = format!("the position limits {} rad are more than four turns", quoted(cx.raw(position)));
         cx.report(Diagnostic::lint(position.span.clone(), message).label("degrees?").help(format!(
             "if these are degrees, write `[deg({}), deg({})]`",
-            rounded(lower),
-            rounded(upper)
+            six_digits(lower),
+            six_digits(upper)
         )));
     }
 }

@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::quantity::Quantity;
-use crate::source::{is_control, is_line_break, one_line, quoted, rounded};
+use crate::source::{is_control, is_line_break, one_line, quoted, six_digits};
 use crate::varying::{
     com_of_first_moment, entry, fixed, inertia_about_com, inertia_element, unknown_names, unknown_settings,
     without_effect,
@@ -325,7 +325,7 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
         let message = format!(
             "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
              it must be zero or positive",
-            rounded(moments[0])
+            six_digits(moments[0])
         );
         return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(match about {
             InertiaReference::Com => {
@@ -418,8 +418,8 @@ fn position_limits(cx: &Context, node: &Node) -> Option<(f64, f64)> {
     }
     let message = format!(
         "the lower position limit {} lies above the upper one, {}; the order is [lower, upper]",
-        rounded(lower),
-        rounded(upper)
+        six_digits(lower),
+        six_digits(upper)
     );
     cx.refuse(Diagnostic::error(node.span.clone(), message).help("exchange the two"))
 }

@@ -96,11 +96,18 @@ pub(crate) fn quoted(value: &str) -> String {
     }
 }
 
-/// A computed value for a message, with six significant digits.
-pub(crate) fn rounded(value: f64) -> String {
-    let value: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    let shown = format!("{value:?}");
+/// A number with all digits that it needs to be read back; zero has no sign.
+#[must_use]
+pub fn exact_digits(value: f64) -> String {
+    // the sum of -0.0 and 0.0 is 0.0
+    let shown = format!("{:?}", value + 0.0);
     shown.strip_suffix(".0").unwrap_or(&shown).to_owned()
+}
+
+/// A number with six significant digits, for a message.
+#[must_use]
+pub fn six_digits(value: f64) -> String {
+    exact_digits(format!("{value:.5e}").parse().unwrap_or(value))
 }
 
 /// The part of `span` that lies `range` bytes into it, never beyond its end.

@@ -1,5 +1,7 @@
 //! "Did you mean …?"
 
+use std::iter;
+
 /// Nothing longer is a slip of one of our words, and the distance costs time.
 pub(crate) const LONGEST_WORD: usize = 32;
 
@@ -26,6 +28,24 @@ pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str
         })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
+}
+
+/// The name that was probably meant by another: a slip away, longer, or without the name of a maker before it, as
+/// `kuka_iiwa` means `iiwa14`.
+#[must_use]
+pub fn nearest_name<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
+    let parts = name.match_indices(['_', '-', ' ']).map(|(at, _)| name.get(at + 1..).unwrap_or_default());
+    iter::once(name).chain(parts).filter(|part| !part.is_empty()).find_map(|part| {
+        let longer = || names.iter().copied().find(|known| known.starts_with(part));
+        did_you_mean(part, names.iter().copied()).or_else(longer)
+    })
+}
+
+/// The message for a name that no shipped robot has.
+#[must_use]
+pub fn no_shipped_robot(name: &str, names: &[&str]) -> String {
+    let meant = nearest_name(name, names).map_or_else(|| ";".to_owned(), |meant| format!("; did you mean `{meant}`?"));
+    format!("there is no shipped robot `{name}`{meant} there are {}", names.join(", "))
 }
 
 #[cfg(test)]

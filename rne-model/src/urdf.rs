@@ -1,6 +1,6 @@
 //! Robots in XML, told apart from mistakes in YAML.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Remedy};
 
 /// How much of a text is looked at for what it is, bytes.
 const HEAD: usize = 4096;
@@ -27,17 +27,18 @@ pub(crate) fn instead_of_a_robot_file(name: &str, text: &str) -> Option<Diagnost
     if is_urdf(rest) {
         // a URDF that xacro has written may still declare its namespace
         let template = ["<xacro:", "${", "$("].iter().any(|mark| head(rest).contains(mark));
-        let before = if template { "this is a template, so let `xacro` write the URDF first; then " } else { "" };
+        let help = template.then(|| "this is a template: let `xacro` write the URDF first".to_owned());
         let is_a_path = !name.starts_with('<') && !name.contains(char::is_whitespace);
-        let file = if is_a_path { name } else { "FILE" };
-        let help = format!("{before}`rne import {file} -o robot.yaml` makes a robot file of it");
-        return Some(Diagnostic::error(place, "this is URDF, not a robot file").label("XML").help(help));
+        let remedy = Remedy::ImportUrdf { file: is_a_path.then(|| name.to_owned()) };
+        let error = Diagnostic::error(place, "this is URDF, not a robot file").label("XML");
+        return Some(error.maybe_help(help).remedy(remedy));
     }
     let is_xml = ["<?xml", "<!--", "<!DOCTYPE", "<mujoco", "<sdf"].iter().any(|tag| rest.starts_with(tag));
     is_xml.then(|| {
         Diagnostic::error(place, "this is XML, not a robot file")
             .label("XML")
-            .help("a robot file is a YAML mapping that begins with `format: 1`; `rne import` makes one of URDF")
+            .help("a robot file is a YAML mapping that begins with `format: 1`")
+            .remedy(Remedy::ImportUrdf { file: None })
     })
 }
 

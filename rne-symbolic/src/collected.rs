@@ -31,6 +31,14 @@ struct Flat {
     factors: BTreeMap<Factor, i32>,
 }
 
+impl Flat {
+    /// The factors of a class with their exponents.
+    fn of_class(&self, class: Class) -> Vec<(Factor, i32)> {
+        let factors = self.factors.iter().filter(|(factor, _)| factor.class() == class);
+        factors.map(|(factor, exponent)| (factor.clone(), *exponent)).collect()
+    }
+}
+
 /// Some factors of terms, and the terms that have them.
 type Group<P> = (P, Vec<Flat>);
 
@@ -143,12 +151,7 @@ fn by_class(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
     [Class::Acceleration, Class::Rate, Class::Trigonometric].into_iter().find_map(|class| {
         let mut groups: Vec<Group<Vec<(Factor, i32)>>> = Vec::new();
         for term in terms {
-            let part: Vec<(Factor, i32)> = term
-                .factors
-                .iter()
-                .filter(|(factor, _)| factor.class() == class)
-                .map(|(f, n)| (f.clone(), *n))
-                .collect();
+            let part = term.of_class(class);
             match groups.iter_mut().find(|(known, _)| *known == part) {
                 Some((_, group)) => group.push(term.clone()),
                 None => groups.push((part, vec![term.clone()])),
@@ -166,19 +169,15 @@ fn order(term: &Flat) -> Vec<(Class, Vec<(Factor, i32)>)> {
         .map(|class| {
             // accelerations and gravity last in no order of the alphabet: what has none of a class comes after what has
             // some for rates, and before for the rest
-            let part: Vec<(Factor, i32)> = term
-                .factors
-                .iter()
-                .filter(|(factor, _)| factor.class() == class)
-                .map(|(factor, n)| (factor.clone(), -n))
-                .collect();
+            let part: Vec<(Factor, i32)> =
+                term.of_class(class).into_iter().map(|(factor, exponent)| (factor, -exponent)).collect();
             let is_last = part.is_empty() && class >= Class::Rate;
             (if is_last { Class::Acceleration } else { Class::Constant }, part)
         })
         .collect()
 }
 
-/// The factors that all terms have with the same exponent: (1/3) a² + (1/2) a b stays as it is.
+/// The factors that all terms have with the same exponent: (1/3) a² + (1/2) a b is not changed.
 fn common_factors(terms: &[Flat]) -> BTreeMap<Factor, i32> {
     let Some((first, rest)) = terms.split_first() else { return BTreeMap::new() };
     let mut common = first.factors.clone();

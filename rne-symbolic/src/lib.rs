@@ -60,7 +60,7 @@ use crate::equations::Equations;
 use crate::table::Table;
 use crate::written::Written;
 
-/// So many lines of text one joint may take, its torque in parts: what is longer is no formula to read.
+/// Largest number of lines of text for one joint, its torque in parts: what is longer is no formula to read.
 pub const MOST_LINES: usize = 60;
 
 /// The equations of motion of an arm in letters, or its recursion in letters where they are too long.
@@ -71,7 +71,7 @@ pub struct ClosedForm {
     dof: usize,
     /// `Err` where a page does not hold it.
     written: Result<(Equations, Written), TooLong>,
-    /// Where it does not: so many joints from the base have one that fits.
+    /// Number of joints from the base whose closed form fits, if that of all does not.
     shorter: Option<usize>,
 }
 
@@ -105,14 +105,20 @@ impl ClosedForm {
         self.table.rows.len()
     }
 
+    /// The number of joints from the base whose closed form fits a page, where that of all does not.
+    #[must_use]
+    pub fn shorter(&self) -> Option<usize> {
+        self.shorter
+    }
+
     /// Whether the equations are short enough to be read; otherwise there is the recursion in letters.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.written.is_ok()
     }
 
-    /// Whether the equations are identical, as polynomials, with those that Lagrange's method gives; `None` where there
-    /// are none, or those of Lagrange grow too long on the way.
+    /// Whether the equations are identical, as polynomials, with those that Lagrange's method gives; `None` if there is
+    /// no closed form, or if those of Lagrange grow too long on the way.
     #[must_use]
     pub fn is_lagranges(&self) -> Option<bool> {
         let (equations, _) = self.written.as_ref().ok()?;

@@ -13,7 +13,7 @@ pub(crate) struct Piece {
     text: String,
     /// Columns on a terminal, of which those of a page are a multiple.
     width: usize,
-    /// How many parentheses are open before it.
+    /// Number of parentheses that are open before it.
     depth: usize,
 }
 
@@ -66,7 +66,8 @@ impl Pieces {
         Self(self.0.into_iter().map(piece).collect())
     }
 
-    /// Lines of at most so many columns, the first of them after `head` columns; with each the depth it begins in.
+    /// Breaks a formula into lines of at most `most` columns, the first of them after `head` columns; with each line
+    /// the depth in which it begins.
     pub(crate) fn lines(&self, head: usize, indent: usize, most: usize) -> Vec<(usize, String)> {
         let mut lines = Vec::new();
         let mut rest = self.0.as_slice();

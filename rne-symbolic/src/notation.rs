@@ -1,4 +1,4 @@
-//! How letters, powers and fractions are written: in Unicode for a terminal, and in LaTeX.
+//! Letters, powers and fractions, in Unicode for a terminal and in LaTeX.
 
 use rne_model::JointKind;
 
@@ -6,7 +6,7 @@ use crate::factor::{Argument, Factor};
 use crate::rational::{Rational, Spelling, spelling};
 use crate::symbol::{Angle, Constants};
 
-/// Where a formula is read.
+/// The place at which a formula is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Script {
     /// A terminal.
@@ -57,7 +57,7 @@ impl Notation<'_> {
         }
     }
 
-    /// θ or d of a joint with so many dots.
+    /// θ or d of a joint with a number of dots.
     pub(crate) fn variable(&self, joint: usize, dots: usize) -> String {
         let is_revolute = self.kinds.get(joint) == Some(&JointKind::Revolute);
         let letters = if is_revolute { ["θ", "θ̇", "θ̈"] } else { ["d", "ḋ", "d̈"] };

@@ -1,8 +1,8 @@
-//! Which parameters of a file stay letters.
+//! The parameters of a file that stay letters.
 
 use rne_model::{Reader, Report, Robot};
 
-/// So many parameters become letters, the last ones of the file: each takes the file to be read once more.
+/// Largest number of parameters that become letters, the last ones of the file: the file is read once more for each.
 const MOST_PARAMETERS: usize = 64;
 
 /// Reads a robot file; every parameter that may vary does. The robot is that of the values in the file.

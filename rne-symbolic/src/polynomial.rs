@@ -11,10 +11,10 @@ use num_traits::{One, Zero};
 use crate::rational::{Rational, fraction};
 use crate::symbol::{Angle, Symbol};
 
-/// So many terms a polynomial may have; a page holds fewer.
+/// Largest number of terms of a polynomial; a page holds fewer.
 const MOST_TERMS: usize = 3_000;
 
-/// So many products of terms one product of polynomials may take.
+/// Largest number of products of terms for one product of polynomials.
 const MOST_PRODUCTS: usize = 60_000;
 
 /// A product of powers, sorted; no exponent is 0.

@@ -42,7 +42,7 @@ pub(crate) enum Spelling {
     Fraction(String, String),
 }
 
-/// How the magnitude of a number is written.
+/// The way in which the magnitude of a number is written.
 pub(crate) fn spelling(rational: &Rational) -> Spelling {
     let (p, q) = (rational.numer().abs(), rational.denom());
     if q.is_one() {

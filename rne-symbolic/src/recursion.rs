@@ -59,13 +59,7 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         form.joints()
     )];
     if let Some(joints) = form.shorter {
-        why.extend([
-            String::new(),
-            format!(
-                " The first {joints} of them have a form that fits: --first {joints} takes the arm up to joint \
-                 {joints}."
-            ),
-        ]);
+        why.extend([String::new(), format!(" The arm up to joint {joints} has a closed form that fits.")]);
     }
     let mut sections = vec![Section { title: Vec::new(), items: vec![Item::Words(why)] }];
     let formula = |(left, right): &Formula| {

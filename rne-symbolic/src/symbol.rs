@@ -53,7 +53,7 @@ pub(crate) struct Constant {
     pub(crate) value: f64,
     /// `kg`, `m`; nothing for a parameter, whose unit no file says.
     pub(crate) unit: &'static str,
-    /// Whether it stands under `parameters`.
+    /// Whether it is one of the `parameters` of the file.
     pub(crate) is_parameter: bool,
     /// Other elements of the table that are the same number.
     pub(crate) also: Vec<String>,

@@ -57,7 +57,7 @@ pub(crate) struct Table {
 struct Letters<'r> {
     robot: &'r Robot,
     constants: Constants,
-    /// Which letter a parameter of the file is, once it was met.
+    /// The letter of each parameter of the file, once it was met.
     parameters: Vec<Option<Symbol>>,
     angles: Vec<(Angle, Turn)>,
 }

@@ -161,7 +161,7 @@ fn the_seven_steps_are_lagranges_equations() {
     assert!(robots_compared >= 70, "{robots_compared} arms are short enough");
 }
 
-/// Sorting loses no term: there is none that belongs nowhere.
+/// Sorting loses no term.
 #[test]
 fn the_parts_are_the_torque() {
     for robot in robots() {

@@ -9,7 +9,7 @@ use crate::document::{Item, sections};
 use crate::notation::Script;
 use crate::written::COLUMNS;
 
-/// Formulas stand so far to the right.
+/// Indentation of formulas.
 const INDENT: usize = 2;
 
 /// The document with every letter spelt so.

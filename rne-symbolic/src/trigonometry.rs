@@ -16,10 +16,10 @@ use crate::symbol::{Angle, Symbol};
 /// A coefficient with its factors.
 pub(crate) type Product = (Rational, Vec<(Factor, i32)>);
 
-/// Up to so many angles are added and subtracted in every way; of more angles consecutive ones are added.
+/// Largest number of angles that are added and subtracted in every way; of more angles consecutive ones are added.
 const MOST_COMBINED: usize = 3;
 
-/// Longer sums stay as they are.
+/// Largest number of terms of a sum that is changed.
 const MOST_TERMS: usize = 24;
 
 /// Forms that are tried, times the waves of each; the plain ones come first.

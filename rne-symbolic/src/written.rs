@@ -15,7 +15,7 @@ use crate::table::Table;
 /// Columns of a line.
 pub(crate) const COLUMNS: usize = 80;
 
-/// So many terms a torque may have, multiplied out; the printed form is shorter.
+/// Largest number of terms of a torque, multiplied out; the printed form is shorter.
 pub(crate) const MOST_TERMS: usize = 400;
 
 /// Every polynomial of [`Equations`], collected.

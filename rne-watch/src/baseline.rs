@@ -1,4 +1,4 @@
-//! How large signals are while nothing happens.
+//! Magnitudes of signals while nothing happens.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ const RAISE: f64 = 1.1;
 /// Minimum number of blocks in a segment that noise is estimated from.
 const BLOCKS: usize = 20;
 
-/// An autocorrelation below this is none.
+/// An autocorrelation below this counts as zero.
 const FORGOTTEN: f64 = 0.05;
 
 /// s: in such a time the error of a model does not change.
@@ -35,7 +35,7 @@ pub struct NoiseFloor {
     pub mean: f64,
     /// The standard deviation of its means over blocks.
     pub deviation: f64,
-    /// How long a block is, s; 0 for single samples. Means of blocks that follow each other know nothing of each other.
+    /// Length of a block, s; 0 for single samples. Means of blocks that follow each other know nothing of each other.
     pub block: f64,
 }
 
@@ -255,7 +255,7 @@ struct WrongParts {
     /// Squares, growing: of means of the residual over segments that are so short that the model's error does not
     /// change. Each is the product of its two halves, whose noise is not the same: of noise alone half are negative.
     squares: Vec<f64>,
-    /// So many of them know nothing of each other.
+    /// Number of blocks that are independent of each other.
     alone: usize,
 }
 
@@ -284,7 +284,7 @@ impl WrongParts {
         Self { squares, alone }
     }
 
-    /// The square that so many percent are below, less what noise makes of it.
+    /// A percentile of the squares, less the part that noise adds.
     fn square(&self, percent: usize) -> f64 {
         let Some(last) = self.squares.len().checked_sub(1) else { return 0.0 };
         let at = last * percent / 100;
@@ -331,7 +331,7 @@ fn block_length(numbers: &[f64]) -> usize {
     length.min(numbers.len() / BLOCKS).max(1)
 }
 
-/// Means of blocks of so many; what is left at the end is no block.
+/// Means of blocks of `length` numbers; numbers left over at the end are not used.
 pub(crate) fn means(numbers: &[f64], length: usize) -> Vec<f64> {
     #[allow(clippy::cast_precision_loss)] // a length of a list
     numbers.chunks_exact(length.max(1)).map(|block| block.iter().sum::<f64>() / block.len() as f64).collect()

@@ -1,4 +1,4 @@
-//! Where a mean changed, sample by sample.
+//! The sample at which a mean changed.
 
 /// The index from which on numbers have another mean: that with which zero before it and one mean from there on leave
 /// the least squares. Behind it are `least` numbers at least; 0 of fewer.

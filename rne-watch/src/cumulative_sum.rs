@@ -5,9 +5,9 @@ use crate::threshold::ALLOWANCE;
 /// A segment in which a sum was above its threshold, in indices of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Alarm {
-    /// Where the sum began to grow: the change is there, or behind it.
+    /// The index at which the sum began to grow: the change is there, or later.
     pub(crate) start: usize,
-    /// Where it came to its threshold.
+    /// The index at which the sum reached its threshold.
     pub(crate) raised: usize,
     /// The last one at which the sum was at its threshold.
     pub(crate) end: usize,

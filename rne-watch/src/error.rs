@@ -1,8 +1,8 @@
-//! Why nothing can be watched.
+//! The reason why nothing can be watched.
 
 use std::fmt;
 
-/// Why a motion cannot be watched.
+/// The reason why a motion cannot be watched.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WatchError {
@@ -19,9 +19,9 @@ pub enum WatchError {
     Sample(usize),
     /// Fewer samples than there must be.
     TooFew {
-        /// So many there are.
+        /// The number of samples.
         found: usize,
-        /// So many there must be.
+        /// The least number of samples.
         needed: usize,
     },
     /// A setting that is not a number above zero: its name.

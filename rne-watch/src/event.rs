@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Which test found an event.
+/// The test that found an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Test {
     /// The momentum observer is beyond its threshold for longer than the hold.
@@ -14,10 +14,10 @@ pub enum Test {
 }
 
 impl Test {
-    /// All of them.
+    /// All tests.
     pub const ALL: [Self; 3] = [Self::External, Self::Offset, Self::Friction];
 
-    /// Its name.
+    /// The name of the test.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,9 +54,9 @@ pub struct Event {
     pub joint: usize,
     /// The test that found it.
     pub test: Test,
-    /// Where it begins, s.
+    /// The time at which it begins, s.
     pub start: f64,
-    /// Where it ends, s: the end of the motion where it lasts.
+    /// The time at which it ends, s: the end of the motion if it lasts until then.
     pub end: f64,
     /// Its largest deviation from the baseline, N m or N: of the observer, less what friction leaves open (torque of
     /// the environment on the arm, at least), or of the residual's means over half a second, or over all of it where it

@@ -67,7 +67,7 @@ pub fn watch(signals: &Signals, baseline: &Baseline, settings: &Settings) -> Res
     Ok(Report { events, thresholds: all, errors })
 }
 
-/// How many samples a time lasts, one at least.
+/// Number of samples in a time, one at least.
 fn samples_in(time: f64, period: f64) -> usize {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
     let samples = (time / period - 1e-9).ceil() as usize;
@@ -145,10 +145,10 @@ fn largest_mean(numbers: &[(usize, f64)], mean: f64, period: f64) -> f64 {
     means(&values, length).into_iter().fold(0.0, farther)
 }
 
-/// s: a change lasts as long, or is no change of the mean.
+/// Shortest change of a mean, s.
 const SEGMENT: f64 = 0.5;
 
-/// Events of the observer: beyond the threshold for so many samples, and until it is within half of it.
+/// Events of the observer: from the first of `hold` samples beyond the threshold until it is within half of it.
 fn of_observer(
     signals: &Signals,
     joint: usize,
@@ -198,7 +198,7 @@ fn of_observer(
     found
 }
 
-/// The one farther from zero.
+/// The number that is farther from zero.
 fn farther(a: f64, b: f64) -> f64 {
     if b.abs() > a.abs() { b } else { a }
 }

@@ -2,12 +2,12 @@
 
 use crate::WatchError;
 
-/// How an arm is watched.
+/// Settings of watching.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The gain of the momentum observer, Hz: larger sees sooner, and more noise.
     pub gain: f64,
-    /// How long an external torque must last to be an event, s.
+    /// Shortest duration of an external torque that is an event, s.
     pub hold: f64,
     /// False alarms per hour of motion, at most, of all joints and tests together.
     pub false_alarms: f64,

@@ -8,7 +8,7 @@
 //! The torques of the environment on the arm are the negative of what the actuators deliver for them: in free motion
 //! and in quasi-static contact `external` is about -`residual`, through a low-pass.
 
-use rne_logs::Motion;
+use rne_logs::{Motion, median};
 use rne_model::{Friction, Joint, Robot};
 use rne_runtime::{DynArm, DynObserverState, WrongLength};
 
@@ -17,14 +17,15 @@ use crate::WatchError;
 /// Fewer tell nothing.
 const FEWEST: usize = 16;
 
-/// A joint creeps up to so many times the speed at which it is as good as at rest, or its friction changes its sign.
+/// A joint creeps, or its friction changes its sign, up to this many times the speed below which it counts as at rest.
 const CREEPING: f64 = 5.0;
 
 /// rad/s or m/s: of a joint whose friction changes its sign over a displacement, up to `CREEPING` times that it may
 /// stick, however still it stands.
 const SLIPPING: f64 = 0.004;
 
-/// s: so long before and after a joint crept its residual tells nothing, for what was measured passed a filter.
+/// Time before and after creeping in which the residual of a joint has no meaning, s: what was measured passed a
+/// filter.
 const SMEARED: f64 = 0.05;
 
 /// Samples on both sides over which the filter of a log spreads what is sudden.
@@ -36,7 +37,7 @@ const COUNTED: f64 = 0.05;
 /// Less of what friction leaves open is nothing.
 const FORGOTTEN: f64 = 0.02;
 
-/// A step that is so many times as long as the usual one is a gap: the observer begins anew behind it.
+/// A step that is this many times as long as the usual one is a gap, after which the observer begins anew.
 const GAP: f64 = 2.5;
 
 /// Signals along a motion: a list per joint, base to tip, each as long as `time`. N m, or N of a joint that slides.
@@ -63,7 +64,8 @@ pub struct Signals {
     /// The sum of the magnitudes of the terms that the model's torque is made of, N m or N, 0 or more: parameters that
     /// are wrong by a part of themselves change the torque by that part of it at most.
     pub terms: Vec<Vec<f64>>,
-    /// How large the joint's row of the mass matrix is, kg m² or kg: so noise of the velocities shows in the observer.
+    /// Magnitude of the joint's row of the mass matrix, kg m² or kg, by which noise of the velocities enters the
+    /// observer.
     pub inertia: Vec<Vec<f64>>,
     /// Whether the observer has settled: not for three time constants behind the beginning and behind each gap.
     pub settled: Vec<bool>,
@@ -141,7 +143,7 @@ impl Signals {
         Ok(Self { time, period, measured, residual, direction, external, open, creeps, terms, inertia, settled })
     }
 
-    /// One sample of so many: what a picture needs of a long motion.
+    /// Every n-th sample, for pictures of a long motion.
     #[must_use]
     pub fn thinned(&self, stride: usize) -> Self {
         fn of<T: Clone>(list: &[T], stride: usize) -> Vec<T> {
@@ -284,13 +286,14 @@ fn still(qd: &[Vec<f64>]) -> Vec<f64> {
 
 /// The median of the steps.
 fn usual_step(time: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_unstable_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(1.0)
+    let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if steps.is_empty() { 1.0 } else { median(steps) }
 }
 
+/// Refuses a motion that cannot be watched.
+///
 /// # Errors
-/// When the motion is not one of so many joints, too short, or has numbers that are not finite.
+/// When the motion is not one of `dof` joints, too short, or has numbers that are not finite.
 fn check(dof: usize, motion: &Motion) -> Result<(), WatchError> {
     let samples = motion.len();
     for (name, lists) in [("q", &motion.q), ("qd", &motion.qd), ("qdd", &motion.qdd), ("tau", &motion.tau)] {

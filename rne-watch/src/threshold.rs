@@ -33,7 +33,7 @@ pub struct Thresholds {
 }
 
 impl Thresholds {
-    /// The thresholds of one of `dof` joints, whose blocks last so long, s: [of the offset, of the friction].
+    /// The thresholds of one of `dof` joints, by the duration of its blocks, s: [of the offset, of the friction].
     pub(crate) fn new(settings: &Settings, dof: usize, blocks: [f64; 2]) -> Self {
         #[allow(clippy::cast_precision_loss)] // at most 64 joints
         let share = settings.false_alarms / (TESTS * dof.max(1) as f64);
@@ -43,7 +43,7 @@ impl Thresholds {
     }
 }
 
-/// The h at which so many blocks pass between two alarms, in the mean.
+/// The threshold h at which a number of blocks pass between two alarms, in the mean.
 fn of_sum(blocks: f64) -> f64 {
     let between = |h: f64| {
         let twice = 2.0 * ALLOWANCE * (h + 1.166);

@@ -67,19 +67,44 @@ const DOCUMENTS: &[&str] = &[
 const SOURCES: &[&str] = &[
     "src",
     "rne-codegen/src",
+    "rne-convert/src",
+    "rne-diagnose/src",
     "rne-emit/src",
+    "rne-identify/src",
     "rne-inspection/src",
     "rne-machine/src",
     "rne-macro/src",
     "rne-model/src",
     "rne-runtime/src",
     "rne-search/src",
+    "rne-symbolic/src",
+    "rne-watch/src",
     "xtask/src",
 ];
 
 /// Sources in these folders that are emitted, or quote what is: their bytes are frozen.
 const EMITTED: &[&str] =
     &["rne-emit/src/own_tests/rust.rs", "rne-emit/src/sin_cos_f32.rs", "rne-emit/src/sin_cos_f64.rs"];
+
+/// Folders of libraries, whose strings name no option and no command of the command line: users of Python, C and SQL
+/// read them too.
+const LIBRARIES: &[&str] = &[
+    "rne-codegen/src",
+    "rne-convert/src",
+    "rne-diagnose/src",
+    "rne-emit/src",
+    "rne-identify/src",
+    "rne-inspection/src",
+    "rne-logs/src",
+    "rne-machine/src",
+    "rne-model/src",
+    "rne-plot/src",
+    "rne-report/src",
+    "rne-runtime/src",
+    "rne-search/src",
+    "rne-symbolic/src",
+    "rne-watch/src",
+];
 
 /// Folders of sources whose helps are checked.
 const HELPS: &[&str] = &["rne-cli/src"];
@@ -276,6 +301,12 @@ impl Prose {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let rules = rules()?;
         let mut count = 0;
+        for path in sources(LIBRARIES)?.iter().filter(|path| self.names(path)) {
+            for (line, option) in options(&machine::read(path)?)? {
+                println!("{path}:{line}: \"{option}\": say it as data; each door words it");
+                count += 1;
+            }
+        }
         let mut tell = |path: &str, paragraphs: Vec<Paragraph>| {
             for paragraph in &paragraphs {
                 for (line, words, instead) in broken(paragraph, &rules) {
@@ -301,6 +332,17 @@ impl Prose {
     fn names(&self, path: &str) -> bool {
         self.paths.is_empty() || self.paths.iter().any(|of| path == of || Path::new(path).starts_with(of))
     }
+}
+
+/// The options and commands of the command line that stand in a source outside its comments, with their lines.
+fn options(text: &str) -> Result<Vec<(usize, String)>> {
+    let pattern = Regex::new(r#"(?:^|[ "`(])(--[a-z][a-z-]*|`rne [a-z]+)"#)?;
+    let code = text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
+    let found = code.flat_map(|(index, line)| {
+        let options = pattern.captures_iter(line).filter_map(|found| found.get(1));
+        options.map(|option| (index + 1, option.as_str().to_owned())).collect::<Vec<_>>()
+    });
+    Ok(found.collect())
 }
 
 type Paragraphs = fn(&str) -> Vec<Paragraph>;
@@ -337,7 +379,14 @@ fn sources(folders: &[&str]) -> Result<Vec<String>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Paragraph, RULES, broken, first_sentences, of_document, of_helps, rules};
+    use super::{Paragraph, RULES, broken, first_sentences, of_document, of_helps, options, rules};
+
+    #[test]
+    fn an_option_is_found_in_a_string_and_not_in_a_comment() {
+        let text = "/// as `rne log --tip`\nlet x = \"name it with --tip, or\n  `rne log` FILE\"; // --base\n x--y";
+        let found = options(text).expect("a pattern");
+        assert_eq!(found, [(2, "--tip".to_owned()), (3, "`rne log".to_owned()), (3, "--base".to_owned())]);
+    }
 
     fn found(paragraphs: &[Paragraph]) -> Vec<(usize, String)> {
         let rules = rules().expect("patterns");

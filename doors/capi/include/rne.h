@@ -189,7 +189,8 @@ const char *rne_version(void);
 const char *rne_last_error(void);
 
 /**
- * Reads a robot file, and the plan file beside it (NAME.plan.yaml) where there is one.
+ * Reads a robot file, and the plan file beside it (NAME.plan.yaml) where there is one; or gives a built-in robot, if
+ * `path` is its name and no file.
  *
  * `path` is in UTF-8; one that is relative starts at the working directory. The arm goes to `*arm`, to be freed by
  * rne_arm_free(); after a failure `*arm` is NULL. The same text read again gives the same arm, compiled.

@@ -65,7 +65,8 @@ pub extern "C" fn rne_last_error() -> *const c_char {
     status::last_error()
 }
 
-/// Reads a robot file, and the plan file beside it (NAME.plan.yaml) where there is one.
+/// Reads a robot file, and the plan file beside it (NAME.plan.yaml) where there is one; or gives a built-in robot, if
+/// `path` is its name and no file.
 ///
 /// `path` is in UTF-8; one that is relative starts at the working directory. The arm goes to `*arm`, to be freed by
 /// rne_arm_free(); after a failure `*arm` is NULL. The same text read again gives the same arm, compiled.
@@ -133,7 +134,7 @@ pub unsafe extern "C" fn rne_arm_load_urdf(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_builtin(name: *const c_char, arm: *mut *mut Arm) -> Status {
     // SAFETY: the caller's promise of both pointers.
-    unsafe { made(arm, || Arm::of_box(text(name, "name")?)) }
+    unsafe { made(arm, || Arm::of_name(text(name, "name")?)) }
 }
 
 /// Frees an arm, and the names that it gave out; NULL is let pass. No other call may be using it, or use it later.

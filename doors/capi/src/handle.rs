@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use rne_codegen::UnknownName;
-use rne_convert::{Options, Selection};
-use rne_machine::{ARGUMENTS, ArmError, CompiledArm, CompiledFunction, Function};
+use rne_convert::{Description, Options, Selection};
+use rne_machine::{ARGUMENTS, CompiledArm, CompiledFunction, Function};
+use rne_robots::RobotFile;
 
 use crate::status::{Failure, Status, c_text};
 
@@ -52,9 +53,13 @@ impl Arm {
         Self { compiled: arm, name, joints }
     }
 
-    /// Of a robot file and the plan file beside it.
+    /// Of a robot file and the plan file beside it, or of a shipped robot.
     pub(crate) fn of_file(path: &str) -> Result<Self, Failure> {
-        Ok(Self::new(CompiledArm::from_file(path)?))
+        match Description::open(Path::new(path))? {
+            Description::Shipped(file) => Self::of_shipped(file),
+            // a URDF is refused with the function that reads it
+            _ => Ok(Self::new(CompiledArm::from_file(path)?)),
+        }
     }
 
     /// Of the text of a robot file.
@@ -64,8 +69,9 @@ impl Arm {
 
     /// Of a chain of a URDF; its numbers stay as they are.
     pub(crate) fn of_urdf(path: &str, selection: Selection) -> Result<Self, Failure> {
-        let bytes = rne_model::read_file(Path::new(path))
-            .map_err(|error| Failure::from(ArmError::Unreadable { path: path.into(), error }))?;
+        let (Description::Urdf(bytes) | Description::RobotFile(bytes)) = Description::open(Path::new(path))? else {
+            return Err(Failure::new(Status::InvalidFile, format!("{path} is a shipped robot, no URDF")));
+        };
         let text = String::from_utf8(bytes)
             .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is no text in UTF-8")))?;
         let options = Options { selection, snap: false, ..Options::default() };
@@ -73,13 +79,12 @@ impl Arm {
         Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))
     }
 
-    /// Of a robot in the box, with its plan.
-    pub(crate) fn of_box(name: &str) -> Result<Self, Failure> {
-        let file = rne_robots::find(name).ok_or_else(|| {
-            let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
-            let message = format!("there is no robot `{name}` in the box; there are {}", names.join(", "));
-            Failure::new(Status::UnknownName, message)
-        })?;
+    /// Of a shipped robot by its name, with its plan.
+    pub(crate) fn of_name(name: &str) -> Result<Self, Failure> {
+        Self::of_shipped(rne_convert::shipped(name).map_err(|message| Failure::new(Status::UnknownName, message))?)
+    }
+
+    fn of_shipped(file: &RobotFile) -> Result<Self, Failure> {
         Ok(Self::new(match file.plan {
             Some(plan) => CompiledArm::with_plan(file.yaml, plan)?,
             None => CompiledArm::from_yaml(file.yaml)?,

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use rne_convert::OpenError;
 use rne_machine::{ArmError, EvaluationError};
-use rne_model::Report;
+use rne_model::{Remedy, Report};
 
 /// What a call came to. Everything but RNE_STATUS_OK leaves a message for rne_last_error().
 #[repr(C)]
@@ -56,9 +57,27 @@ impl Failure {
     }
 }
 
+/// A remedy as arguments of rne_arm_load_urdf().
+fn in_arguments(remedy: &Remedy) -> Option<String> {
+    Some(match remedy {
+        Remedy::ImportUrdf { .. } => "rne_arm_load_urdf() reads a URDF".to_owned(),
+        Remedy::NameTip => "name it by `tip`".to_owned(),
+        Remedy::LockJoint { joint } => format!("`{joint}` among `lock_names` is held still"),
+        Remedy::LockOthers => "`lock_names` and `lock_values` hold some, `lock_others` holds all at zero".to_owned(),
+        _ => return None,
+    })
+}
+
 impl From<Report> for Failure {
     fn from(report: Report) -> Self {
-        Self::new(Status::InvalidFile, report.render(false))
+        Self::new(Status::InvalidFile, report.worded(in_arguments).render(false))
+    }
+}
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        let is_plan = matches!(error, OpenError::Plan { .. });
+        Self::new(if is_plan { Status::InvalidFile } else { Status::UnreadableFile }, error.to_string())
     }
 }
 

@@ -252,6 +252,10 @@ fn every_failure_of_reading_has_its_status() {
         refused(name_missing, Status::NullPointer, "lock_names");
         let tip = |arm| rne_arm_load_urdf(urdf.as_ptr(), null(), c"hand".as_ptr(), null(), null(), 0, true, arm);
         refused(tip, Status::InvalidFile, "hand");
+        // a robot file, a shipped robot, and the function that reads a URDF
+        refused(|arm| rne_arm_load_file(urdf.as_ptr(), arm), Status::InvalidFile, "rne_arm_load_urdf() reads a URDF");
+        refused(|arm| rne_arm_load_file(c"puma".as_ptr(), arm), Status::UnreadableFile, "shipped robot puma560?");
+        assert_eq!(rne_arm_dof(made(|arm| rne_arm_load_file(c"puma560".as_ptr(), arm)).0), 6);
         let latin = path("latin.urdf");
         let latin = |arm| rne_arm_load_urdf(latin.as_ptr(), null(), null(), null(), null(), 0, false, arm);
         refused(latin, Status::InvalidFile, "UTF-8");

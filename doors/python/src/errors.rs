@@ -1,10 +1,13 @@
 //! What goes wrong, as Python's exceptions: the same words as on the command line.
 
+use std::path::Path;
+
 use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use rne::compiled::ArmError;
-use rne_model::Report;
+use rne_convert::OpenError;
+use rne_model::{Remedy, Report};
 
 create_exception!(
     rne,
@@ -16,6 +19,7 @@ create_exception!(rne, EvaluationError, PyValueError, "A function cannot be comp
 
 /// What is wrong with a file.
 pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
+    let report = &report.clone().worded(in_keywords);
     let error = RobotFileError::new_err(report.render(false));
     let first = report.errors().next();
     let value = error.value(py);
@@ -26,20 +30,43 @@ pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
     told.err().unwrap_or(error)
 }
 
+/// A remedy as keywords of `rne.load`.
+fn in_keywords(remedy: &Remedy) -> Option<String> {
+    Some(match remedy {
+        Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),
+        Remedy::NameTip => "name the tip with tip=\"LINK\"".to_owned(),
+        Remedy::LockJoint { joint } => format!("lock={{{joint:?}: VALUE}} holds it still"),
+        Remedy::LockOthers => "lock={\"JOINT\": VALUE} holds one, lock_others=True holds all at zero".to_owned(),
+        Remedy::KeepUnphysical => "keep_unphysical=True keeps it".to_owned(),
+        _ => return None,
+    })
+}
+
 /// Why there is no arm.
 pub(crate) fn of_arm(py: Python<'_>, error: &ArmError) -> PyErr {
     match error {
         ArmError::Invalid(report) => of_report(py, report),
-        ArmError::Unreadable { path, error: cause } => match cause.raw_os_error() {
-            // so that Python makes it a FileNotFoundError where it is one
-            Some(number) => {
-                let words = cause.to_string();
-                let words = words.split(" (os error").next().unwrap_or_default().to_owned();
-                PyOSError::new_err((number, words, path.display().to_string()))
-            }
-            None => PyOSError::new_err(error.to_string()),
-        },
+        ArmError::Unreadable { path, error: cause } => of_system(path, cause, ""),
         _ => RobotFileError::new_err(error.to_string()),
+    }
+}
+
+/// Why no description of an arm was opened.
+pub(crate) fn of_opening(error: OpenError) -> PyErr {
+    match &error {
+        OpenError::NotFound { path, hint: Some(hint), error } => of_system(path, error, &format!("; {hint}")),
+        OpenError::NotFound { path, error, .. } | OpenError::Unreadable { path, error } => of_system(path, error, ""),
+        _ => RobotFileError::new_err(error.to_string()),
+    }
+}
+
+/// An error of the system with a hint, so that Python makes it a FileNotFoundError where it is one.
+fn of_system(path: &Path, error: &std::io::Error, hint: &str) -> PyErr {
+    let words = error.to_string();
+    let words = words.split(" (os error").next().unwrap_or_default().to_owned() + hint;
+    match error.raw_os_error() {
+        Some(number) => PyOSError::new_err((number, words, path.display().to_string())),
+        None => PyOSError::new_err(format!("cannot read {}: {words}", path.display())),
     }
 }
 

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use rne_convert::{Options, Selection};
-use rne_model::{Convention, Reader, read_file};
+use rne_convert::{Description, Options, Selection};
+use rne_model::{Convention, Reader};
 
 use crate::arm::{Arm, Origin};
-use crate::errors::{of_arm, of_report};
+use crate::errors::{of_opening, of_report};
 
 /// The names of the robots in the box.
 #[pyfunction]
@@ -20,10 +20,8 @@ pub(crate) fn names() -> Vec<&'static str> {
 /// A robot of the box by its name.
 #[pyfunction]
 pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
-    let known = || format!("there is no robot `{name}` in the box; there are {}", names().join(", "));
-    let file = rne_robots::find(name).ok_or_else(|| PyKeyError::new_err(known()))?;
-    let origin = Origin { robot: file.yaml.to_owned(), plan: file.plan.map(str::to_owned), ..Origin::default() };
-    Arm::of(py, origin)
+    let file = rne_convert::shipped(name).map_err(PyKeyError::new_err)?;
+    Arm::of(py, Origin::default().shipped(file))
 }
 
 /// Read an arm: a robot file (YAML), a URDF, or the text of either.
@@ -31,7 +29,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// Parameters
 /// ----------
 /// source : str or os.PathLike
-///     Path of a robot file or a URDF, or its text. A plan file beside a robot file is honoured.
+///     Path of a robot file or a URDF, or its text, or the name of a built-in robot. A plan file beside a robot file is
+///     honoured.
 /// tip, base : str, optional
 ///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
 /// lock : dict of str to float, optional
@@ -87,25 +86,27 @@ pub(crate) fn load(
     };
     let origin = Origin { form, rotors, run_time, settings: settings.unwrap_or_default(), ..Origin::default() };
     let given = Given::of(source)?;
-    if let Given::File(path) = &given
-        && !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
-    {
-        // with the plan beside it
-        return Arm::of(py, Origin { file: Some(path.clone()), ..origin });
-    }
-    let (name, text) = match given {
-        Given::Text(text) => ("<text>".to_owned(), text),
-        Given::File(path) => {
-            let bytes = read_file(&path)
-                .map_err(|error| of_arm(py, &rne::compiled::ArmError::Unreadable { path: path.clone(), error }))?;
-            let text = String::from_utf8(bytes)
-                .map_err(|_| PyValueError::new_err(format!("{} is no text in UTF-8", path.display())))?;
-            (path.display().to_string(), text)
-        }
+    let description = match &given {
+        Given::Text(text) => Description::of_text(text.clone()),
+        Given::File(path) => Description::open(path).map_err(of_opening)?,
     };
-    if !text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
-        return Arm::of(py, Origin { robot: text, ..origin });
-    }
+    let bytes = match (description, &given) {
+        (Description::Shipped(file), _) => return Arm::of(py, origin.shipped(file)),
+        // with the plan beside it
+        (Description::RobotFile(_), Given::File(path)) => {
+            return Arm::of(py, Origin { file: Some(path.clone()), ..origin });
+        }
+        (Description::RobotFile(_), Given::Text(text)) => {
+            return Arm::of(py, Origin { robot: text.clone(), ..origin });
+        }
+        (Description::Urdf(bytes), _) => bytes,
+        _ => return Err(PyValueError::new_err("`source` is no robot file and no URDF")),
+    };
+    let name = match given {
+        Given::Text(_) => "<text>".to_owned(),
+        Given::File(path) => path.display().to_string(),
+    };
+    let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is no text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
     let selection = Selection { base, tip, lock, lock_others };
     let options = Options { selection, convention, snap, keep_unphysical, ..Options::default() };
@@ -137,6 +138,11 @@ impl Given {
 }
 
 impl Origin {
+    /// The origin with the robot file of a shipped robot and its plan.
+    fn shipped(self, file: &rne_robots::RobotFile) -> Self {
+        Self { robot: file.yaml.to_owned(), plan: file.plan.map(str::to_owned), ..self }
+    }
+
     /// The table as a reader of this origin reads it.
     pub(crate) fn read(&self, name: &str, text: &[u8]) -> Result<rne_model::Robot, rne_model::Report> {
         let names: Vec<&str> = self.run_time.iter().map(String::as_str).collect();

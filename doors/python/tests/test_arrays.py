@@ -92,6 +92,24 @@ def test_mistakes_in_files_have_line_and_column():
         rne.load("<robot name='r'><link name='a'/></robot>")
 
 
+def test_a_source_is_a_shipped_robot_a_urdf_or_a_robot_file(tmp_path):
+    assert rne.load("puma560").yaml == arm.yaml
+    with pytest.raises(FileNotFoundError, match="did you mean the shipped robot puma560"):
+        rne.load("puma")
+    with pytest.raises(KeyError, match="did you mean `puma560`"):
+        rne.robots["puma"]
+    inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
+    links = "".join(f"<link name='{name}'>{inertial}</link>" for name in ["base", "a", "b"])
+    joint = "<joint name='{0}{1}' type='continuous'><parent link='{0}'/><child link='{1}'/></joint>"
+    tree = f"<robot name='r'>{links}{joint.format('base', 'a')}{joint.format('base', 'b')}</robot>"
+    # by its content, whatever its name is
+    file = tmp_path / "tree.xml"
+    file.write_text(tree)
+    with pytest.raises(rne.RobotFileError, match='name the tip with tip="LINK"'):
+        rne.load(file)
+    assert rne.load(file, tip="a", lock_others=True).dof == 1
+
+
 def test_files_and_their_plans(tmp_path):
     file = tmp_path / "arm.yaml"
     file.write_text(arm.yaml)

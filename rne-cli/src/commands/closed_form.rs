@@ -9,7 +9,7 @@ use rne_symbolic::ClosedForm;
 
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
-use crate::palette::TITLE;
+use crate::palette::{TITLE, TYPED};
 use crate::render::letters::Letters;
 
 /// The dynamics in closed form, instead of code.
@@ -68,6 +68,10 @@ impl Wanted {
         };
         let text: String = text.lines().map(styled).collect();
         let title = letters.of(&title);
-        Ok(Outcome::text(format!("{TITLE}{title}{TITLE:#}\n\n{text}")))
+        let shorter = |joints| {
+            format!("\n{TYPED}--first {joints}{TYPED:#} prints the closed form of the arm up to joint {joints}.\n")
+        };
+        let shorter = form.shorter().map(shorter).unwrap_or_default();
+        Ok(Outcome::text(format!("{TITLE}{title}{TITLE:#}\n\n{text}{shorter}")))
     }
 }

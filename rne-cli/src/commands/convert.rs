@@ -8,7 +8,7 @@ use rne_convert::Converted;
 use rne_model::Convention;
 
 use crate::files::file_name::Format;
-use crate::files::output_file;
+use crate::files::output_file::Output;
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::QUIET;
@@ -32,12 +32,8 @@ pub(crate) struct Arguments {
     /// Convention of the new table
     #[arg(long, value_parser = convention())]
     convention: Convention,
-    /// Robot file to write; - or no option: standard output
-    #[arg(short, long = "output", value_name = "FILE")]
-    out: Option<PathBuf>,
-    /// Overwrite an existing file
-    #[arg(long, requires = "out")]
-    force: bool,
+    #[command(flatten)]
+    output: Output,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -49,5 +45,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let _ = writeln!(remark, "{line}");
     }
     let _ = writeln!(remark, "{QUIET}{}{QUIET:#}", rounding(&difference));
-    output_file::deliver(arguments.out.as_deref(), Format::RobotFile, text, remark, &[&arguments.file], arguments.force)
+    arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }

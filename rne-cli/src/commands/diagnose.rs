@@ -15,8 +15,7 @@ use crate::palette::{ERROR, FOUND, GOOD, QUIET, TITLE};
 use crate::render::answer::not_finite;
 use crate::render::layout::{Align, columns, wrap};
 use crate::terminal;
-use crate::values::numbers::resolution;
-use crate::values::numbers::{List, rounded};
+use crate::values::numbers::{List, checked, resolution, rounded};
 use crate::values::state::{Given, State};
 
 /// Find the mistakes that explain another tool's torques
@@ -54,7 +53,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
     /// Accepted error of a torque, relative to the largest [default: by its last digit]
-    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true,
+        value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
+        "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]
     tolerance: Option<f64>,
     /// Print JSON: {"agrees": …, "error": …, "explanations": […]}
     #[arg(long)]
@@ -75,12 +76,6 @@ impl std::str::FromStr for Printed {
         let values: List = text.parse()?;
         Ok(Self { values, resolution: text.split(',').map(resolution).collect() })
     }
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|tolerance| (0.0..1.0).contains(tolerance)).ok_or_else(|| {
-        "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4".to_owned()
-    })
 }
 
 /// An answer as JSON has it.

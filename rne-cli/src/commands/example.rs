@@ -2,7 +2,6 @@
 
 use clap::Args;
 
-use crate::files::robot_file::shipped;
 use crate::outcome::{Failure, Outcome};
 
 /// Print the robot file of a shipped robot, as a start
@@ -23,7 +22,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = shipped(&arguments.name)?;
+    let robot = rne_convert::shipped(&arguments.name).map_err(Failure::input)?;
     let text = if arguments.plan {
         robot.plan.ok_or_else(|| Failure::input(format_args!("{} is shipped without a plan", robot.name)))?
     } else {

@@ -11,7 +11,7 @@ use rne_identify::{
     excite,
 };
 use rne_machine::{CompiledArm, Form};
-use rne_model::{Joint, Robot, one_line};
+use rne_model::{Joint, Robot, exact_digits, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
 use crate::files::file_name::{self, Format};
@@ -23,7 +23,8 @@ use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
-use crate::values::numbers::{List, exact, rounded};
+use crate::render::remedy;
+use crate::values::numbers::{List, checked, rounded};
 
 /// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.
 const MOST: f64 = 500_000.0;
@@ -50,13 +51,15 @@ pub(crate) struct Arguments {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Duration of the motion
-    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true,
+        value_parser = checked(|s: &f64| (1e-3..=86_400.0).contains(s), "write a number of seconds, 0.001 to 86400"))]
     seconds: f64,
     /// Number of repetitions in this time
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     periods: u32,
     /// Harmonics of each joint's series, 2 or more
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = harmonics)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = checked(|n: &usize| (2..=50).contains(n),
+        "write 2 to 50 harmonics; a motion with fewer than two cannot start and end at rest"))]
     harmonics: usize,
     /// Largest distance from the middle of the limits, or from 0 without limits; rad or m, one number or a list
     #[arg(long, value_name = "LIST")]
@@ -80,7 +83,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Samples per second in OUT
-    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value_t = 100.0, allow_negative_numbers = true,
+        value_parser = checked(|hz: &f64| (1e-3..=1e6).contains(hz),
+        "write a number of samples per second, 0.001 to 1000000"))]
     rate: f64,
     /// Plot the positions (SVG)
     #[arg(long, value_name = "SVG")]
@@ -93,29 +98,13 @@ pub(crate) struct Arguments {
     force: bool,
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds: &f64| (1e-3..=86_400.0).contains(seconds));
-    seconds.ok_or_else(|| "write a number of seconds, 0.001 to 86400".to_owned())
-}
-
-fn harmonics(text: &str) -> Result<usize, String> {
-    let harmonics = text.parse().ok().filter(|harmonics| (2..=50).contains(harmonics));
-    harmonics
-        .ok_or_else(|| "write 2 to 50 harmonics; a motion with fewer than two cannot start and end at rest".to_owned())
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    let rate = text.parse().ok().filter(|rate: &f64| (1e-3..=1e6).contains(rate));
-    rate.ok_or_else(|| "write a number of samples per second, 0.001 to 1000000".to_owned())
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = robot_file::robot(&arguments.file)?;
     if arguments.seconds * arguments.rate > MOST {
         return Err(Failure::usage(format_args!(
             "{} s at {} Hz are more than {MOST} samples; use a lower --rate",
-            exact(arguments.seconds),
-            exact(arguments.rate)
+            exact_digits(arguments.seconds),
+            exact_digits(arguments.rate)
         )));
     }
     let sources = [arguments.file.as_path()];
@@ -164,7 +153,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 fn failure(error: &ExcitationError) -> Failure {
-    if error.is_of_request() { Failure::usage(error) } else { Failure::input(error) }
+    let text = remedy::of_excitation(error);
+    if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
 }
 
 /// No motion is within the effort limits: where gravity alone is beyond them, a slower one is no way out.
@@ -193,7 +183,11 @@ fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError
             middle.words(robot, limits)
         )
     } else if most.part > 1.0 {
-        format!("{error}; {}; use a smaller --range to avoid this posture", most.words(robot, limits))
+        format!(
+            "{}; {}; use a smaller --range to avoid this posture",
+            remedy::of_excitation(error),
+            most.words(robot, limits)
+        )
     } else {
         return failure(error);
     })
@@ -317,7 +311,7 @@ fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     let about = format!(
         "{}: {times}{} s of {} harmonics, from rest to rest",
         one_line(&robot.name),
-        exact(period),
+        exact_digits(period),
         arguments.harmonics
     );
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
@@ -387,9 +381,9 @@ fn csv(motion: &Fourier, dof: usize, arguments: &Arguments) -> String {
     let steps = (arguments.seconds * arguments.rate * (1.0 - 1e-12)).ceil().max(1.0) as u32;
     for step in 0..=steps {
         let part = f64::from(step) / f64::from(steps);
-        text.push_str(&exact(arguments.seconds * part));
+        text.push_str(&exact_digits(arguments.seconds * part));
         for number in motion.after(part * f64::from(arguments.periods)).into_iter().flatten() {
-            let _ = write!(text, ",{}", exact(number));
+            let _ = write!(text, ",{}", exact_digits(number));
         }
         text.push('\n');
     }

@@ -156,7 +156,7 @@ fn quantities() -> String {
 
 /// What is said where a robot stands before the name: `rne explain puma560 w2_z`.
 fn swapped(name: &str, path: &Path) -> Option<Failure> {
-    let is_robot = robot_file::of_a_name(Path::new(name)).is_some() || Path::new(name).is_file();
+    let is_robot = rne_convert::shipped_at(Path::new(name)).is_some() || Path::new(name).is_file();
     (is_robot && !path.exists()).then(|| {
         let asked = path.display();
         Failure::usage(format_args!("the name comes first, then the robot: {TYPED}rne explain {asked} {name}{TYPED:#}"))

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::files::file_name::Format;
-use crate::files::output_file;
+use crate::files::output_file::Output;
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 
@@ -28,12 +28,8 @@ pub(crate) struct Arguments {
     /// The format: URDF
     #[arg(long, required = true)]
     urdf: bool,
-    /// File to write; - or no option: standard output
-    #[arg(short, long = "output", value_name = "FILE")]
-    out: Option<PathBuf>,
-    /// Overwrite an existing file
-    #[arg(long, requires = "out")]
-    force: bool,
+    #[command(flatten)]
+    output: Output,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -44,12 +40,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     for line in exported.remarks {
         let _ = writeln!(remark, "{line}");
     }
-    output_file::deliver(
-        arguments.out.as_deref(),
-        Format::Urdf,
-        exported.text,
-        remark,
-        &[&arguments.file],
-        arguments.force,
-    )
+    arguments.output.deliver(Format::Urdf, exported.text, remark, &arguments.file)
 }

@@ -4,11 +4,10 @@
 use rne::{BaseMotion, DynArm, Payload, Scalar, Wrench};
 use rne_codegen::{Function, Program};
 use rne_emit::{Golden, Precision};
-use rne_model::{GoldenFile, Robot};
+use rne_model::{GoldenFile, Robot, exact_digits};
 
 use crate::outcome::Failure;
 use crate::render::physics;
-use crate::values::numbers::exact;
 use crate::values::state::State;
 
 /// So many states hold emitted code.
@@ -113,7 +112,7 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
         let state = random.state(robot.dof());
         let torques = state.numbers(&arm).map_err(Failure::usage)?;
         let numbers = [&state.q, &state.qd, &state.qdd, &torques].into_iter().flatten();
-        let numbers: Vec<String> = numbers.copied().map(exact).collect();
+        let numbers: Vec<String> = numbers.copied().map(exact_digits).collect();
         if torques.iter().any(|torque| !torque.is_finite()) {
             return Err(Failure::input(format_args!("a torque of {} overflows", robot.name)));
         }

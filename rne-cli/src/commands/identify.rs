@@ -18,7 +18,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
 use crate::values::log_arguments::LogArguments;
-use crate::values::numbers::rounded;
+use crate::values::numbers::{checked, rounded};
 
 /// States of a picture.
 const DRAWN: u64 = 4000;
@@ -45,10 +45,13 @@ pub(crate) struct Arguments {
     #[arg(long)]
     no_friction: bool,
     /// Regularization to FILE's links
-    #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = pull)]
+    #[arg(long, value_name = "G", default_value_t = 1.0,
+        value_parser = checked(|pull: &f64| pull.is_finite() && *pull >= 1e-6,
+        "a pull is a number of 1e-6 or more; 1 is as strong as one row of noise"))]
     pull: f64,
     /// Compute errors on this last part, such as 0.3
-    #[arg(long, value_name = "PART", value_parser = part, conflicts_with = "judge")]
+    #[arg(long, value_name = "PART", conflicts_with = "judge",
+        value_parser = checked(|part: &f64| *part > 0.0 && *part < 1.0, "a part lies between 0 and 1, such as 0.3"))]
     hold_out: Option<f64>,
     /// Only compute the errors of FILE on the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
@@ -64,16 +67,6 @@ pub(crate) struct Arguments {
     force: bool,
     #[command(flatten)]
     reading: LogArguments,
-}
-
-fn pull(text: &str) -> Result<f64, String> {
-    let pull = text.parse().ok().filter(|pull: &f64| pull.is_finite() && *pull >= 1e-6);
-    pull.ok_or_else(|| "a pull is a number of 1e-6 or more; 1 is as strong as one row of noise".to_owned())
-}
-
-fn part(text: &str) -> Result<f64, String> {
-    let part = text.parse().ok().filter(|part: &f64| *part > 0.0 && *part < 1.0);
-    part.ok_or_else(|| "a part lies between 0 and 1, such as 0.3".to_owned())
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {

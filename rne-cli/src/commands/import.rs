@@ -1,16 +1,16 @@
 //! `rne import`: a robot file of an arm in a URDF, and an account of what was done.
 
 use std::fmt::Write as _;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_convert::{Account, Difference, Imported, Options, Selection, Urdf};
+use rne_convert::{Account, Description, Difference, Imported, Options, Selection, Urdf};
 use rne_model::Convention;
 
 use crate::files::file_name::Format;
-use crate::files::input_file::{self, is_standard_input};
-use crate::files::output_file;
+use crate::files::input_file;
+use crate::files::output_file::Output;
+use crate::files::robot_file::not_opened;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
@@ -59,12 +59,8 @@ pub(crate) struct Arguments {
     /// Name of the robot [default: as in the URDF]
     #[arg(long, value_parser = robot_name)]
     name: Option<String>,
-    /// Robot file to write [default: standard output]
-    #[arg(short, long = "output", value_name = "FILE")]
-    out: Option<PathBuf>,
-    /// Overwrite an existing file
-    #[arg(long, requires = "out")]
-    force: bool,
+    #[command(flatten)]
+    output: Output,
 }
 
 /// Reads `JOINT=VALUE`.
@@ -95,25 +91,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
     let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
-    output_file::deliver(arguments.out.as_deref(), Format::RobotFile, text, remark, &[&arguments.file], arguments.force)
+    arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 
-/// The text, and what messages call its file.
+/// The text, and what messages call its file. A robot file is refused where its text is read.
 fn read(path: &Path) -> Result<(String, String), Failure> {
-    const LONGEST: usize = 16 << 20;
-    let name = if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() };
-    let bytes = match input_file::read(path, LONGEST) {
-        Ok(bytes) => bytes,
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            return Err(Failure::input(format_args!("there is no URDF {}", path.display())));
-        }
-        Err(error) => return Err(Failure::input(format_args!("{} cannot be read: {error}", path.display()))),
+    let description = Description::open_by(path, input_file::open).map_err(|error| not_opened(&error))?;
+    let (Description::RobotFile(bytes) | Description::Urdf(bytes)) = description else {
+        return Err(Failure::usage(format_args!("{} is a shipped robot, no URDF", path.display())));
     };
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         Failure::input(format_args!("{}: byte {at} is not UTF-8; save the file as UTF-8", path.display()))
     })?;
-    Ok((name, text))
+    Ok((input_file::name(path), text))
 }
 
 /// So many lines of a list are shown.

@@ -4,17 +4,17 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_model::Robot;
+use rne_model::{Robot, exact_digits};
 use rne_plot::{TorqueHistory, Trajectory, svg};
 
 use crate::files::chosen_arm::{ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
-use crate::files::output_file;
+use crate::files::output_file::{self, Output};
 use crate::files::trajectory_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TYPED};
 use crate::render::layout::{Align, columns};
-use crate::values::numbers::{exact, rounded};
+use crate::values::numbers::{above_zero, rounded};
 
 /// Plot torques along a trajectory, with their parts
 #[derive(Args)]
@@ -37,17 +37,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "CSV", conflicts_with = "duration")]
     trajectory: Option<PathBuf>,
     /// Seconds from one posture to the other
-    #[arg(long, value_name = "S", value_parser = duration)]
+    #[arg(long, value_name = "S", value_parser = above_zero("write a number of seconds above 0, such as 1.5"))]
     duration: Option<f64>,
     /// Print numbers as CSV instead of a picture
     #[arg(long)]
     csv: bool,
-    /// File to write; - or no option: standard output
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
-    /// Overwrite an existing file
-    #[arg(long, requires = "output")]
-    force: bool,
+    #[command(flatten)]
+    output: Output,
 }
 
 /// Seconds, unless speed limits ask for more.
@@ -55,11 +51,6 @@ const DURATION: f64 = 2.0;
 
 /// Samples of a motion between postures.
 const SAMPLES: usize = 241;
-
-fn duration(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite() && *seconds > 0.0);
-    seconds.ok_or_else(|| "write a number of seconds above 0, such as 1.5".to_owned())
-}
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.arm.robot()?;
@@ -72,12 +63,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let history = TorqueHistory::new(&robot, &trajectory).map_err(Failure::usage)?;
     if let Some(sample) = history.overflows() {
-        let time = exact(trajectory.time[sample]);
+        let time = exact_digits(trajectory.time[sample]);
         return Err(Failure::input(format_args!("a torque overflows at {time} s: the motion is too fast")));
     }
     let text =
         if arguments.csv { csv(&robot, &trajectory, &history) } else { svg(&robot, &trajectory, &history, &about) };
-    match arguments.output.as_deref().filter(|path| !output_file::is_standard_output(path)) {
+    match arguments.output.out.as_deref().filter(|path| !output_file::is_standard_output(path)) {
         None => Ok(Outcome::text(text)),
         Some(path) => {
             let sources: Vec<&Path> =
@@ -85,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             if !sources.iter().any(|source| output_file::is_same(path, source)) {
                 is_named_for(path, arguments.csv)?;
             }
-            let written = output_file::write_new(path, &text, &sources, arguments.force)?;
+            let written = output_file::write_new(path, &text, &sources, arguments.output.force)?;
             Ok(Outcome::text(written + &peaks(&robot, &history)))
         }
     }
@@ -137,7 +128,7 @@ fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), 
     };
     let about = format!(
         "all joints between two postures inside their limits in {} s, from rest to rest, quintic{fast}",
-        exact(seconds)
+        exact_digits(seconds)
     );
     Ok((trajectory, about))
 }
@@ -165,10 +156,10 @@ fn csv(robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory) -> Strin
     let of = |name: &&str| (1..=robot.dof()).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
     let mut text = format!("t,{}\n", names.iter().flat_map(of).collect::<Vec<_>>().join(","));
     for ((time, parts), powers) in trajectory.time.iter().zip(&history.parts).zip(&history.powers) {
-        text.push_str(&exact(*time));
+        text.push_str(&exact_digits(*time));
         let numbers = [&parts.total, &parts.inertia, &parts.velocity, &parts.gravity, powers].into_iter().flatten();
         for number in numbers {
-            let _ = write!(text, ",{}", exact(*number));
+            let _ = write!(text, ",{}", exact_digits(*number));
         }
         text.push('\n');
     }

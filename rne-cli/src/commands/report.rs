@@ -7,7 +7,7 @@ use rne_codegen::{Form, Function};
 
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::Format;
-use crate::files::output_file;
+use crate::files::output_file::Output;
 use crate::files::plan_file::Compiler;
 use crate::outcome::{Failure, Outcome};
 
@@ -41,5 +41,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let reduced = Compiler::new(&arguments.file, &robot).compile(Function::InverseDynamics, Form::Reduced)?;
     let page = rne_report::page(&robot, Some(&reduced))
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
-    output_file::deliver(Some(&arguments.out), Format::Html, page, String::new(), &[&arguments.file], arguments.force)
+    let output = Output { out: Some(arguments.out.clone()), force: arguments.force };
+    output.deliver(Format::Html, page, String::new(), &arguments.file)
 }

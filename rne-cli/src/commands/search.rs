@@ -72,7 +72,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if is_stream(&arguments.file) {
         return Err(Failure::usage("a search writes its plan next to the robot file, so it needs a file"));
     }
-    if let Some(shipped) = robot_file::of_a_name(&arguments.file) {
+    if let Some(shipped) = rne_convert::shipped_at(&arguments.file) {
         let name = shipped.name;
         return Err(Failure::usage(format_args!(
             "a search writes its plan next to the robot file, so it needs a file: {TYPED}rne example {name} > \

@@ -6,11 +6,10 @@ use std::path::Path;
 use rne::{DynArm, InverseDynamics as _};
 use rne_codegen::{self as codegen, Form, Function, Program, Step};
 use rne_emit::Selection;
-use rne_model::{Reader, Robot};
+use rne_model::{Reader, Robot, exact_digits};
 
 use crate::commands::ops;
 use crate::files::plan_file::Compiler;
-use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, QUIET, TITLE, TYPED};
 use crate::render::heading;
@@ -18,7 +17,7 @@ use crate::render::highlight;
 use crate::render::layout::{Align, PAGE, columns, wrap};
 use crate::render::letters::Letters;
 use crate::terminal;
-use crate::values::numbers::{at_the_point, exact};
+use crate::values::numbers::at_the_point;
 
 /// The shipped robot of the tour.
 const NAME: &str = "puma560";
@@ -33,7 +32,7 @@ const QD: [f64; 6] = [0.9, -0.5, 0.4, 1.2, -0.3, 0.7];
 const QDD: [f64; 6] = [-1.1, 0.6, 0.8, -0.9, 1.4, 0.35];
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
-    let file = robot_file::shipped(NAME)?;
+    let file = rne_convert::shipped(NAME).map_err(Failure::input)?;
     let robot = Reader::new(NAME).read(file.yaml).map_err(|report| Failure::from(&report))?.robot;
     let program = codegen::Compiler::new(&robot)
         .compile(Function::InverseDynamics, Form::SevenSteps)
@@ -126,7 +125,7 @@ fn code(text: &mut String, robot: &Robot, program: &Program, joint: usize, steps
 
 fn torques(robot: &Robot, generated: &[f64], runtime: &[f64]) -> String {
     let column = |title: &str, values: &[f64]| -> Vec<String> {
-        let texts: Vec<String> = values.iter().copied().map(exact).collect();
+        let texts: Vec<String> = values.iter().copied().map(exact_digits).collect();
         std::iter::once(title.to_owned()).chain(at_the_point(&texts)).collect()
     };
     let difference: Vec<f64> = generated.iter().zip(runtime).map(|(a, b)| a - b).collect();

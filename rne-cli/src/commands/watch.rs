@@ -18,7 +18,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, QUIET, TITLE, TYPED, WARNING};
 use crate::render::layout::{Align, PAGE, columns, shortened, wrap};
 use crate::values::log_arguments::LogArguments;
-use crate::values::numbers::rounded;
+use crate::values::numbers::{above_zero, rounded};
 
 /// Events that are shown; the others are counted.
 const SHOWN: usize = 40;
@@ -46,13 +46,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LOG")]
     quiet: Vec<PathBuf>,
     /// Gain of the momentum observer, Hz
-    #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero)]
+    #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero("it is a number above 0"))]
     gain: f64,
     /// Shortest event to report, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero("it is a number above 0"))]
     hold: f64,
     /// Permitted false alarms per hour, all joints
-    #[arg(long, value_name = "RATE", default_value_t = 0.01, value_parser = above_zero)]
+    #[arg(long, value_name = "RATE", default_value_t = 0.01, value_parser = above_zero("it is a number above 0"))]
     false_alarms: f64,
     /// Plot residuals and events (SVG)
     #[arg(long, value_name = "SVG")]
@@ -65,11 +65,6 @@ pub(crate) struct Arguments {
     json: bool,
     #[command(flatten)]
     reading: LogArguments,
-}
-
-fn above_zero(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| "it is a number above 0".to_owned())
 }
 
 /// Whether two paths lead to one log: the same file, or a folder and what is inside.

@@ -1,7 +1,7 @@
 //! Files that are read: regular ones, and streams that a shell has opened already.
 
 use std::fs::File;
-use std::io::{self, Read as _};
+use std::io::{self, Read};
 use std::path::Path;
 
 use rne_model::open_file;
@@ -23,11 +23,20 @@ pub(crate) fn is_stream(path: &Path) -> bool {
 pub(crate) fn read(path: &Path, longest: usize) -> io::Result<Vec<u8>> {
     let most = longest as u64 + 1;
     let mut bytes = Vec::new();
-    if is_standard_input(path) {
-        io::stdin().lock().take(most).read_to_end(&mut bytes)?;
-    } else {
-        let file = if is_stream(path) { File::open(path) } else { open_file(path) };
-        file?.take(most).read_to_end(&mut bytes)?;
-    }
+    open(path)?.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// A file to be read, or an open stream.
+pub(crate) fn open(path: &Path) -> io::Result<Box<dyn Read>> {
+    if is_standard_input(path) {
+        return Ok(Box::new(io::stdin().lock()));
+    }
+    let file = if is_stream(path) { File::open(path) } else { open_file(path) };
+    Ok(Box::new(file?))
+}
+
+/// What messages call a file.
+pub(crate) fn name(path: &Path) -> String {
+    if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() }
 }

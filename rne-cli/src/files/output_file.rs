@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use tempfile::NamedTempFile;
 
 use crate::files::file_name::{self, Format};
@@ -195,23 +196,35 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
     write_all(&[(path, text)])
 }
 
-/// What a command returns whose result goes into the file that `-o` names, or else to standard output. A file that is
-/// there stays, as [`write_new`] has it.
-pub(crate) fn deliver(
-    out: Option<&Path>,
-    format: Format,
-    text: String,
-    mut remark: String,
-    sources: &[&Path],
-    force: bool,
-) -> Result<Outcome, Failure> {
-    let Some(out) = out.filter(|out| !is_standard_output(out)) else {
-        return Ok(Outcome { text, remark, ..Outcome::default() });
-    };
-    check_new(out, Some(&text), sources, force)?;
-    file_name::check(out, format)?;
-    remark += &write_all(&[(out, &text)])?;
-    Ok(Outcome::remark(remark))
+/// The file of a result, or standard output.
+#[derive(Args)]
+pub(crate) struct Output {
+    /// File to write; - or no option: standard output
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite an existing file
+    #[arg(long, requires = "out")]
+    pub(crate) force: bool,
+}
+
+impl Output {
+    /// Writes a text, which was made of `source`, to the file or for standard output. A file that exists is not
+    /// changed, as [`write_new`] has it.
+    pub(crate) fn deliver(
+        &self,
+        format: Format,
+        text: String,
+        mut remark: String,
+        source: &Path,
+    ) -> Result<Outcome, Failure> {
+        let Some(out) = self.out.as_deref().filter(|out| !is_standard_output(out)) else {
+            return Ok(Outcome { text, remark, ..Outcome::default() });
+        };
+        check_new(out, Some(&text), &[source], self.force)?;
+        file_name::check(out, format)?;
+        remark += &write_all(&[(out, &text)])?;
+        Ok(Outcome::remark(remark))
+    }
 }
 
 /// Whether a path names standard output.

@@ -14,7 +14,6 @@ use rne_search::PlanFile;
 
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, Replacement, unwritable};
-use crate::files::robot_file::of_a_name;
 use crate::outcome::Failure;
 
 /// The robot files among paths: a plan goes with its robot, and a pattern such as `robots/*.yaml` means both.
@@ -44,7 +43,7 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     if is_stream(robot_file) {
         return Ok(None);
     }
-    if let Some(shipped) = of_a_name(robot_file) {
+    if let Some(shipped) = rne_convert::shipped_at(robot_file) {
         let Some(text) = shipped.plan else { return Ok(None) };
         let name = format!("the plan of {} (shipped)", shipped.name);
         let plan = PlanFile::read(&name, text, robot).map_err(|report| Failure::plan(report, Remedy::SearchAfresh))?;

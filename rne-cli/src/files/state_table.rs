@@ -10,7 +10,7 @@ use rne_logs::Npy;
 use rne_model::{did_you_mean, open_file};
 
 use crate::files::csv_table::quoted;
-use crate::files::input_file::{is_standard_input, is_stream};
+use crate::files::input_file::{self, is_standard_input, is_stream};
 use crate::outcome::Failure;
 
 /// States of a part: some megabytes, whatever the file's size.
@@ -72,7 +72,7 @@ impl Read for Bounded {
 impl Table {
     /// Opens a file that has these columns: by name in CSV, in this order in an array. One of them may be a mass.
     pub(crate) fn open(path: &Path, columns: &[String], mass: Option<usize>) -> Result<Self, Failure> {
-        let name = if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() };
+        let name = input_file::name(path);
         let unreadable = |error: io::Error| Failure::input(format_args!("the states {name} cannot be read: {error}"));
         let file: Box<dyn Read> = if is_standard_input(path) {
             Box::new(io::stdin())

@@ -31,7 +31,7 @@ struct Columns {
 
 /// Reads the trajectory of a robot.
 pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
-    let name = if input_file::is_standard_input(path) { "<standard input>".into() } else { path.display().to_string() };
+    let name = input_file::name(path);
     let bytes = input_file::read(path, LONGEST)
         .map_err(|error| Failure::input(format_args!("the trajectory {name} cannot be read: {error}")))?;
     if bytes.len() > LONGEST {

@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use rne_diagnose::worksheet::{Axes, GivenValue, Line, Quantity, Worksheet};
-use rne_model::{Report, Robot, did_you_mean};
+use rne_model::{Report, Robot, did_you_mean, exact_digits};
 use serde::Serialize;
 use serde_json::value::RawValue;
 
@@ -17,7 +17,6 @@ use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of}
 use crate::files::input_file;
 use crate::outcome::Failure;
 use crate::render::worksheet::Narrowed;
-use crate::values::numbers::exact;
 use crate::values::numbers::resolution;
 
 /// The version of both shapes.
@@ -66,7 +65,7 @@ fn rows(sheet: &Worksheet, narrowed: Narrowed) -> impl Iterator<Item = Row> {
 pub(crate) fn csv(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed) -> String {
     let mut text = format!("# rne worksheet, format {FORMAT}, robot {}\n{}\n", robot.name, COLUMNS.join(","));
     for Row { joint, step, quantity, component, value, unit, frame } in rows(sheet, narrowed) {
-        let _ = writeln!(text, "{joint},{step},{quantity},{component},{},{unit},{frame}", exact(value));
+        let _ = writeln!(text, "{joint},{step},{quantity},{component},{},{unit},{frame}", exact_digits(value));
     }
     text
 }
@@ -103,7 +102,7 @@ type Cells<'a> = BTreeMap<&'static str, Cell<'a>>;
 
 /// Reads a worksheet of a robot. `axes` are those asked for; without any, the file's count.
 pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Filled, Failure> {
-    let name = if input_file::is_standard_input(path) { "<standard input>".into() } else { path.display().to_string() };
+    let name = input_file::name(path);
     let bytes = input_file::read(path, LONGEST)
         .map_err(|error| Failure::input(format_args!("the worksheet {name} cannot be read: {error}")))?;
     if bytes.len() > LONGEST {

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use rne::{Payload, Wrench};
 use rne_codegen::{Answer, Argument, Function, Labels, MatrixUnit, Shape};
-use rne_model::{INERTIAL_PARAMETERS, Inertia, InertiaElement, JointKind, Robot};
+use rne_model::{INERTIAL_PARAMETERS, Inertia, InertiaElement, JointKind, Robot, exact_digits};
 
 use crate::palette::{QUIET, TITLE};
 use crate::render::layout::{Align, columns, left, width};
-use crate::values::numbers::{at_the_point, exact, rounded};
+use crate::values::numbers::{at_the_point, rounded};
 use crate::values::state::State;
 
 /// Digits behind the point in a matrix.
@@ -24,7 +24,7 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
     match state.function.answer() {
         Answer::Torques | Answer::Accelerations => per_joint(&mut text, robot, state, numbers),
         Answer::Number(unit) => {
-            let number = numbers.iter().copied().map(exact).collect::<String>();
+            let number = numbers.iter().copied().map(exact_digits).collect::<String>();
             let _ = writeln!(text, "  {number} {unit}");
         }
         Answer::Tables(tables) => {
@@ -70,7 +70,7 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
     let mut cells = vec![vec![String::new()]];
     cells.extend(robot.joints.iter().map(|joint| vec![format!("  {}", joint.name)]));
     for (title, values, _) in all.into_iter().filter(|(.., taken)| *taken) {
-        let numbers: Vec<String> = values.iter().copied().map(exact).collect();
+        let numbers: Vec<String> = values.iter().copied().map(exact_digits).collect();
         let column = std::iter::once(title.to_owned()).chain(at_the_point(&numbers));
         cells.iter_mut().zip(column).for_each(|(line, cell)| line.push(cell));
     }
@@ -82,10 +82,10 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
         let _ = writeln!(text, "{QUIET}the last link exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
     }
     if let Some(Payload { mass, com, inertia }) = &state.payload {
-        let mass = exact(*mass);
+        let mass = exact_digits(*mass);
         let _ = writeln!(text, "{QUIET}the tip carries {mass} kg with its centre at ({}) m{QUIET:#}", list(com));
         if *inertia != Inertia::default() {
-            let elements = InertiaElement::ALL.map(|element| exact(*element.of(inertia))).join(", ");
+            let elements = InertiaElement::ALL.map(|element| exact_digits(*element.of(inertia))).join(", ");
             let _ = writeln!(text, "{QUIET}and the inertia xx, yy, zz, xy, xz, yz = {elements} kg m²{QUIET:#}");
         }
     }
@@ -100,7 +100,7 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
 
 /// Numbers with commas between them.
 pub(crate) fn list(values: &[f64; 3]) -> String {
-    values.map(exact).join(", ")
+    values.map(exact_digits).join(", ")
 }
 
 const fn unit(kind: JointKind, acceleration: bool) -> &'static str {

@@ -10,5 +10,5 @@ pub(crate) mod letters;
 pub(crate) mod log_remedy;
 pub(crate) mod log_report;
 pub(crate) mod physics;
-pub(crate) mod plan_remedy;
+pub(crate) mod remedy;
 pub(crate) mod worksheet;

@@ -2,9 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_model::Robot;
-
-use crate::values::numbers::exact;
+use rne_model::{Robot, six_digits};
 
 /// A line for each joint whose position, rad or m, lies outside of its limits in the file. The numbers are right all
 /// the same: limits are no part of the dynamics.
@@ -18,7 +16,7 @@ pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
             continue;
         }
         let unit = joint.row.kind.position_unit();
-        let [q, lower, upper] = [q, lower, upper].map(shown);
+        let [q, lower, upper] = [q, lower, upper].map(six_digits);
         let _ = writeln!(
             text,
             "note: q{} = {q} {unit} is outside of the limits of {}: {lower} to {upper} {unit}",
@@ -27,11 +25,6 @@ pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
         );
     }
     text
-}
-
-/// With six digits, as a person reads it.
-fn shown(value: f64) -> String {
-    exact(format!("{value:.5e}").parse().unwrap_or(value))
 }
 
 #[cfg(test)]

@@ -28,17 +28,6 @@ impl FromStr for List {
     }
 }
 
-/// All digits that a number needs to be read back; zero has no sign.
-pub(crate) fn exact(value: f64) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else if value.abs() < 1e-5 || value.abs() >= 1e16 {
-        format!("{value:e}")
-    } else {
-        format!("{value}")
-    }
-}
-
 /// Texts of numbers, their decimal points in one column.
 pub(crate) fn at_the_point(texts: &[String]) -> Vec<String> {
     let places = |text: &String| text.find('.').unwrap_or_else(|| text.find('e').unwrap_or(text.len()));
@@ -85,6 +74,19 @@ pub(crate) fn resolution(number: &str) -> f64 {
     // a whole number may be exact, and may be rounded
     let behind = mantissa.split_once('.').map_or(0, |(_, digits)| i32::try_from(digits.len()).unwrap_or(i32::MAX));
     0.5 * 10_f64.powi(exponent.saturating_sub(behind))
+}
+
+/// A parser of an argument: a number that `is_fine`, or else the message `allowed`.
+pub(crate) fn checked<T: FromStr>(
+    is_fine: fn(&T) -> bool,
+    allowed: &'static str,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| text.parse().ok().filter(is_fine).ok_or_else(|| allowed.to_owned())
+}
+
+/// A parser of a finite number above 0.
+pub(crate) fn above_zero(allowed: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    checked(|number: &f64| number.is_finite() && *number > 0.0, allowed)
 }
 
 #[cfg(test)]

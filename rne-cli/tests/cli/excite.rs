@@ -125,7 +125,10 @@ fn gravity_beyond_the_effort_limits_is_told_apart() {
         assert_eq!((called.status, called.out.as_str()), (1, ""), "{called:?}");
         called.said()
     };
-    let (slower, helps) = ("a slower one, by --seconds", "neither a slower motion nor a smaller --range helps");
+    let (slower, helps) = (
+        "a slower or smaller motion needs less: change --seconds",
+        "neither a slower motion nor a smaller --range helps",
+    );
     let has = |said: &str, parts: &[&str]| parts.iter().for_each(|part| assert!(said.contains(part), "{part}: {said}"));
     // cos 0.2 of it at least: at the ends, not in the middle
     let everywhere = said("[-0.2, 0.2]", 4.0, 0.0);

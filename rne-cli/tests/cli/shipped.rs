@@ -23,7 +23,7 @@ fn an_example_is_the_file() {
     let file = |name: &str| fs::read_to_string(format!("{ROOT}/robots/{name}")).expect("a file");
     assert_eq!(fine(&["example", "puma560"]), file("puma560.yaml"));
     assert_eq!(fine(&["example", "puma560", "--plan"]), file("puma560.plan.yaml"));
-    fails(1, &["example", "puma"], &["no shipped robot puma", "puma560"]);
+    fails(1, &["example", "puma"], &["no shipped robot `puma`", "puma560"]);
 }
 
 #[test]

@@ -27,9 +27,9 @@ pub struct GivenValue {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Comparison {
-    /// So many values were compared.
+    /// Number of values that were compared.
     pub compared: usize,
-    /// So many of them differ.
+    /// Number of values that differ.
     pub differing: usize,
     /// The steps, 1 to 7, of which no value is given.
     pub steps_not_given: Vec<u8>,
@@ -65,7 +65,7 @@ pub struct Reason {
     pub reach: Reach,
 }
 
-/// How much a reason explains.
+/// The part of the differences that a reason explains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reach {
@@ -77,7 +77,7 @@ pub enum Reach {
     Line,
     /// This component.
     Component,
-    /// Every value up to this line, not all behind it.
+    /// Every value up to this line, and not all after it.
     UpToHere,
 }
 
@@ -158,7 +158,7 @@ impl<'a> Ordered<'a> {
         2.0 * size * 10_f64.powi(1 - i32::from(self.digits))
     }
 
-    /// How far a value of a place may be off.
+    /// Largest deviation that is allowed of a value at a place.
     fn allowed(&self, place: Place) -> f64 {
         let Some(line) = self.sheet.lines.get(place.0) else { return 0.0 };
         let size = line.size();
@@ -168,7 +168,7 @@ impl<'a> Ordered<'a> {
         by_hand.max(written) + rounding
     }
 
-    /// Whether what is given at a place is this value; true where nothing is given.
+    /// Whether the given value at a place is this one; true if no value is given.
     fn agrees(&self, place: Place, value: f64) -> bool {
         let Some(given) = self.values.get(&place) else { return true };
         let difference = given.value - value;

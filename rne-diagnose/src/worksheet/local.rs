@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use super::Line;
 
-/// Ways to another value on a line: what was done, and all components then; `None` for those of which nothing is said.
+/// A way to another value on a line: its description, and all components by it; `None` for components that it does not
+/// describe.
 pub(super) struct Way {
     pub(super) says: String,
     pub(super) values: Vec<Option<f64>>,

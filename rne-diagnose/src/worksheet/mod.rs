@@ -22,7 +22,7 @@ pub enum Axes {
     Link,
     /// Fixed to link i-1, z along joint i: the lecture's, for both conventions.
     Joint,
-    /// Those of frame 0.
+    /// The axes of frame 0.
     Base,
 }
 
@@ -58,7 +58,7 @@ pub struct Situation {
     pub qd: Vec<f64>,
     /// Joint accelerations.
     pub qdd: Vec<f64>,
-    /// How the base moves, and gravity, in frame 0; `None` for a base at rest under the robot's gravity.
+    /// The motion of the base, and gravity, in frame 0; `None` for a base at rest under the robot's gravity.
     pub base: Option<BaseMotion<f64>>,
     /// The wrench that the last link exerts on its environment, at the tip, in tip axes.
     pub wrench: Option<Wrench<f64>>,
@@ -76,7 +76,7 @@ pub struct Worksheet {
     pub lines: Vec<Line>,
 }
 
-/// One quantity of one joint.
+/// A quantity of a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Line {
@@ -90,7 +90,7 @@ pub struct Line {
     pub values: Vec<f64>,
     /// Right side of its formula, or what it is.
     pub formula: String,
-    /// The terms whose sum it is; none where it is given.
+    /// The terms of the sum; empty if the value is given.
     pub terms: Vec<Term>,
     /// The inputs of the formula, in its order.
     pub inputs: Vec<Input>,
@@ -114,9 +114,9 @@ pub struct Term {
 pub struct Input {
     /// `ω1`.
     pub symbol: String,
-    /// One number, three, or the nine of a matrix, row by row.
+    /// The value: one number, a vector of three, or a matrix of nine, row by row.
     pub values: Vec<f64>,
-    /// Its unit; 1 where there is none.
+    /// The unit; 1 for a number without one.
     pub unit: &'static str,
 }
 
@@ -127,7 +127,7 @@ impl Line {
         self.quantity.symbol(self.joint)
     }
 
-    /// Its unit; 1 where there is none.
+    /// The unit; 1 for a number without one.
     #[must_use]
     pub fn unit(&self) -> &'static str {
         self.quantity.unit(self.kind)

@@ -26,7 +26,7 @@ macro_rules! quantities {
             /// All, in the order in which a joint's are computed.
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
 
-            /// Its name in files: `omega_dot`.
+            /// The name in files: `omega_dot`.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)* }
@@ -52,7 +52,7 @@ macro_rules! quantities {
                 match self { $(Self::$variant => $components,)* }
             }
 
-            /// Its unit for a kind of joint; 1 where there is none.
+            /// The unit for a kind of joint; 1 for a number without one.
             #[must_use]
             pub const fn unit(self, kind: JointKind) -> &'static str {
                 let [turns, slides] = match self { $(Self::$variant => [$turns, $slides],)* };

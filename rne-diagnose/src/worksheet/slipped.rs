@@ -10,7 +10,7 @@ use crate::computation::{Computation, Moved};
 use crate::lecture::{LinkVectors, Misprint, Placed};
 use crate::slip::Slip;
 
-/// A slip, and what stands on each line of the worksheet by it.
+/// A slip, and the values of each line of the worksheet with it.
 pub(super) struct Slipped {
     pub(super) slip: Slip,
     pub(super) values: Vec<Vec<f64>>,

@@ -1,4 +1,4 @@
-//! Where rows are made, and what samples have there.
+//! The instants at which rows are made, and the values of samples there.
 
 use crate::smoothing::Kernel;
 use crate::structure::Structure;

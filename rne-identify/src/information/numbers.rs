@@ -9,13 +9,13 @@ use crate::structure::Structure;
 /// Numbers before those of the segments: rows of a segment, states, duration, shift, segments.
 const HEAD: usize = 5;
 
-/// Counts from here on are no longer exact as numbers.
+/// Counts above this number are not exact as floating-point numbers.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// Numbers that are no information of a structure.
+/// Numbers that do not fit a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongNumbers {
-    /// How many there are.
+    /// The number of numbers that were found.
     pub found: usize,
 }
 

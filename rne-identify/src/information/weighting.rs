@@ -1,4 +1,4 @@
-//! How much rows count, by how far they are from the fit before.
+//! Weights of rows, by their distance from the fit before.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -24,7 +24,7 @@ pub struct Weighting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Rejected {
-    /// How many.
+    /// Number of rows.
     pub rows: u64,
     /// s: the first.
     pub time: f64,

@@ -228,7 +228,7 @@ def load(
     form: Form = ...,
     rotors: bool = ...,
 ) -> Arm:
-    """An arm of a robot file (YAML), a URDF, or the text of either."""
+    """Return the arm of a robot file (YAML), a URDF, the text of either, or the name of a built-in robot."""
 
 def payload(mass: float, com: ArrayLike = ..., inertia: ArrayLike | None = ...) -> Floats:
     """What `Arm.inverse_dynamics_with_payload` takes, shape (10,)."""

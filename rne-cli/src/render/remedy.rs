@@ -1,0 +1,60 @@
+//! Remedies against errors, in the words of the command line.
+
+use std::path::Path;
+
+use rne_codegen::{CompileError, Remedy};
+use rne_identify::ExcitationError;
+use rne_model::{Report, robot_of};
+
+/// The errors of a robot file or a URDF with the options that help.
+pub(crate) fn worded(report: &Report) -> Report {
+    use rne_model::Remedy;
+    report.clone().worded(|remedy| {
+        Some(match remedy {
+            Remedy::ImportUrdf { file } => {
+                let file = file.as_deref().unwrap_or("FILE");
+                format!("`rne import {file} -o robot.yaml` makes a robot file of a URDF")
+            }
+            Remedy::NameTip => "name the tip with --tip LINK".to_owned(),
+            Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE holds `{joint}` still"),
+            Remedy::LockOthers => "--lock JOINT=VALUE holds one, --lock-others holds all at zero".to_owned(),
+            Remedy::KeepUnphysical => "--keep-unphysical keeps it".to_owned(),
+            _ => return None,
+        })
+    })
+}
+
+/// A reason why there is no motion that excites an arm, with the options that help.
+pub(crate) fn of_excitation(error: &ExcitationError) -> String {
+    match error {
+        ExcitationError::Length { .. } | ExcitationError::NotPositive(_) => format!("--{error}"),
+        ExcitationError::NoPosition { .. } => format!("{error} with --range"),
+        ExcitationError::Effort { .. } => format!("{error}: change --seconds, --velocity, --acceleration or --range"),
+        _ => error.to_string(),
+    }
+}
+
+/// A mistake of a plan file with what helps.
+pub(crate) fn of_plan(report: Report, remedy: Remedy) -> Report {
+    let robot = robot_of(Path::new(&report.name)).map(|path| path.display().to_string());
+    let robot = robot.as_deref().unwrap_or("ROBOT.yaml");
+    let words = match remedy {
+        Remedy::CountAnew => "`rne search ROBOT.yaml` counts anew".to_owned(),
+        _ => format!(
+            "`rne search {robot} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a \
+             build chooses by itself"
+        ),
+    };
+    report.with_help(&words)
+}
+
+/// An error of the compiler with what helps.
+pub(crate) fn of_compiler(error: &CompileError) -> String {
+    match error.remedy() {
+        Some(Remedy::RewriteAfresh) => {
+            format!("{error}; `rne search ROBOT.yaml --rewrite --fresh` writes the plan anew")
+        }
+        Some(_) => format!("{error}; `rne search ROBOT.yaml --fresh` finds another plan"),
+        None => error.to_string(),
+    }
+}

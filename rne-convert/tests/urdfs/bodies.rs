@@ -1,0 +1,148 @@
+//! Bodies, friction and texts of a URDF in a robot file.
+
+use super::*;
+
+/// Half of a body is not guessed.
+#[test]
+fn an_inertial_has_a_mass_and_an_inertia() {
+    for (part, element) in [("mass", "<mass value=\"2\"/>"), ("inertia", "<inertia ixx")] {
+        let text = pendulum("");
+        let at = text.find(element).expect("the rod has it");
+        let end = at + text[at..].find("/>").expect("its end") + 2;
+        let message = Urdf::read("arm.urdf", &format!("{}{}", &text[..at], &text[end..])).unwrap_err().to_string();
+        for words in [&format!("the `inertial` of the link `rod` has no element `{part}`"), "arm.urdf:3:1"] {
+            assert!(message.contains(words), "no `{words}` in {message}");
+        }
+    }
+}
+
+/// XML takes a line break within an attribute for a space.
+#[test]
+fn numbers_of_an_attribute_may_stand_in_several_lines() {
+    let text = pendulum("");
+    let broken = text.replace("xyz=\"0 0 1\"", "xyz=\"0\n0\t1\"");
+    assert_ne!(text, broken);
+    assert_eq!(plain(&broken).text, plain(&text).text);
+}
+
+/// Pitfall 9: a joint and a link may share a name; a mass of zero divides nothing.
+#[test]
+fn one_name_for_a_joint_and_a_link_and_a_centre_without_mass() {
+    let text = robot(&[
+        bare(&["base"]),
+        link("hand", 0.0, "1 2 3", [0.0, 0.0, 0.35]),
+        joint("hand", "continuous", ("base", "hand"), "", "<axis xyz=\"0 0 1\"/>"),
+    ]);
+    let link = plain(&text).robot.joints[0].row.link;
+    assert_eq!((link.mass, link.com), (0.0, [0.0; 3]));
+    assert_eq!(link.inertia, Inertia { zz: 0.35, ..Inertia::default() });
+}
+
+/// Pitfall 10: the triangle inequality is a lint, a negative moment an error, unless it is asked for.
+#[test]
+fn bodies_that_are_none() {
+    let flat = pendulum("").replace("ixx=\"0.05\"", "ixx=\"0.5\"");
+    let imported = plain(&flat);
+    assert!(imported.account.lints.to_string().contains("no body has this inertia"), "{}", imported.account.lints);
+    let negative = pendulum("").replace("izz=\"0.001\"", "izz=\"-0.0027\"");
+    let message = refused(&negative, &Options::default());
+    assert!(message.contains("the joint `hinge`") && message.contains("-2.700e-3 kg m²"), "{message}");
+    assert!(message.contains("or keep it; KeepUnphysical"), "{message}");
+    let kept = import(&negative, &Options { keep_unphysical: true, ..Options::default() });
+    assert!(kept.text.contains("physical: false"), "{}", kept.text);
+    assert!(!kept.robot.joints[0].is_physical());
+}
+
+/// 50² 2e-4 N m s/rad and 50 (0.03 + 0.01)/2 N m; a friction without a gear comes back to the last digit.
+#[test]
+fn friction_goes_through_the_gear_to_the_joint() {
+    let text = |motor: &str| {
+        format!(
+            "{{format: 1, name: arm, source: own, convention: standard, gravity: [0, 0, -9.81], joints: [{{type: \
+             revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {{mass: 1}}, motor: {motor}}}]}}"
+        )
+    };
+    let exported =
+        |motor: &str| rne_convert::export(&Robot::from_yaml(&text(motor)).unwrap_or_else(|e| panic!("{e}"))).unwrap();
+    let geared = exported("{inertia: 1e-4, gear_ratio: -50, viscous: 2e-4, coulomb: [0.03, -0.01]}");
+    assert!(geared.text.contains("<dynamics damping=\"0.5\" friction=\"1\"/>"), "{}", geared.text);
+    for part in ["motors are left out, but for their friction", "is written as its mean", ": joint1"] {
+        assert!(geared.remarks.iter().any(|remark| remark.contains(part)), "{part}: {:?}", geared.remarks);
+    }
+    let direct = exported("{viscous: 0.1, coulomb: [0.3, -0.3]}");
+    assert_eq!(direct.remarks, [""; 0]);
+    let back = plain(&direct.text).robot.joints[0].motor.expect("friction");
+    assert_eq!((back.viscous, back.coulomb, back.gear_ratio, back.inertia), (0.1, [0.3, -0.3], 1.0, 0.0));
+    for key in ["coulomb_width: 0.02", "coulomb_displacement: 0.003"] {
+        let smooth = exported(&format!("{{coulomb: [0.3, -0.3], {key}}}"));
+        assert!(
+            smooth.remarks[0].contains("changes its sign") && smooth.remarks[0].ends_with(": joint1"),
+            "{smooth:?}"
+        );
+        assert!(smooth.remarks.len() == 1 && smooth.text.contains("<!-- how Coulomb friction"), "{}", smooth.text);
+    }
+    let rotor = exported("{inertia: 1e-4, gear_ratio: 50}");
+    assert!(!rotor.text.contains("dynamics") && rotor.remarks.len() == 1, "{rotor:?}");
+    let huge = exported("{inertia: 1e-4, gear_ratio: 1e160, viscous: 1}");
+    assert!(!huge.text.contains("dynamics") && huge.remarks.len() == 2, "{huge:?}");
+}
+
+#[test]
+fn friction_becomes_that_of_a_motor_without_a_gear() {
+    let text = pendulum("<axis xyz=\"0 1 0\"/><dynamics damping=\"0.5\" friction=\"0.2\"/>");
+    let imported = plain(&text);
+    assert!(imported.text.contains("motor: {viscous: 0.5, coulomb: [0.2, -0.2]}"), "{}", imported.text);
+}
+
+#[test]
+fn the_base_may_stand_anywhere() {
+    let text = planar("xyz=\"0.4 0 0\"").replace("xyz=\"0 0 0\"", "xyz=\"0.1 0.2 0.3\" rpy=\"0 0 0.5\"");
+    let options = Options {
+        selection: Selection { base: Some("one".to_owned()), lock_others: true, ..Selection::default() },
+        ..Options::default()
+    };
+    let imported = import(&text, &options);
+    assert_eq!(imported.robot.dof(), 1);
+    assert_eq!(imported.robot.base.xyz[2], 0.3);
+    assert_eq!(imported.account.held, [("a".to_owned(), 0.0)]);
+    let alone = Options { selection: Selection { lock_others: false, ..options.selection.clone() }, ..options };
+    assert!(refused(&text, &alone).contains("movable joints off the chain"));
+    let above = Options {
+        selection: Selection { base: Some("tip".to_owned()), tip: Some("one".to_owned()), ..Selection::default() },
+        ..Options::default()
+    };
+    let message = refused(&text, &above);
+    assert!(message.contains("the link `tip` does not lead to `one`"), "{message}");
+}
+
+/// The text of a robot file is what a person would write.
+#[test]
+fn the_robot_file_is_for_people() {
+    let text = planar("xyz=\"0.4318 0 0\" rpy=\"1.5708 0 0\"")
+        .replace("lower=\"-1\"", &format!("lower=\"-{}\"", rne_model::number("deg(170)").unwrap()));
+    insta::assert_snapshot!(plain(&text).text);
+}
+
+#[test]
+fn all_texts_of_a_robot_come_back() {
+    let mut robot = plain(&pendulum("")).robot;
+    for text in
+        ["a: b", "- a", "null", "it's \"x\"", "a\u{2028}b", "#1", "é ü 漢字", "1.5", "{x}", "a #b", "a  b", "[", "\\n"]
+    {
+        robot.source = text.to_owned();
+        robot.notes = Some(format!("- {text}\n- second"));
+        if !text.contains('\u{2028}') {
+            robot.title = Some(text.to_owned());
+            robot.joints[0].name = text.to_owned();
+        }
+        let written = robot_file::write(&robot);
+        match Reader::new("written").read(&written) {
+            Ok(checked) => assert_eq!(checked.robot, robot, "{written}"),
+            Err(report) => panic!("{report}\n{written}"),
+        }
+    }
+    robot.source = "word ".repeat(60).trim().to_owned();
+    robot.notes = Some(" leading\n\nempty ".to_owned());
+    let written = robot_file::write(&robot);
+    assert_eq!(Reader::new("written").read(&written).unwrap().robot, robot, "{written}");
+}
