@@ -68,7 +68,7 @@ fn with_blanks(command: &Command, words: &[String]) -> Option<String> {
         .then(|| format!("separate the numbers of a list by commas without blanks: write {}", meant.join(" ")))
 }
 
-/// An option that takes numbers, and behind it another option or nothing: `--q --qd 1,1`.
+/// Finds an option that needs numbers and is followed by another option or by nothing: `--q --qd 1,1`.
 fn without_value(command: &Command, words: &[String]) -> Option<String> {
     let is_missing = |(index, word): (usize, &String)| {
         let (arg, value) = option(command, word).filter(|(arg, _)| takes_list(arg))?;
@@ -102,7 +102,7 @@ mod tests {
 
     use super::*;
 
-    /// What is said of a command line that is refused.
+    /// Message for a command line that is refused.
     fn said(line: &str) -> Option<String> {
         let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
         let all = std::iter::once("rne".to_owned()).chain(words.iter().cloned());

@@ -1,4 +1,4 @@
-//! What a command returns: text for the reader, or why there is none.
+//! Result of a command: text for the reader, or an error.
 
 use rne_codegen::{CompileError, Remedy};
 use rne_model::Report;
@@ -48,7 +48,7 @@ impl Outcome {
 /// A command that could not do its work.
 #[derive(Debug)]
 pub(crate) struct Failure {
-    /// What is wrong and what to do, styled.
+    /// Message with the mistake and the remedy, with styles.
     pub(crate) text: String,
     pub(crate) status: u8,
 }
@@ -80,7 +80,7 @@ impl Failure {
     }
 }
 
-/// What a log says nothing by.
+/// Errors of a motion.
 impl From<rne_identify::MotionError> for Failure {
     fn from(error: rne_identify::MotionError) -> Self {
         Self::input(error)

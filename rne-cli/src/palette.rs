@@ -13,13 +13,13 @@ use clap::builder::Styles;
 
 /// Titles.
 pub(crate) const TITLE: Style = Style(anstyle::Style::new().bold());
-/// What is not the matter itself: units, tallies, hints.
+/// Style of secondary text: units, counts, hints.
 pub(crate) const QUIET: Style = Style(anstyle::Style::new().dimmed());
 /// Formulas of the lecture.
 pub(crate) const FORMULA: Style = Style(AnsiColor::Cyan.on_default());
-/// What the compiler found out.
+/// Style of facts that the compiler found.
 pub(crate) const FOUND: Style = Style(AnsiColor::Green.on_default());
-/// What can be typed.
+/// Style of text to type.
 pub(crate) const TYPED: Style = Style(AnsiColor::Yellow.on_default());
 /// All is well.
 pub(crate) const GOOD: Style = Style(AnsiColor::Green.on_default().bold());

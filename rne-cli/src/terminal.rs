@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(inert(&text), format!("{}error{:#}: {shown}", ERROR.0, ERROR.0));
     }
 
-    /// What hides the rest of a line, and what says that all is well, also in the colours of the palette.
+    /// Control characters that would hide text or forge a result are removed; the palette's colours are no exception.
     #[test]
     fn colours_of_data_are_shown_and_do_nothing() {
         for data in ["\u{1B}[8m", "\u{1B}[0m", "\u{1B}[1m\u{1B}[32m", "\u{1B}[m", "\u{1B}[00000000000000000000;8m"] {

@@ -198,7 +198,7 @@ fn introduced(reach: Reach, previous: Option<Reach>) -> &'static str {
     }
 }
 
-/// What goes into a formula.
+/// Numbers that a formula takes.
 fn inputs(line: &Line) -> String {
     let mut text = String::new();
     let width = line.inputs.iter().map(|input| crate::render::layout::width(&input.symbol)).max().unwrap_or(0);

@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, at_fault, ..Outcome::default() })
 }
 
-/// What the other tool says, and what is right.
+/// The other tool's torques, and the right ones.
 fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec<f64>), Failure> {
     let Printed { values: List(tau), resolution } = &arguments.tau;
     if tau.len() != robot.dof() {

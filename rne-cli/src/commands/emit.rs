@@ -353,7 +353,7 @@ fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Compares all files; of what is wrong the first is told, with the command that writes them all.
+/// Compares all files. The message names the first that differs, and the command that writes them all.
 fn check(arguments: &Arguments, out: &Path, files: &[Generated]) -> Result<Outcome, Failure> {
     let mut stale: Option<String> = None;
     let mut force = "";

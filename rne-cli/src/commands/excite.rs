@@ -199,13 +199,13 @@ const POSITIONS: u32 = 2000;
 /// Torques that differ by no more are rounding.
 const SAME: f64 = 1e-9;
 
-/// What gravity asks of the joint that has the least to spare, at rest.
+/// Load by gravity at rest on the joint that has the least effort to spare.
 struct Load {
     q: Vec<f64>,
     joint: usize,
     /// N m or N
     needed: f64,
-    /// Of the joint's effort limit.
+    /// Part of the joint's effort limit, 0 to 1.
     part: f64,
 }
 
@@ -303,7 +303,7 @@ fn condition(condition: f64) -> String {
     }
 }
 
-/// What was found, in tables.
+/// The result as tables.
 fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     let friction = if arguments.no_friction { "without friction" } else { "with friction" };
     let period = found.motion.period();

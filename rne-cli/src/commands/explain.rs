@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
 }
 
-/// What a name in the code of a robot is.
+/// Explains a name in the code of a robot.
 fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> {
     let (name, function, form) = (&arguments.topic, arguments.function, arguments.form);
     let robot = robot_file::robot(path).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
@@ -154,7 +154,7 @@ fn quantities() -> String {
     lines.collect()
 }
 
-/// What is said where a robot stands before the name: `rne explain puma560 w2_z`.
+/// Error for swapped arguments: the robot comes before the name, `rne explain puma560 w2_z`.
 fn swapped(name: &str, path: &Path) -> Option<Failure> {
     let is_robot = rne_convert::shipped_at(Path::new(name)).is_some() || Path::new(name).is_file();
     (is_robot && !path.exists()).then(|| {
@@ -172,7 +172,7 @@ too. The motion of a moving base is in frame 0. Tables are rounded for reading; 
 the shape that the Rust function returns. The default function is inverse_dynamics, or its variant with a wrench \
 or payload if --wrench or --payload is given.";
 
-/// Which options of `rne eval` a function takes, exactly.
+/// The table of functions and the options of `rne eval` that each takes.
 fn of_eval() -> String {
     use Argument::{Positions, Rates, Torques};
     let mut text = String::new();

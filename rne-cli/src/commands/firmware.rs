@@ -177,7 +177,7 @@ fn files(name: &str, robot: &Robot, dependency: &str) -> Vec<(PathBuf, String)> 
     files.map(|(file, text)| (file.into(), text)).into()
 }
 
-/// What was written, and what is typed next.
+/// The list of files, and the commands to type next.
 fn next(folder: &Path, files: &[(PathBuf, String)]) -> String {
     let mut text = String::new();
     for (file, _) in files {

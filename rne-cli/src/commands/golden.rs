@@ -10,7 +10,7 @@ use crate::outcome::Failure;
 use crate::render::physics;
 use crate::values::state::State;
 
-/// So many states hold emitted code.
+/// Number of states with which emitted code is compared.
 const STATES: usize = 4;
 
 /// The states at which emitted code is tested, with what its functions return there. The parameters that are known at
@@ -60,8 +60,8 @@ fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure>
     Ok(torques.iter().filter(|torque| torque.is_finite()).fold(0.0, |largest, torque| torque.abs().max(largest)))
 }
 
-/// Whether accelerations keep digits in single precision: a joint that hardly resists while those behind it move freely
-/// takes them all.
+/// Whether accelerations keep digits in single precision. They lose all digits at a joint that has hardly any inertia
+/// while the joints after it move freely.
 fn is_well_conditioned(state: &State, arm: &DynArm) -> bool {
     const LEAST: f64 = 1e-3;
     arm.mass_matrix(&state.q).is_ok_and(|matrix| physics::smallest_pivot(matrix) > LEAST)
@@ -96,7 +96,7 @@ pub(crate) fn states(text: &str) -> Result<u16, String> {
     states.ok_or_else(|| format!("a golden file has 1 to {} states, such as --golden 100", u16::MAX))
 }
 
-/// A golden file: torques of a robot at so many states; its heading says which settings are not the file's.
+/// A golden file: torques of a robot at `states` states; its heading lists the settings that differ from the robot file.
 pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<String, Failure> {
     let (mut random, arm) = (Random::new(Precision::Double), DynArm::from_robot(robot));
     let rotors = if robot.has_rotors() { ", with its rotors" } else { "" };

@@ -118,7 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark, ..Outcome::default() })
 }
 
-/// What is strange about a log.
+/// Warnings about a log.
 fn warnings(found: &Identification) -> Vec<String> {
     let mut said = Vec::new();
     for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
@@ -179,7 +179,7 @@ fn unknown(found: &Identification) -> Vec<bool> {
     found.joints.iter().map(|joint| !joint.is_excited()).collect()
 }
 
-/// What was found, in tables.
+/// The result as tables.
 fn account(found: &Identification, log: &MotionLog) -> String {
     let of_links =
         found.structure.parameters().bases.iter().filter(|base| matches!(base.kept, rne_identify::Parameter::Link(..)));

@@ -107,10 +107,10 @@ fn read(path: &Path) -> Result<(String, String), Failure> {
     Ok((input_file::name(path), text))
 }
 
-/// So many lines of a list are shown.
+/// Most lines of a list that are shown.
 const SHOWN: usize = 40;
 
-/// What was done, line by line.
+/// The account of an import, line by line.
 fn told(account: &Account) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "from {} to {}", account.base, account.tip);
@@ -152,7 +152,7 @@ fn told(account: &Account) -> String {
     text
 }
 
-/// What snapping changes.
+/// The change that snapping made.
 fn changed(change: &Difference) -> String {
     let accelerations = change.acceleration.map_or_else(
         || "the mass matrix is singular".to_owned(),

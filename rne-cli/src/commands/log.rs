@@ -115,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark, at_fault: false })
 }
 
-/// What stops the writing.
+/// Reason for which writing stopped.
 enum Stopped {
     Unreadable(LogError),
     Unwritable(io::Error),

@@ -136,7 +136,7 @@ pub(crate) fn counts(
     Ok(counts)
 }
 
-/// What each trick of a plan saves, in lines of `room` columns.
+/// Operations that each trick of a plan saves, in lines of `room` columns.
 fn tricks(robot: &Robot, plans: &PlanSet, room: usize) -> String {
     let mut text = format!("{TITLE}{}{TITLE:#}\n", robot.name);
     let mut lines = vec![["trick", "saves", "what it is"].map(str::to_owned)];

@@ -92,17 +92,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(summary(&plan, searched.known.plan.as_ref(), &left_out, &path, written)))
 }
 
-/// What a search was of.
+/// The robot and the functions of a search.
 struct Searched<'a> {
     file: &'a Path,
     /// As it was read at the start.
     robot: &'a Robot,
-    /// What the search went on from.
+    /// Plan from which the search started.
     known: Known,
     fresh: bool,
 }
 
-/// What stands in the plan file after a search.
+/// Content of the plan file after a search.
 struct Kept {
     plan: PlanFile,
     /// Functions of the plan that was there whose graphs are not proved.
@@ -304,7 +304,7 @@ mod tests {
             self.folder.path().join("arm.yaml")
         }
 
-        /// What stands in the place of the plan.
+        /// Text of the file at the plan's path.
         fn written(&self) -> Option<String> {
             fs::read_to_string(plan_of(&self.file())).ok()
         }

@@ -73,7 +73,7 @@ fn is_within(a: &Path, b: &Path) -> bool {
     a.starts_with(&b) || b.starts_with(&a)
 }
 
-/// What a motion may be too short for.
+/// A result, or nothing for a motion that is too short for it.
 fn unless_too_short<T>(found: Result<T, WatchError>) -> Result<Option<T>, WatchError> {
     match found {
         Ok(found) => Ok(Some(found)),
@@ -180,12 +180,12 @@ fn too_short(log: &MotionLog) -> Failure {
     Failure::input(format_args!("{} is too short to derive thresholds", log.words()))
 }
 
-/// What is usual in a log in which something may happen.
+/// Baseline of a log that may contain events.
 fn typical(robot: &Robot, log: &MotionLog, settings: &Settings) -> Result<Baseline, Failure> {
     Baseline::typical(&levels(robot, log, settings.gain)?).ok_or_else(|| too_short(log))
 }
 
-/// What is usual in a log in which nothing happens.
+/// Baseline of a log without events.
 fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Baseline, Failure> {
     let mut baseline = Baseline::covering(&levels(robot, quiet, settings.gain)?).ok_or_else(|| too_short(quiet))?;
     each_signals(robot, quiet, settings.gain, |_, signals| {
@@ -195,8 +195,8 @@ fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Basel
     Ok(baseline.widened(ELSEWHERE[0], ELSEWHERE[1]))
 }
 
-/// A model is worse where it has not been before: deviations of another log are so many times as large, and the error
-/// of the model's terms, which may have any sign there, is twice what it is here.
+/// A model is worse on motions that it has not seen. In another log, deviations are larger by the first factor, and the
+/// error of the model's terms, which may have any sign there, by the second.
 const ELSEWHERE: [f64; 2] = [1.5, 2.0];
 
 /// N m or N: what is left of an effort where nothing is.
@@ -215,7 +215,7 @@ fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<String
     found.map(|((joint, _), _)| one_line(&joint.name)).collect()
 }
 
-/// What was found in a log.
+/// Result of a log.
 struct Watched {
     /// Run by run; the number of the run, from 0.
     events: Vec<(u64, Event)>,
@@ -302,7 +302,7 @@ fn events_table(robot: &Robot, events: &[(u64, Event)], has_runs: bool) -> Strin
     text
 }
 
-/// What was found, as JSON has it.
+/// The result as JSON.
 #[derive(Serialize)]
 struct Reply {
     robot: String,

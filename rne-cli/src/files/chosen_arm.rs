@@ -1,4 +1,4 @@
-//! Which arm a command is about: that of the file, or with its rotors, or with other values of its parameters.
+//! The arm of a command: from the file alone, with its rotors, or with other values of its parameters.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

@@ -22,7 +22,7 @@ pub(crate) struct Row<'a> {
     pub(crate) span: Range<usize>,
 }
 
-/// What stands on a line that is not empty.
+/// Content of a line that is not empty.
 #[derive(Clone, Debug)]
 pub(crate) enum Line<'a> {
     Row(Row<'a>),
@@ -40,7 +40,7 @@ pub(crate) struct Mistakes<'a> {
     report: Option<Report>,
 }
 
-/// Mistakes that are told: a file with another decimal mark has one in each cell.
+/// Most mistakes that are reported: a file with another decimal mark has one in each cell.
 const TOLD: usize = 20;
 
 /// The text of a file, without a byte order mark.
@@ -74,7 +74,7 @@ impl<'a> Mistakes<'a> {
         }
     }
 
-    /// Whether no more are told, so that there is no use in reading on.
+    /// Whether the largest number of mistakes is reached, so that reading can end.
     pub(crate) fn are_enough(&self) -> bool {
         self.report.as_ref().is_some_and(|report| report.diagnostics.len() >= TOLD)
     }
@@ -119,8 +119,7 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// What a header without the right columns says of its separators: `None` where nothing but commas or semicolons
-/// could be meant.
+/// Name of the separator that a header without the right columns may have; `None` if it has commas or semicolons.
 pub(crate) fn other_separator(header: &Row<'_>) -> Option<&'static str> {
     let has = |separator: char| header.cells.iter().any(|cell| cell.text.contains(separator));
     let found = [
@@ -132,7 +131,7 @@ pub(crate) fn other_separator(header: &Row<'_>) -> Option<&'static str> {
     found.into_iter().find(|(separator, _)| has(*separator)).map(|(_, help)| help)
 }
 
-/// What is wrong with a line of [`Line::OpenQuote`].
+/// Message for a line of [`Line::OpenQuote`].
 pub(crate) const OPEN_QUOTE: &str = "this quote is not closed on its line";
 
 /// The cells of a line that starts at `start`; or where a quote opens that does not close.

@@ -75,7 +75,7 @@ pub(crate) fn check(path: &Path, written: Format) -> Result<(), Failure> {
     )))
 }
 
-/// The end of a name, in small letters; empty where there is none.
+/// Extension of a file name in small letters; empty if the name has no extension.
 fn end(path: &Path) -> String {
     path.extension().map_or_else(String::new, |end| end.to_string_lossy().to_lowercase())
 }

@@ -79,7 +79,7 @@ fn end_by(end: impl FnOnce()) -> ! {
     process::exit(INTERRUPTED_STATUS)
 }
 
-/// What Ctrl-C does where it is expected; nothing elsewhere.
+/// Handles Ctrl-C in a command that expects it; does nothing in others.
 fn expected_interrupt() {
     if EXPECTED.load(Ordering::Relaxed) && INTERRUPTED.swap(true, Ordering::Relaxed) {
         end_by(|| ());

@@ -21,7 +21,8 @@ use crate::values::numbers::rounded;
 /// States that are read at once: memory is this by the number of joints.
 const PIECE: usize = 65_536;
 
-/// The log's own filter passes so much more than the one behind it, so that it shapes no torque.
+/// Ratio of the cut-off of the log's own filter to that of the second filter. The first is wider, so that it does not
+/// shape torques.
 const WIDER: f64 = 4.0;
 
 /// The low-pass of both sides, of the filter that the spectrum chooses: what moves passes, and most noise does not.
@@ -30,7 +31,7 @@ const PART: f64 = 0.5;
 /// The names that a message lists at most.
 const SHOWN: usize = 16;
 
-/// Of the rate: no filter of the log may be wider.
+/// Highest cut-off of the log's filter, as part of the sampling rate.
 const HIGHEST: f64 = 0.3;
 
 /// Logs that were opened and surveyed.
@@ -43,11 +44,11 @@ pub(crate) struct MotionLog {
     pub(crate) cutoff: f64,
     /// Hz: the log's own filter.
     pub(crate) read_to: f64,
-    /// What a reader should know of it, and whether it is a warning.
+    /// Remarks on the log, each with whether it is a warning.
     remarks: Vec<(String, bool)>,
 }
 
-/// Which part of the logs, by time.
+/// Part of the logs, by time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Part {
     All,
@@ -133,7 +134,7 @@ impl MotionLog {
         Ok(Self { log, options, survey, cutoff, read_to, remarks })
     }
 
-    /// The same logs behind the filter that a robot file is judged behind; of runs that have no room for it, too.
+    /// The logs after the filter with which a robot file is judged; runs that are too short for it are included.
     pub(crate) fn judged(&self) -> Result<Self, Failure> {
         let read_to = (WIDER * self.cutoff).min(self.read_to);
         let options = Options { cutoff: Some(read_to), ..self.options.clone() };
@@ -142,7 +143,7 @@ impl MotionLog {
         Ok(Self { log, options, survey, cutoff: self.cutoff, read_to, remarks: Vec::new() })
     }
 
-    /// What a reader should know of it, in lines of a width.
+    /// Remarks on the log, in lines of a width.
     pub(crate) fn remark(&self, width: usize) -> String {
         let mut text = String::new();
         for (line, is_warning) in &self.remarks {
@@ -154,7 +155,7 @@ impl MotionLog {
         text
     }
 
-    /// What was read, in words.
+    /// Summary of the log, in words.
     pub(crate) fn words(&self) -> String {
         let files: Vec<String> = self
             .log
@@ -326,12 +327,12 @@ pub(crate) fn open_by_names(paths: &[PathBuf], robot: &Robot, options: Options) 
     })
 }
 
-/// Which joints slide: no option makes angles of lengths.
+/// Whether each joint is prismatic: no option converts its lengths into angles.
 fn slides(robot: &Robot) -> Vec<bool> {
     robot.joints.iter().map(|joint| joint.row.kind == JointKind::Prismatic).collect()
 }
 
-/// What to do where a log has fewer joints than the robot.
+/// Advice for a log that has fewer joints than the robot.
 const ALL_NEEDED: &str = "the positions and torques of all joints are needed, so use a log with all joints, or a robot \
     file of the logged joints";
 

@@ -14,7 +14,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::render::layout::shortened;
 
-/// What stands where a file is to be written.
+/// The existing entry at the path of a file that will be written.
 pub(crate) enum Existing {
     Nothing,
     Text(String),
@@ -82,7 +82,7 @@ pub(crate) fn replace(path: &Path, text: &str) -> Result<Written, Failure> {
     Ok(replace_all(&[(path, text)])?[0])
 }
 
-/// The same for files that belong together: none of them changes before all are written beside their places.
+/// Replaces files that belong together: none of them changes before all are written to temporary files beside them.
 pub(crate) fn replace_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Result<Vec<Written>, Failure> {
     let mut written = Vec::with_capacity(files.len());
     let mut replacements = Vec::new();
@@ -119,7 +119,7 @@ pub(crate) struct Replacement {
     /// A signal removes the file too.
     registered: Registered,
     path: PathBuf,
-    /// Those of the file that is there; without one there is no file.
+    /// Permissions of the existing file; `None` if there is no file.
     permissions: Option<fs::Permissions>,
 }
 
@@ -291,8 +291,8 @@ pub(crate) fn unreadable(path: &Path, error: &io::Error) -> Failure {
     Failure::input(format_args!("{} cannot be read: {error}", path.display()))
 }
 
-/// Why a file cannot be written: its name is none that the system takes, its folder is missing, or what the system
-/// says; not of the temporary file beside it.
+/// Error for a file that cannot be written: the system does not allow its name, its folder is missing, or the system's
+/// own message. It never names the temporary file.
 pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let shown = path.display();
     if error.kind() == ErrorKind::InvalidFilename {

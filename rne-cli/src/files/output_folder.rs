@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::files::interruption::{self, Registered};
 
-/// What could not be written, and why.
+/// A path that could not be written, and the reason.
 type Unwritable = (PathBuf, io::Error);
 
 /// Writes files, by their paths in a folder that is empty or not there yet. They are written into a temporary folder
@@ -45,7 +45,7 @@ pub(crate) fn write(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Un
     Ok(())
 }
 
-/// Of a folder the part that is there, and the rest.
+/// Splits a folder's path into the part that exists and the rest.
 fn first_missing(folder: &Path) -> (PathBuf, PathBuf) {
     let root = folder.ancestors().find(|part| part.is_dir()).unwrap_or(Path::new(""));
     let rest = folder.strip_prefix(root).unwrap_or(folder);

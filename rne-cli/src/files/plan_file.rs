@@ -25,7 +25,7 @@ pub(crate) fn robots(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
 /// A plan file with what messages need of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Read {
-    /// What messages call it.
+    /// Name of the file in messages.
     pub(crate) name: String,
     pub(crate) text: String,
     pub(crate) plan: PlanFile,
@@ -61,12 +61,12 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     Ok(Some(Read { name, text, plan }))
 }
 
-/// What a search goes on from.
+/// Plan from which a search starts.
 #[derive(Debug)]
 pub(crate) struct Known {
     /// The text of the plan file, where there is one.
     pub(crate) text: Option<String>,
-    /// What is proved of it.
+    /// Part of it that is proved.
     pub(crate) plan: Option<PlanFile>,
     /// Functions whose graphs are not proved, where that is no error.
     pub(crate) left_out: Vec<Function>,
@@ -223,7 +223,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The program, or why there is none.
+    /// The program, or the error of its compilation.
     pub(crate) fn compiled(&self, function: Function, form: Form) -> Result<Result<Program, CompileError>, Failure> {
         let bar = self.sign_of_life(format!("{}: {function}, {form}", self.robot.name));
         let compiled = match form {

@@ -14,7 +14,7 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
     read_with(path, &[])
 }
 
-/// The same with other values of the file's parameters.
+/// Reads a robot file with other values of its parameters.
 pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked, Failure> {
     Ok(read_by(path, settings, &[])?.0)
 }

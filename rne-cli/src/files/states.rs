@@ -21,7 +21,7 @@ pub(crate) struct Job<'a> {
     pub(crate) arm: &'a CompiledArm,
     pub(crate) function: Function,
     pub(crate) states: &'a Path,
-    /// Standard output, unless given.
+    /// Output file; `None` is standard output.
     pub(crate) out: Option<&'a Path>,
     pub(crate) force: bool,
 }

@@ -171,7 +171,7 @@ impl Columns {
     }
 }
 
-/// The numbers of a line, column by column; 0 in columns that nobody asks for, and where there is none.
+/// The numbers of a line, column by column; 0 for a column that is not asked for, and for a cell without a number.
 fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mistakes<'_>) -> Vec<f64> {
     if row.cells.len() != header.cells.len() {
         let message = format!("{} cells, and {} columns in the header", row.cells.len(), header.cells.len());

@@ -89,7 +89,7 @@ pub(crate) fn json(
     ))
 }
 
-/// What somebody filled in.
+/// A worksheet that a student filled in.
 #[derive(Debug)]
 pub(crate) struct Filled {
     pub(crate) values: Vec<GivenValue>,

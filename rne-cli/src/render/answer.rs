@@ -1,4 +1,4 @@
-//! What a function returned, for people: a line per joint, matrices with the names of their joints, poses, wrenches.
+//! Results of functions as text: a line per joint, matrices with the names of their joints, poses, wrenches.
 
 use std::fmt::Write as _;
 
@@ -11,10 +11,10 @@ use crate::render::layout::{Align, columns, left, width};
 use crate::values::numbers::{at_the_point, rounded};
 use crate::values::state::State;
 
-/// Digits behind the point in a matrix.
+/// Digits after the decimal point in a matrix.
 const DIGITS: usize = 6;
 
-/// Digits behind the point where ten parameters stand side by side.
+/// Digits after the decimal point in a row of ten parameters.
 const FEW_DIGITS: usize = 4;
 
 /// The numbers of a function as text.
@@ -161,7 +161,7 @@ fn regressor(text: &mut String, joints: &[String], numbers: &[f64]) {
 
 /// Numbers in rows and columns that have names.
 struct Table<'a> {
-    /// What they are, and their units.
+    /// Description and units of the numbers.
     about: &'a str,
     rows: &'a [String],
     columns: &'a [String],
@@ -196,7 +196,7 @@ fn write_lines(text: &mut String, cells: &[Vec<String>]) {
     }
 }
 
-/// Which kinds of joints a robot has: they decide the units of its matrices.
+/// Kinds of joints that a robot has, which decide the units of its matrices.
 enum Kinds {
     Revolute,
     Prismatic,
@@ -230,7 +230,7 @@ impl Kinds {
     }
 }
 
-/// Why a number is none.
+/// Explains why a result is not a finite number.
 pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
     let joint = |index: usize| {
         let name = robot.joints.get(index).map_or("", |joint| &joint.name);

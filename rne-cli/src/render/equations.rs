@@ -40,7 +40,7 @@ pub(crate) fn text(view: View<'_>, joint: Option<usize>, step: Option<usize>) ->
     cells.join("\n")
 }
 
-/// What a name is: of a component its four lines, of anything else what it means, and what uses it.
+/// Explains a name: a component by its four lines, anything else by its meaning and by the terms that use it.
 pub(crate) fn of_name(view: View<'_>, name: &str) -> Option<String> {
     let (known, quantity) = view.inspection.meaning(name)?;
     let place = match quantity.step {
@@ -127,7 +127,7 @@ fn opening(view: View<'_>, name: &str) -> String {
     format!("  {TITLE}{name}{TITLE:#}{}\n", styled(QUIET, words))
 }
 
-/// What a name is: in words, with its unit and its axes.
+/// The meaning of a name in words, with its unit and its axes.
 fn about(view: View<'_>, name: &str) -> String {
     let meaning = view.inspection.meaning(name).map_or("", |(_, quantity)| quantity.meaning);
     let unit = view.inspection.unit(name);

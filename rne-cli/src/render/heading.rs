@@ -54,7 +54,7 @@ pub(crate) fn about(robot: &Robot) -> String {
     format!("{}, {joints}, {}", robot.name, robot.convention.name())
 }
 
-/// What a conversion loses.
+/// Rounding error of a conversion.
 pub(crate) fn rounding(difference: &Difference) -> String {
     format!(
         "the table gives the same arm over 1,000 states: tip to {:.1e} m and {:.1e} rad, torques to {:.1e}",

@@ -64,7 +64,7 @@ pub(crate) fn width(text: &str) -> usize {
     UnicodeWidthStr::width(text)
 }
 
-/// As much of a text as so many columns hold, with a sign that it goes on.
+/// The beginning of a text that fits into `to` columns, with a mark that more follows.
 pub(crate) fn shortened(text: &str, to: usize) -> String {
     if width(text) <= to {
         return text.to_owned();

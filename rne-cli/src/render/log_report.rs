@@ -1,4 +1,4 @@
-//! What a log has, for people and for programs.
+//! Content of a log, as text and as JSON.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use crate::terminal;
 /// Runs that are shown; the others are counted.
 const SHOWN: usize = 20;
 
-/// Velocities that are so far from the differences of positions, of those, are said.
+/// Relative difference between velocities and differences of positions from which it is reported.
 const DISAGREEMENT: f64 = 0.05;
 
 /// A log as JSON has it.
@@ -225,7 +225,7 @@ fn filter(log: &Log, survey: &Survey) -> String {
     wrap(&text, terminal::width(100), "  ").trim_end().to_owned() + "\n"
 }
 
-/// What was left out, and why.
+/// Samples that were left out, and the reason.
 pub(crate) fn left_out(log: &Log, survey: &Survey) -> impl Iterator<Item = (u64, String)> {
     let counts: &Counts = &survey.counts;
     let first = survey.invalid_sample.map_or(String::new(), |first| {

@@ -10,11 +10,11 @@ use crate::render::layout::{Align, columns};
 
 /// States that are looked at, the same in every run.
 const STATES: u32 = 5;
-/// What exact arithmetic makes zero, relative to the numbers that cancel.
+/// Rounding error of a sum that is zero in exact arithmetic, relative to its terms.
 const ROUNDING: f64 = 1e-11;
-/// What a difference quotient leaves of zero.
+/// Error of a difference quotient.
 const DIFFERENCE: f64 = 1e-7;
-/// What a numerical integration leaves of zero.
+/// Error of a numerical integration.
 const INTEGRATION: f64 = 1e-6;
 /// Half the span of difference quotients, s.
 const STEP: f64 = 1e-3;
@@ -22,12 +22,12 @@ const STEP: f64 = 1e-3;
 const TICK: f64 = 1e-3;
 const TICKS: u32 = 100;
 
-/// What became of one law.
+/// Result for one law of mechanics.
 struct Law {
     name: &'static str,
     /// The worst of all states, relative to what cancels; `NaN` where it could not be computed.
     worst: f64,
-    /// What it has to be.
+    /// Bound for the result.
     bound: Bound,
 }
 
@@ -88,7 +88,7 @@ fn laws(arm: &DynArm) -> Result<Vec<Law>, WrongLength> {
     ])
 }
 
-/// The larger of two, and not a number if one is none.
+/// The larger of two numbers; not-a-number if one of them is.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }

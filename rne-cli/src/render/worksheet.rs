@@ -22,7 +22,7 @@ pub(crate) enum Axes {
     /// Fixed to link i-1, z along joint i: the lecture's
     #[value(alias = "lecture")]
     Joint,
-    /// Those of frame 0
+    /// Axes of frame 0
     Base,
 }
 
@@ -36,12 +36,12 @@ impl From<Axes> for worksheet::Axes {
     }
 }
 
-/// Which lines are wanted.
+/// Selection of lines.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Narrowed {
-    /// Those of a joint, from 1.
+    /// Lines of this joint, counted from 1.
     pub(crate) joint: Option<usize>,
-    /// Those of a step.
+    /// Lines of this step.
     pub(crate) step: Option<Step>,
 }
 
@@ -56,7 +56,7 @@ impl Narrowed {
     }
 }
 
-/// What the worksheet is of.
+/// The state of the arm, in the terms of a worksheet.
 pub(crate) fn situation(state: &State, dof: usize) -> Situation {
     // what the function does not take is at rest
     let [qd, qdd] =

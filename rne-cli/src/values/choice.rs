@@ -1,4 +1,4 @@
-//! What several commands let choose: a function, a form, a convention, a joint, a step, quantities to keep.
+//! Choices that several commands offer: a function, a form, a convention, a joint, a step, quantities to keep.
 
 use std::fmt;
 

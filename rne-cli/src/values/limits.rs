@@ -1,4 +1,4 @@
-//! What a file says that a joint can do, beside what is asked of it.
+//! Limits of joints in a robot file, compared with a motion.
 
 use std::fmt::Write as _;
 

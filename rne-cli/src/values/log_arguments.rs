@@ -1,4 +1,4 @@
-//! How a log is read: what every command that reads logs is told of them.
+//! Options of every command that reads logs.
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -74,12 +74,12 @@ fn hertz(text: &str) -> Result<f64, String> {
 }
 
 impl LogArguments {
-    /// The same with this low-pass, Hz.
+    /// The arguments with another cut-off of the low-pass, Hz.
     pub(crate) fn with_cutoff(&self, cutoff: f64) -> Self {
         Self { cutoff: Some(cutoff), ..self.clone() }
     }
 
-    /// What the reader of logs is told.
+    /// Options for the reader of logs.
     pub(crate) fn options(&self) -> Options {
         let angles = match (self.degrees, self.radians) {
             (true, _) => Angles::Degrees,

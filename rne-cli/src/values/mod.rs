@@ -1,4 +1,4 @@
-//! What options and arguments are: numbers, states, choices, and how logs are read.
+//! Values of options and arguments: numbers, states, choices, options of logs.
 
 pub(crate) mod choice;
 pub(crate) mod limits;

@@ -35,7 +35,7 @@ pub(crate) fn at_the_point(texts: &[String]) -> Vec<String> {
     texts.iter().map(|text| format!("{}{text}", " ".repeat(most - places(text)))).collect()
 }
 
-/// Digits behind the point in a worksheet.
+/// Digits after the decimal point in a worksheet.
 const DIGITS: usize = 6;
 
 /// Width of a number of a worksheet.
@@ -54,8 +54,8 @@ pub(crate) fn fixed(value: f64) -> String {
     format!("{value:>WIDTH$.DIGITS$}")
 }
 
-/// A number for a table: so many digits behind the point, an exact zero alone, what is tiny or huge with its power of
-/// ten.
+/// A number for a table: `digits` digits after the decimal point, an exact zero as 0, very small and very large numbers
+/// with a power of ten.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 {
         "0".to_owned()

@@ -1,4 +1,4 @@
-//! What a function is evaluated at: its arguments, complete and of the right lengths.
+//! Arguments of a function, complete and of the right lengths.
 
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
 use rne_codegen::{Argument, Function};
@@ -67,12 +67,12 @@ impl State {
         Ok(Self { function, q, qd, qdd, tau, wrench, payload, base })
     }
 
-    /// The same for another function.
+    /// The arguments for another function.
     pub(crate) fn of(&self, function: Function) -> Self {
         Self { function, ..self.clone() }
     }
 
-    /// What the function returns, in the order of its layout.
+    /// The function's result, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
         let Self { q, qd, qdd, tau, base, .. } = self;
         let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
@@ -122,7 +122,7 @@ impl State {
     }
 }
 
-/// What the runtime returns, as numbers in the order of a function's layout.
+/// Results of the runtime as numbers, in the order of a function's layout.
 trait Told {
     fn tell(&self, numbers: &mut Vec<f64>);
 }

@@ -202,7 +202,7 @@ pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Trac
     Ok(builder.finish(results))
 }
 
-/// What a graph calls by name without having computed it: its arguments, and the sines and cosines of its angles.
+/// Values that a graph uses without computing them: its arguments, and the sines and cosines of its angles.
 fn leaves<'s>(graph: &Graph, builder: &'s Builder) -> HashMap<String, Symbol<'s>> {
     let mut leaves = HashMap::new();
     for (_, op) in graph.nodes() {
@@ -284,7 +284,7 @@ fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, R
 struct Reader<'s> {
     /// The numbers of the graph before, and 1.
     given: Vec<Number>,
-    /// What the graph before divides by. Nothing else may be divided by: it could be zero where that is not.
+    /// Divisors of the graph before. Nothing else may be divided by: it could be zero where that is not.
     divisors: Vec<Residue>,
     builder: &'s Builder,
     leaves: HashMap<String, Symbol<'s>>,

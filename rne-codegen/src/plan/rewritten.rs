@@ -32,7 +32,7 @@ pub struct Accuracy {
     pub double: f64,
     /// In single precision.
     pub single: f64,
-    /// Of the seven steps themselves in single precision.
+    /// Difference of the seven steps themselves in single precision.
     pub single_of_seven_steps: f64,
 }
 
@@ -67,7 +67,7 @@ impl Rewritten {
         Ok(Formulation { traced: read.told_by(&before.traced), ..before })
     }
 
-    /// The choices behind it, in words.
+    /// The choices of the graph, in words.
     pub(crate) fn choices(&self) -> Vec<String> {
         let rewriting = "rewriting: the graph that the choices below give, made smaller by exact algebra";
         let algorithm = self.algorithm.words().filter(|_| self.plan.is_some());

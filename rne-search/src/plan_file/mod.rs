@@ -241,10 +241,10 @@ impl PlanFile {
 
 /// The comment at the head of a plan file.
 const HEADING: &str = "\
-# Choices and rewritten graphs of the reduced form of ROBOT, found by `rne search`, replayed by every build: what they
-# mean, `rne show ROBOT.yaml --form reduced` and docs/reduced-form.md say. `fingerprint` is that of the robot's numbers,
-# `accuracy` the largest difference from the seven steps, in parts of the largest number returned: in double precision,
-# in single precision, and of the seven steps in single precision.
+# Choices and rewritten graphs of the reduced form of ROBOT, found by a search and replayed by every build;
+# docs/reduced-form.md explains them. `fingerprint` is that of the robot's numbers, `accuracy` the largest difference
+# from the seven steps, in parts of the largest number returned: in double precision, in single precision, and of the
+# seven steps in single precision.
 ";
 
 /// The value of a key in a key …, or the key itself where the value stands below it, as far as the keys are found.
