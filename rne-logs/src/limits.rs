@@ -1,4 +1,4 @@
-//! What a log may have at most. A small file may claim a lot: memory and time stay within bounds whatever it claims.
+//! Limits of a log. A small file may claim a lot: memory and time stay within bounds whatever it claims.
 
 /// Joints of a log, of a message or of a row: more than any arm has.
 pub(crate) const MOST_JOINTS: usize = 1024;
@@ -50,7 +50,7 @@ pub(crate) mod work {
         DONE.set(DONE.get() + steps as u64);
     }
 
-    /// What a call has done.
+    /// Work that a call has done.
     #[cfg(test)]
     pub(crate) fn of(call: impl FnOnce()) -> u64 {
         let before = DONE.get();

@@ -1,9 +1,9 @@
-//! What is said of a log that it does not say itself.
+//! Options of a log: facts that the log does not contain.
 
 use crate::{Mapping, TimeUnit};
 
-/// What is said of a log that it does not say itself. `Options::default()` says nothing: radians, torques, the only
-/// topic, a cut-off from the spectrum.
+/// Options of a log: facts that the log does not contain. `Options::default()` means radians, torques, the only topic,
+/// and a cut-off from the spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The joints to read, base to tip; without them all of the log in its order. Joints of the log that are not among
@@ -11,16 +11,16 @@ pub struct Options {
     pub joints: Option<Vec<String>>,
     /// The topic of a bag, or how the columns' names of a table begin.
     pub topic: Option<String>,
-    /// What efforts are multiplied by, N m/A or N/A where they are currents: one number for all joints or one per
-    /// joint; efforts of which a column's name says that they are torques or forces stay. Empty: efforts are torques.
+    /// Factors of efforts that are currents, N m/A or N/A: one number for all joints or one per joint. Efforts of a
+    /// column whose name gives a torque or a force are not multiplied. Empty: efforts are torques.
     pub torque_constants: Vec<f64>,
     /// The unit of positions and velocities, of a table those whose columns' names say none.
     pub angles: Angles,
     /// By joint that is read, base to tip, whether it slides: its positions are lengths then, whatever `angles` is.
     /// Empty: nobody knows, and `angles` is of all.
     pub slides: Vec<bool>,
-    /// An interval of more than so many steps is a gap, 1.5 to 1000; 3.5 where nobody says: three samples that were
-    /// lost are none.
+    /// An interval of more steps than this is a gap, 1.5 to 1000. The default is 3.5: three samples that were lost are
+    /// not a gap.
     pub gap: f64,
     /// The cut-off of the filter, Hz; without it the spectrum chooses.
     pub cutoff: Option<f64>,
@@ -35,7 +35,7 @@ pub struct Options {
     pub time_unit: Option<TimeUnit>,
     /// Rows per second of a table without times.
     pub rate: Option<f64>,
-    /// What the columns of an array are, in order: of `time`, `q`, `qd`, `tau`, each but the first for every joint.
+    /// Quantities of an array's columns, in order: `time`, `q`, `qd`, `tau`, each but the first for every joint.
     /// Empty: all of these. Other formats have names, and refuse it.
     pub columns: Vec<String>,
     /// Meanings of columns of a table, which take precedence over their names. Arrays and bags refuse them.

@@ -282,7 +282,7 @@ impl Svg {
         Self { writer: Writer::new_with_indent(Vec::new(), b' ', 1), failed: false }
     }
 
-    /// A white picture of so many pixels; `name` is what it is called where it is not seen.
+    /// A white picture of `height` pixels; `name` is its title for readers who do not see it.
     pub(crate) fn with_root(name: &str, height: f64) -> Self {
         let mut svg = Self::new();
         let size = format!("0 0 {} {}", pixels(WIDTH), pixels(height));
@@ -382,7 +382,7 @@ fn plain(text: &str) -> String {
     one_line(text).replace(['\u{FFFE}', '\u{FFFF}'], "\u{FFFD}")
 }
 
-/// A text of at most so many characters.
+/// A text of at most `most` characters.
 pub(crate) fn shortened(text: &str, most: usize) -> String {
     let text = plain(text);
     if text.chars().count() <= most { text } else { text.chars().take(most - 1).chain(['…']).collect() }

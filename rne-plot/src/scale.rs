@@ -25,7 +25,7 @@ impl Scale {
         self.from + part * (self.to - self.from)
     }
 
-    /// Round numbers on the axis, about so many.
+    /// Round numbers on the axis; `about` is their approximate number.
     pub(crate) fn ticks(&self, about: f64) -> Vec<f64> {
         let span = self.high - self.low;
         if !span.is_finite() || span < SMALLEST {
@@ -78,7 +78,7 @@ pub(crate) fn label(value: f64) -> String {
     significant(value, 10)
 }
 
-/// A number in so many significant digits, without idle zeros.
+/// A number with `digits` significant digits, without idle zeros.
 pub(crate) fn significant(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.0$e}", digits - 1).parse().unwrap_or(value);
     let text = if rounded != 0.0 && (rounded.abs() < 1e-4 || rounded.abs() >= 1e6) {

@@ -24,9 +24,9 @@ pub struct Trajectory {
 pub enum TrajectoryError {
     /// Fewer samples than there must be.
     TooFew {
-        /// So many there are.
+        /// Numbers that were found.
         found: usize,
-        /// So many there must be.
+        /// Numbers that are needed.
         needed: usize,
     },
     /// A time that is not later than the one before it, or is no number: the index of its sample.
@@ -149,7 +149,7 @@ impl Trajectory {
     }
 
     /// The least duration, in seconds, in which a [quintic](Self::quintic) leads from one posture to another within
-    /// the speed limits of a robot; 0 where there are none.
+    /// the speed limits of a robot; 0 if the robot has no limits.
     #[must_use]
     pub fn least_duration(robot: &Robot, from: &[f64], to: &[f64]) -> f64 {
         // the quintic is fastest in its middle

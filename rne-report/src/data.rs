@@ -73,7 +73,7 @@ fn names(inspection: &Inspection) -> Value {
     Value::Object(all)
 }
 
-/// Components; why one became a number is told by the number of an entry of `reasons`.
+/// Components; the reason for which one became a number is an entry of `reasons`, by its number.
 fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
     let mut told = |component: &Component| {
         let mut became = json!(component.became);

@@ -36,7 +36,7 @@ pub(crate) fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(file?))
 }
 
-/// What messages call a file.
+/// The name of a file in messages.
 pub(crate) fn name(path: &Path) -> String {
     if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() }
 }

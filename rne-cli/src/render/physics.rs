@@ -133,8 +133,8 @@ fn relative(off: f64, size: f64) -> f64 {
     if off == 0.0 { 0.0 } else { off / size }
 }
 
-/// The smallest pivot of M = Lᵀ L from tip to base, each relative to the diagonal element: what resists a joint while
-/// those behind it move freely. Zero or less where M is not positive definite.
+/// The smallest pivot of M = Lᵀ L from tip to base, each relative to the diagonal element: the inertia that resists a
+/// joint while the joints after it move freely. Zero or negative if M is not positive definite.
 pub(crate) fn smallest_pivot(mut matrix: Vec<Vec<f64>>) -> f64 {
     let diagonal: Vec<f64> = matrix.iter().enumerate().map(|(index, row)| row[index]).collect();
     let mut smallest = f64::INFINITY;

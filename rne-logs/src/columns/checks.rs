@@ -1,4 +1,4 @@
-//! What names of columns must say, so that nothing is guessed.
+//! Checks of the names of columns, so that nothing is guessed.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -152,7 +152,7 @@ impl<'a> Header<'a> {
         self.check_options(&motions, efforts, options)
     }
 
-    /// What the options say of units is not what all names say otherwise.
+    /// Refuses options of units that contradict the names of all columns.
     fn check_options(&self, motions: &[&Found], efforts: &[&Found], options: &Options) -> Result<(), LogError> {
         let is_contrary: fn(&Unit) -> bool = match options.angles {
             Angles::Degrees => |unit| unit.dimension == Dimension::Length || unit.is_si(),

@@ -1,4 +1,4 @@
-//! What a column of a table is, by its name.
+//! Meaning of a table's column, by its name.
 
 use crate::TimeUnit;
 use crate::columns::mapping::Target;
@@ -20,7 +20,7 @@ const TIMES: [&str; 7] = ["time", "t", "timestamp", "stamp", "__time", "seconds"
 
 const SEPARATORS: [char; 7] = ['/', '.', '_', '[', ']', ' ', ':'];
 
-/// What stands before a unit that is not in brackets.
+/// Characters before a unit that is not in brackets.
 const BEFORE_UNITS: [char; 3] = ['_', ' ', '.'];
 
 /// Words that a name has at most: each end of a name is looked at, whether it is a unit.
@@ -44,17 +44,17 @@ pub(crate) struct Named {
 }
 
 impl Named {
-    /// What the column has, as a map of columns would say it.
+    /// The target that a map of columns would give the column.
     pub(crate) fn target(&self) -> Target {
         Target::Joint { joint: self.joint.clone(), quantity: self.quantity }
     }
 }
 
-/// What a name may be.
+/// Meaning of a name.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Meaning {
     Joint(Named),
-    /// A quantity of a joint with a unit that is none that is known.
+    /// A quantity of a joint with an unknown unit.
     Unknown {
         quantity: Quantity,
         unit: String,
@@ -64,7 +64,7 @@ pub(crate) enum Meaning {
     Nothing,
 }
 
-/// What a column has by its name.
+/// The meaning of a column's name.
 pub(crate) fn meaning(name: &str) -> Meaning {
     let name = name.trim();
     // the tool centre point is no joint
@@ -119,7 +119,7 @@ enum Form {
     JointBehind,
 }
 
-/// What a name has that says no unit at its end.
+/// The meaning of a name without a unit at its end.
 fn plain(name: &str) -> Option<(Named, Form)> {
     let name = name.trim_matches(SEPARATORS);
     let named = |(quantity, is_current), joint: &str| Named {
@@ -236,7 +236,7 @@ fn is_time(name: &str) -> bool {
     TIMES.contains(&last) || TIMES.contains(&name.trim_start_matches('/'))
 }
 
-/// What a list of numbers has, by the last word of its name, and its unit; a text in brackets that is no unit is an
+/// Quantity and unit of a list of numbers, by the last word of its name; a text in brackets that is not a unit is an
 /// error.
 #[cfg(feature = "parquet")]
 pub(crate) fn list(name: &str) -> Option<(Quantity, bool, Result<Option<Unit>, String>)> {

@@ -18,7 +18,7 @@ use crate::{LogError, Options, TimeUnit};
 pub(crate) struct Column {
     /// Where it stands in a row.
     pub(crate) place: usize,
-    /// What its numbers are multiplied by, of a unit that its name says.
+    /// Factor of its numbers, from the unit in its name.
     pub(crate) factor: f64,
 }
 
@@ -98,7 +98,7 @@ impl Columns {
         Ok(columns)
     }
 
-    /// What a reader should know: what is in which unit, and what is not read.
+    /// Remarks: columns with converted units, and columns that are not read.
     pub(crate) fn remarks(&self) -> Vec<String> {
         let unread = (!self.unread.is_empty())
             .then(|| format!("columns that are not read: {}", listed(self.unread.iter().map(String::as_str))));
@@ -106,13 +106,14 @@ impl Columns {
     }
 }
 
-/// What is said of columns whose names say units that are not of SI.
+/// Remark on columns with units other than SI in their names.
 pub(crate) fn converted(names: &[String]) -> Option<String> {
     let listed = listed(names.iter().map(String::as_str));
     (!names.is_empty()).then(|| format!("numbers are converted from the units of columns' names: {listed}"))
 }
 
-/// Of joints that have both, currents where the options have torque constants, else torques.
+/// Selects one effort for joints that have torques and currents: currents if the options have torque constants, else
+/// torques.
 fn torques_or_currents<'f>(efforts: &[&'f Found], has_constants: bool) -> Vec<&'f Found> {
     let is_current = |found: &Found| found.dimension() == Some(Dimension::Current);
     let joints = |current: bool| -> HashSet<&str> {
@@ -154,7 +155,7 @@ impl Found {
         Column { place: self.place, factor: self.named.unit.map_or(1.0, |unit| unit.factor) }
     }
 
-    /// What its name says that its numbers are.
+    /// Dimension of its numbers, from its name.
     pub(crate) fn dimension(&self) -> Option<Dimension> {
         let of_word = self.named.is_current.then_some(Dimension::Current);
         self.named.unit.map(|unit| unit.dimension).or(of_word)
@@ -385,7 +386,7 @@ mod tests {
         }
     }
 
-    /// What is refused, and a part of what is said.
+    /// Refused headers, each with a part of the message.
     #[test]
     fn what_is_not_clear_is_refused() {
         let degrees = Options { angles: Angles::Degrees, ..Options::default() };
@@ -484,7 +485,7 @@ mod tests {
         assert!(read(&["t".into(), "q1".into(), long]).is_ok());
     }
 
-    /// Of two arms in one table, times are those of the arm that is read.
+    /// With two arms in one table, the times belong to the arm that is read.
     #[test]
     fn times_are_those_of_the_group() {
         let right = Options { topic: Some("right".into()), ..Options::default() };

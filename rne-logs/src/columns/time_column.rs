@@ -1,4 +1,4 @@
-//! Which column of a table has the times.
+//! The column of a table that has the times.
 
 use std::path::Path;
 
@@ -92,7 +92,7 @@ impl TimeColumn {
     }
 }
 
-/// What a reader should know of the columns of times that are not read.
+/// Names of the columns of times that are not read.
 pub(crate) fn unread<'a>(
     times: &[TimeColumn],
     chosen: Option<TimeColumn>,

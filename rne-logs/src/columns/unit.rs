@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::TimeUnit;
 use crate::columns::quantity::Quantity;
 
-/// What a quantity of a joint is measured as.
+/// Dimension of a joint's quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// rad, rad/s
@@ -21,8 +21,8 @@ pub enum Dimension {
     Current,
 }
 
-/// What the quantities of a joint are, where the names of a table's columns say so: those numbers are in SI units then,
-/// whatever the options are.
+/// Dimensions of a joint's quantities, as far as the names of a table's columns give them: those numbers are in SI units
+/// then, whatever the options are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct JointUnits {

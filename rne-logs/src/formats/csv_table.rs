@@ -201,20 +201,20 @@ impl Source for CsvTable {
     }
 }
 
-/// What is said of a table that has no times.
+/// Error for a table without times.
 pub(crate) fn no_time<'a>(path: &Path, names: impl Iterator<Item = &'a str>) -> LogError {
     let what =
         format!("no column has times: its name is time, t, stamp or timestamp, and the columns are {}", listed(names));
     LogError::request(path, what).remedy(Remedy::Give(Setting::Rate))
 }
 
-/// What is said of a table that has times, where a rate is asked for.
+/// Error for a table with times, if a sampling rate is given.
 pub(crate) fn two_times(path: &Path, name: &str) -> LogError {
     let what = format!("the column {name} has times, and a sampling rate is for tables without times");
     LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate))
 }
 
-/// What is said of a decimal comma.
+/// Hint for a number with a decimal comma.
 fn of_comma(cell: &[u8]) -> &'static str {
     let is_like = cell.contains(&b',') && cell.iter().all(|byte| byte.is_ascii_digit() || b"+-,eE".contains(byte));
     if is_like { ": numbers have a decimal point, no decimal comma" } else { "" }

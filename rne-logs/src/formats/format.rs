@@ -18,7 +18,7 @@ use crate::formats::sqlite_bag::SqliteBag;
 use crate::remedy::{Remedy, Setting};
 use crate::{LogError, Options};
 
-/// What a log is written in.
+/// Format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A bag of ROS 2 in SQLite.
@@ -53,7 +53,7 @@ const BEGINNINGS: [(&[u8], Format); 4] = [
     (b"\x93NUMPY", Format::Npy),
 ];
 
-/// Formats that are told by their first bytes and not read.
+/// Formats that are recognised by their first bytes and cannot be read.
 const OTHERS: [(&[u8], &str); 6] = [
     (b"#ROSBAG V", "a bag of ROS 1; `rosbags-convert` makes one of ROS 2"),
     (b"\x28\xb5\x2f\xfd", "compressed with zstd; unpack it with `zstd -d`"),

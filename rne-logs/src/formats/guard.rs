@@ -14,7 +14,7 @@ pub fn is_guarded() -> bool {
     GUARDED.get()
 }
 
-/// What a call returned; none if it panicked. What it borrowed is of no use then.
+/// Result of a call; `None` if it panicked. Values that it borrowed must not be used then.
 #[cfg(any(feature = "bags", feature = "parquet"))]
 pub(crate) fn guarded<T>(call: impl FnOnce() -> T) -> Option<T> {
     let before = GUARDED.replace(true);

@@ -31,7 +31,7 @@ struct Time {
     nanosec: u32,
 }
 
-/// Reads a message, with the four bytes before it that name its encoding; why it is none.
+/// Reads a message, with the four bytes before it that name its encoding; the reason if it cannot be read.
 pub(crate) fn decode(bytes: &[u8], recorded: i64, sample: &mut Sample) -> Result<(), String> {
     let [_, kind, _, _, message @ ..] = bytes else {
         return Err(format!("it has {} bytes, less than the four that name its encoding", bytes.len()));

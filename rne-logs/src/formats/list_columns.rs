@@ -17,7 +17,7 @@ pub(crate) struct ListColumns {
     pub(crate) position: Option<(usize, f64)>,
     pub(crate) velocity: Option<(usize, f64)>,
     pub(crate) effort: Option<(usize, f64)>,
-    /// Of every joint.
+    /// Units of every joint.
     pub(crate) units: JointUnits,
     /// The names of those whose numbers are not of SI, by these.
     pub(crate) converted: Vec<String>,
@@ -105,8 +105,8 @@ pub(crate) fn names<'a>(
         several => match several.iter().find(begins).map(|(place, _)| *place) {
             None => {
                 let what = format!(
-                    "the columns {} are all names of joints, and none has the name of {position} but for its end; remove \
-                     the others, or choose a group",
+                    "the columns {} are all names of joints, and none has the name of {position} but for its end; \
+                     remove the others, or choose a group",
                     listed(several.iter().map(|(_, name)| *name))
                 );
                 Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Prefix)))

@@ -66,7 +66,7 @@ struct Chunk {
 }
 
 impl Chunk {
-    /// Of what stands in the record of a chunk.
+    /// Reads the head of a chunk from the body of its record.
     fn of(body: &[u8]) -> Result<Self, McapError> {
         if let Record::Chunk { header, data } = mcap::parse_record(op::CHUNK, body)? {
             let unpacked = header.uncompressed_size;
@@ -240,7 +240,7 @@ impl McapBag {
     }
 }
 
-/// What an event of the reader says, without what it borrows.
+/// An event of the reader, without its borrowed data.
 enum Event {
     Needs(usize),
     Chunk(Box<Chunk>),

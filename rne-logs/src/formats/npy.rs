@@ -5,7 +5,7 @@ use std::io::{self, BufReader, ErrorKind, Read};
 /// The longest header of an array, far more than one of numbers has.
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// The most numbers that an array may claim: so many that the bytes of no file overflow.
+/// Most numbers that an array may claim: the bytes of no file overflow.
 const MOST_NUMBERS: u64 = 1 << 60;
 
 /// How many letters of a type are shown in a message.
@@ -22,7 +22,7 @@ pub struct Npy {
 }
 
 impl Npy {
-    /// What a file of numpy begins with.
+    /// First bytes of a file of numpy.
     pub const MAGIC: &[u8] = b"\x93NUMPY";
 
     /// Reads the header of an array of numbers; no number is read yet.
@@ -92,7 +92,7 @@ impl Kind {
     }
 }
 
-/// The numbers of an array, one behind another.
+/// The numbers of an array, in order.
 struct Numbers<R> {
     file: BufReader<R>,
     kind: Kind,
@@ -161,10 +161,10 @@ fn header(file: &mut impl Read) -> Result<(Vec<u8>, u64), String> {
     Ok((text, (Npy::MAGIC.len() + 2 + of_length + length) as u64))
 }
 
-/// What a header says.
+/// Content of a header.
 #[derive(Debug, PartialEq)]
 struct Header {
-    /// Of numbers that are not read: what is said of them.
+    /// Kind of its numbers, or the message for numbers that cannot be read.
     kind: Result<Kind, String>,
     is_fortran: bool,
     shape: Vec<u64>,
@@ -298,7 +298,7 @@ impl<'a> Text<'a> {
     }
 }
 
-/// What is said of numbers that are not read.
+/// Message for numbers that cannot be read.
 fn unread(kind: &[u8]) -> String {
     format!("the numbers are {}; save them as float64 or float32", shown(kind))
 }
@@ -374,7 +374,7 @@ mod tests {
         }
     }
 
-    /// What took a reader of literals four times as long for each level.
+    /// A nested header, for which a reader of literals took four times as long with each level.
     #[test]
     fn types_of_types_are_refused_at_once() {
         for depth in [1, 3, 8, 12, 5000] {

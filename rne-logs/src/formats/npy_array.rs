@@ -10,7 +10,7 @@ use crate::limits::MOST_JOINTS;
 use crate::remedy::{Remedy, Setting};
 use crate::{LogError, Npy, Options, TimeUnit};
 
-/// What an array may have, in the order that it has unless somebody says another.
+/// Quantities of an array, in their default order.
 const QUANTITIES: [&str; 4] = ["time", "q", "qd", "tau"];
 
 /// An array of states by columns, a sample a row.

@@ -90,7 +90,7 @@ pub(crate) struct Column {
     defined: i16,
     pub(crate) is_list: bool,
     is_signed: bool,
-    /// What its numbers are multiplied by, of a unit that its name says.
+    /// Factor of its numbers, from the unit in its name.
     factor: f64,
     pub(crate) reader: Option<ColumnReader>,
     /// The numbers of this batch, as numbers and as the integers of stamps.

@@ -36,7 +36,7 @@ const NEXT: u8 = 0x15;
 /// The first bytes of a frame of LZ4, which tells nobody its length.
 const LZ4_FRAME: [u8; 4] = [0x04, 0x22, 0x4D, 0x18];
 
-/// What a file has that is in order, and that is not read.
+/// Correct content of a file that is not read.
 #[derive(Debug)]
 pub(crate) struct Refused(String);
 
@@ -53,7 +53,7 @@ impl Refused {
         ParquetError::External(Box::new(Self(what.to_string())))
     }
 
-    /// What was refused, if an error says so.
+    /// The refused content, if an error contains one.
     pub(crate) fn of(error: &ParquetError) -> Option<&Self> {
         match error {
             ParquetError::External(inner) => inner.downcast_ref(),
@@ -125,7 +125,7 @@ struct Bounds {
     unpacked: AtomicU64,
     /// The bytes before the values of the next page, which are never packed.
     levels: AtomicU64,
-    /// What this column was charged for: its page, and its dictionary.
+    /// Bytes charged to this column: those of its page and of its dictionary.
     page: AtomicU64,
     dictionary: AtomicU64,
 }
@@ -207,7 +207,7 @@ impl ChunkReader for Bounds {
     }
 }
 
-/// What the head of a page says of its bytes.
+/// Sizes in the head of a page.
 #[derive(Debug, PartialEq)]
 struct Head {
     kind: u64,
@@ -268,7 +268,7 @@ struct Pages {
     /// Where the column ends in the file.
     end: u64,
     is_list: bool,
-    /// Of the list at the end of the last page.
+    /// Length of the list at the end of the last page.
     length: usize,
     name: String,
 }
@@ -300,7 +300,7 @@ impl Pages {
     }
 }
 
-/// The longest list of a page with so many values, by their levels of repetition, which are 0 where a list begins and
+/// The longest list of a page with `count` values, by their levels of repetition, which are 0 where a list begins and
 /// are written as runs and as bits. `length` is that of the list that goes on from the page before, and becomes that of
 /// the last one. It stops where one is too long.
 fn longest_list(mut levels: &[u8], count: usize, length: &mut usize) -> usize {

@@ -41,7 +41,7 @@ pub(crate) struct ParquetTable {
     roles: Roles,
     clock: Clock,
     is_time_unit_known: bool,
-    /// Of this batch.
+    /// Row of this batch.
     row: usize,
     rows: usize,
     read: u64,
@@ -52,7 +52,7 @@ pub(crate) struct ParquetTable {
     notes: Vec<String>,
 }
 
-/// What columns are, by their places among those that are read.
+/// Roles of columns, by their places among the columns that are read.
 enum Roles {
     /// Velocities, efforts and accelerations are the others.
     Scalars {
@@ -173,7 +173,7 @@ impl ParquetTable {
         self.tell_time(leaves, columns.time.map(|(place, unit)| (scalars[place], unit)), options)
     }
 
-    /// Which column has times, with the unit that its name says: what the type says is surer.
+    /// Sets the column of times, with the unit in its name. The unit of its type takes precedence.
     fn tell_time(
         &mut self,
         leaves: &[Leaf],
@@ -342,12 +342,12 @@ fn footer(mut file: &File) -> Option<u32> {
     Some(u32::from_le_bytes(length))
 }
 
-/// What is said where the library asserted something.
+/// Error for an assertion that failed in the library.
 fn corrupt() -> ParquetError {
     ParquetError::General("a page is not what its head says".to_owned())
 }
 
-/// What the library says, in a sentence.
+/// Message of the library as a sentence.
 fn reason(error: &ParquetError) -> String {
     if let Some(refused) = Refused::of(error) {
         return refused.to_string();

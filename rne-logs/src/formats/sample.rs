@@ -1,9 +1,9 @@
-//! What every format is read into: one message, or one row.
+//! A sample, into which every format is read: one message, or one row.
 
 use crate::LogError;
 use crate::columns::unit::FileUnits;
 
-/// What a log says of one instant: the joints that a message or a row names, in its order.
+/// One instant of a log: the joints of a message or a row, in its order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sample {
     /// When it was measured, by the header of the message or the column of times, ns.

@@ -21,21 +21,21 @@ const BATCH: u32 = 1024;
 const BY_TIME: &str = "SELECT timestamp, id, length(data), CASE WHEN length(data) <= ?5 THEN data END FROM messages \
                        WHERE topic_id = ?1 AND (timestamp, id) > (?2, ?3) ORDER BY timestamp, id LIMIT ?4";
 
-/// Of a bag whose index of times was left out: sorting all of it for each batch would take for ever.
+/// Query for a bag without an index of times: sorting all of it for each batch would take too long.
 const BY_NUMBER: &str = "SELECT timestamp, id, length(data), CASE WHEN length(data) <= ?5 THEN data END FROM messages \
                          WHERE topic_id = ?1 AND id > ?3 AND ?2 IS NOT NULL ORDER BY id LIMIT ?4";
 
 /// The longest message that is taken for joint states, bytes.
 const LONGEST_MESSAGE: i32 = 1 << 20;
 
-/// What the head of a file begins with.
+/// First bytes of a file.
 const MAGIC: &[u8] = b"SQLite format 3\0";
 
 /// A bag, read by the time of recording, or as it was written where nothing tells their order.
 pub(crate) struct SqliteBag {
     path: PathBuf,
     connection: Connection,
-    /// What reading leaves beside the bag.
+    /// Files that reading leaves beside the bag.
     _rest: Rest,
     topic: String,
     topic_id: i64,
@@ -276,7 +276,7 @@ fn unreadable(path: &Path, error: &rusqlite::Error) -> LogError {
     LogError::file(path, reason(error))
 }
 
-/// What SQLite says, in a sentence.
+/// Message of SQLite as a sentence.
 fn reason(error: &rusqlite::Error) -> String {
     use rusqlite::ErrorCode::{DatabaseCorrupt, NotADatabase, TooBig};
     match error.sqlite_error_code() {

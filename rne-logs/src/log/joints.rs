@@ -68,7 +68,7 @@ impl Joints {
         Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))))
     }
 
-    /// The joints of the log that are none of these.
+    /// The joints of the log that are not among these.
     pub(crate) fn others(&self, samples: &[Sample]) -> Vec<String> {
         let own: HashSet<&String> = self.names.iter().collect();
         names(samples).into_iter().filter(|name| !own.contains(name)).collect()

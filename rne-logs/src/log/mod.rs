@@ -45,12 +45,12 @@ pub struct Log {
     pub(crate) layout: Layout,
 }
 
-/// What a log has, by its first thousand messages.
+/// Content of a log, from its first thousand messages.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[expect(clippy::struct_excessive_bools, reason = "each is a quantity that the log has, or not")]
 pub struct Layout {
-    /// Of the first file.
+    /// Format of the first file.
     pub format: Format,
     /// The topic of a bag.
     pub topic: Option<String>,
@@ -103,7 +103,7 @@ impl Layout {
 }
 
 impl Log {
-    /// Opens files, one log behind another, and reads the first messages; of a folder the bags inside.
+    /// Opens files, whose logs follow each other, and reads the first messages. For a folder, it opens the bags inside.
     ///
     /// # Errors
     ///
@@ -195,7 +195,7 @@ impl Log {
         Ok(Self { files, options, joints, layout })
     }
 
-    /// What the log has.
+    /// The content of the log.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
@@ -213,7 +213,7 @@ impl Log {
         &self.files
     }
 
-    /// What is wrong, said of the first file.
+    /// An error of the request, with the name of the first file.
     pub(crate) fn request(&self, what: impl std::fmt::Display) -> LogError {
         LogError::request(&self.files[0], what)
     }
@@ -228,13 +228,13 @@ impl Log {
         joints.iter().zip(units).filter(|(_, units)| is_current(units)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// What positions and velocities of a joint are multiplied by; `said` is what a name says that they are.
+    /// Factor of a joint's positions and velocities; `said` is their dimension, if a column's name gives it.
     pub(crate) fn of_angle(&self, joint: usize, said: Option<Dimension>) -> f64 {
         let is_degrees = self.options.angles == Angles::Degrees && said.is_none() && !self.options.is_slide(joint);
         if is_degrees { std::f64::consts::PI / 180.0 } else { 1.0 }
     }
 
-    /// What the effort of a joint is multiplied by.
+    /// Factor of a joint's effort.
     pub(crate) fn torque_constant(&self, joint: usize) -> f64 {
         if matches!(self.layout.units[joint].effort, Some(Dimension::Torque | Dimension::Force)) {
             return 1.0;
@@ -247,14 +247,14 @@ impl Log {
     }
 }
 
-/// Files that are read one behind another.
+/// Files that are read one after another.
 pub(crate) struct Chain<'a> {
     others: VecDeque<&'a PathBuf>,
     count: usize,
     options: &'a Options,
     source: Box<dyn Source>,
     format: Format,
-    /// Of the first file.
+    /// Units of the first file.
     units: FileUnits,
 }
 
@@ -318,7 +318,7 @@ fn median_step(times: &[i64]) -> Option<f64> {
     Some(*steps.select_nth_unstable(middle).1 as f64 * 1e-9)
 }
 
-/// What is said of times that may be in any unit.
+/// Message for times whose unit is not known.
 fn unknown_unit(step: f64) -> String {
     format!(
         "the unit of the times is not known: they are {} apart, and samples are at {}; if the times only count rows, \
@@ -355,7 +355,7 @@ fn no_step(path: &Path, times: &[i64]) -> LogError {
     }
 }
 
-/// What is said where degrees are of joints that turn, and others stay as they are.
+/// Note for prismatic joints, whose numbers are not converted from degrees.
 fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -> Option<String> {
     let stays = |joint: &usize| {
         let JointUnits { position, velocity, .. } = units[*joint];

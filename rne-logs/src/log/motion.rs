@@ -1,6 +1,6 @@
-//! What identification and watching read: a run of states with accelerations, evenly filtered.
+//! A run of states with accelerations, filtered evenly: the input of identification and watching.
 
-/// A run without gaps, filtered: what a log says of an arm between two interruptions, with accelerations.
+/// A filtered run without gaps: the states of a log between two interruptions, with accelerations.
 ///
 /// Every list has a list per joint, base to tip, in the order of the robot file; each of those has as many numbers as
 /// `time`.
@@ -28,7 +28,7 @@ impl Motion {
         self.time.len()
     }
 
-    /// Whether there is none.
+    /// Whether there is no state.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()

@@ -65,9 +65,9 @@ pub struct Counts {
     pub without_velocities: u64,
     /// Messages without efforts, or with another number of them, where the log has efforts.
     pub without_efforts: u64,
-    /// Messages with a number that is none, infinite, or beyond 10¹² of its unit.
+    /// Messages with a number that is NaN, infinite, or beyond 10¹² of its unit.
     pub not_finite: u64,
-    /// Messages that say the same as the one before, at the same time.
+    /// Messages that repeat the one before, with the same time.
     pub repeats: u64,
 }
 
@@ -76,7 +76,7 @@ pub struct Counts {
 pub enum Interruption {
     /// It is the first.
     Beginning,
-    /// Nothing was measured for so many seconds.
+    /// Nothing was measured for these seconds.
     Gap {
         /// s
         seconds: f64,

@@ -1,4 +1,4 @@
-//! What a log has, by one reading of it.
+//! Survey of a log, by one reading of it.
 
 use crate::columns::quantity::Quantity;
 use crate::limits::{FEW_ROWS, MOST_FILLED};
@@ -48,11 +48,11 @@ const HIGHEST_CHOSEN: f64 = 0.2;
 /// Positions over more than this, rad, may be degrees.
 const WIDEST: f64 = 4.0 * std::f64::consts::PI;
 
-/// What a log has.
+/// Survey of a log.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Survey {
-    /// What was read, and what of it was left out.
+    /// Counts of messages that were read, and of those that were left out.
     pub counts: Counts,
     /// The runs, the first thousand of them.
     pub runs: Vec<Run>,
@@ -242,7 +242,7 @@ impl Log {
         time.saturating_sub(self.layout.origin) as f64 * 1e-9
     }
 
-    /// States at each end of a run that a filter drops which needs so many numbers on each side.
+    /// States at each end of a run that a filter drops, if it needs `half` numbers on each side.
     pub(crate) fn dropped(&self, half: usize) -> usize {
         half.saturating_add(self.of_differences())
     }
@@ -348,7 +348,7 @@ impl Runs {
         }
     }
 
-    /// Of the longest run, the rows of a grid of this step, s.
+    /// Rows of the longest run on a grid of this step, s.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a run")]
     fn longest(&mut self, step: f64) -> u64 {
         self.end_run();

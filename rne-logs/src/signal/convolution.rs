@@ -22,7 +22,7 @@ pub(crate) struct Convolution {
 }
 
 impl Convolution {
-    /// Of a filter's weights, from the middle outwards.
+    /// Makes a convolution of a filter's weights, from the middle outwards.
     pub(crate) fn new(weights: &[f64]) -> Self {
         let half = weights.len() - 1;
         let length = (3 * half).next_power_of_two();

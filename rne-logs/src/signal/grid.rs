@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 pub(crate) struct Grid {
     /// ns
     step: f64,
-    /// Of the run's first sample, ns.
+    /// Time of the run's first sample, ns.
     begin: i64,
     /// The samples about the next rows, with ns since the run's first.
     near: VecDeque<(f64, Vec<f64>)>,

@@ -12,7 +12,7 @@
 use crate::limits::work;
 use crate::signal::convolution::Convolution;
 
-/// What the stop band lets pass, dB: half a thousandth. The pass band may ripple as much about a gain that ripples
+/// Attenuation of the stop band, dB: half a thousandth passes. The pass band may ripple as much about a gain that ripples
 /// itself.
 const ATTENUATION: f64 = 66.0;
 
@@ -70,7 +70,7 @@ impl Kernel {
         ((ATTENUATION - 8.0) / (2.285 * transition) / 2.0).ceil() as usize
     }
 
-    /// The lowest cut-off, Hz, at a step, s, whose low-pass needs so many numbers on each side at most.
+    /// The lowest cut-off, Hz, at a step, s, whose low-pass needs at most `half` numbers on each side.
     #[expect(clippy::cast_precision_loss, reason = "states of a run")]
     pub(crate) fn lowest_of(half: usize, step: f64) -> f64 {
         (ATTENUATION - 8.0) / (2.285 * 2.0 * half as f64) / (2.0 * std::f64::consts::PI * step * 2.0 * HALF_TRANSITION)
@@ -86,7 +86,7 @@ impl Kernel {
         DIFFERENCES.len()
     }
 
-    /// Pieces have a multiple of so many numbers.
+    /// The length of a piece is a multiple of this number.
     pub(crate) fn block(&self) -> usize {
         self.convolution.as_ref().map_or(1, Convolution::block)
     }
@@ -138,7 +138,7 @@ mod tests {
 
     use super::*;
 
-    /// What the filter makes of a cosine at a frequency, Hz: a factor, real as it is symmetric.
+    /// Gain of the filter at a frequency, Hz: real, because the filter is symmetric.
     #[expect(clippy::cast_precision_loss, reason = "small")]
     fn gain(kernel: &Kernel, frequency: f64) -> f64 {
         let angle = 2.0 * PI * frequency * kernel.step;

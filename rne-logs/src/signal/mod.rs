@@ -1,4 +1,4 @@
-//! What is computed of sampled signals: even grids, filters, spectra, spikes.
+//! Computations on sampled signals: even grids, filters, spectra, spikes.
 
 pub(crate) mod convolution;
 pub(crate) mod grid;

@@ -34,7 +34,7 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// Spectra of columns at a rate, Hz, by segments of at least so many seconds.
+    /// Spectra of columns at a rate, Hz, by segments of at least `seconds`.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "bounded")]
     pub(crate) fn new(columns: usize, rate: f64, seconds: f64) -> Self {
         let room = (MOST_NUMBERS / columns.max(1)).clamp(64, 65_536);

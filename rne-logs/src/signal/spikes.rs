@@ -10,11 +10,11 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-/// Samples whose median a sample is held against, and those on one side of it.
+/// Samples whose median a sample is compared with, and those on one side of it.
 const WINDOW: usize = 5;
 const SIDE: usize = 2;
 
-/// A spike is off by so many times what nine of ten samples are.
+/// A spike differs from the median by this factor more than nine of ten samples do.
 const FAR: f64 = 30.0;
 
 /// Candidates that are kept while the log is read: of a joint, and of all.
@@ -50,7 +50,7 @@ struct Histogram {
 }
 
 impl Histogram {
-    /// Takes a size; zero is none.
+    /// Adds a size; zero is ignored.
     #[expect(clippy::cast_possible_truncation, reason = "exponents of numbers, by eight")]
     fn push(&mut self, size: f64) {
         if size > 0.0 {
@@ -59,7 +59,7 @@ impl Histogram {
         }
     }
 
-    /// What this part of the sizes does not exceed; none of no sizes.
+    /// The size that this part of all sizes does not exceed; `None` without sizes.
     #[expect(clippy::cast_precision_loss, reason = "a part of states")]
     fn quantile(&self, part: f64) -> Option<f64> {
         let mut below = 0;
@@ -164,7 +164,7 @@ impl Spikes {
         self.joints.iter_mut().for_each(Joint::end_run);
     }
 
-    /// The spikes, in the order of their messages; none where they are not rare among so many states.
+    /// The spikes, in the order of their messages; empty if they are not rare among the states.
     #[expect(clippy::cast_precision_loss, reason = "states of a log")]
     pub(crate) fn end(mut self, states: u64) -> Vec<Spike> {
         self.end_run();
