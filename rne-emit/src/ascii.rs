@@ -9,8 +9,8 @@ const DOTTED: [(char, char, usize); 5] = [('Ṁ', 'M', 1), ('ċ', 'c', 1), ('ḋ
 
 /// Letters and their spellings, pair by pair.
 const SPELLINGS: &str = "\
-    α alpha β beta γ gamma Δ Delta δ delta ε epsilon θ theta Θ Theta λ lambda μ mu π pi ρ rho Σ sum σ sigma τ tau φ phi \
-    ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 … ... \
+    α alpha β beta γ gamma Δ Delta δ delta ε epsilon θ theta Θ Theta λ lambda μ mu π pi ρ rho Σ sum σ sigma τ tau \
+    φ phi ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 … ... \
     ’ ' ‘ ' “ \" ” \" ä a à a á a â a å a ç c è e é e ê e ë e ï i í i ñ n ö o ó o ô o ø o ü u ú u û u Ä A É E Ö O Ü U \
     ß ss";
 

@@ -96,7 +96,8 @@ pub(crate) fn states(text: &str) -> Result<u16, String> {
     states.ok_or_else(|| format!("a golden file has 1 to {} states, such as --golden 100", u16::MAX))
 }
 
-/// A golden file: torques of a robot at `states` states; its heading lists the settings that differ from the robot file.
+/// A golden file: torques of a robot at `states` states; its heading lists the settings that differ from the robot
+/// file.
 pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<String, Failure> {
     let (mut random, arm) = (Random::new(Precision::Double), DynArm::from_robot(robot));
     let rotors = if robot.has_rotors() { ", with its rotors" } else { "" };

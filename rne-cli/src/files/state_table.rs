@@ -240,8 +240,8 @@ fn instead(column: &str, header: &[String]) -> String {
     }
 }
 
-/// Message for digits that become infinite or zero by rounding. The word `inf` is a number, because a log may contain it
-/// if nothing was measured.
+/// Message for digits that become infinite or zero by rounding. The word `inf` is a number, because a log may contain
+/// it if nothing was measured.
 fn misfit(number: f64, cell: &[u8]) -> Option<&'static str> {
     let mut mantissa = cell.split(|byte| matches!(byte, b'e' | b'E')).next().unwrap_or_default().iter();
     if number.is_infinite() && mantissa.clone().any(u8::is_ascii_digit) {

@@ -75,8 +75,8 @@ impl<'s> Joint<'_, 's> {
 
 /// The laws, by the kind of the joint.
 impl<'s> Joint<'_, 's> {
-    /// Sine and cosine of θ_i: θ + q, or the constant θ of a prismatic joint. A right angle θ permutes and negates those
-    /// of q exactly; any other is added to q.
+    /// Sine and cosine of θ_i: θ + q, or the constant θ of a prismatic joint. A right angle θ permutes and negates
+    /// those of q exactly; any other is added to q.
     fn sine_and_cosine(&self) -> (Symbol<'s>, Symbol<'s>) {
         let (line, theta) = (self.lines, self.link.theta);
         match (self.link.kind, self.state.turn, theta.right) {

@@ -21,8 +21,8 @@ pub enum Dimension {
     Current,
 }
 
-/// Dimensions of a joint's quantities, as far as the names of a table's columns give them: those numbers are in SI units
-/// then, whatever the options are.
+/// Dimensions of a joint's quantities, as far as the names of a table's columns give them: those numbers are in SI
+/// units then, whatever the options are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct JointUnits {

@@ -12,8 +12,8 @@
 use crate::limits::work;
 use crate::signal::convolution::Convolution;
 
-/// Attenuation of the stop band, dB: half a thousandth passes. The pass band may ripple as much about a gain that ripples
-/// itself.
+/// Attenuation of the stop band, dB: half a thousandth passes. The pass band may ripple as much about a gain that
+/// ripples itself.
 const ATTENUATION: f64 = 66.0;
 
 /// Half the width of the transition, of the cut-off.
