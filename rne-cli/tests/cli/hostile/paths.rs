@@ -90,7 +90,7 @@ pub(super) fn cases(folder: &Path) -> Vec<Case> {
             piped("an arm", &["emit", stream, "--lang", "c"], &arm, Expected::Taken),
             piped("nothing", &["check", stream], "/dev/null", refused("the file is empty")),
             piped("an endless stream", &["check", stream], "/dev/zero", refused("more than 1048576 bytes")),
-            piped("an endless stream", &["import", stream], "/dev/zero", refused("at most 16777216 are read")),
+            piped("an endless stream", &["import", stream], "/dev/zero", refused("there is no element `robot`")),
             piped("zeros", &["show", stream], &zeros, refused("more than 1048576 bytes")),
             piped("an arm", &["search", stream], &arm, Expected::Refused(2, "it needs a file")),
         ]);
