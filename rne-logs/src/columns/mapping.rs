@@ -42,6 +42,13 @@ pub enum Target {
     },
 }
 
+impl Target {
+    /// The target that a map would give a column with such a name.
+    pub(crate) fn of(named: &Named) -> Self {
+        Self::Joint { joint: named.joint.clone(), quantity: named.quantity }
+    }
+}
+
 impl FromStr for Target {
     type Err = String;
 

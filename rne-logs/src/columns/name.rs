@@ -1,7 +1,6 @@
 //! Meaning of a table's column, by its name.
 
 use crate::TimeUnit;
-use crate::columns::mapping::Target;
 use crate::columns::quantity::Quantity;
 use crate::columns::unit::{self, Unit};
 use crate::limits::LONGEST_NAME;
@@ -41,13 +40,6 @@ pub(crate) struct Named {
     /// The joint's number, where its name is one.
     pub(crate) number: Option<u32>,
     pub(crate) unit: Option<Unit>,
-}
-
-impl Named {
-    /// The target that a map of columns would give the column.
-    pub(crate) fn target(&self) -> Target {
-        Target::Joint { joint: self.joint.clone(), quantity: self.quantity }
-    }
 }
 
 /// Meaning of a name.

@@ -191,7 +191,7 @@ impl<'a> Header<'a> {
             }
             let inner = within(name, options);
             match inner.map_or(Meaning::Nothing, meaning) {
-                Meaning::Joint(named) if targets.contains(&named.target()) => header.unread.push(place),
+                Meaning::Joint(named) if targets.contains(&Target::of(&named)) => header.unread.push(place),
                 Meaning::Joint(named) => header.found.push(Found { named, place }),
                 Meaning::Unknown { quantity, unit } => {
                     let what = format!(
