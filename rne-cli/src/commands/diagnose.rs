@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     /// Tip wrench on the environment: fx,fy,fz,nx,ny,nz in tip axes, N and N m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// Accepted error of a torque, relative to the largest [default: by its last digit]
+    /// Accepted error of a torque, relative to the largest [default: from its last digit]
     #[arg(long, value_name = "T", allow_hyphen_values = true,
         value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
         "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]

@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     /// Joint torques for forward_dynamics, N m or N
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// fx,fy,fz,nx,ny,nz on environment, in tip axes
+    /// Wrench on the environment: fx,fy,fz,nx,ny,nz
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
     /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] fixed to tip
@@ -64,7 +64,7 @@ pub(crate) struct Arguments {
     /// Angular acceleration of the base, rad/s²
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
-    /// Acceleration of the base, no gravity, m/s²
+    /// Acceleration of the base without gravity, m/s²
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
     /// Gravity in moving frame 0 [default: the file's]
@@ -82,7 +82,7 @@ pub(crate) struct Arguments {
         "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
-    /// File for the results: CSV, or npy by its name
+    /// File for the results: CSV, or NAME.npy
     #[arg(short, long = "output", value_name = "TABLE", requires = "states")]
     out: Option<PathBuf>,
     /// Overwrite an existing file

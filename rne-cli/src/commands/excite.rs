@@ -64,10 +64,10 @@ pub(crate) struct Arguments {
     /// Largest distance from the middle of the limits, or from 0 without limits; rad or m, one number or a list
     #[arg(long, value_name = "LIST")]
     range: Option<List>,
-    /// Largest speed, one number or a list; the limits of the file hold too
+    /// Largest speed, one number or a list; limits in the file apply too
     #[arg(long, value_name = "LIST")]
     velocity: Option<List>,
-    /// Largest acceleration, one number or a list [default: reaches the speed in 0.5 s]
+    /// Largest acceleration, one number or a list [default: speed divided by 0.5 s]
     #[arg(long, value_name = "LIST")]
     acceleration: Option<List>,
     /// Assume no friction

@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     /// The robot file; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The format: URDF
+    /// Write a URDF
     #[arg(long, required = true)]
     urdf: bool,
     #[command(flatten)]

@@ -49,7 +49,7 @@ pub(crate) struct Arguments {
         value_parser = checked(|pull: &f64| pull.is_finite() && *pull >= 1e-6,
         "a pull is a number of 1e-6 or more; 1 is as strong as one row of noise"))]
     pull: f64,
-    /// Compute errors on this last part, such as 0.3
+    /// Compute errors on this last fraction, such as 0.3
     #[arg(long, value_name = "PART", conflicts_with = "judge",
         value_parser = checked(|part: &f64| *part > 0.0 && *part < 1.0, "a part lies between 0 and 1, such as 0.3"))]
     hold_out: Option<f64>,

@@ -14,7 +14,7 @@ use crate::palette::TYPED;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne man | man -l -                     read it
+  rne man | man -l -                     show the page
   rne man eval | man -l -                the page of a command
   rne man -o ~/.local/share/man/man1     all pages, for `man rne-eval`")]
 pub(crate) struct Arguments {

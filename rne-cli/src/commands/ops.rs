@@ -49,7 +49,7 @@ pub(crate) struct Arguments {
     /// Print what each trick of the reduced form saves in `inverse_dynamics`, and its formula
     #[arg(long, conflicts_with_all = ["json", "without"])]
     tricks: bool,
-    /// Leave these tricks out of the reduced form; see `rne explain tricks`. A rewritten graph of the plan is not used
+    /// Omit these tricks of the reduced form; see `rne explain tricks`. A rewritten graph of the plan is not used
     /// then
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = choice::trick(),
         hide_possible_values = true)]

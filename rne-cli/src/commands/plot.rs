@@ -25,11 +25,11 @@ Examples:
   rne plot planar2 --csv > torques.csv
 
 A trajectory is CSV with columns t, q1, …, qd1, …, qdd1, … in s, rad or m, and
-per second. Without qd and qdd they follow from the parabola through a sample
-and its neighbours. Without a trajectory all joints move from a quarter to three
-quarters of the way between their limits, from rest to rest, in 2 s, or longer
-if speed limits require it. The tip is free. Torques do not include friction;
-they include rotors with --rotors.")]
+per second. If qd and qdd are missing, they follow from the parabola through a
+sample and its neighbours. Without a trajectory all joints move from a quarter
+to three quarters of the way between their limits, from rest to rest, in 2 s, or
+longer if speed limits require it. No wrench acts on the tip. Torques do not
+include friction; they include rotors with --rotors.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,

@@ -28,8 +28,8 @@ use crate::values::choice::FunctionOrAll;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne search robots/puma560.yaml --seconds 60              choices only
-  rne search robots/puma560.yaml --seconds 300 --rewrite   and rewrite the graph
+  rne search robots/puma560.yaml --seconds 60              search for choices
+  rne search robots/puma560.yaml --seconds 300 --rewrite   also rewrite graphs
   rne search robots/puma560.yaml --seconds 600 --rewrite --function all
 
 The result is NAME.plan.yaml next to NAME.yaml; every later build uses it

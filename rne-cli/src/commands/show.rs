@@ -32,7 +32,7 @@ Examples:
   rne show robots/planar2.yaml --step 3            not used by torques
   rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
   rne show robots/puma560.yaml --function mass_matrix --form reduced
-  rne show robots/puma560.yaml --base-parameters   link parameters that count
+  rne show robots/puma560.yaml --base-parameters   parameters of the torques
   rne show puma560 --joint 2 --step 1 --equations  equations before folding
   rne show puma560 --json                          data for programs
   rne show robots/planar2.yaml --symbolic          τ = M θ̈ + h + γ in symbols
@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     /// One of the seven steps only
     #[arg(long, value_name = "S", value_parser = choice::step)]
     step: Option<Step>,
-    /// seven_steps (default) or reduced, the shortest
+    /// seven_steps (default) or reduced (fewest operations)
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true, hide_default_value = true)]
     form: Form,
@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     /// Keep unused quantities: `rne explain quantities`
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',', hide_possible_values = true)]
     keep: Vec<Kept>,
-    /// Leave these tricks out: `rne explain tricks`
+    /// Omit these tricks: `rne explain tricks`
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = choice::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,

@@ -33,7 +33,7 @@ Examples:
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv --json
 
-Exit status 1: there are events, or the model explains nothing of some joint.
+Exit status 1: there are events, or the model does not explain some joint.
 docs/watch.md explains the tests.")]
 pub(crate) struct Arguments {
     /// Robot file with friction, from `rne identify`

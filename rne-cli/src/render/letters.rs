@@ -9,7 +9,7 @@ use crate::render::layout::{width, wrap};
 /// The letters of what is printed.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(crate) struct Letters {
-    /// ASCII alone: dw1 for ω̇1, thetadd1 for θ̈1
+    /// Print ASCII only: dw1 for ω̇1, thetadd1 for θ̈1
     #[arg(long)]
     pub(crate) ascii: bool,
 }

@@ -25,19 +25,19 @@ pub(crate) struct LogArguments {
     /// Angles are in degrees (revolute joints only)
     #[arg(long, conflicts_with = "radians")]
     degrees: bool,
-    /// Angles are in radians; no check of their range
+    /// Angles are in radians; do not check their range
     #[arg(long)]
     radians: bool,
     /// Cut-off of the low-pass [default: automatic]
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     pub(crate) cutoff: Option<f64>,
-    /// Split runs at longer intervals
+    /// Split runs at longer gaps
     #[arg(long, value_name = "STEPS", default_value_t = 3.5)]
     gap: f64,
     /// Ignore measured velocities; derive them
     #[arg(long)]
     derive_velocities: bool,
-    /// Use the bag's receive time, not the stamps
+    /// Use receive times instead of time stamps
     #[arg(long)]
     recorded: bool,
     /// Unit of the time column: s, ms, us, ns
