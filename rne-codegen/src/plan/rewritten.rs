@@ -21,7 +21,7 @@ pub struct Rewritten {
     pub algorithm: Algorithm,
     /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
     pub plan: Option<Plan>,
-    /// The graph as text, as [`graph_text`] writes it.
+    /// The graph as text: constants, operations and results.
     pub graph: String,
 }
 
