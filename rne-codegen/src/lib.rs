@@ -58,7 +58,7 @@ pub use named::UnknownName;
 pub use pipeline::Target;
 pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, SineCosine, Statement};
 pub use reduced::algorithm::Algorithm;
-pub use reduced::inward::BodiesPer;
+pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
 pub use values::{Contraction, Negated, Operator, Sign, Value, ValueId, Values};
 

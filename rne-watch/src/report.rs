@@ -54,7 +54,7 @@ pub fn watch(signals: &Signals, baseline: &Baseline, settings: &Settings) -> Res
         let whole = known(signals, joint, 0..signals.time.len());
         let moving = along_motion(signals, joint, floors[0].mean, 0..signals.time.len());
         for (index, (test, numbers)) in [(Test::Offset, whole), (Test::Friction, moving)].into_iter().enumerate() {
-            let open = Open { terms: &signals.terms[joint], wrong: baseline.model[joint] };
+            let open = UnmodelledRange { terms: &signals.terms[joint], wrong: baseline.model[joint] };
             let blocks = blocks(&numbers, &open, samples_in(floors[index].block, signals.period));
             events.extend(of_sums(signals, (joint, test), &numbers, &blocks, &floors[index], thresholds.sums[index]));
         }
@@ -76,12 +76,12 @@ fn samples_in(time: f64, period: f64) -> usize {
 
 /// The range that the model of a joint leaves open, because it may be wrong.
 #[derive(Clone, Copy)]
-struct Open<'a> {
+struct UnmodelledRange<'a> {
     terms: &'a [f64],
     wrong: ModelError,
 }
 
-impl Open<'_> {
+impl UnmodelledRange<'_> {
     fn at(&self, sample: usize) -> f64 {
         BOUND * self.wrong.part * self.terms[sample]
     }
@@ -90,7 +90,7 @@ impl Open<'_> {
 /// Deviations of the model's error that are no change of a mean.
 pub(crate) const BOUND: f64 = 3.0;
 
-fn blocks(numbers: &[(usize, f64)], open: &Open<'_>, length: usize) -> Vec<Block> {
+fn blocks(numbers: &[(usize, f64)], open: &UnmodelledRange<'_>, length: usize) -> Vec<Block> {
     let means = |of: &dyn Fn(&(usize, f64)) -> f64| means(&numbers.iter().map(of).collect::<Vec<_>>(), length);
     let (values, open) = (means(&|(_, number)| *number), means(&|(at, _)| open.at(*at)));
     let of = |(index, (value, open)): (usize, (f64, f64))| {

@@ -103,8 +103,8 @@ impl FramedRobot {
         parameters: &Parameters,
         algorithm: Algorithm,
     ) -> Option<Outputs<'s>> {
-        let bodies_per = algorithm.bodies_per();
-        algorithm::write(&Arm { builder, bodies_per, joint_frames: &self.joint_frames, plan, parameters }, algorithm)
+        let expressed_in = algorithm.expressed_in();
+        algorithm::write(&Arm { builder, expressed_in, joint_frames: &self.joint_frames, plan, parameters }, algorithm)
     }
 
     /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.

@@ -17,7 +17,7 @@ use crate::ir::{ExactAngle, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
 use crate::reduced::inward::full;
 use crate::reduced::rnea_derivatives::{matter, stations};
-use crate::reduced::{Arm, Gradient, Inward, Outward, Station, Symmetric, Turned, Wrench};
+use crate::reduced::{Arm, Gradient, Inward, JointMotion, Outward, Symmetric, Turned, Wrench};
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 
@@ -100,7 +100,7 @@ impl<'s> Articulated<'s> {
     }
 
     /// Gives way along its joint.
-    fn released(self, arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> (Self, Pivot<'s>) {
+    fn released(self, arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> (Self, Pivot<'s>) {
         let builder = arm.builder;
         let row = &arm.rows()[index];
         let rate = arm.rate(index);
@@ -140,7 +140,7 @@ impl<'s> Articulated<'s> {
 }
 
 /// The link alone.
-fn rigid<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> Articulated<'s> {
+fn rigid<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> Articulated<'s> {
     let builder = arm.builder;
     let matter = matter(arm, index);
     let s = matter.s.map(|row| row.map(|x| builder.number(x)));
@@ -227,7 +227,7 @@ impl<'s> Outward<'s> for Accelerated<'s> {
 }
 
 /// The way out: each joint's acceleration from that of the link before it.
-fn outward<'s>(arm: &Arm<'_, 's>, stations: &[Station<'s>], pivots: &[Pivot<'s>]) -> Vec<Symbol<'s>> {
+fn outward<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>], pivots: &[Pivot<'s>]) -> Vec<Symbol<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let gravity = builder.vector(arm.joint_frames.gravity.map(|g| -g));
     let mut last = Accelerated { omega: builder.no_vector(), omega_dot: builder.no_vector(), acceleration: gravity };

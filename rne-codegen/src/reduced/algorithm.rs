@@ -4,7 +4,7 @@ use crate::formulate::{self, Outputs, Payload, by_joint, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::torques;
-use crate::reduced::crba::BodiesPer;
+use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
 use crate::reduced::{Arm, JointFrames, Load, aba, crba, momentum};
@@ -16,11 +16,11 @@ pub enum Algorithm {
     #[default]
     Rnea,
     /// Composite bodies.
-    Crba(BodiesPer),
+    Crba(ExpressedIn),
     /// The recursion, once per joint that accelerates.
     UnitColumns,
     /// Articulated bodies.
-    Aba(BodiesPer),
+    Aba(ExpressedIn),
     /// The recursion, with the payload in frame N of the last joint instead of the last link's.
     UnturnedPayload,
 }
@@ -29,11 +29,11 @@ impl Algorithm {
     /// All of them, with their names in plan files.
     pub const NAMES: [(Self, &'static str); 7] = [
         (Self::Rnea, "rnea"),
-        (Self::Crba(BodiesPer::Group), "crba_by_groups"),
-        (Self::Crba(BodiesPer::Joint), "crba_by_joints"),
+        (Self::Crba(ExpressedIn::GroupFrame), "crba_by_groups"),
+        (Self::Crba(ExpressedIn::JointFrame), "crba_by_joints"),
         (Self::UnitColumns, "unit_columns"),
-        (Self::Aba(BodiesPer::Group), "aba_by_groups"),
-        (Self::Aba(BodiesPer::Joint), "aba_by_joints"),
+        (Self::Aba(ExpressedIn::GroupFrame), "aba_by_groups"),
+        (Self::Aba(ExpressedIn::JointFrame), "aba_by_joints"),
         (Self::UnturnedPayload, "unturned_payload"),
     ];
 
@@ -52,8 +52,8 @@ impl Algorithm {
     /// The ways of a function; none for what has no reduced recursion.
     #[must_use]
     pub const fn of(function: Function) -> &'static [Self] {
-        const BY_GROUPS: Algorithm = Algorithm::Crba(BodiesPer::Group);
-        const BY_JOINTS: Algorithm = Algorithm::Crba(BodiesPer::Joint);
+        const BY_GROUPS: Algorithm = Algorithm::Crba(ExpressedIn::GroupFrame);
+        const BY_JOINTS: Algorithm = Algorithm::Crba(ExpressedIn::JointFrame);
         match function {
             Function::InverseDynamics
             | Function::InverseDynamicsWithWrench
@@ -69,8 +69,8 @@ impl Algorithm {
                 BY_GROUPS,
                 BY_JOINTS,
                 Algorithm::UnitColumns,
-                Algorithm::Aba(BodiesPer::Group),
-                Algorithm::Aba(BodiesPer::Joint),
+                Algorithm::Aba(ExpressedIn::GroupFrame),
+                Algorithm::Aba(ExpressedIn::JointFrame),
             ],
             Function::ForwardKinematics
             | Function::LinkPoses
@@ -100,10 +100,10 @@ impl Algorithm {
     }
 
     /// How it gathers bodies, where it has some.
-    pub(crate) const fn bodies_per(self) -> BodiesPer {
+    pub(crate) const fn expressed_in(self) -> ExpressedIn {
         match self {
-            Self::Crba(bodies_per) | Self::Aba(bodies_per) => bodies_per,
-            Self::Rnea | Self::UnitColumns | Self::UnturnedPayload => BodiesPer::Group,
+            Self::Crba(expressed_in) | Self::Aba(expressed_in) => expressed_in,
+            Self::Rnea | Self::UnitColumns | Self::UnturnedPayload => ExpressedIn::GroupFrame,
         }
     }
 
@@ -111,11 +111,11 @@ impl Algorithm {
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
             Self::Rnea => None,
-            Self::Crba(BodiesPer::Group) => Some("composite bodies, gathered per group of parallel axes"),
-            Self::Crba(BodiesPer::Joint) => Some("composite bodies, gathered joint by joint"),
+            Self::Crba(ExpressedIn::GroupFrame) => Some("composite bodies, gathered per group of parallel axes"),
+            Self::Crba(ExpressedIn::JointFrame) => Some("composite bodies, gathered joint by joint"),
             Self::UnitColumns => Some("columns: one recursion per joint that accelerates"),
-            Self::Aba(BodiesPer::Group) => Some("articulated bodies, gathered per group of parallel axes"),
-            Self::Aba(BodiesPer::Joint) => Some("articulated bodies, gathered joint by joint"),
+            Self::Aba(ExpressedIn::GroupFrame) => Some("articulated bodies, gathered per group of parallel axes"),
+            Self::Aba(ExpressedIn::JointFrame) => Some("articulated bodies, gathered joint by joint"),
             Self::UnturnedPayload => Some("the payload in frame N of the last joint (13)"),
         }
     }

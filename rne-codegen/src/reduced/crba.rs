@@ -17,7 +17,7 @@ use crate::formulate::torque_by;
 use crate::reduced::inward::Carried;
 use crate::reduced::{Arm, FirstMoment, Inward, PseudoInertia, Symmetric, Turned, Wrench};
 
-pub(crate) use crate::reduced::inward::BodiesPer;
+pub(crate) use crate::reduced::inward::ExpressedIn;
 
 use crate::ir::Axis::{self, X, Y, Z};
 use crate::ir::{Builder, Name, Number, Quantity, Symbol, Vector, WithRespectTo};

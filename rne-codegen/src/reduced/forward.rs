@@ -11,7 +11,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Builder, Matrix, Number, Quantity, Symbol, Vector};
-use crate::reduced::inward::BodiesPer;
+use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
 use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn};
 
@@ -98,7 +98,7 @@ struct Group<'s> {
 pub(crate) struct Arm<'a, 's> {
     pub(crate) builder: &'s Builder,
     /// How algorithms of bodies gather these.
-    pub(crate) bodies_per: BodiesPer,
+    pub(crate) expressed_in: ExpressedIn,
     pub(crate) joint_frames: &'a JointFrames,
     pub(crate) plan: &'a Plan,
     pub(crate) parameters: &'a Parameters,

@@ -6,13 +6,13 @@ use crate::ir::{Number, Symbol, Vector};
 use crate::reduced::regrouping::{group_start, is_parallel};
 use crate::reduced::{Arm, SymbolicTurn, Wrench};
 
-/// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
+/// The frames in which composite and articulated bodies are expressed, and gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodiesPer {
-    /// Joint by joint.
-    Joint,
-    /// Per group of parallel axes.
-    Group,
+pub enum ExpressedIn {
+    /// The frame of each joint.
+    JointFrame,
+    /// The frame N of the first axis of a group of parallel axes.
+    GroupFrame,
 }
 
 /// A symmetric matrix: xx, yy, zz, xy, xz, yz.
@@ -132,7 +132,7 @@ impl<'s> Inward<'s> for Wrench<'s> {
 impl<'s> Arm<'_, 's> {
     /// Whether a joint shares the frame N of the one before it.
     pub(crate) fn is_grouped(&self, index: usize) -> bool {
-        self.bodies_per == BodiesPer::Group && is_parallel(self.rows(), index)
+        self.expressed_in == ExpressedIn::GroupFrame && is_parallel(self.rows(), index)
     }
 
     /// From the axes of a revolute link to frame N of its group.

@@ -33,5 +33,5 @@ pub(crate) use joint_frames::{FrameChoice, JointFrame, JointFrames};
 pub(crate) use link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
 pub(crate) use payload::Load;
 pub(crate) use regrouping::{Offers, Parameters};
-pub(crate) use rnea_derivatives::Station;
+pub(crate) use rnea_derivatives::JointMotion;
 pub(crate) use wrench::Wrench;

@@ -47,8 +47,8 @@ pub(crate) struct Motion<'s> {
     twice_velocity: Vector<'s>,
 }
 
-/// A joint on the way out.
-pub(crate) struct Station<'s> {
+/// Motion of a link and of the link before it, where the joint between them is.
+pub(crate) struct JointMotion<'s> {
     /// Motion of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
     pub(crate) before: Motion<'s>,
     /// Motion of the link, in its axes.
@@ -239,7 +239,7 @@ pub(crate) fn matter(arm: &Arm<'_, '_>, index: usize) -> PseudoInertia {
 }
 
 /// How all links move.
-pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<Station<'s>> {
+pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let (zeros, zero) = (builder.no_vector(), builder.zero());
     let mut last = Motion {
@@ -252,7 +252,7 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<Station<'s>
     // in frame N of the joint before, and the turn from there
     let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
     let (mut unturned, mut turn) = (last, still);
-    let mut stations: Vec<Station<'s>> = Vec::with_capacity(rows.len());
+    let mut stations: Vec<JointMotion<'s>> = Vec::with_capacity(rows.len());
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::Omega, index + 1);
         let (rate, rate_dot) = (arm.rate(index), arm.rate_dot(index));
@@ -280,7 +280,7 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<Station<'s>
                 (unturned, turn) = (last, still);
             }
         }
-        stations.push(Station { before, own: last, turn });
+        stations.push(JointMotion { before, own: last, turn });
     }
     stations
 }
@@ -317,7 +317,7 @@ struct Twists<'s> {
     deflection: Vector<'s>,
 }
 
-fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> Twists<'s> {
+fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> Twists<'s> {
     let builder = arm.builder;
     let row = &arm.rows()[index];
     let Motion { omega, omega_dot, acceleration, twice_omega, twice_velocity } = station.before;
@@ -349,7 +349,7 @@ fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>) -> Twists<
 }
 
 /// The contribution of a joint to rows and columns of joints nearer to the base.
-fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>, behind: &Behind<'s>) -> Column<'s> {
+fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>, behind: &Behind<'s>) -> Column<'s> {
     let builder = arm.builder;
     let row = &arm.rows()[index];
     let twists = twists(arm, index, station);
@@ -388,7 +388,13 @@ fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>, behind: &B
 }
 
 /// The elements of joint `index` with that of a column, which is farther out or the same.
-fn meet<'s>(arm: &Arm<'_, 's>, index: usize, station: &Station<'s>, column: &Column<'s>, found: &mut Sensitivity<'s>) {
+fn meet<'s>(
+    arm: &Arm<'_, 's>,
+    index: usize,
+    station: &JointMotion<'s>,
+    column: &Column<'s>,
+    found: &mut Sensitivity<'s>,
+) {
     let row = &arm.rows()[index];
     let twists = twists(arm, index, station);
     let Wrench { force, moment } = column.unit;
