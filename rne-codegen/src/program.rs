@@ -50,7 +50,7 @@ pub struct Program {
     pub is_rewritten: bool,
     /// The choices of a program that is not the seven steps, one line each.
     pub choices: Vec<String>,
-    /// Why a program that is not the seven steps gives their torques.
+    /// Why a program that is not the seven steps gives their numbers.
     pub proof: Option<Proof>,
     /// The reduced forms that were tried before this one and refused, in order.
     pub refusals: Vec<Refusal>,
@@ -59,7 +59,7 @@ pub struct Program {
 /// The evidence that a program computes what the seven steps compute.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Proof {
-    /// At how many random points of two prime fields all torques are identical.
+    /// Number of random points of two prime fields at which all numbers are identical.
     pub points: usize,
     /// At how many random states the rounding was measured.
     pub states: usize,

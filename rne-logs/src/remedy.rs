@@ -2,7 +2,6 @@
 
 /// A change of the [`Options`](crate::Options) that helps against an error.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Remedy {
     /// Give this option.
     Give(Setting),
@@ -14,7 +13,6 @@ pub enum Remedy {
 
 /// An option of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Setting {
     /// [`Options::joints`](crate::Options::joints), with names that would do.
     Joints(Vec<String>),

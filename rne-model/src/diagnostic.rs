@@ -8,7 +8,6 @@ use crate::render;
 /// A choice of the caller that helps against a mistake: each door says it in its own words, as an option of the command
 /// line or a keyword of Python.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Remedy {
     /// A URDF was read as a robot file and must be imported.
     ImportUrdf {

@@ -8,7 +8,6 @@ use std::rc::Rc;
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use crate::diagnostic::{Diagnostic, Problems, Report};
-use crate::schema::MAX_JOINTS;
 use crate::source::{self, quoted};
 
 /// The words of messages for a kind of file.
@@ -21,6 +20,9 @@ pub struct Kind {
 }
 
 pub(crate) const ROBOT_FILE: Kind = Kind { name: "a robot file", format: 1 };
+
+/// More joints than any serial arm has; bounds the work of everything that follows.
+pub(crate) const MAX_JOINTS: usize = 64;
 
 /// A robot file is six levels deep, a plan file seven.
 const MAX_DEPTH: usize = 16;

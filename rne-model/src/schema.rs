@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use crate::decode::{Context, Parameter, choice, list, not_negative, quantity, read_mapping, text};
 use crate::diagnostic::Diagnostic;
-use crate::document::{self, Content, Node};
+use crate::document::{self, Content, MAX_JOINTS, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::quantity::Quantity;
 use crate::source::{is_control, is_line_break, one_line, quoted, six_digits};
@@ -17,9 +17,6 @@ use crate::{
     Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits,
     Link, Motor, Robot, Row, Transform, inertia, lint,
 };
-
-/// More joints than any serial arm has; bounds the work of everything that follows.
-pub(crate) const MAX_JOINTS: usize = 64;
 
 /// More than every number of 64 joints with a name of its own.
 const MAX_PARAMETERS: usize = 2000;

@@ -4,11 +4,13 @@ use std::ops::Range;
 
 use rne_logs::median;
 
-use crate::report::BOUND;
 use crate::{Settings, Signals, Test, WatchError, watch};
 
 /// The factor by which deviations are raised at a time.
 const RAISE: f64 = 1.1;
+
+/// Deviations of the model's error that are no change of a mean.
+pub(crate) const BOUND: f64 = 3.0;
 
 /// Minimum number of blocks in a segment that noise is estimated from.
 const BLOCKS: usize = 20;

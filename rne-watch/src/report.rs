@@ -1,6 +1,6 @@
 //! The tests.
 
-use crate::baseline::{along_motion, known, means};
+use crate::baseline::{BOUND, along_motion, known, means};
 use crate::change_point::change_point;
 use crate::cumulative_sum::{Alarm, alarms};
 use crate::{Baseline, Event, ModelError, NoiseFloor, Settings, Signals, Test, Thresholds, WatchError};
@@ -86,9 +86,6 @@ impl UnmodelledRange<'_> {
         BOUND * self.wrong.part * self.terms[sample]
     }
 }
-
-/// Deviations of the model's error that are no change of a mean.
-pub(crate) const BOUND: f64 = 3.0;
 
 fn blocks(numbers: &[(usize, f64)], open: &UnmodelledRange<'_>, length: usize) -> Vec<Block> {
     let means = |of: &dyn Fn(&(usize, f64)) -> f64| means(&numbers.iter().map(of).collect::<Vec<_>>(), length);

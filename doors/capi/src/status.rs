@@ -64,7 +64,7 @@ fn in_arguments(remedy: &Remedy) -> Option<String> {
         Remedy::NameTip => "name it by `tip`".to_owned(),
         Remedy::LockJoint { joint } => format!("`{joint}` among `lock_names` is held still"),
         Remedy::LockOthers => "`lock_names` and `lock_values` hold some, `lock_others` holds all at zero".to_owned(),
-        _ => return None,
+        Remedy::KeepUnphysical => return None,
     })
 }
 

@@ -1,4 +1,4 @@
-//! What goes wrong, as Python's exceptions: the same words as on the command line.
+//! Errors as Python's exceptions, with remedies in the words of Python.
 
 use std::path::Path;
 
@@ -38,7 +38,6 @@ fn in_keywords(remedy: &Remedy) -> Option<String> {
         Remedy::LockJoint { joint } => format!("lock={{{joint:?}: VALUE}} holds it still"),
         Remedy::LockOthers => "lock={\"JOINT\": VALUE} holds one, lock_others=True holds all at zero".to_owned(),
         Remedy::KeepUnphysical => "keep_unphysical=True keeps it".to_owned(),
-        _ => return None,
     })
 }
 

@@ -16,7 +16,9 @@ pub(crate) fn sentence(error: &LogError, joints: &[String]) -> String {
         }
         Remedy::Give(setting) => given(setting),
         Remedy::LeaveOut(setting) => format!("remove {}", option(setting)),
-        _ => "`cargo install --path rne-cli --features full` in a clone of rne builds one that does".to_owned(),
+        Remedy::BuildWithFormats => {
+            "`cargo install --path rne-cli --features full` in a clone of rne builds one that does".to_owned()
+        }
     });
     one_line(&[error.to_string()].into_iter().chain(remedies).collect::<Vec<_>>().join("; "))
 }
@@ -46,7 +48,8 @@ fn given(setting: &Setting) -> String {
         Setting::Cutoff => "HZ is the option".to_owned(),
         Setting::TimeUnit => "s, ms, us or ns says the unit".to_owned(),
         Setting::Rate => "HZ says the sampling rate".to_owned(),
-        _ => "says the order, as in --columns time,q,tau".to_owned(),
+        Setting::Columns => "says the order, as in --columns time,q,tau".to_owned(),
+        Setting::Map(_) | Setting::TimeColumn(_) => "names a column".to_owned(),
     };
     format!("{} {about}", option(setting))
 }
@@ -62,6 +65,6 @@ fn option(setting: &Setting) -> &'static str {
         Setting::TimeUnit => "--time-unit",
         Setting::Rate => "--rate",
         Setting::Map(_) | Setting::TimeColumn(_) => "--map",
-        _ => "--columns",
+        Setting::Columns => "--columns",
     }
 }

@@ -19,7 +19,6 @@ pub(crate) fn worded(report: &Report) -> Report {
             Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE holds `{joint}` still"),
             Remedy::LockOthers => "--lock JOINT=VALUE holds one, --lock-others holds all at zero".to_owned(),
             Remedy::KeepUnphysical => "--keep-unphysical keeps it".to_owned(),
-            _ => return None,
         })
     })
 }

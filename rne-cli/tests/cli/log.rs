@@ -73,8 +73,8 @@ fn what_is_wrong_is_said() {
     fails(2, &["log", PANDA, "--robot", "panda"], &["no joint panda_joint1", "fer_joint1", "--joints"]);
     fails(2, &["log", PANDA, "--joints", "fer_joint1,fer_jont2"], &["did you mean fer_joint2?"]);
     for names in ["", " ", ",,", "fer_joint1,", ",fer_joint1"] {
-        fails(2, &["identify", "panda", PANDA, "--joints", names], &["a name of --joints is empty; the log has fer"]);
-        fails(2, &["log", PANDA, "--joints", names], &["a name of --joints is empty; the log has fer_joint1, fer"]);
+        fails(2, &["identify", "panda", PANDA, "--joints", names], &["a name of a joint is empty; the log has fer"]);
+        fails(2, &["log", PANDA, "--joints", names], &["a name of a joint is empty; the log has fer_joint1, fer"]);
     }
     let numbered = rne(&["log", "docs/desk_arm_log.csv", "--joints", "7,1,2"]);
     assert!(numbered.status == 2 && !numbered.err.contains("did you mean"), "{numbered:?}");

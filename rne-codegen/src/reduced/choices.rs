@@ -76,19 +76,19 @@ switches! {
     scaled_twist_inward,
     /// The next joint's origin is accelerated in the frame that does not turn with this joint (section 5.7).
     origin_unturned,
-    /// ω̇ is formed there.
+    /// ω̇ is formed in the frame that does not turn with this joint.
     omega_dot_unturned,
-    /// Force and first moment are.
+    /// Force and first moment are formed in the frame that does not turn with this joint.
     first_moment_unturned,
-    /// The second moments are.
+    /// The second moments are formed in the frame that does not turn with this joint.
     second_moment_unturned,
-    /// The wrench from the next joint arrives there.
+    /// The wrench from the next joint arrives in the frame that does not turn with this joint.
     wrench_unturned,
     /// ω comes from the group of parallel axes by the summed angle (section 5.5).
     group_omega,
-    /// ω̇ does.
+    /// ω̇ comes from the group of parallel axes by the summed angle.
     group_omega_dot,
-    /// The acceleration does.
+    /// The acceleration comes from the group of parallel axes by the summed angle.
     group_acceleration,
     /// The wrench goes back to the group unturned.
     group_wrench,
