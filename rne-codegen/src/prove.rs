@@ -18,8 +18,8 @@ use crate::{CompileError, Suspect};
 const POINTS: u64 = 4;
 /// States at which rounding is measured when code is generated.
 const STATES: usize = 24;
-/// Accelerations that single precision changes by as much of the largest are those of a mass matrix that is singular
-/// but for rounding.
+/// If single precision changes accelerations by this part of the largest, the mass matrix counts as singular but for
+/// rounding.
 const SINGULAR: f64 = 0.1;
 
 /// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those

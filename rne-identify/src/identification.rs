@@ -81,8 +81,8 @@ pub struct BaseReport {
     pub written: f64,
     /// Half the width of its interval of 95 %, by Student's t of the segments of time.
     pub half_interval: f64,
-    /// Its deviation over what plausible links would give it: below 0.5 it counts as excited. Infinite where the logs
-    /// excite no joint that feels it: what none of their torques is told from noise by, they do not tell.
+    /// Its deviation over what plausible links would give it: below 0.5 it counts as excited. Infinite if the
+    /// logs do not move any joint whose torque depends on it: then no torque separates it from noise.
     pub uncertainty: f64,
 }
 

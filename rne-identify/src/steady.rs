@@ -1,4 +1,4 @@
-//! A fit that a few segments of time cannot spoil, to begin with.
+//! A robust first fit: a few disturbed segments of time cannot spoil it.
 //!
 //! Rows are weighted by how far they are from the fit before, in deviations of its noise (P. J. Huber, Robust
 //! statistics, 1981). A push or a sensor's fault that lasts spoils that fit, and its noise so much that nothing seems

@@ -1,4 +1,4 @@
-//! The tests.
+//! The tests for disturbances: thresholds and cumulative sums over the signals of a log.
 
 use crate::baseline::{BOUND, along_motion, known, means};
 use crate::change_point::change_point;

@@ -85,7 +85,7 @@ macro_rules! methods {
 }
 
 macro_rules! method {
-    // what a base does that is not told of is to stand still
+    // a base whose motion is not given stands still
     (
         $variant:ident $name:ident (q: Positions, qd: Rates, qdd: Accelerations, base: Base)
             $returned:ident $summary:literal $details:literal

@@ -7,7 +7,7 @@
 //! Link i is the one that joint i moves, link p the one that carries joint i: its parent, or the base. In a chain p is
 //! i-1. r_i = C_p → J_i tells where joint i is mounted; the lecture calls it r_{i-1}. What a kind of joint adds stands
 //! in [`super::joint`]. A link without mass may have a first moment h about the point that its centre of mass would be,
-//! as in a set of base parameters: its terms stand apart, for no body has them.
+//! as in a set of base parameters: its terms are written separately, because no real body has them.
 
 use crate::formulate::arm::identity;
 use crate::formulate::{Arm, Joint, JointState, Mount, Wrench};

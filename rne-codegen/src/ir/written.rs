@@ -1,5 +1,4 @@
-//! Formulas as they were written, kept beside the graph, where half of their terms have no node: what folds is gone
-//! there.
+//! Formulas as they were written, kept beside the graph: terms that folded away have no node in the graph.
 
 use super::{CausesId, Name, Outcome, Ref};
 use crate::values::Operator;

@@ -99,7 +99,7 @@ impl Algorithm {
         Self::of(function).iter().copied().filter(|algorithm| joints < MANY || !is_of_columns(*algorithm)).collect()
     }
 
-    /// How it gathers bodies, where it has some.
+    /// The frames of its composite or articulated bodies.
     pub(crate) const fn expressed_in(self) -> ExpressedIn {
         match self {
             Self::Crba(expressed_in) | Self::Aba(expressed_in) => expressed_in,

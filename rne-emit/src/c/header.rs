@@ -178,8 +178,7 @@ fn contract(file: &File) -> String {
     paragraph("");
     paragraph(
         "A result may be written over an argument: all arguments are read before the first number is written. No \
-        loop, no \
-         branch, no memory but the stack, no library.",
+         loop, no branch, no memory but the stack, no library.",
     );
     if file.chooses_by_sign() {
         paragraph("Friction chooses between numbers by a sign, which a compiler may make a branch.");

@@ -1,6 +1,6 @@
-//! Tests that stand beside emitted code and hold it: values that somebody else has computed, and laws of mechanics.
+//! Tests that are emitted beside the code: values that another program has computed, and laws of mechanics.
 //!
-//! What is tested of which functions is written here; how, in each language beside.
+//! This module decides which functions have which tests; a module for each language writes them.
 
 mod c;
 mod rust;

@@ -1,4 +1,4 @@
-//! Libraries that assert what a corrupt file need not keep: their panics become errors.
+//! Guards for libraries that panic on a corrupt file: their panics become errors.
 
 use std::cell::Cell;
 

@@ -1,4 +1,4 @@
-//! A wide symmetric filter by Fourier transforms: what costs the width of the filter for each number costs a logarithm.
+//! A wide symmetric filter by Fourier transforms: the cost for each number grows with the logarithm of the width only.
 //!
 //! Overlap and save (A. V. Oppenheim, R. W. Schafer, "Discrete-Time Signal Processing", 3rd ed., 2010, section 8.7.3).
 
