@@ -155,10 +155,10 @@ impl Identification {
 }
 
 /// The result of one pass over the logs.
-struct OverLogs {
-    information: Information,
-    scales: Scales,
-    least_squares: LeastSquares,
+pub(crate) struct OverLogs {
+    pub(crate) information: Information,
+    pub(crate) scales: Scales,
+    pub(crate) least_squares: LeastSquares,
 }
 
 /// Identifies a robot. `pass` hands every motion of the logs to what it is given, each time it is called; the motions
@@ -174,28 +174,7 @@ pub fn identify<E: From<MotionError>>(
     mut pass: impl FnMut(&mut dyn FnMut(&Motion) -> Result<(), MotionError>) -> Result<(), E>,
 ) -> Result<Identification, E> {
     let structure = Structure::new(robot, options);
-    let mut one = |weighting: Option<&Weighting>| -> Result<OverLogs, E> {
-        let mut information = Information::new(&structure);
-        pass(&mut |motion| information.absorb(&structure, motion, weighting))?;
-        if information.segments.len() < 2 {
-            let (rows, needed, duration) = (information.rows(), information.needed(), information.duration());
-            return Err(MotionError::TooFew { rows, needed, duration }.into());
-        }
-        if information.largest.iter().all(|most| *most <= LEAST_EFFORT) {
-            return Err(MotionError::NoEfforts.into());
-        }
-        let scales = information.scales(&structure);
-        let least_squares = LeastSquares::of(&structure, &information, &scales);
-        Ok(OverLogs { information, scales, least_squares })
-    };
-    let mut found = one(None)?;
-    let steady = steady(&structure, &found.information, &found.least_squares);
-    let outlier_bound = if steady.is_some() { OUTLIER_BOUND } else { f64::INFINITY };
-    found.least_squares = steady.unwrap_or(found.least_squares);
-    for _ in 1..PASSES {
-        found = one(Some(&Weighting { outlier_bound, ..found.least_squares.weighting(&structure) }))?;
-    }
-    let OverLogs { information, scales, least_squares } = found;
+    let OverLogs { information, scales, least_squares } = over_logs(&structure, false, &mut pass)?;
     let one = Fit::of_least_squares(&structure, least_squares, &scales, regularization);
     if let Some(joint) = not_finite(&one.robot) {
         return Err(MotionError::NotANumber(joint).into());
@@ -227,6 +206,39 @@ pub fn identify<E: From<MotionError>>(
         joints,
         delay,
     })
+}
+
+/// Least squares over logs in several passes, by which noise, outliers and the delay settle; `doubts_rest` gives rows
+/// near rest less weight.
+pub(crate) fn over_logs<E: From<MotionError>>(
+    structure: &Structure,
+    doubts_rest: bool,
+    pass: &mut impl FnMut(&mut dyn FnMut(&Motion) -> Result<(), MotionError>) -> Result<(), E>,
+) -> Result<OverLogs, E> {
+    let mut one = |weighting: Option<&Weighting>| -> Result<OverLogs, E> {
+        let mut information = Information::new(structure);
+        pass(&mut |motion| information.absorb(structure, motion, weighting))?;
+        if information.segments.len() < 2 {
+            let (rows, needed, duration) = (information.rows(), information.needed(), information.duration());
+            return Err(MotionError::TooFew { rows, needed, duration }.into());
+        }
+        if information.largest.iter().all(|most| *most <= LEAST_EFFORT) {
+            return Err(MotionError::NoEfforts.into());
+        }
+        let scales = information.scales(structure);
+        let least_squares = LeastSquares::of(structure, &information, &scales);
+        Ok(OverLogs { information, scales, least_squares })
+    };
+    let mut found = one(None)?;
+    let steady = steady(structure, &found.information, &found.least_squares);
+    let outlier_bound = if steady.is_some() { OUTLIER_BOUND } else { f64::INFINITY };
+    found.least_squares = steady.unwrap_or(found.least_squares);
+    for _ in 1..PASSES {
+        let weighting = Weighting { outlier_bound, ..found.least_squares.weighting(structure) };
+        let weighting = if doubts_rest { weighting.with_doubt_near_rest() } else { weighting };
+        found = one(Some(&weighting))?;
+    }
+    Ok(found)
 }
 
 /// The robot that fits gathered rows, all of which count alike.

@@ -19,13 +19,15 @@ use crate::r_factor::RFactor;
 use crate::smoothing::{Kernel, Weights};
 use crate::structure::Structure;
 
-use instants::{between, instants, slope};
+pub(crate) use instants::instants;
+use instants::{between, slope};
 
 pub use numbers::WrongNumbers;
+pub(crate) use weighting::CORRELATED;
 pub use weighting::{Rejected, Weighting};
 
 /// States that are computed at once.
-const WINDOW: usize = 2048;
+pub(crate) const WINDOW: usize = 2048;
 
 /// Segments of time that are kept apart, at most; beyond that neighbours merge.
 const SEGMENTS: usize = 64;
@@ -226,11 +228,11 @@ impl Information {
         let instants = instants(structure, &motion.time, delay);
         let mut walk = Walk::new(structure);
         for instants in instants.chunks(WINDOW) {
-            let (pieces, rejected) = rows(structure, motion, instants, weighting, delay, &mut walk)?;
-            for (rows, weights) in pieces {
+            let rows = rows(structure, motion, instants, weighting, delay, &mut walk)?;
+            for (rows, weights) in rows.pieces(structure) {
                 self.take(rows, weights);
             }
-            self.reject(&rejected);
+            self.reject(&rows.rejected(instants));
         }
         Ok(())
     }
@@ -348,7 +350,7 @@ impl Walk {
     }
 
     /// To a state that has not been passed.
-    fn advance(&mut self, motion: &Motion, to: usize) {
+    pub(crate) fn advance(&mut self, motion: &Motion, to: usize) {
         for (signs, (q, qd)) in self.signs.iter_mut().zip(motion.q.iter().zip(&motion.qd)) {
             for sign in signs {
                 for (q, qd) in q.iter().zip(qd).take(to).skip(self.at) {
@@ -360,19 +362,48 @@ impl Walk {
     }
 }
 
-type Rows = (Vec<DMatrix<f64>>, Vec<f64>);
+/// The rows of every joint at some instants, multiplied with the roots of their weights, and the weights.
+pub(crate) struct Rows {
+    pub(crate) of_joints: Vec<DMatrix<f64>>,
+    pub(crate) weights: Vec<Vec<f64>>,
+}
 
-/// The rows of every joint at some instants, weighted, with the sums of their weights; in pieces of a segment's length.
-/// And those that do not count, of each joint.
-fn rows(
+impl Rows {
+    /// The rows in pieces of a segment's length, each with the sums of its weights.
+    fn pieces(&self, structure: &Structure) -> impl Iterator<Item = (Vec<DMatrix<f64>>, Vec<f64>)> {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let piece = if structure.options.cutoff.is_some() { LENGTH as usize } else { 64 };
+        let instants = self.weights.first().map_or(0, Vec::len);
+        (0..instants).step_by(piece).map(move |start| {
+            let count = piece.min(instants - start);
+            let rows = self.of_joints.iter().map(|rows| rows.rows(start, count).clone_owned()).collect();
+            let weights = self.weights.iter().map(|weights| weights[start..start + count].iter().sum()).collect();
+            (rows, weights)
+        })
+    }
+
+    /// The rows of each joint that do not count.
+    fn rejected(&self, instants: &[f64]) -> Vec<Option<Rejected>> {
+        let of_joint = |weights: &Vec<f64>| {
+            let mut none = weights.iter().zip(instants).filter(|(weight, _)| **weight == 0.0);
+            none.next().map(|(_, time)| Rejected { rows: 1 + none.count() as u64, time: *time })
+        };
+        self.weights.iter().map(of_joint).collect()
+    }
+}
+
+/// The rows of every joint at some instants, weighted.
+pub(crate) fn rows(
     structure: &Structure,
     motion: &Motion,
     instants: &[f64],
     weighting: Option<&Weighting>,
     delay: f64,
     walk: &mut Walk,
-) -> Result<(Vec<Rows>, Vec<Option<Rejected>>), MotionError> {
-    let (Some(start), Some(end)) = (instants.first(), instants.last()) else { return Ok((Vec::new(), Vec::new())) };
+) -> Result<Rows, MotionError> {
+    let (Some(start), Some(end)) = (instants.first(), instants.last()) else {
+        return Ok(Rows { of_joints: Vec::new(), weights: Vec::new() });
+    };
     let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
     let reach = kernel.map_or(0.0, Kernel::reach) + delay.abs();
     let from = motion.time.partition_point(|time| *time < start - reach);
@@ -414,26 +445,14 @@ fn rows(
     };
     let mut all: Vec<DMatrix<f64>> = (0..structure.dof()).map(of_joint).collect();
     let mut row_weights: Vec<Vec<f64>> = Vec::with_capacity(all.len());
-    let mut rejected = Vec::with_capacity(all.len());
     for (joint, rows) in all.iter_mut().enumerate() {
         let weights = weighting.map_or_else(|| vec![1.0; rows.nrows()], |weighting| weighting.of(joint, rows));
         for (mut row, weight) in rows.row_iter_mut().zip(&weights) {
             row *= weight.sqrt();
         }
-        let mut none = weights.iter().zip(instants).filter(|(weight, _)| **weight == 0.0);
-        rejected.push(none.next().map(|(_, time)| Rejected { rows: 1 + none.count() as u64, time: *time }));
         row_weights.push(weights);
     }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let piece = if kernel.is_some() { LENGTH as usize } else { 64 };
-    let mut pieces = Vec::with_capacity(instants.len().div_ceil(piece));
-    for start in (0..instants.len()).step_by(piece) {
-        let count = piece.min(instants.len() - start);
-        let rows = all.iter().map(|rows| rows.rows(start, count).clone_owned()).collect();
-        let weights = row_weights.iter().map(|weights| weights[start..start + count].iter().sum()).collect();
-        pieces.push((rows, weights));
-    }
-    Ok((pieces, rejected))
+    Ok(Rows { of_joints: all, weights: row_weights })
 }
 
 /// The columns of every joint's rows at every state, but for those of the torque.

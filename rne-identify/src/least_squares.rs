@@ -98,26 +98,7 @@ impl LeastSquares {
     /// The weighting of rows in the next pass.
     #[must_use]
     pub fn weighting(&self, structure: &Structure) -> Weighting {
-        let unknowns = |joint| structure.unknowns(joint);
-        let dof = structure.dof();
-        let delay = self.delay;
-        let solution = |joint| {
-            let mut values: Vec<f64> = unknowns(joint).iter().map(|&at| self.solution[at]).collect();
-            if structure.options.delay
-                && let Some(last) = values.last_mut()
-            {
-                // the torques are taken later then
-                *last = 0.0;
-            }
-            DVector::from_vec(values)
-        };
-        Weighting {
-            solutions: (0..dof).map(solution).collect(),
-            used: (0..dof).map(|joint| structure.used(joint, self.transitions[joint])).collect(),
-            noise: self.noise.clone(),
-            delay,
-            outlier_bound: f64::INFINITY,
-        }
+        Weighting::new(structure, &self.solution, &self.transitions, self.noise.clone(), self.delay)
     }
 
     /// The slope of half the weighted sum of squares by the unknowns.
@@ -156,7 +137,9 @@ impl LeastSquares {
     /// more than unknowns.
     #[must_use]
     pub fn half_interval(&self, unknown: usize) -> f64 {
-        student(self.freedom) * self.deviation(unknown)
+        #[allow(clippy::cast_precision_loss)] // of many, z is left
+        let freedom = self.freedom as f64;
+        student(freedom) * self.deviation(unknown)
     }
 
     /// The deviation of an unknown.
@@ -175,9 +158,9 @@ const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 /// The quantile 0.975 of Student's t, by Cornish and Fisher's expansion: to 0.002 from five degrees of freedom on.
 ///
 /// M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 26.7.5.
-fn student(freedom: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss)] // of many, z is left
-    let n = freedom.max(1) as f64;
+#[must_use]
+pub fn student(freedom: f64) -> f64 {
+    let n = freedom.max(1.0);
     let z: f64 = 1.959_964;
     let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
     z + (z3 + z) / (4.0 * n)

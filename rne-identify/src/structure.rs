@@ -44,6 +44,12 @@ impl Options {
         Kernel::of_cutoff(cutoff).reach()
     }
 
+    /// The time for which a row stands behind a low-pass, s. `cutoff` is in Hz.
+    #[must_use]
+    pub fn row(cutoff: f64) -> f64 {
+        Kernel::of_cutoff(cutoff).width()
+    }
+
     /// The ways in which Coulomb friction may change its sign; a step, if no way was offered.
     #[must_use]
     pub fn transitions(&self) -> Vec<FrictionTransition> {
@@ -119,7 +125,9 @@ impl Structure {
         }
     }
 
-    pub(crate) fn dof(&self) -> usize {
+    /// Number of joints.
+    #[must_use]
+    pub fn dof(&self) -> usize {
         self.robot.dof()
     }
 
@@ -175,7 +183,8 @@ impl Structure {
     }
 
     /// Number of unknowns: base parameters, friction joint by joint, the delay.
-    pub(crate) fn count(&self) -> usize {
+    #[must_use]
+    pub fn count(&self) -> usize {
         let friction = if self.options.friction { FRICTION * self.dof() } else { 0 };
         self.parameters.rank() + friction + usize::from(self.options.delay)
     }

@@ -1,85 +1,106 @@
-//! Events.
+//! Events: one for each cause.
 
-use std::fmt;
+use rne_model::{JointKind, Robot};
 
-/// The test that found an event.
+use crate::Candidate;
+
+/// The cause of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Test {
-    /// The momentum observer is beyond its threshold for longer than the hold.
-    External,
-    /// The residual has an offset.
-    Offset,
-    /// The residual has an offset in the direction of motion.
+pub enum Cause {
+    /// The friction of a joint has changed: wear, a brake, cold or lost grease.
     Friction,
+    /// The arm carries a mass that it did not carry before, or lost one.
+    Payload,
+    /// Something touched the arm for a time: a collision, a hand.
+    Contact,
+    /// The effort of a joint has an offset: a sensor, a spring, a brake.
+    Sensor,
+    /// The error of the model has grown, and no single parameter explains it.
+    Model,
 }
 
-impl Test {
-    /// All tests.
-    pub const ALL: [Self; 3] = [Self::External, Self::Offset, Self::Friction];
-
-    /// The name of the test.
+impl Cause {
+    /// The name of the cause.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::External => "external",
-            Self::Offset => "offset",
             Self::Friction => "friction",
+            Self::Payload => "payload",
+            Self::Contact => "contact",
+            Self::Sensor => "sensor",
+            Self::Model => "model",
         }
     }
-}
 
-impl Test {
-    /// The usual causes of its events.
+    /// The cause that a changed parameter has.
     #[must_use]
-    pub const fn meaning(self) -> &'static str {
-        match self {
-            Self::External => "a collision, a hand, a payload",
-            Self::Offset => "a payload, a sensor's offset",
-            Self::Friction => "wear, a brake, cold grease",
+    pub const fn of(candidate: Candidate) -> Self {
+        match candidate {
+            Candidate::Coulomb(_) | Candidate::Viscous(_) => Self::Friction,
+            Candidate::Offset(_) => Self::Sensor,
+            Candidate::Payload => Self::Payload,
         }
     }
 }
 
-impl fmt::Display for Test {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl std::fmt::Display for Cause {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(self.name())
     }
 }
 
-/// A segment of a motion in which a joint is not what its model says.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Something that has changed, or has happened, with its cause.
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Event {
-    /// The joint, counted from 0.
-    pub joint: usize,
-    /// The test that found it.
-    pub test: Test,
+    /// The cause that explains most.
+    pub cause: Cause,
+    /// The joint, counted from 0; a payload has none.
+    pub joint: Option<usize>,
+    /// The parameter: `coulomb`, `viscous`, `offset`, `mass`, `external` (the largest torque of the environment) or
+    /// `residual` (the root mean square of what the model leaves).
+    pub parameter: &'static str,
+    /// The value in the log, in `unit`.
+    pub value: f64,
+    /// The value in the robot file, in `unit`; of a residual the value of the baseline.
+    pub file_value: f64,
+    /// The value of the baseline, in `unit`.
+    pub baseline_value: f64,
+    /// Standard deviation of the value; not a number for contacts and residuals.
+    pub deviation: f64,
+    /// Half the width of the interval of 95 %; not a number for contacts and residuals.
+    pub half_interval: f64,
+    /// The unit of all values.
+    pub unit: &'static str,
+    /// The number of the run in which it begins, from 0.
+    pub run: u64,
     /// The time at which it begins, s.
-    pub start: f64,
-    /// The time at which it ends, s: the end of the motion if it lasts until then.
-    pub end: f64,
-    /// Its largest deviation from the baseline, N m or N: of the observer, less what friction leaves open (torque of
-    /// the environment on the arm, at least), or of the residual's means over half a second, or over all of it where it
-    /// is shorter (measured less model; in the direction of motion for friction).
-    pub peak: f64,
+    pub since: f64,
+    /// The time at which it ends, s.
+    pub until: f64,
+    /// Whether it lasts from the beginning of the log to its end.
+    pub is_whole: bool,
+    /// Further joints that the same event moves, counted from 0.
+    pub others: Vec<usize>,
 }
 
 impl Event {
-    /// Events of the same joint and test that are closer than `gap`, s, made one, by their beginnings.
+    /// The change of the value against the baseline.
     #[must_use]
-    pub fn joined(mut events: Vec<Self>, gap: f64) -> Vec<Self> {
-        events.sort_by(|a, b| (a.joint, a.test).cmp(&(b.joint, b.test)).then(a.start.total_cmp(&b.start)));
-        let mut joined: Vec<Self> = Vec::with_capacity(events.len());
-        for event in events {
-            match joined.last_mut() {
-                Some(last) if (last.joint, last.test) == (event.joint, event.test) && event.start - last.end <= gap => {
-                    last.end = last.end.max(event.end);
-                    last.peak = if event.peak.abs() > last.peak.abs() { event.peak } else { last.peak };
-                }
-                _ => joined.push(event),
-            }
-        }
-        joined.sort_by(|a, b| a.start.total_cmp(&b.start).then((a.joint, a.test).cmp(&(b.joint, b.test))));
-        joined
+    pub fn change(&self) -> f64 {
+        self.value - self.baseline_value
+    }
+}
+
+/// The unit of a candidate's value.
+#[must_use]
+pub fn unit(robot: &Robot, candidate: Candidate) -> &'static str {
+    let kind = candidate.joint().and_then(|joint| robot.joints.get(joint)).map(|joint| joint.row.kind);
+    match (candidate, kind) {
+        (Candidate::Payload, _) => "kg",
+        (Candidate::Viscous(_), Some(JointKind::Prismatic)) => "N s/m",
+        (Candidate::Viscous(_), _) => "N m s/rad",
+        (_, Some(kind)) => kind.effort_unit(),
+        (_, None) => "N m",
     }
 }

@@ -41,21 +41,24 @@
 #![warn(missing_debug_implementations)]
 
 mod baseline;
-mod change_point;
-mod cumulative_sum;
+mod candidate;
+mod changes;
+mod contact;
 mod error;
 mod event;
-mod picture;
-mod report;
+
+mod score;
+mod selection;
 mod settings;
 mod signals;
-mod threshold;
 
-pub use crate::baseline::{Baseline, ModelError, NoiseFloor};
+pub use crate::baseline::Baseline;
+pub use crate::candidate::{Candidate, Scale};
+pub use crate::changes::Changes;
+pub use crate::contact::{Contact, ContactNoise, JointNoise, contact_limits, contacts};
 pub use crate::error::WatchError;
-pub use crate::event::{Event, Test};
-pub use crate::picture::svg;
-pub use crate::report::{Report, watch};
+pub use crate::event::{Cause, Event, unit};
+
+pub use crate::selection::Statistic;
 pub use crate::settings::Settings;
 pub use crate::signals::Signals;
-pub use crate::threshold::Thresholds;

@@ -52,8 +52,6 @@ pub struct Signals {
     pub measured: Vec<Vec<f64>>,
     /// Measured, less the model with rotors and friction of the robot file.
     pub residual: Vec<Vec<f64>>,
-    /// The direction of motion, -1, 0 or 1: of joints that are as good as at rest it is 0.
-    pub direction: Vec<Vec<f64>>,
     /// Torques of the environment on the arm by the momentum observer.
     pub external: Vec<Vec<f64>>,
     /// The range that friction leaves open, N m or N, 0 or more: a joint that creeps or turns back may be held by
@@ -90,7 +88,7 @@ impl Signals {
     fn along(robot: &Robot, arm: &DynArm, motion: &Motion, gain: f64, period: f64) -> Result<Self, WrongLength> {
         let (dof, samples) = (arm.dof(), motion.len());
         let lists = || vec![Vec::with_capacity(samples); dof];
-        let (mut residual, mut direction, mut external) = (lists(), lists(), lists());
+        let (mut residual, mut external) = (lists(), lists());
         let (mut terms, mut inertia) = (lists(), lists());
         let (parameters, mut counted) = (arm.inertial_parameters(), 0.0);
         let (mut magnitudes, mut rows) = (Vec::new(), Vec::new());
@@ -127,8 +125,6 @@ impl Signals {
             for joint in 0..dof {
                 residual[joint].push(net[joint] - model[joint]);
                 external[joint].push(seen[joint]);
-                let moves = qd[joint].abs() > still[joint];
-                direction[joint].push(if moves { qd[joint].signum() } else { 0.0 });
                 terms[joint].push(magnitudes[joint] + friction[joint].abs());
                 inertia[joint].push(rows[joint]);
             }
@@ -140,7 +136,7 @@ impl Signals {
             open.push(faded(&motion.time, &now, gain, FORGOTTEN * row.coulomb_span()));
         }
         let (time, measured) = (motion.time.clone(), motion.tau.clone());
-        Ok(Self { time, period, measured, residual, direction, external, open, creeps, terms, inertia, settled })
+        Ok(Self { time, period, measured, residual, external, open, creeps, terms, inertia, settled })
     }
 
     /// Every n-th sample, for pictures of a long motion.
@@ -157,7 +153,6 @@ impl Signals {
             period: self.period,
             measured: each(&self.measured, stride),
             residual: each(&self.residual, stride),
-            direction: each(&self.direction, stride),
             external: each(&self.external, stride),
             open: each(&self.open, stride),
             creeps: each(&self.creeps, stride),
@@ -175,7 +170,6 @@ impl Signals {
         let lists = [
             (&mut self.measured, next.measured),
             (&mut self.residual, next.residual),
-            (&mut self.direction, next.direction),
             (&mut self.external, next.external),
             (&mut self.open, next.open),
             (&mut self.terms, next.terms),

@@ -6,7 +6,7 @@ use crate::structure::Structure;
 /// Where rows are made: at every state without filter, else as densely as what has passed it can tell apart, and where
 /// the whole kernel finds samples; where those are farther apart, at every state, too. None are so near to the ends
 /// that the torque that answers would be beyond.
-pub(super) fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f64> {
+pub(crate) fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f64> {
     let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
     let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
     let duration = last - first;

@@ -1,0 +1,155 @@
+//! The parameters that may have changed: friction and offset of each joint, and a payload at the tip.
+
+use nalgebra::DMatrix;
+use rne_identify::{FittedModel, FrictionParameter, Structure};
+
+/// A parameter of the arm that may differ between two logs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Candidate {
+    /// Coulomb friction of a joint, N m or N; joints count from 0.
+    Coulomb(usize),
+    /// Viscous friction of a joint, N m s/rad or N s/m.
+    Viscous(usize),
+    /// The part of a joint's torque that does not depend on the motion, N m or N.
+    Offset(usize),
+    /// The mass that the last link carries in addition, kg.
+    Payload,
+}
+
+impl Candidate {
+    /// Every candidate of an arm.
+    #[must_use]
+    pub fn all(dof: usize) -> Vec<Self> {
+        let each = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
+        each.flat_map(|of| (0..dof).map(of)).chain([Self::Payload]).collect()
+    }
+
+    /// The joint, counted from 0; a payload has none.
+    #[must_use]
+    pub fn joint(self) -> Option<usize> {
+        match self {
+            Self::Coulomb(joint) | Self::Viscous(joint) | Self::Offset(joint) => Some(joint),
+            Self::Payload => None,
+        }
+    }
+
+    /// The name of the parameter.
+    #[must_use]
+    pub fn parameter(self) -> &'static str {
+        match self {
+            Self::Coulomb(_) => "coulomb",
+            Self::Viscous(_) => "viscous",
+            Self::Offset(_) => "offset",
+            Self::Payload => "mass",
+        }
+    }
+
+    /// The changes of all unknowns for a change of one of this candidate's numbers: a column for each number. Friction
+    /// has one number; a payload has its mass and its three first moments, kg m.
+    pub(crate) fn columns(self, structure: &Structure) -> DMatrix<f64> {
+        let unit = |joint: usize, parameter: FrictionParameter| {
+            let mut column = DMatrix::zeros(structure.count(), 1);
+            if let Some(at) = FittedModel::place(structure, joint, parameter) {
+                column[(at, 0)] = 1.0;
+            }
+            column
+        };
+        match self {
+            Self::Coulomb(joint) => unit(joint, FrictionParameter::Coulomb),
+            Self::Viscous(joint) => unit(joint, FrictionParameter::Viscous),
+            Self::Offset(joint) => unit(joint, FrictionParameter::Offset),
+            Self::Payload => {
+                let regrouping = &structure.parameters().regrouping;
+                let tip = PER_LINK * (structure.dof() - 1);
+                let mut columns = DMatrix::zeros(structure.count(), MOMENTS);
+                columns
+                    .view_mut((0, 0), (regrouping.nrows(), MOMENTS))
+                    .copy_from(&regrouping.columns(tip, MOMENTS));
+                columns
+            }
+        }
+    }
+}
+
+/// Inertial parameters of a link: the mass, three first moments, six numbers of the inertia.
+const PER_LINK: usize = 10;
+
+/// Numbers of a payload that a log tells: its mass and its first moments. Its inertia is too small a part of torques.
+pub(crate) const MOMENTS: usize = 4;
+
+/// Sizes of changes that follow from the arm itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scale {
+    /// Coulomb friction of each joint, N m or N: that of the baseline, at least 2 % of the joint's effort.
+    pub friction: Vec<f64>,
+    /// Root mean square of each joint's speed, rad/s or m/s.
+    pub speed: Vec<f64>,
+    /// Root mean square of each joint's effort, N m or N.
+    pub effort: Vec<f64>,
+    /// Mass of all links, kg; 0 where the file has none.
+    pub mass: f64,
+}
+
+impl Scale {
+    /// The scale of a baseline: the model that was fitted, and the products of all rows of each joint.
+    pub(crate) fn of(structure: &Structure, model: &FittedModel, totals: &[DMatrix<f64>]) -> Self {
+        let square = |joint: usize, at: Option<usize>| {
+            let total = &totals[joint];
+            let place = |parameter| FittedModel::place(structure, joint, parameter);
+            let ones = place(FrictionParameter::Offset).map_or(0.0, |one| total[(one, one)]);
+            let at = at.unwrap_or(structure.count());
+            if ones > 0.0 { (total[(at, at)] / ones).sqrt() } else { 0.0 }
+        };
+        let joints = 0..structure.dof();
+        let effort: Vec<f64> = joints.clone().map(|joint| square(joint, None)).collect();
+        let friction = |joint: usize| {
+            let coulomb = FittedModel::place(structure, joint, FrictionParameter::Coulomb);
+            let coulomb = coulomb.map_or(0.0, |at| model.solution[at].abs());
+            coulomb.max(LEAST_FRICTION * effort[joint])
+        };
+        let speed = |joint: usize| square(joint, FittedModel::place(structure, joint, FrictionParameter::Viscous));
+        Self {
+            friction: joints.clone().map(friction).collect(),
+            speed: joints.map(speed).collect(),
+            mass: structure.robot().joints.iter().map(|joint| joint.row.link.mass).sum(),
+            effort,
+        }
+    }
+
+    /// The smallest change that is an event.
+    #[must_use]
+    pub fn least(&self, candidate: Candidate) -> f64 {
+        match candidate {
+            Candidate::Coulomb(joint) => 0.10 * self.friction[joint],
+            Candidate::Viscous(joint) => 0.25 * self.friction[joint] / self.speed[joint].max(SLOWEST),
+            Candidate::Offset(joint) => self.friction[joint].max(0.05 * self.effort[joint]),
+            Candidate::Payload => self.payload(0.1),
+        }
+    }
+
+    /// The deviation of a parameter between logs of an arm that has not changed: the error of the model, which does not
+    /// become smaller when a log becomes longer.
+    #[must_use]
+    pub fn model_error(&self, candidate: Candidate) -> f64 {
+        match candidate {
+            Candidate::Coulomb(joint) => 0.04 * self.friction[joint],
+            Candidate::Viscous(joint) => 0.06 * self.friction[joint] / self.speed[joint].max(SLOWEST),
+            Candidate::Offset(joint) => 0.10 * self.friction[joint],
+            Candidate::Payload => self.payload(0.05),
+        }
+    }
+
+    /// A mass, kg; for an arm that is lighter than a person can lift, in proportion to its own mass.
+    fn payload(&self, mass: f64) -> f64 {
+        if self.mass > 0.0 { mass.min(mass * self.mass / LIGHT) } else { mass }
+    }
+}
+
+/// The least friction of a joint, as a part of its effort.
+const LEAST_FRICTION: f64 = 0.02;
+
+/// rad/s or m/s: a joint that is slower tells nothing about viscous friction.
+const SLOWEST: f64 = 1e-3;
+
+/// kg: for a lighter arm the smallest payload is in proportion to the mass of the arm.
+const LIGHT: f64 = 4.0;

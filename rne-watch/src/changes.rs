@@ -1,0 +1,166 @@
+//! The changes of an arm's parameters between a baseline and a log.
+
+use std::ops::Range;
+
+use nalgebra::DVector;
+use rne_identify::{FittedModel, FrictionParameter, MotionError, Stretch, Stretches, Structure};
+use rne_logs::Motion;
+
+use crate::Baseline;
+use crate::baseline::Residual;
+use crate::candidate::Candidate;
+use crate::event::{Cause, Event, unit};
+use crate::selection::{Finding, Selection, Statistic};
+
+/// The error of the model has grown where its residual is this many times that of the baseline.
+const GROWN: f64 = 3.0;
+
+/// The changes between a baseline and a log.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Changes {
+    /// The changes that are events, the one that explains most first.
+    pub events: Vec<Event>,
+    /// All other parameters, with their thresholds.
+    pub statistics: Vec<Statistic>,
+    /// Root mean square of what the baseline's model leaves of each joint's torque, N m or N, with all changes that were
+    /// found.
+    pub residual: Vec<f64>,
+    /// The changes of all unknowns, with the first and the last time: run and seconds.
+    windows: Vec<([(u64, f64); 2], DVector<f64>)>,
+}
+
+impl Changes {
+    /// The changes of a log, given by its equations; `None` where it is too short to compare.
+    #[must_use]
+    pub fn of(structure: &Structure, baseline: &Baseline, log: &Stretches) -> Option<Self> {
+        let selection = Selection::of(structure, baseline, log.list())?;
+        let findings = selection.findings();
+        let mut events: Vec<Event> = findings.iter().map(|found| event(structure, baseline, &selection, found)).collect();
+        let residual = residual(structure, baseline, &selection);
+        for (joint, (now, before)) in residual.iter().zip(&baseline.residual).enumerate() {
+            if *now > GROWN * before {
+                events.push(grown(structure, &selection, joint, [*now, *before]));
+            }
+        }
+        let ends = |window: &Range<usize>| {
+            let list = &selection.stretches[window.clone()];
+            let first = list.first().map_or((0, f64::NEG_INFINITY), |first| (first.run, first.start));
+            let last = list.last().map_or((0, f64::INFINITY), |last| (last.run, last.end));
+            // a change that is there from the beginning is there before the first row, too
+            let first = if window.start == 0 { (first.0, f64::NEG_INFINITY) } else { first };
+            let is_last = window.end == selection.stretches.len();
+            [first, if is_last { (last.0, f64::INFINITY) } else { last }]
+        };
+        let windows = selection.changes().into_iter().map(|(window, change)| (ends(&window), change)).collect();
+        Some(Self { events, statistics: selection.statistics(), residual, windows })
+    }
+
+    /// The torques that the changes add along a motion of a run, joint by joint, N m or N.
+    ///
+    /// # Errors
+    /// When the motion is of another robot, or has numbers that are not finite.
+    pub fn torques(
+        &self,
+        structure: &Structure,
+        baseline: &Baseline,
+        run: u64,
+        motion: &Motion,
+    ) -> Result<Vec<Vec<f64>>, MotionError> {
+        let mut sum = vec![vec![0.0; motion.len()]; structure.dof()];
+        for ([first, last], change) in &self.windows {
+            if run < first.0 || run > last.0 {
+                continue;
+            }
+            let added = baseline.model.torques(structure, motion, change)?;
+            let is_active =
+                |time: f64| (run > first.0 || time >= first.1) && (run < last.0 || time <= last.1);
+            for (sum, added) in sum.iter_mut().zip(added) {
+                for ((sum, added), time) in sum.iter_mut().zip(added).zip(&motion.time) {
+                    *sum += if is_active(*time) { added } else { 0.0 };
+                }
+            }
+        }
+        Ok(sum)
+    }
+
+    /// The statistic that is nearest to its threshold.
+    #[must_use]
+    pub fn nearest(&self) -> Option<&Statistic> {
+        self.statistics.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
+    }
+}
+
+/// The values of a candidate in the robot file and in the baseline.
+pub(crate) fn values(structure: &Structure, baseline: &Baseline, candidate: Candidate) -> [f64; 2] {
+    let place = |joint, parameter| FittedModel::place(structure, joint, parameter);
+    let at = match candidate {
+        Candidate::Coulomb(joint) => place(joint, FrictionParameter::Coulomb),
+        Candidate::Viscous(joint) => place(joint, FrictionParameter::Viscous),
+        Candidate::Offset(joint) => place(joint, FrictionParameter::Offset),
+        Candidate::Payload => None,
+    };
+    let file = FittedModel::of_file(structure, &baseline.model.transitions);
+    at.map_or([0.0; 2], |at| [file.solution[at], baseline.model.solution[at]])
+}
+
+fn event(structure: &Structure, baseline: &Baseline, selection: &Selection<'_>, found: &Finding) -> Event {
+    let Finding { statistic, window } = found;
+    let candidate = statistic.candidate;
+    let [file_value, baseline_value] = values(structure, baseline, candidate);
+    let (run, since, until) = times(&selection.stretches[window.clone()]);
+    Event {
+        cause: Cause::of(candidate),
+        joint: candidate.joint(),
+        parameter: candidate.parameter(),
+        value: baseline_value + statistic.change,
+        file_value,
+        baseline_value,
+        deviation: statistic.deviation,
+        half_interval: rne_identify::student(baseline.freedom) * statistic.deviation,
+        unit: unit(structure.robot(), candidate),
+        run,
+        since,
+        until,
+        is_whole: *window == (0..selection.stretches.len()),
+        others: Vec::new(),
+    }
+}
+
+fn times(list: &[&Stretch]) -> (u64, f64, f64) {
+    let last = list.last().map_or(f64::NAN, |last| last.end);
+    list.first().map_or((0, f64::NAN, last), |first| (first.run, first.start, last))
+}
+
+fn grown(structure: &Structure, selection: &Selection<'_>, joint: usize, [value, baseline_value]: [f64; 2]) -> Event {
+    let (run, since, until) = times(&selection.stretches);
+    Event {
+        cause: Cause::Model,
+        joint: Some(joint),
+        parameter: "residual",
+        value,
+        file_value: baseline_value,
+        baseline_value,
+        deviation: f64::NAN,
+        half_interval: f64::NAN,
+        unit: unit(structure.robot(), Candidate::Offset(joint)),
+        run,
+        since,
+        until,
+        is_whole: true,
+        others: Vec::new(),
+    }
+}
+
+/// The root mean square of what the model leaves of each joint, with all changes that were found, N m or N.
+fn residual(structure: &Structure, baseline: &Baseline, selection: &Selection<'_>) -> Vec<f64> {
+    let unknowns = selection.unknowns();
+    let of_joint = |joint: usize| {
+        let mut sum = Residual::default();
+        for (stretch, unknowns) in selection.stretches.iter().zip(&unknowns) {
+            sum.add(structure, joint, stretch, unknowns);
+        }
+        sum.root_mean_square().unwrap_or(baseline.residual[joint])
+    };
+    (0..structure.dof()).map(of_joint).collect()
+}

@@ -1,0 +1,268 @@
+//! The estimate of a change: least squares over two logs that have all parameters in common but the changed ones.
+//!
+//! Let θ be the parameters of the baseline and M their information, N the products of the watched rows, r the products
+//! of these rows with what θ leaves of the torques, and F columns that are added for the changed parameters:
+//!
+//! ```text
+//! L = (M + N)⁻¹     G = Fᵀ F - Fᵀ X L Xᵀ F     g = Fᵀ r - Fᵀ X L r     δ = G⁻¹ g     covariance = G⁻¹
+//! ```
+//!
+//! Friction, offsets and a payload are parameters of the model already. So F is X times some directions, over a window
+//! of time, and the products of short stretches are all that is needed.
+//!
+//! G. C. Chow, Tests of equality between sets of coefficients in two linear regressions, Econometrica 28 (1960),
+//! 591-605. Woodbury's formula for L.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+use rne_identify::{FittedModel, Stretch, Structure, inverse_of_information};
+
+use crate::candidate::{Candidate, MOMENTS};
+
+/// m: how far from the last frame the centre of a payload is supposed to be, one deviation.
+const REACH: f64 = 0.1;
+
+/// kg: the mass from which on the first moments of a payload may be as large as `REACH` allows.
+const LIGHTEST: f64 = 0.05;
+
+/// Rounds in which the first moments of a payload follow its mass.
+const ROUNDS: usize = 4;
+
+/// The sums over a log from which the estimates of all changes follow.
+#[derive(Clone, Debug)]
+pub(crate) struct Score {
+    /// Products of the columns, and of the columns with what the baseline leaves, up to each stretch.
+    products: Vec<DMatrix<f64>>,
+    left: Vec<DVector<f64>>,
+    /// L
+    covariance: DMatrix<f64>,
+    /// L times all of `left`.
+    shift: DVector<f64>,
+    candidates: Vec<(Candidate, DMatrix<f64>)>,
+    /// The columns of all candidates.
+    columns: DMatrix<f64>,
+}
+
+/// A candidate over a window of stretches.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Change {
+    pub(crate) candidate: usize,
+    pub(crate) window: Range<usize>,
+}
+
+/// The estimate of a change.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Estimate {
+    /// All numbers of the candidate.
+    pub(crate) values: Vec<f64>,
+    /// Standard deviation of the first number, for errors that are white.
+    pub(crate) deviation: f64,
+    /// By how much the sum of squares falls.
+    pub(crate) drop: f64,
+}
+
+impl Estimate {
+    pub(crate) fn value(&self) -> f64 {
+        self.values.first().copied().unwrap_or_default()
+    }
+}
+
+/// A change with the products of its columns, before and behind L.
+#[derive(Clone, Debug)]
+pub(crate) struct Projected {
+    pub(crate) change: Change,
+    products: DMatrix<f64>,
+    common: DMatrix<f64>,
+}
+
+impl Score {
+    /// `None` where the information is not positive.
+    pub(crate) fn new<'a>(
+        structure: &Structure,
+        model: &FittedModel,
+        stretches: impl IntoIterator<Item = &'a Stretch>,
+    ) -> Option<Self> {
+        let count = structure.count();
+        let mut total = DMatrix::zeros(count + 1, count + 1);
+        let (mut products, mut left) = (vec![DMatrix::zeros(count, count)], vec![DVector::zeros(count)]);
+        for stretch in stretches {
+            stretch.add_to(structure, &mut total);
+            let of_columns = total.view((0, 0), (count, count)).clone_owned();
+            let of_torques = total.view((0, count), (count, 1)).column(0).clone_owned();
+            left.push(of_torques - &of_columns * &model.solution);
+            products.push(of_columns);
+        }
+        let covariance = inverse_of_information(&(&model.information + products.last()?))?;
+        let shift = &covariance * left.last()?;
+        let candidates = Candidate::all(structure.dof()).into_iter();
+        let candidates: Vec<(Candidate, DMatrix<f64>)> =
+            candidates.map(|candidate| (candidate, candidate.columns(structure))).collect();
+        let each: Vec<_> = candidates.iter().flat_map(|(_, columns)| columns.column_iter()).collect();
+        let columns = DMatrix::from_columns(&each);
+        Some(Self { products, left, covariance, shift, candidates, columns })
+    }
+
+    /// Number of stretches.
+    pub(crate) fn len(&self) -> usize {
+        self.products.len() - 1
+    }
+
+    pub(crate) fn candidates(&self) -> &[(Candidate, DMatrix<f64>)] {
+        &self.candidates
+    }
+
+    /// The change of the parameters that both logs have in common, beside changes of other parameters: these, each with
+    /// its window, as changes of all unknowns.
+    pub(crate) fn common(&self, changes: &[(Range<usize>, DVector<f64>)]) -> DVector<f64> {
+        let mut shift = self.shift.clone();
+        for (window, change) in changes {
+            shift -= &self.covariance * (self.products_in(window) * change);
+        }
+        shift
+    }
+
+    fn products_in(&self, window: &Range<usize>) -> DMatrix<f64> {
+        &self.products[window.end] - &self.products[window.start]
+    }
+
+    pub(crate) fn projected(&self, change: Change) -> Projected {
+        let products = self.products_in(&change.window) * &self.candidates[change.candidate].1;
+        let common = &self.covariance * &products;
+        Projected { change, products, common }
+    }
+
+    /// Every candidate over one window.
+    fn projected_in(&self, window: &Range<usize>) -> Vec<Projected> {
+        let products = self.products_in(window) * &self.columns;
+        let common = &self.covariance * &products;
+        let mut first = 0;
+        let each = self.candidates.iter().enumerate().map(|(candidate, (_, columns))| {
+            let range = (first, columns.ncols());
+            first += columns.ncols();
+            Projected {
+                change: Change { candidate, window: window.clone() },
+                products: products.columns(range.0, range.1).clone_owned(),
+                common: common.columns(range.0, range.1).clone_owned(),
+            }
+        });
+        each.collect()
+    }
+
+    /// Fᵀ F - Fᵀ X L Xᵀ F of two changes.
+    fn gram(&self, a: &Projected, b: &Projected) -> DMatrix<f64> {
+        let columns = |of: &Projected| &self.candidates[of.change.candidate].1;
+        let (of_a, of_b) = (&a.change.window, &b.change.window);
+        let both = of_a.start.max(of_b.start)..of_a.end.min(of_b.end);
+        let common = -a.products.tr_mul(&b.common);
+        if both.is_empty() {
+            common
+        } else if both == *of_b {
+            columns(a).tr_mul(&b.products) + common
+        } else if both == *of_a {
+            a.products.tr_mul(columns(b)) + common
+        } else {
+            columns(a).tr_mul(&(self.products_in(&both) * columns(b))) + common
+        }
+    }
+
+    /// Fᵀ r - Fᵀ X L r.
+    fn slope(&self, of: &Projected) -> DVector<f64> {
+        let left = &self.left[of.change.window.end] - &self.left[of.change.window.start];
+        self.candidates[of.change.candidate].1.tr_mul(&left) - of.products.tr_mul(&self.shift)
+    }
+
+    /// By how much the sum of squares of one stretch falls when a change is added to a shift of all unknowns.
+    pub(crate) fn gain(&self, at: usize, shift: &DVector<f64>, change: &DVector<f64>) -> f64 {
+        let products = self.products_in(&(at..at + 1));
+        let left = &self.left[at + 1] - &self.left[at];
+        2.0 * change.dot(&(left - &products * shift)) - change.dot(&(&products * change))
+    }
+
+    /// The estimate of every candidate over one window, beside changes that are given.
+    pub(crate) fn estimates(&self, window: &Range<usize>, given: &[Projected]) -> Vec<Option<Estimate>> {
+        let before = self.fitted(&given.iter().collect::<Vec<_>>()).map_or(0.0, |fitted| fitted.drop);
+        self.projected_in(window).iter().map(|last| self.beside(given, last, before)).collect()
+    }
+
+    /// The estimate of one change beside others that are given.
+    pub(crate) fn estimate(&self, change: Change, given: &[Projected]) -> Option<Estimate> {
+        let before = self.fitted(&given.iter().collect::<Vec<_>>()).map_or(0.0, |fitted| fitted.drop);
+        self.beside(given, &self.projected(change), before)
+    }
+
+    fn beside(&self, given: &[Projected], last: &Projected, before: f64) -> Option<Estimate> {
+        let all: Vec<&Projected> = given.iter().chain([last]).collect();
+        let fitted = self.fitted(&all)?;
+        let at = fitted.values.len() - last.products.ncols();
+        Some(Estimate {
+            values: fitted.values[at..].to_vec(),
+            deviation: fitted.deviations[at],
+            drop: fitted.drop - before,
+        })
+    }
+
+    /// The changes of all unknowns by some changes together, each over its window.
+    pub(crate) fn changes(&self, given: &[Projected]) -> Option<Vec<(Range<usize>, DVector<f64>)>> {
+        let mut values = self.fitted(&given.iter().collect::<Vec<_>>())?.values.into_iter();
+        let of = |projected: &Projected| {
+            let columns = &self.candidates[projected.change.candidate].1;
+            let numbers: Vec<f64> = values.by_ref().take(columns.ncols()).collect();
+            (projected.change.window.clone(), columns * DVector::from_vec(numbers))
+        };
+        Some(given.iter().map(of).collect())
+    }
+
+    fn fitted(&self, all: &[&Projected]) -> Option<Fitted> {
+        let mut places = Vec::with_capacity(all.len());
+        let mut size = 0;
+        for of in all {
+            places.push(size);
+            size += of.products.ncols();
+        }
+        let (mut gram, mut slope) = (DMatrix::zeros(size, size), DVector::zeros(size));
+        for (row, a) in all.iter().enumerate() {
+            let of = self.slope(a);
+            slope.rows_mut(places[row], of.len()).copy_from(&of);
+            for (column, b) in all.iter().enumerate().take(row + 1) {
+                let of = self.gram(a, b);
+                let at = (places[row], places[column]);
+                gram.view_mut(at, of.shape()).copy_from(&of);
+                gram.view_mut((at.1, at.0), (of.ncols(), of.nrows())).copy_from(&of.transpose());
+            }
+        }
+        // what no row tells stays finite
+        for at in 0..size {
+            gram[(at, at)] += TINY * gram[(at, at)].abs() + TINY;
+        }
+        let payloads: Vec<usize> = all
+            .iter()
+            .zip(&places)
+            .filter(|(of, _)| self.candidates[of.change.candidate].0 == Candidate::Payload)
+            .map(|(_, at)| *at)
+            .collect();
+        let mut values = DVector::<f64>::zeros(size);
+        let mut covariance = gram.clone();
+        for round in 0..if payloads.is_empty() { 1 } else { ROUNDS } {
+            let mut held = gram.clone();
+            for &at in &payloads {
+                let mass = if round == 0 { 1.0 } else { values[at].abs().max(LIGHTEST) };
+                (at + 1..at + MOMENTS).for_each(|moment| held[(moment, moment)] += (REACH * mass).powi(-2));
+            }
+            covariance = inverse_of_information(&held)?;
+            values = &covariance * &slope;
+        }
+        let drop = slope.dot(&values);
+        let deviations = covariance.diagonal().iter().map(|variance| variance.max(0.0).sqrt()).collect();
+        Some(Fitted { values: values.iter().copied().collect(), deviations, drop })
+    }
+}
+
+/// Information of numbers about which no row says anything.
+const TINY: f64 = 1e-9;
+
+struct Fitted {
+    values: Vec<f64>,
+    deviations: Vec<f64>,
+    drop: f64,
+}

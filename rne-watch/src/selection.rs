@@ -1,0 +1,311 @@
+//! The choice among the candidates: the change that explains most is taken first, then the next one beside it.
+
+use std::ops::Range;
+
+use nalgebra::DVector;
+use rne_identify::{Stretch, Structure};
+
+use crate::Baseline;
+use crate::candidate::{Candidate, Scale};
+use crate::score::{Change, Estimate, Projected, Score};
+
+/// A change is an event from this many deviations on.
+const DEVIATIONS: f64 = 3.0;
+
+/// The same for a change that does not last from the beginning to the end of the log, because many times are tried.
+const DEVIATIONS_OF_PART: f64 = 3.3;
+
+/// The factor by which the smallest change is larger then.
+const SIZE_OF_PART: f64 = 1.5;
+
+/// A change begins or ends within the log only if that explains this much more, in squared deviations.
+const GAIN: f64 = 10.0;
+
+/// A payload has three more numbers than friction, which would explain this much without being there.
+const PAID_BY_PAYLOAD: f64 = 6.0;
+
+/// Changes of a log, at most.
+const MOST: usize = 4;
+
+/// A change that explains less than this part of the first one is an error in the model of the first.
+const REST: f64 = 0.15;
+
+/// s: times that are tried, at first; a log has at most `STEPS` of them.
+const STEP: f64 = 1.0;
+const STEPS: usize = 64;
+
+/// s: a change lasts at least as long.
+const SHORTEST: f64 = 3.0;
+
+/// s: errors of the model are alike over so long a time; a shorter window has more of them.
+const ALIKE: f64 = 8.0;
+
+/// s: a change that a moment as short as this explains is a contact and no change of a parameter.
+const MOMENT: f64 = 1.0;
+
+/// The estimate of a change that lasts, with the bounds that make it an event.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Statistic {
+    /// The parameter.
+    pub candidate: Candidate,
+    /// The change against the baseline.
+    pub change: f64,
+    /// Standard deviation of the change.
+    pub deviation: f64,
+    /// The change that would be an event.
+    pub threshold: f64,
+}
+
+impl Statistic {
+    /// The size of the change as a part of its threshold.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        self.change.abs() / self.threshold
+    }
+}
+
+/// A parameter that has changed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Finding {
+    pub(crate) statistic: Statistic,
+    pub(crate) window: Range<usize>,
+}
+
+/// The changes between a baseline and a log.
+pub(crate) struct Selection<'a> {
+    structure: &'a Structure,
+    baseline: &'a Baseline,
+    /// The stretches that count.
+    pub(crate) stretches: Vec<&'a Stretch>,
+    score: Score,
+    given: Vec<Projected>,
+}
+
+impl<'a> Selection<'a> {
+    /// The changes of a log; `None` where the log and the baseline together tell nothing.
+    pub(crate) fn of(structure: &'a Structure, baseline: &'a Baseline, stretches: &'a [Stretch]) -> Option<Self> {
+        let mut one = Self::empty(structure, baseline, stretches.iter().collect())?;
+        // a log has few moments in which somebody touches the arm: half of it must remain
+        while 2 * one.stretches.len() > stretches.len() {
+            let Some(moment) = one.select() else { break };
+            let rest = one.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
+            one = Self::empty(structure, baseline, rest.map(|(_, stretch)| *stretch).collect())?;
+        }
+        Some(one)
+    }
+
+    fn empty(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
+        let score = Score::new(structure, &baseline.model, stretches.iter().copied())?;
+        Some(Self { structure, baseline, stretches, score, given: Vec::new() })
+    }
+
+    /// Selects changes, until no further one is an event; or returns the moment that explains the last one.
+    fn select(&mut self) -> Option<Range<usize>> {
+        let mut first = None;
+        while self.given.len() < MOST {
+            let Some((change, drop)) = self.largest() else { break };
+            if first.is_some_and(|first| drop < REST * first) {
+                break;
+            }
+            let refined = self.refined(change.clone());
+            let change = if self.would_be_event(&refined) { refined } else { change };
+            if let Some(moment) = self.moment(&change) {
+                return Some(moment);
+            }
+            first.get_or_insert(drop);
+            self.given.push(self.score.projected(change));
+        }
+        None
+    }
+
+    /// The change that explains most, of those that would be events.
+    fn largest(&self) -> Option<(Change, f64)> {
+        let mut best: Option<(Change, f64)> = None;
+        for window in self.windows() {
+            let cost = if window.start > 0 { GAIN } else { 0.0 };
+            for (candidate, estimate) in self.score.estimates(&window, &self.given).into_iter().enumerate() {
+                let Some(estimate) = estimate else { continue };
+                let change = Change { candidate, window: window.clone() };
+                let drop = estimate.drop - cost - self.paid(candidate);
+                if best.as_ref().is_none_or(|(_, most)| drop > *most) && self.is_event(&change, &estimate) {
+                    best = Some((change, drop));
+                }
+            }
+        }
+        best
+    }
+
+    fn paid(&self, candidate: usize) -> f64 {
+        if self.candidate(candidate) == Candidate::Payload { PAID_BY_PAYLOAD } else { 0.0 }
+    }
+
+    fn candidate(&self, at: usize) -> Candidate {
+        self.score.candidates()[at].0
+    }
+
+    fn would_be_event(&self, change: &Change) -> bool {
+        let estimate = self.score.estimate(change.clone(), &self.given);
+        estimate.is_some_and(|estimate| self.is_event(change, &estimate))
+    }
+
+    fn is_event(&self, change: &Change, estimate: &Estimate) -> bool {
+        let is_given = self.given.iter().any(|given| given.change.candidate == change.candidate);
+        let statistic = self.statistic(change, estimate);
+        let scale = &self.baseline.scale;
+        // what is hardly known is no change, however large it seems
+        let is_known = statistic.deviation < 2.0 * scale.least(statistic.candidate);
+        !is_given && is_known && statistic.ratio() > 1.0
+    }
+
+    /// The estimate of a change with its deviation, which is larger where only a part of the log tells it.
+    fn statistic(&self, change: &Change, estimate: &Estimate) -> Statistic {
+        let candidate = self.candidate(change.candidate);
+        let Baseline { scale, inflation, .. } = self.baseline;
+        let is_part = change.window.start > 0 || change.window.end < self.score.len();
+        let [deviations, size, alike] = if is_part {
+            [DEVIATIONS_OF_PART, SIZE_OF_PART, (ALIKE / self.duration(&change.window)).max(1.0)]
+        } else {
+            [DEVIATIONS, 1.0, 1.0]
+        };
+        let model = alike * scale.model_error(candidate);
+        let deviation = (inflation[change.candidate] * estimate.deviation).hypot(model);
+        let threshold = (deviations * deviation).max(size * scale.least(candidate));
+        Statistic { candidate, change: estimate.value(), deviation, threshold }
+    }
+
+    /// s: of the stretches of a window, without what lies between runs.
+    fn duration(&self, window: &Range<usize>) -> f64 {
+        let of_rows: u64 = self.stretches[window.clone()].iter().map(|stretch| stretch.rows).sum();
+        #[allow(clippy::cast_precision_loss)]
+        let rows = of_rows as f64;
+        rows * self.baseline.row()
+    }
+
+    /// The windows that are tried: from the beginning, or from some time later, to the end.
+    fn windows(&self) -> Vec<Range<usize>> {
+        let count = self.score.len();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let steps = ((self.duration(&(0..count)) / STEP) as usize).clamp(1, STEPS);
+        let starts = (1..steps).map(|step| step * count / steps..count);
+        let is_long = |window: &Range<usize>| self.duration(window) >= SHORTEST;
+        [0..count].into_iter().chain(starts.filter(is_long)).collect()
+    }
+
+    /// The change with the beginning and the end that explain most, of all stretches about those that were tried.
+    fn refined(&self, mut change: Change) -> Change {
+        let count = self.score.len();
+        let reach = count.div_ceil(STEPS.min(count));
+        let drop = |change: &Change| {
+            let estimate = self.score.estimate(change.clone(), &self.given);
+            estimate.map_or(f64::NEG_INFINITY, |estimate| estimate.drop)
+        };
+        let Change { window, .. } = change.clone();
+        if window.start > 0 {
+            let starts = window.start.saturating_sub(reach)..(window.start + reach).min(window.end - 1);
+            let at = |start: usize| Change { window: start..window.end, ..change.clone() };
+            let best = starts.map(|start| (start, drop(&at(start)))).max_by(|a, b| a.1.total_cmp(&b.1));
+            change.window.start = best.map_or(window.start, |best| best.0);
+        }
+        let is_long = |change: &Change| self.duration(&change.window) >= SHORTEST;
+        let to = |end: usize| Change { window: change.window.start..end, ..change.clone() };
+        let ends = (change.window.start + 1..count).map(to).filter(is_long);
+        let best = ends.map(|change| (drop(&change), change)).max_by(|a, b| a.0.total_cmp(&b.0));
+        match best {
+            Some((most, earlier)) if most > drop(&change) + GAIN && self.would_be_event(&earlier) => earlier,
+            _ => change,
+        }
+    }
+
+    /// The moment without which a change would not be half as large: somebody touched the arm then.
+    fn moment(&self, change: &Change) -> Option<Range<usize>> {
+        let mut given = self.given.clone();
+        given.push(self.score.projected(change.clone()));
+        let changes = self.score.changes(&given)?;
+        let common = self.score.common(&changes);
+        let (own, others) = changes.split_last()?;
+        let own = &own.1;
+        let gains: Vec<f64> = change
+            .window
+            .clone()
+            .map(|at| {
+                let active = others.iter().filter(|(window, _)| window.contains(&at));
+                let shift = active.fold(common.clone(), |sum, (_, change)| sum + change);
+                self.score.gain(at, &shift, own)
+            })
+            .collect();
+        let mut best: Option<(f64, Range<usize>)> = None;
+        let mut start = 0;
+        let mut sum = 0.0;
+        for end in 0..gains.len() {
+            sum += gains[end];
+            while start < end && self.duration(&(change.window.start + start..change.window.start + end + 1)) > MOMENT {
+                sum -= gains[start];
+                start += 1;
+            }
+            if best.as_ref().is_none_or(|(most, _)| sum > *most) {
+                best = Some((sum, change.window.start + start..change.window.start + end + 1));
+            }
+        }
+        let moment = best?.1;
+        let rest = self.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
+        let score = Score::new(self.structure, &self.baseline.model, rest.map(|(_, stretch)| *stretch))?;
+        let without = |window: &Range<usize>| {
+            let before = |at: usize| at - moment.clone().filter(|of| *of < at).count();
+            before(window.start)..before(window.end)
+        };
+        let moved = |change: &Change| Change { candidate: change.candidate, window: without(&change.window) };
+        let given: Vec<Projected> = self.given.iter().map(|given| score.projected(moved(&given.change))).collect();
+        let all = self.score.estimate(change.clone(), &self.given)?;
+        let rest = score.estimate(moved(change), &given)?;
+        let is_told = rest.deviation < 0.5 * all.value().abs();
+        (is_told && rest.value() / all.value() < 0.5).then_some(moment)
+    }
+
+    /// The changes that were found, each estimated beside all others.
+    pub(crate) fn findings(&self) -> Vec<Finding> {
+        let one = |at: usize| {
+            let mut others = self.given.clone();
+            let change = others.remove(at).change;
+            let estimate = self.score.estimate(change.clone(), &others)?;
+            Some(Finding { statistic: self.statistic(&change, &estimate), window: change.window })
+        };
+        (0..self.given.len()).filter_map(one).collect()
+    }
+
+    /// The statistics of all candidates over the whole log: of those that were not found beside those that were.
+    pub(crate) fn statistics(&self) -> Vec<Statistic> {
+        let whole = 0..self.score.len();
+        let estimates = self.score.estimates(&whole, &self.given).into_iter().enumerate();
+        let is_found = |candidate: &usize| self.given.iter().any(|given| given.change.candidate == *candidate);
+        let each = estimates.filter(|(candidate, _)| !is_found(candidate)).filter_map(|(candidate, estimate)| {
+            let change = Change { candidate, window: whole.clone() };
+            Some(self.statistic(&change, &estimate?))
+        });
+        each.collect()
+    }
+
+    /// The unknowns of the model at each stretch, with all changes that were found.
+    pub(crate) fn unknowns(&self) -> Vec<DVector<f64>> {
+        let changes = self.score.changes(&self.given).unwrap_or_default();
+        let common = self.score.common(&changes) + &self.baseline.model.solution;
+        let at = |at: usize| {
+            let active = changes.iter().filter(|(window, _)| window.contains(&at));
+            active.fold(common.clone(), |sum, (_, change)| sum + change)
+        };
+        (0..self.score.len()).map(at).collect()
+    }
+
+    /// The changes of all unknowns by each finding, with its window.
+    pub(crate) fn changes(&self) -> Vec<(Range<usize>, DVector<f64>)> {
+        self.score.changes(&self.given).unwrap_or_default()
+    }
+}
+
+impl Scale {
+    /// Whether a candidate's friction is known well enough for this scale.
+    #[must_use]
+    pub fn is_watched(&self, statistic: &Statistic) -> bool {
+        statistic.deviation < 2.0 * self.least(statistic.candidate)
+    }
+}
