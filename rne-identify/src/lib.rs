@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]
 
+mod arm_log;
 mod design;
 mod effort;
 mod excitation;
@@ -26,6 +27,9 @@ mod stretches;
 mod structure;
 mod written;
 
+pub use arm_log::{
+    ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, Mismatch, Part, PassError, Purpose, check_units, joint_options,
+};
 pub use excitation::{BaseExcitation, Excitation, ExcitationOptions, ExcitationProgress, JointUse, excite};
 pub use excitation_error::ExcitationError;
 pub use feasible::{Certificate, Feasible};

@@ -41,6 +41,7 @@ pub use crate::formats::npy::Npy;
 pub use crate::log::motion::Motion;
 pub use crate::log::motions::{Motions, Piece};
 pub use crate::log::pass::{Counts, Interruption, InvalidSample};
+pub use crate::log::remark::{LeftOut, Reason, Remark};
 pub use crate::log::survey::{Cutoff, Run, Survey};
 pub use crate::log::{Layout, Log};
 pub use crate::options::{Angles, Options};

@@ -1,13 +1,13 @@
 //! Numbers in messages.
 
-/// Four digits, with a power of ten where a number is tiny or huge.
+/// Four digits; three with a power of ten where a number is tiny or huge.
 pub(crate) fn short(number: f64) -> String {
     if number == 0.0 || !number.is_finite() {
         return format!("{number}");
     }
     let magnitude = number.abs().log10().floor();
     if !(-4.0..7.0).contains(&magnitude) {
-        return format!("{number:.3e}");
+        return format!("{number:.2e}");
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
     let digits = (3.0 - magnitude).max(0.0) as usize;
@@ -22,6 +22,6 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         let texts = [0.0, 30.0007, -1.5, 1e300, 4e-9, f64::NAN].map(short);
-        assert_eq!(texts, ["0", "30", "-1.5", "1.000e300", "4.000e-9", "NaN"]);
+        assert_eq!(texts, ["0", "30", "-1.5", "1.00e300", "4.00e-9", "NaN"]);
     }
 }

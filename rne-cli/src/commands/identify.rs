@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::{Identification, JointError, MotionError, Options, Prediction, identify};
+use rne_identify::{Identification, JointError, MotionError, Options, Part, Prediction, Purpose, identify};
 use rne_logs::Motion;
 use rne_model::{FrictionTransition, JointKind, Robot, one_line};
 use rne_plot::comparison_svg;
 
 use crate::commands::prediction_errors::{errors_table, prediction};
 use crate::files::file_name::Format;
-use crate::files::motion_log::{MotionLog, Part};
+use crate::files::motion_log::MotionLog;
 use crate::files::output_file::{self, check_picture, check_place, is_standard_output, will_be_same};
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
@@ -74,17 +74,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     check_places(arguments, &sources)?;
     let robot = robot_file::robot(&arguments.file)?;
     // a file is judged by all that the log has
-    let open = if arguments.judge { MotionLog::open_all } else { MotionLog::open };
-    let log = open(&arguments.logs, &robot, &arguments.reading)?;
+    let purpose = if arguments.judge { Purpose::Judge } else { Purpose::Fit };
+    let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading, purpose)?;
     let mut remark = log.remark(PAGE);
-    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff);
+    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff());
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
     if arguments.judge {
         text += &judged(&robot, &log, Part::All, &Identification::not_excited(&robot), "errors on the log")?;
         draw(arguments, &robot, &log, Part::All, &sources, &mut remark)?;
         return Ok(Outcome { text, remark, ..Outcome::default() });
     }
-    let options = options(arguments, log.cutoff);
+    let options = options(arguments, log.cutoff());
     let (training, held) = match arguments.hold_out {
         Some(part) => (Part::Before(1.0 - part), Some(Part::From(1.0 - part))),
         None => (Part::All, None),
@@ -321,7 +321,7 @@ fn draw(
         Ok::<(), MotionError>(())
     })?;
     let stride = usize::try_from(states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
-    let prediction = Prediction::new(robot, Some(log.cutoff));
+    let prediction = Prediction::new(robot, Some(log.cutoff()));
     let (mut time, mut pairs) = (Vec::new(), vec![Vec::new(); robot.dof()]);
     log.pass(part, &mut |motion: &Motion| {
         time.extend(motion.time.iter().step_by(stride));
@@ -333,7 +333,7 @@ fn draw(
     let side = |of: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
         pairs.iter().map(|pairs: &Vec<(f64, f64)>| pairs.iter().map(of).collect()).collect()
     };
-    let about = format!("{}, both low-passed at {:.1} Hz", log.words(), log.cutoff);
+    let about = format!("{}, both low-passed at {:.1} Hz", log.words(), log.cutoff());
     let svg = comparison_svg(robot, &time, &side(|pair| pair.0), &side(|pair| pair.1), &about);
     *remark += &output_file::write_new(path, &svg, sources, arguments.force)?;
     Ok(())

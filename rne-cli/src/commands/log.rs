@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::ProgressBar;
+use rne_identify::{ArmLogRemark, check_units, joint_options};
 use rne_logs::{Cutoff, Log, LogError, Motion, Survey};
 
 use crate::files::file_name::{self, Format};
 use crate::files::input_file::is_standard_input;
-use crate::files::motion_log::{check_units, open_by_names};
+use crate::files::motion_log;
 use crate::files::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::files::reading;
 use crate::files::robot_file;
@@ -35,7 +36,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Select the joints of this robot file
-    #[arg(long, value_name = "FILE", conflicts_with = "joints")]
+    #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
     /// Filtered motion (CSV); - is standard output
     #[arg(short, long, value_name = "FILE")]
@@ -51,16 +52,20 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// The log, by the joints of the robot where there is one.
-    fn open(&self) -> Result<Log, Failure> {
-        let options = self.reading.options();
-        let Some(file) = &self.robot else {
-            return Log::open(&self.files, options).map_err(|error| failure(&error, &[]));
-        };
-        let robot = robot_file::robot(file)?;
-        let log = open_by_names(&self.files, &robot, options)?;
-        check_units(&robot, log.layout())?;
-        Ok(log)
+    /// The log, by the joints of the robot where there is one, and how they were matched.
+    fn open(&self) -> Result<(Log, Option<ArmLogRemark>), Failure> {
+        let mut options = self.reading.options();
+        let mut matched = None;
+        let robot = self.robot.as_deref().map(robot_file::robot).transpose()?;
+        if let Some(robot) = &robot {
+            (options, matched) =
+                joint_options(&self.files, robot, options).map_err(|error| motion_log::failure(&error))?;
+        }
+        let log = Log::open(&self.files, options).map_err(|error| failure(&error, &[]))?;
+        if let Some(robot) = &robot {
+            check_units(robot, log.layout()).map_err(|error| motion_log::failure(&error))?;
+        }
+        Ok((log, matched))
     }
 }
 
@@ -76,16 +81,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         check_new(path, None, &sources, arguments.force)?;
         file_name::format(path, &[Format::Csv])?;
     }
-    let log = arguments.open()?;
+    let (log, matched) = arguments.open()?;
     let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error, &[]))?;
     let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
     let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
     let text = if is_result_shown {
         String::new()
     } else if arguments.json {
-        Outcome::json(&Reply::of(&log, &survey))?.text
+        Outcome::json(&Reply::of(&log, &survey, matched.as_ref()))?.text
     } else {
-        log_report::text(&log, &survey)
+        log_report::text(&log, &survey, matched.as_ref())
     };
     let Some(path) = out else { return Ok(Outcome { text, at_fault, ..Outcome::default() }) };
     let states = if is_result_shown {

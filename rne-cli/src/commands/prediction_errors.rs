@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use rne_identify::{JointError, Prediction, SPEEDS};
+use rne_identify::{JointError, Part, Prediction, SPEEDS};
 use rne_logs::median;
 use rne_model::{Robot, one_line};
 
-use crate::files::motion_log::{MotionLog, Part};
+use crate::files::motion_log::MotionLog;
 use crate::outcome::Failure;
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, columns, shortened, wrap};
@@ -14,7 +14,7 @@ use crate::values::numbers::rounded;
 
 /// How far the torques of a robot are from those of a part of a log, by joint.
 pub(crate) fn prediction(robot: &Robot, log: &MotionLog, part: Part) -> Result<Vec<JointError>, Failure> {
-    let mut prediction = Prediction::new(robot, Some(log.cutoff));
+    let mut prediction = Prediction::new(robot, Some(log.cutoff()));
     log.pass(part, &mut |motion| prediction.absorb(motion))?;
     Ok(prediction.errors())
 }
@@ -63,7 +63,7 @@ pub(crate) fn errors_table(
     let about = format!(
         "error: RMS of measured - predicted over the effort's standard deviation, both low-passed at {:.1} Hz; \
          unfiltered: the same with raw efforts, {} of {} states; residual: RMS, then by joint speed in rad/s or m/s",
-        log.cutoff,
+        log.cutoff(),
         errors.iter().map(|error| error.states).max().unwrap_or_default(),
         log.states()
     );

@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::Identification;
+use rne_identify::{Identification, Part, Purpose};
 use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Event, Report, Settings, Signals, WatchError, svg, watch};
 use serde::Serialize;
 
 use crate::commands::prediction_errors::{errors_table, prediction};
 use crate::files::file_name::Format;
-use crate::files::motion_log::{MotionLog, Part};
+use crate::files::motion_log::MotionLog;
 use crate::files::output_file;
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
@@ -97,11 +97,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         output_file::check_place(path, (Format::Svg, "<svg"), &sources, arguments.force)?;
     }
     let robot = robot_file::robot(&arguments.file)?;
-    let log = MotionLog::open_wide(&arguments.logs, &robot, &arguments.reading)?;
+    let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading, Purpose::Watch)?;
     let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
     let quiet = match &arguments.quiet[..] {
         [] => None,
-        logs => Some(MotionLog::open_wide(logs, &robot, &arguments.reading.with_cutoff(log.cutoff))?),
+        logs => {
+            let reading = arguments.reading.with_cutoff(log.cutoff());
+            Some(MotionLog::open(logs, &robot, &reading, Purpose::Watch)?)
+        }
     };
     let mut remark = log.remark(PAGE);
     remark += &quiet.as_ref().map_or_else(String::new, |quiet| quiet.remark(PAGE));
@@ -139,7 +142,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let reply = Reply::of(&robot, &log, &watched.events, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
     }
-    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.read_to);
+    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.read_to());
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
     let usual = quiet.map_or("medians of the log itself".to_owned(), |quiet| quiet.words());
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("thresholds from: {usual}"), PAGE, "  "));
@@ -356,8 +359,8 @@ impl Reply {
         Self {
             robot: robot.name.clone(),
             log: log.words(),
-            low_pass: log.cutoff,
-            read_to: log.read_to,
+            low_pass: log.cutoff(),
+            read_to: log.read_to(),
             events: events.iter().map(of_event).collect(),
             joints: errors.iter().enumerate().map(of_joint).collect(),
         }

@@ -2,19 +2,18 @@
 
 use std::fmt::Write as _;
 
-use rne_logs::{Counts, Cutoff, Format, InvalidSample, Log, Run, Survey};
+use rne_identify::ArmLogRemark;
+use rne_logs::{Cutoff, Format, LeftOut, Log, Run, Survey};
 use rne_model::one_line;
 use serde::Serialize;
 
 use crate::palette::{QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, columns, wrap};
+use crate::render::log_remark::log_remark;
 use crate::terminal;
 
 /// Runs that are shown; the others are counted.
 const SHOWN: usize = 20;
-
-/// Relative difference between velocities and differences of positions from which it is reported.
-const DISAGREEMENT: f64 = 0.05;
 
 /// A log as JSON has it.
 #[derive(Serialize)]
@@ -30,7 +29,7 @@ pub(crate) struct Reply {
     ignored_joints: Vec<String>,
     messages: u64,
     states: u64,
-    left_out: Vec<LeftOut>,
+    left_out: Vec<OfLeftOut>,
     run_count: u64,
     runs: Vec<OfRun>,
     cutoff: Option<f64>,
@@ -50,9 +49,15 @@ struct OfJoint {
 }
 
 #[derive(Serialize)]
-struct LeftOut {
+struct OfLeftOut {
     why: String,
     messages: u64,
+}
+
+impl OfLeftOut {
+    fn of(left_out: &LeftOut) -> Self {
+        Self { why: left_out.reason.to_string(), messages: left_out.count }
+    }
 }
 
 #[derive(Serialize)]
@@ -66,7 +71,7 @@ struct OfRun {
 }
 
 impl Reply {
-    pub(crate) fn of(log: &Log, survey: &Survey) -> Self {
+    pub(crate) fn of(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> Self {
         let layout = log.layout();
         let ends = ends(survey);
         let joint = |(joint, name): (usize, &String)| OfJoint {
@@ -97,7 +102,7 @@ impl Reply {
             ignored_joints: layout.ignored.clone(),
             messages: survey.counts.messages,
             states: survey.counts.states,
-            left_out: left_out(log, survey).map(|(messages, why)| LeftOut { why, messages }).collect(),
+            left_out: log.left_out(survey).iter().map(OfLeftOut::of).collect(),
             run_count: survey.run_count,
             runs: survey.runs.iter().map(run).collect(),
             cutoff: survey.cutoff.hertz(),
@@ -107,13 +112,13 @@ impl Reply {
                 Cutoff::Unknown => "unknown",
             },
             dropped_states: survey.dropped,
-            notes: notes(log, survey).into_iter().map(|(note, _)| note).collect(),
+            notes: notes(log, survey, matched).into_iter().map(|(note, _)| note).collect(),
         }
     }
 }
 
 /// A log for people.
-pub(crate) fn text(log: &Log, survey: &Survey) -> String {
+pub(crate) fn text(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> String {
     let layout = log.layout();
     let mut text = String::new();
     let files: Vec<String> = log.files().iter().map(|file| file.display().to_string()).collect();
@@ -137,10 +142,10 @@ pub(crate) fn text(log: &Log, survey: &Survey) -> String {
     text += &runs(survey);
     text.push('\n');
     text += &filter(log, survey);
-    for (messages, why) in left_out(log, survey) {
-        let _ = writeln!(text, "{WARNING}left out{WARNING:#}: {messages} messages {why}");
+    for LeftOut { count, reason, .. } in log.left_out(survey) {
+        let _ = writeln!(text, "{WARNING}left out{WARNING:#}: {count} messages {}", one_line(&reason.to_string()));
     }
-    for (note, is_warning) in notes(log, survey) {
+    for (note, is_warning) in notes(log, survey, matched) {
         let (word, style) = if is_warning { ("warning", WARNING) } else { ("note", QUIET) };
         let wrapped = wrap(&format!("{word}: {note}"), terminal::width(100), "  ");
         let _ = writeln!(text, "{style}{word}{style:#}{}", wrapped.trim_end().strip_prefix(word).unwrap_or(&wrapped));
@@ -225,96 +230,10 @@ fn filter(log: &Log, survey: &Survey) -> String {
     wrap(&text, terminal::width(100), "  ").trim_end().to_owned() + "\n"
 }
 
-/// Samples that were left out, and the reason.
-pub(crate) fn left_out(log: &Log, survey: &Survey) -> impl Iterator<Item = (u64, String)> {
-    let counts: &Counts = &survey.counts;
-    let first = survey.invalid_sample.map_or(String::new(), |first| {
-        let joint = one_line(&log.layout().joints[first.joint]);
-        let InvalidSample { message, time, quantity, value, .. } = first;
-        format!("; the first is message {message} at {time:.3} s, {quantity} of {joint}: {}", short(value))
-    });
-    let all = [
-        (counts.of_others, "of other joints"),
-        (counts.without_joints, "without some of the joints"),
-        (counts.without_positions, "without positions, or with another number of them"),
-        (counts.without_velocities, "without velocities, which other messages contain"),
-        (counts.without_efforts, "without efforts, which other messages contain"),
-        (counts.repeats, "that repeat the message before, with its time"),
-    ];
-    let all = all.map(|(count, why)| (count, why.to_owned()));
-    let not_finite = format!("with a value that is not a number (NaN, infinite, empty, beyond 1e12){first}");
-    all.into_iter().chain([(counts.not_finite, not_finite)]).filter(|(count, _)| *count > 0)
-}
-
-/// Remarks, and whether they are warnings.
-fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
-    let layout = log.layout();
-    let mut notes = notes_of_motion(log, survey);
-    if !layout.has_efforts {
-        notes.push(("the log has no efforts, so the motion has no torques".to_owned(), true));
-    } else if log.unsaid_currents().is_empty() && takes_torques(log) {
-        let what = "efforts are taken as torques, N m, or forces, N; if they are currents, give the N m/A with \
-                    --torque-constant";
-        notes.push((what.to_owned(), false));
-    }
-    notes
-}
-
-/// Whether efforts are torques because nobody said otherwise.
-fn takes_torques(log: &Log) -> bool {
-    !log.has_torque_constants() && log.layout().units.iter().any(|units| units.effort.is_none())
-}
-
-/// Remarks on everything but what efforts are, and whether they are warnings.
-pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
-    let layout = log.layout();
-    let mut notes: Vec<(String, bool)> = layout.notes.iter().map(|note| (note.clone(), false)).collect();
-    if let Some((joint, range)) = survey.may_be_degrees(log) {
-        let what = format!(
-            "positions of {} range over {range:.1}, more than 4π: use --degrees if they are degrees, --radians if they \
-             are radians or metres",
-            layout.joints[joint]
-        );
-        notes.push((what, true));
-    }
-    if !layout.ignored.is_empty() {
-        notes.push((format!("joints of the log that are not read: {}", layout.ignored.join(", ")), false));
-    }
-    let worst = survey.disagreement.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-    if let Some((joint, share)) = worst.filter(|(_, share)| **share > DISAGREEMENT) {
-        let what = format!(
-            "measured velocities differ from the derivative of positions by {:.0} % at {}: stamps may be wrong, or \
-             velocities are filtered or in another unit; --derive-velocities ignores them",
-            share * 100.0,
-            layout.joints[joint]
-        );
-        notes.push((what, true));
-    }
-    if !layout.has_velocities {
-        notes.push(("velocities are derived from positions".to_owned(), false));
-    }
-    let currents = log.unsaid_currents();
-    if !currents.is_empty() {
-        let what = format!(
-            "efforts of {} are currents, by the names of columns: give the factor to torques in N m/A with \
-             --torque-constant",
-            currents.join(", ")
-        );
-        notes.push((what, true));
-    }
-    if let Some(first) = survey.spikes.first() {
-        let count = survey.spikes.len();
-        let what = format!(
-            "{count} {} of one or two samples: the first is {} of {} at {:.3} s; an identification leaves such samples \
-             out",
-            if count == 1 { "effort is a spike" } else { "efforts are spikes" },
-            short(first.effort),
-            layout.joints[first.joint],
-            first.time
-        );
-        notes.push((what, true));
-    }
-    notes
+/// Remarks, and whether they are warnings; `matched` says how joints were matched with those of a robot.
+fn notes(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> Vec<(String, bool)> {
+    let matched = matched.into_iter().map(|remark| (remark.to_string(), remark.is_warning()));
+    matched.chain(log.remarks(survey).iter().map(|remark| (log_remark(remark), remark.is_warning()))).collect()
 }
 
 fn ends(survey: &Survey) -> Option<&Vec<f64>> {

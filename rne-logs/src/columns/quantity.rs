@@ -28,7 +28,9 @@ impl Quantity {
         }
     }
 
-    pub(crate) fn plural(self) -> &'static str {
+    /// The word for several of them, as in "positions of all joints".
+    #[must_use]
+    pub const fn plural(self) -> &'static str {
         match self {
             Self::Position => "positions",
             Self::Velocity => "velocities",

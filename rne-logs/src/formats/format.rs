@@ -64,6 +64,15 @@ const OTHERS: [(&[u8], &str); 6] = [
 ];
 
 impl Format {
+    /// Whether the log is a table or an array, whose states are rows; those of a bag are messages.
+    #[must_use]
+    pub fn has_rows(self) -> bool {
+        match self {
+            Self::Sqlite | Self::Mcap => false,
+            Self::Parquet | Self::Npy | Self::Csv => true,
+        }
+    }
+
     /// The format of a file.
     pub(crate) fn of(path: &Path) -> Result<Self, LogError> {
         let wrong = |error: std::io::Error| match error.kind() {

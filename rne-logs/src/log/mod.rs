@@ -4,6 +4,7 @@ pub(crate) mod joints;
 pub(crate) mod motion;
 pub(crate) mod motions;
 pub(crate) mod pass;
+pub(crate) mod remark;
 pub(crate) mod survey;
 
 use std::collections::VecDeque;
@@ -38,6 +39,7 @@ const FAR: i64 = 10_000_000_000_000_000;
 /// A log of one or more files, opened; reading it costs memory that does not grow with it.
 ///
 /// [`Log::survey`] reads it once and says what is there. [`Log::motions`] reads it again and filters.
+#[derive(Debug)]
 pub struct Log {
     pub(crate) files: Vec<PathBuf>,
     pub(crate) options: Options,

@@ -1,0 +1,53 @@
+//! Remarks on logs of an arm, and errors of them, with the options of the command line.
+
+use rne_identify::{ArmLogError, ArmLogRemark, Mismatch};
+use rne_logs::{Mapping, Quantity, Remark, Target, suggested};
+use rne_model::one_line;
+
+use crate::palette::TYPED;
+use crate::render::log_remedy;
+
+/// A remark on a log, with the options that help.
+pub(crate) fn log_remark(remark: &Remark) -> String {
+    let options = match remark {
+        Remark::MayBeDegrees { .. } => ": use --degrees if they are degrees, --radians if they are radians or metres",
+        Remark::VelocitiesDisagree { .. } => "; --derive-velocities ignores them",
+        Remark::Currents(_) => ": give the factor to torques in N m/A with --torque-constant",
+        Remark::TakenForTorques => "; if they are currents, give the N m/A with --torque-constant",
+        _ => "",
+    };
+    format!("{remark}{options}")
+}
+
+/// A remark on logs that are compared with a model; none where it says nothing about the comparison.
+pub(crate) fn remark_sentence(remark: &ArmLogRemark) -> Option<String> {
+    match remark {
+        ArmLogRemark::Log(Remark::TakenForTorques) => None,
+        ArmLogRemark::Log(remark) => Some(log_remark(remark)),
+        other => Some(other.to_string()),
+    }
+}
+
+/// An error of the logs of an arm, with the options that help.
+pub(crate) fn error_sentence(error: &ArmLogError) -> String {
+    match error {
+        ArmLogError::Log { error, joints } => log_remedy::sentence(error, joints),
+        ArmLogError::NamedJoints { .. } => {
+            error.to_string().replacen("the list of joints", &format!("{TYPED}--joints{TYPED:#}"), 1)
+        }
+        ArmLogError::Unmatched { mismatch: Mismatch::More | Mismatch::Order { .. }, .. } => {
+            format!("{error}; {TYPED}--joints{TYPED:#} says which of the log's are the robot's, base to tip")
+        }
+        ArmLogError::NoEfforts { logged, unread } if !unread.is_empty() => {
+            let is_effort = |target: &Target| matches!(target, Target::Joint { quantity: Quantity::Effort, .. });
+            let efforts = suggested(unread, logged).into_iter().filter(|mapping| is_effort(&mapping.target));
+            let efforts: Vec<Mapping> = efforts.collect();
+            format!("{error}; name the columns: {}", one_line(&log_remedy::map(&efforts)))
+        }
+        ArmLogError::NoCutoff => format!("{error}; give one with {TYPED}--cutoff HZ{TYPED:#}"),
+        ArmLogError::Cutoff { .. } => {
+            error.to_string().replacen("the cut-off can", &format!("{TYPED}--cutoff{TYPED:#} can"), 1)
+        }
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,315 @@
+//! Logs of an arm, by the joints of its robot file: the input of identification and watching.
+
+mod error;
+mod joints;
+mod low_pass;
+mod remark;
+
+use std::path::PathBuf;
+
+use rne_logs::{Log, Motion, Motions, Options, Survey};
+use rne_model::{Robot, one_line};
+
+pub use self::error::{ArmLogError, Mismatch, PassError};
+pub use self::joints::{check_units, joint_options};
+use self::low_pass::{PART, WIDER, check_cutoff, highest};
+pub use self::remark::ArmLogRemark;
+
+/// States that are read at once: memory is this by the number of joints.
+const PIECE: usize = 65_536;
+
+/// Logs of an arm that were opened and surveyed; reading them costs memory that does not grow with them.
+///
+/// ```no_run
+/// use rne_identify::{ArmLog, ArmLogOptions, MotionError, Part, PassError, identify};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let text = std::fs::read_to_string("arm.yaml")?;
+/// let robot = rne_model::Robot::from_yaml(&text).map_err(|report| report.to_string())?;
+/// let log = ArmLog::open(&["motion.csv".into()], &robot, &ArmLogOptions::default())?;
+/// let mut options = rne_identify::Options::default();
+/// options.cutoff = Some(log.cutoff());
+/// let found = identify::<PassError<MotionError>>(&robot, options, 1.0, |take| log.pass(Part::All, take))?;
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct ArmLog {
+    log: Log,
+    /// How it was opened.
+    options: Options,
+    survey: Survey,
+    cutoff: f64,
+    read_to: f64,
+    remarks: Vec<ArmLogRemark>,
+}
+
+/// How logs of an arm are opened.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ArmLogOptions {
+    /// Facts that the logs do not contain. [`Options::cutoff`] is the low-pass of both sides; without it the spectrum
+    /// chooses. [`Options::slides`] and [`Options::leave_out_spikes`] are set by the robot and the purpose.
+    pub log: Options,
+    /// The purpose for which the logs are read.
+    pub purpose: Purpose,
+}
+
+/// The purpose for which logs of an arm are read. It chooses the log's own filter, and whether spikes are left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Purpose {
+    /// A model is fitted: the log's own filter passes what a motion may contain, and spikes of efforts are left out.
+    #[default]
+    Fit,
+    /// A model is judged: the filter is the same, and nothing is left out.
+    Judge,
+    /// Sudden events are sought: the filter passes all that it can, and nothing is left out.
+    Watch,
+}
+
+impl Purpose {
+    /// Ratio of the cut-off of the log's own filter to the low-pass.
+    fn wider(self) -> f64 {
+        if self == Self::Watch { f64::INFINITY } else { WIDER }
+    }
+}
+
+/// Part of the logs, by time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// All of it.
+    All,
+    /// The part before this fraction of the whole, 0 to 1.
+    Before(f64),
+    /// The part from this fraction of the whole on, 0 to 1.
+    From(f64),
+}
+
+impl ArmLog {
+    /// Opens logs of a robot and surveys them.
+    ///
+    /// # Errors
+    /// When a log cannot be read; when its joints or their units are not those of the robot; when it has no efforts or
+    /// no states; when the low-pass is not possible.
+    pub fn open(paths: &[PathBuf], robot: &Robot, options: &ArmLogOptions) -> Result<Self, ArmLogError> {
+        Self::open_with_progress(paths, robot, options, &mut |_| ())
+    }
+
+    /// Opens logs like [`ArmLog::open`] and reports the fraction that was read, 0 to 1, of each of two surveys.
+    ///
+    /// # Errors
+    /// Those of [`ArmLog::open`].
+    pub fn open_with_progress(
+        paths: &[PathBuf],
+        robot: &Robot,
+        options: &ArmLogOptions,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Self, ArmLogError> {
+        let wider = options.purpose.wider();
+        let mut options = Options { leave_out_spikes: options.purpose == Purpose::Fit, ..options.log.clone() };
+        // the log's own filter is chosen here
+        let asked = options.cutoff.take();
+        let (mut options, by_order) = joint_options(paths, robot, options)?;
+        let log = Log::open(paths, options.clone()).map_err(ArmLogError::log)?;
+        check_units(robot, log.layout())?;
+        check_efforts(&log)?;
+        let survey = log.survey(&mut *progress).map_err(ArmLogError::log)?;
+        // a unit that nobody said is refused here
+        if survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty() {
+            log.motions(&survey).map_err(ArmLogError::log)?;
+        }
+        if survey.counts.states == 0 {
+            return Err(ArmLogError::NoStates { left_out: log.left_out(&survey) });
+        }
+        let of_motion = || survey.cutoff.hertz().map(|hertz| PART * hertz);
+        let cutoff = asked.or_else(of_motion).ok_or(ArmLogError::NoCutoff)?;
+        let highest = highest(&log);
+        let longest = survey.runs.iter().map(|run| run.duration).fold(0.0, f64::max);
+        check_cutoff(&log, cutoff, longest, |cutoff| {
+            // who reads all that there is may go to the ends of runs
+            if wider.is_finite() { log.left(&survey, (wider * cutoff).min(highest)) } else { longest }
+        })?;
+        let read_to = (wider * cutoff).min(highest);
+        options.cutoff = Some(read_to);
+        let log = Log::open(paths, options.clone()).map_err(ArmLogError::log)?;
+        let survey = log.survey(progress).map_err(ArmLogError::log)?;
+        let remarks = by_order.into_iter().chain(remarks(&log, &survey)).collect();
+        Ok(Self { log, options, survey, cutoff, read_to, remarks })
+    }
+
+    /// The logs through the filter with which a model is judged; runs that are too short for it are included.
+    ///
+    /// # Errors
+    /// When a log cannot be read to its end.
+    pub fn judged(&self, progress: &mut dyn FnMut(f64)) -> Result<Self, ArmLogError> {
+        let read_to = (WIDER * self.cutoff).min(self.read_to);
+        let options = Options { cutoff: Some(read_to), ..self.options.clone() };
+        let log = Log::open(self.log.files(), options.clone()).map_err(ArmLogError::log)?;
+        let survey = log.survey(progress).map_err(ArmLogError::log)?;
+        Ok(Self { log, options, survey, cutoff: self.cutoff, read_to, remarks: Vec::new() })
+    }
+
+    /// The cut-off of the low-pass of both sides of the equations of motion, Hz.
+    #[must_use]
+    pub fn cutoff(&self) -> f64 {
+        self.cutoff
+    }
+
+    /// The cut-off of the log's own filter, Hz.
+    #[must_use]
+    pub fn read_to(&self) -> f64 {
+        self.read_to
+    }
+
+    /// Remarks on the logs, in the order in which a reader should see them.
+    #[must_use]
+    pub fn remarks(&self) -> &[ArmLogRemark] {
+        &self.remarks
+    }
+
+    /// The number of states.
+    #[must_use]
+    pub fn states(&self) -> u64 {
+        self.survey.counts.states
+    }
+
+    /// The number of runs.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.survey.run_count
+    }
+
+    /// The log that is read, with its joints, units and files.
+    #[must_use]
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// The survey of the log, by its own filter.
+    #[must_use]
+    pub fn survey(&self) -> &Survey {
+        &self.survey
+    }
+
+    /// The names of the files, the number of states and their rate, in words.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let name = |file: &PathBuf| one_line(&file.file_name().unwrap_or_default().to_string_lossy());
+        let files: Vec<String> = self.log.files().iter().map(name).collect();
+        let files = match files.as_slice() {
+            [one, two, three, ..] if files.len() > 3 => format!("{one}, {two}, {three} and {} more", files.len() - 3),
+            few => few.join(", "),
+        };
+        format!("{files} ({} states at {:.0} Hz)", self.states(), 1.0 / self.log.layout().step)
+    }
+
+    /// Hands the motions of a part to a function, up to the ends of runs. At an end the log's own filter sees one side
+    /// alone, but the low-pass reaches farther than it.
+    ///
+    /// # Errors
+    /// When a log cannot be read to its end, or the function returns an error.
+    pub fn pass<E>(&self, part: Part, take: &mut dyn FnMut(&Motion) -> Result<(), E>) -> Result<(), PassError<E>> {
+        self.pass_with_progress(part, take, &mut |_| ())
+    }
+
+    /// Hands motions on like [`ArmLog::pass`] and reports the fraction that was read, 0 to 1.
+    ///
+    /// # Errors
+    /// Those of [`ArmLog::pass`].
+    pub fn pass_with_progress<E>(
+        &self,
+        part: Part,
+        take: &mut dyn FnMut(&Motion) -> Result<(), E>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), PassError<E>> {
+        self.hand_on(self.motions()?.with_ends(), part, &mut |_, motion| take(motion), progress)
+    }
+
+    /// Hands the motions of a part to a function without the ends of runs, each with the number of its run, from 0, and
+    /// reports the fraction that was read, 0 to 1.
+    ///
+    /// # Errors
+    /// Those of [`ArmLog::pass`].
+    pub fn pass_runs<E>(
+        &self,
+        part: Part,
+        take: &mut dyn FnMut(u64, &Motion) -> Result<(), E>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), PassError<E>> {
+        self.hand_on(self.motions()?, part, take, progress)
+    }
+
+    fn motions<E>(&self) -> Result<Motions<'_>, PassError<E>> {
+        self.log.motions(&self.survey).map_err(|error| PassError::Log(ArmLogError::log(error)))
+    }
+
+    fn hand_on<E>(
+        &self,
+        motions: Motions<'_>,
+        part: Part,
+        take: &mut dyn FnMut(u64, &Motion) -> Result<(), E>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), PassError<E>> {
+        let runs = &self.survey.runs;
+        let total: f64 = runs.iter().map(|run| run.duration).sum();
+        let edge = |run: usize, edge: f64| {
+            let before: f64 = runs.iter().take(run).map(|run| run.duration).sum();
+            // of runs that are not listed nothing is known: they are after the edge
+            runs.get(run).map_or(f64::NEG_INFINITY, |run| run.start + edge * total - before)
+        };
+        let mut motions = motions.with_length(PIECE);
+        while let Some(piece) = motions.next() {
+            let piece = piece.map_err(|error| PassError::Log(ArmLogError::log(error)))?;
+            progress(motions.progress());
+            let run = usize::try_from(piece.run).unwrap_or(usize::MAX);
+            let motion = match part {
+                Part::All => piece.motion,
+                Part::Before(part) => cut(&piece.motion, |time| time < edge(run, part)),
+                Part::From(part) => cut(&piece.motion, |time| time >= edge(run, part)),
+            };
+            if !motion.is_empty() {
+                take(piece.run, &motion)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The states at the times that are asked for: they follow each other.
+fn cut(motion: &Motion, is_in: impl Fn(f64) -> bool) -> Motion {
+    let start = motion.time.iter().position(|time| is_in(*time)).unwrap_or(motion.len());
+    let end = motion.time.iter().rposition(|time| is_in(*time)).map_or(start, |last| last + 1);
+    let of = |list: &[Vec<f64>]| list.iter().map(|column| column[start..end].to_vec()).collect();
+    Motion {
+        time: motion.time[start..end].to_vec(),
+        q: of(&motion.q),
+        qd: of(&motion.qd),
+        qdd: of(&motion.qdd),
+        tau: of(&motion.tau),
+        recorded: of(&motion.recorded),
+    }
+}
+
+/// Remarks on a log whose efforts are those of all joints.
+fn remarks(log: &Log, survey: &Survey) -> Vec<ArmLogRemark> {
+    let mut remarks: Vec<ArmLogRemark> = log.remarks(survey).into_iter().map(ArmLogRemark::Log).collect();
+    for (joint, (least, greatest)) in log.layout().joints.iter().zip(&survey.efforts) {
+        if least == greatest {
+            remarks.push(ArmLogRemark::ConstantEffort { joint: joint.clone(), effort: *least });
+        }
+    }
+    remarks.extend(log.left_out(survey).into_iter().map(ArmLogRemark::LeftOut));
+    remarks
+}
+
+/// Refuses a log without efforts of all joints.
+fn check_efforts(log: &Log) -> Result<(), ArmLogError> {
+    let layout = log.layout();
+    let missing = &layout.without_efforts;
+    if layout.has_efforts {
+        Ok(())
+    } else if missing.is_empty() || missing.len() == layout.joints.len() {
+        Err(ArmLogError::NoEfforts { logged: layout.joints.clone(), unread: layout.unread.clone() })
+    } else {
+        Err(ArmLogError::MissingEfforts { logged: missing.clone() })
+    }
+}

@@ -1,0 +1,248 @@
+//! The reasons why logs are not logs of an arm, as data.
+
+use std::fmt;
+
+use rne_logs::{LeftOut, LogError, Quantity};
+use rne_model::{JointKind, one_line};
+
+use crate::arm_log::remark::rounded;
+
+/// The names that a message lists at most.
+const SHOWN: usize = 16;
+
+/// Why logs cannot be read as logs of an arm. `Display` says it without the options of any interface.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ArmLogError {
+    /// A log cannot be read, or not as it was asked for.
+    Log {
+        /// The error, with its remedies.
+        error: LogError,
+        /// The joints of the robot, where they help to word a remedy.
+        joints: Vec<String>,
+    },
+    /// The options name another number of joints than the robot has.
+    NamedJoints {
+        /// How many joints are named.
+        named: usize,
+        /// The joints of the log, where it can be read.
+        logged: Vec<String>,
+        /// The joints of the robot, base to tip.
+        joints: Vec<String>,
+    },
+    /// The joints of the log cannot be told to be those of the robot.
+    Unmatched {
+        /// The joints of the log.
+        logged: Vec<String>,
+        /// The joints of the robot, base to tip.
+        joints: Vec<String>,
+        /// The difference.
+        mismatch: Mismatch,
+    },
+    /// A joint of the robot turns and that of the log slides, or the other way round, by the names of the columns.
+    Kind {
+        /// The joint of the robot.
+        joint: String,
+        /// The joint of the log.
+        logged: String,
+        /// The kind of the robot's joint.
+        kind: JointKind,
+        /// The quantity that is of another kind of joint.
+        quantity: Quantity,
+    },
+    /// The log has no efforts.
+    NoEfforts {
+        /// The joints of the log.
+        logged: Vec<String>,
+        /// The columns of the log that are not read.
+        unread: Vec<String>,
+    },
+    /// The log has efforts, but none of these joints.
+    MissingEfforts {
+        /// The joints of the log.
+        logged: Vec<String>,
+    },
+    /// No message or row of the log is a state of the arm.
+    NoStates {
+        /// Why they are left out.
+        left_out: Vec<LeftOut>,
+    },
+    /// No run is long enough to choose a low-pass, and none is given.
+    NoCutoff,
+    /// The low-pass is not possible for these logs.
+    Cutoff {
+        /// The low-pass, Hz.
+        cutoff: f64,
+        /// States per second of the log.
+        rate: f64,
+        /// The longest run, s.
+        longest: f64,
+        /// The lowest and the highest low-pass that are possible, Hz; none where the runs are too short for any.
+        possible: Option<[f64; 2]>,
+    },
+}
+
+/// Why joints of a log are not matched with those of a robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Mismatch {
+    /// The log has fewer joints.
+    Fewer,
+    /// The log has more joints, and not all the names of the robot's.
+    More,
+    /// The log has as many joints, some with names of the robot's, in another order.
+    Order {
+        /// A joint of the robot that has another place in the log.
+        joint: String,
+    },
+}
+
+impl ArmLogError {
+    pub(crate) fn log(error: LogError) -> Self {
+        Self::Log { error, joints: Vec::new() }
+    }
+
+    /// Whether the files are in order and what was asked for is not: other options help.
+    #[must_use]
+    pub fn is_of_request(&self) -> bool {
+        match self {
+            Self::Log { error, .. } => error.is_of_request(),
+            Self::NamedJoints { .. } | Self::Unmatched { .. } | Self::Kind { .. } => true,
+            Self::NoEfforts { .. } | Self::MissingEfforts { .. } | Self::NoStates { .. } | Self::NoCutoff => false,
+            Self::Cutoff { possible, .. } => possible.is_some(),
+        }
+    }
+}
+
+impl std::error::Error for ArmLogError {}
+
+impl fmt::Display for ArmLogError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Log { error, .. } => error.fmt(f),
+            Self::NamedJoints { named, logged, joints } => {
+                let there = if logged.is_empty() { String::new() } else { format!(", which has {}", shown(logged)) };
+                let advice = if (1..joints.len()).contains(&logged.len()) {
+                    ALL_NEEDED
+                } else {
+                    "say which joint of the log each of them is, base to tip"
+                };
+                write!(
+                    f,
+                    "the list of joints names {} of the log{there}, and the robot has {}: {}; {advice}",
+                    of_joints(*named),
+                    of_joints(joints.len()),
+                    shown(joints)
+                )
+            }
+            Self::Unmatched { logged, joints, mismatch } => {
+                write!(
+                    f,
+                    "the log has {}, the robot {}: {} there and {} here",
+                    of_joints(logged.len()),
+                    joints.len(),
+                    shown(logged),
+                    shown(joints)
+                )?;
+                match mismatch {
+                    Mismatch::Fewer => write!(f, "; {ALL_NEEDED}"),
+                    Mismatch::More => Ok(()),
+                    Mismatch::Order { joint } => write!(f, ", and {} has another place in them", one_line(joint)),
+                }
+            }
+            Self::Kind { joint, logged, kind, quantity } => write!(
+                f,
+                "the joint {} of the robot {}, and by the names of the log's columns the {} of its {} are not of one \
+                 that does",
+                one_line(joint),
+                if *kind == JointKind::Revolute { "turns" } else { "slides" },
+                quantity.plural(),
+                one_line(logged)
+            ),
+            Self::NoEfforts { unread, .. } => {
+                f.write_str("the log has no efforts, and a model is compared with torques")?;
+                if unread.is_empty() {
+                    return Ok(());
+                }
+                let unread: Vec<String> = unread.iter().take(SHOWN).map(|name| one_line(name)).collect();
+                write!(
+                    f,
+                    "; not read are {}, and names of efforts are tau1, … or effort and the joint: docs/logs.md",
+                    unread.join(", ")
+                )
+            }
+            Self::MissingEfforts { logged } => {
+                let names: Vec<String> = logged.iter().map(|name| one_line(name)).collect();
+                write!(
+                    f,
+                    "the log has no efforts of {}, and a model is compared with the torques of every joint",
+                    names.join(", ")
+                )
+            }
+            Self::NoStates { left_out } => {
+                let why: Vec<String> =
+                    left_out.iter().map(|left_out| format!("{} {}", left_out.count, left_out.reason)).collect();
+                write!(f, "no message of the log contains a state of the arm: {}", one_line(&why.join("; ")))
+            }
+            Self::NoCutoff => f.write_str("no run is long enough to choose a low-pass"),
+            Self::Cutoff { cutoff, rate, longest, possible } => {
+                write!(
+                    f,
+                    "{} Hz is not possible as a low-pass for samples at {rate:.4} Hz in runs of {} s at most",
+                    rounded(*cutoff, 3),
+                    rounded(*longest, 2)
+                )?;
+                let Some([lowest, highest]) = possible else {
+                    return f.write_str(", and neither is any other: the runs are too short");
+                };
+                write!(
+                    f,
+                    "; the cut-off can be from {} to {} Hz here; a lower cut-off drops more of the ends of runs",
+                    rounded((lowest * 1e3).ceil() * 1e-3, 3),
+                    rounded((highest * 1e3).floor() * 1e-3, 3)
+                )
+            }
+        }
+    }
+}
+
+/// Advice for a log that has fewer joints than the robot.
+const ALL_NEEDED: &str = "the positions and torques of all joints are needed, so use a log with all joints, or a robot \
+    file of the logged joints";
+
+/// Names of joints, the first of them.
+pub(crate) fn shown(names: &[String]) -> String {
+    let first: Vec<String> = names.iter().take(SHOWN).map(|name| one_line(name)).collect();
+    let more = if names.len() > SHOWN { ", …" } else { "" };
+    first.join(", ") + more
+}
+
+fn of_joints(count: usize) -> String {
+    if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") }
+}
+
+/// Why a reading of the logs of an arm stopped.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PassError<E> {
+    /// A log cannot be read to its end.
+    Log(ArmLogError),
+    /// The caller's function returned this error for a motion.
+    Motion(E),
+}
+
+impl<E> From<E> for PassError<E> {
+    fn from(error: E) -> Self {
+        Self::Motion(error)
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for PassError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Log(error) => error.fmt(f),
+            Self::Motion(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<E: std::error::Error> std::error::Error for PassError<E> {}

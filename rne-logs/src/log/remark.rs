@@ -1,0 +1,211 @@
+//! Remarks on a log, as data: what a reader of it has to know.
+
+use std::fmt;
+
+use crate::log::pass::InvalidSample;
+use crate::log::survey::Survey;
+use crate::number::short;
+use crate::{Counts, Log};
+
+/// Relative difference between velocities and differences of positions from which it is reported.
+const DISAGREEMENT: f64 = 0.05;
+
+/// A remark on a log. `Display` says it without the options of any interface.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Remark {
+    /// A sentence on the file itself, such as units that were converted.
+    File(String),
+    /// Positions of a joint may be in degrees: nobody said that they are radians, and their range is wide.
+    MayBeDegrees {
+        /// The joint by the log's name.
+        joint: String,
+        /// rad, if they are radians
+        range: f64,
+    },
+    /// Joints of the log that are not read.
+    IgnoredJoints(Vec<String>),
+    /// Measured velocities differ from the derivative of positions.
+    VelocitiesDisagree {
+        /// The joint whose velocities differ most, by the log's name.
+        joint: String,
+        /// Root mean square of the difference over that of the derivative.
+        share: f64,
+    },
+    /// The log has no velocities that are read: they are derived from positions.
+    VelocitiesDerived,
+    /// Efforts of these joints are currents by the names of columns, and no torque constant is given.
+    Currents(Vec<String>),
+    /// Efforts of one or two samples that stand far out of those about them.
+    Spikes {
+        /// How many there are.
+        count: usize,
+        /// The joint of the first, by the log's name.
+        joint: String,
+        /// The first, N m or N.
+        effort: f64,
+        /// The time of the first, s.
+        time: f64,
+    },
+    /// The log has no efforts.
+    NoEfforts,
+    /// Efforts are taken for torques, because nothing says what they are.
+    TakenForTorques,
+}
+
+impl Remark {
+    /// Whether the remark is a warning: the result may be wrong because of it.
+    #[must_use]
+    pub fn is_warning(&self) -> bool {
+        match self {
+            Self::File(_) | Self::IgnoredJoints(_) | Self::VelocitiesDerived | Self::TakenForTorques => false,
+            Self::MayBeDegrees { .. }
+            | Self::VelocitiesDisagree { .. }
+            | Self::Currents(_)
+            | Self::Spikes { .. }
+            | Self::NoEfforts => true,
+        }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(text) => f.write_str(text),
+            Self::MayBeDegrees { joint, range } => {
+                write!(f, "positions of {joint} range over {range:.1}, more than 4π")
+            }
+            Self::IgnoredJoints(names) => write!(f, "joints of the log that are not read: {}", names.join(", ")),
+            Self::VelocitiesDisagree { joint, share } => write!(
+                f,
+                "measured velocities differ from the derivative of positions by {:.0} % at {joint}: stamps may be \
+                 wrong, or velocities are filtered or in another unit",
+                share * 100.0
+            ),
+            Self::VelocitiesDerived => f.write_str("velocities are derived from positions"),
+            Self::Currents(names) => {
+                write!(f, "efforts of {} are currents, by the names of columns", names.join(", "))
+            }
+            Self::Spikes { count, joint, effort, time } => write!(
+                f,
+                "{count} {} of one or two samples: the first is {} of {joint} at {time:.3} s; an identification \
+                 leaves such samples out",
+                if *count == 1 { "effort is a spike" } else { "efforts are spikes" },
+                short(*effort)
+            ),
+            Self::NoEfforts => f.write_str("the log has no efforts, so the motion has no torques"),
+            Self::TakenForTorques => f.write_str("efforts are taken as torques, N m, or forces, N"),
+        }
+    }
+}
+
+/// Messages or rows of a log that are left out for one reason.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LeftOut {
+    /// How many there are.
+    pub count: u64,
+    /// Why they are left out.
+    pub reason: Reason,
+    /// Whether they are rows of a table or an array, and not messages of a bag.
+    pub are_rows: bool,
+}
+
+/// The reason for which a message or a row is not a state of the arm.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// It has none of the joints.
+    OtherJoints,
+    /// It lacks some of the joints.
+    SomeJoints,
+    /// It has no positions, or another number of them.
+    NoPositions,
+    /// It has no velocities, which others have.
+    NoVelocities,
+    /// It has no efforts, which others have.
+    NoEfforts,
+    /// It repeats the one before, with its time.
+    Repeated,
+    /// A value in it is not a number.
+    NotFinite {
+        /// The first such value, and its joint by the log's name.
+        first: Option<(InvalidSample, String)>,
+    },
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::OtherJoints => "of other joints",
+            Self::SomeJoints => "without some of the joints",
+            Self::NoPositions => "without positions, or with another number of them",
+            Self::NoVelocities => "without velocities, which other messages contain",
+            Self::NoEfforts => "without efforts, which other messages contain",
+            Self::Repeated => "that repeat the message before, with its time",
+            Self::NotFinite { first } => {
+                f.write_str("with a value that is not a number (NaN, infinite, empty, beyond 1e12)")?;
+                let Some((InvalidSample { message, time, quantity, value, .. }, joint)) = first else { return Ok(()) };
+                let value = short(*value);
+                return write!(f, "; the first is message {message} at {time:.3} s, {quantity} of {joint}: {value}");
+            }
+        })
+    }
+}
+
+impl Log {
+    /// Remarks on the log by its survey: on the file and its motion first, then on efforts.
+    #[must_use]
+    pub fn remarks(&self, survey: &Survey) -> Vec<Remark> {
+        let layout = self.layout();
+        let mut remarks: Vec<Remark> = layout.notes.iter().cloned().map(Remark::File).collect();
+        if let Some((joint, range)) = survey.may_be_degrees(self) {
+            remarks.push(Remark::MayBeDegrees { joint: layout.joints[joint].clone(), range });
+        }
+        if !layout.ignored.is_empty() {
+            remarks.push(Remark::IgnoredJoints(layout.ignored.clone()));
+        }
+        let worst = survey.disagreement.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        if let Some((joint, share)) = worst.filter(|(_, share)| **share > DISAGREEMENT) {
+            remarks.push(Remark::VelocitiesDisagree { joint: layout.joints[joint].clone(), share: *share });
+        }
+        if !layout.has_velocities {
+            remarks.push(Remark::VelocitiesDerived);
+        }
+        let currents = self.unsaid_currents();
+        if !currents.is_empty() {
+            remarks.push(Remark::Currents(currents.iter().map(|&name| name.to_owned()).collect()));
+        }
+        if let Some(first) = survey.spikes.first() {
+            let joint = layout.joints[first.joint].clone();
+            let (count, effort, time) = (survey.spikes.len(), first.effort, first.time);
+            remarks.push(Remark::Spikes { count, joint, effort, time });
+        }
+        let is_unsaid = !self.has_torque_constants() && layout.units.iter().any(|units| units.effort.is_none());
+        if !layout.has_efforts {
+            remarks.push(Remark::NoEfforts);
+        } else if currents.is_empty() && is_unsaid {
+            remarks.push(Remark::TakenForTorques);
+        }
+        remarks
+    }
+
+    /// Messages or rows that are left out, by reason.
+    #[must_use]
+    pub fn left_out(&self, survey: &Survey) -> Vec<LeftOut> {
+        let counts: &Counts = &survey.counts;
+        let first = survey.invalid_sample.map(|first| (first, self.layout().joints[first.joint].clone()));
+        let all = [
+            (counts.of_others, Reason::OtherJoints),
+            (counts.without_joints, Reason::SomeJoints),
+            (counts.without_positions, Reason::NoPositions),
+            (counts.without_velocities, Reason::NoVelocities),
+            (counts.without_efforts, Reason::NoEfforts),
+            (counts.repeats, Reason::Repeated),
+            (counts.not_finite, Reason::NotFinite { first }),
+        ];
+        let are_rows = self.layout().format.has_rows();
+        let all = all.into_iter().filter(|(count, _)| *count > 0);
+        all.map(|(count, reason)| LeftOut { count, reason, are_rows }).collect()
+    }
+}
