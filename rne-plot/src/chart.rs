@@ -209,7 +209,7 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
 /// Axes with their grid, and the curves; returns the scales.
 pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curves: &[Curve<'_>]) -> (Scale, Scale) {
     let values = curves.iter().flat_map(|curve| curve.values.iter().copied());
-    let (across, up, _) = axes(svg, place, title, time, values);
+    let (across, up, _) = axes(svg, place, title, "t, s", time, values);
     for curve in curves {
         svg.curve(curve, time, across, up);
     }
@@ -221,6 +221,7 @@ pub(crate) fn axes(
     svg: &mut Svg,
     place: Place,
     title: &str,
+    axis: &str,
     time: &[f64],
     values: impl Iterator<Item = f64>,
 ) -> (Scale, Scale, [f64; 2]) {
@@ -245,7 +246,7 @@ pub(crate) fn axes(
         svg.stroke(left, y, right, y, colour, "", if tick == 0.0 { 1.4 } else { 1.0 });
         svg.text(left - 9.0, y + 5.0, &[("text-anchor", "end"), ("fill", QUIET)], &label(tick));
     }
-    svg.text(left - 20.0, bottom + 19.0, &[("text-anchor", "end"), ("fill", QUIET)], "t, s");
+    svg.text(left - 20.0, bottom + 19.0, &[("text-anchor", "end"), ("fill", QUIET)], axis);
     (across, up, [top, bottom])
 }
 

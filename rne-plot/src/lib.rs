@@ -29,6 +29,6 @@ mod trajectory;
 pub use crate::chart::svg;
 pub use crate::comparison::comparison_svg;
 pub use crate::history::{Peak, TorqueHistory};
-pub use crate::panels::{Band, Panel, PanelCurve, panels};
+pub use crate::panels::{Band, Panel, PanelCurve, panels, panels_over};
 pub use crate::parts::TorqueParts;
 pub use crate::trajectory::{Trajectory, TrajectoryError};

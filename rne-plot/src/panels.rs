@@ -7,7 +7,7 @@ use crate::chart::{
 /// A curve of a panel.
 #[derive(Clone, Copy, Debug)]
 pub struct PanelCurve<'a> {
-    /// Its name in the legend: the same in every panel.
+    /// Its name in the legend: the same in every panel. Curves of one name that follow each other look alike.
     pub name: &'a str,
     /// A value for each time.
     pub values: &'a [f64],
@@ -46,6 +46,19 @@ const MARKED: &str = "#f7dfa5";
 /// `title` stands above it and `about` below that. Texts are shown and do nothing.
 #[must_use]
 pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
+    panels_over("t, s", name, title, about, time, panels)
+}
+
+/// Panels like those of [`panels`], over numbers that are no times; `axis` says what they are.
+#[must_use]
+pub fn panels_over(
+    axis: &str,
+    name: &str,
+    title: &str,
+    about: &str,
+    time: &[f64],
+    panels: &[Panel<'_>],
+) -> String {
     let columns = if panels.len() == 1 { 1 } else { 2 };
     #[allow(clippy::cast_precision_loss)] // at most some dozens
     let rows = panels.len().div_ceil(columns) as f64;
@@ -53,7 +66,10 @@ pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Pane
     svg.text(SIDE, 46.0, &[("font-size", "26"), ("font-weight", "600")], &shortened(title, 72));
     svg.text(SIDE, 74.0, &[("font-size", "16"), ("fill", QUIET)], &shortened(about, 130));
     let mut x = SIDE;
-    for (index, curve) in panels.first().map_or(&[][..], |panel| &panel.curves).iter().enumerate() {
+    let first = panels.first().map_or(&[][..], |panel| &panel.curves);
+    let mut named = first.iter().zip(looks(first)).collect::<Vec<_>>();
+    named.dedup_by_key(|(_, index)| *index);
+    for (curve, index) in named {
         svg.stroke(x, 104.0, x + 38.0, 104.0, colour(index), dash(index), 2.2);
         svg.text(x + 46.0, 109.0, &[("font-size", "16")], curve.name);
         x += 46.0 + width_of(curve.name, 16.0) + 30.0;
@@ -71,18 +87,18 @@ pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Pane
         #[allow(clippy::cast_precision_loss)] // at most some dozens
         let (column, row) = ((index % columns) as f64, (index / columns) as f64);
         let place = Place { x: SIDE + column * (wide + gap), y: HEAD + row * PANEL, width: wide, height: PANEL };
-        one(&mut svg, place, panel, time);
+        one(&mut svg, place, panel, axis, time);
     }
     svg.close("svg");
     svg.finish()
 }
 
-fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, time: &[f64]) {
+fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, axis: &str, time: &[f64]) {
     let curves: Vec<Curve<'_>> = panel
         .curves
         .iter()
-        .enumerate()
-        .map(|(index, curve)| Curve {
+        .zip(looks(&panel.curves))
+        .map(|(curve, index)| Curve {
             name: curve.name,
             colour: colour(index),
             dash: dash(index),
@@ -91,7 +107,7 @@ fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, time: &[f64]) {
         })
         .collect();
     let all = curves.iter().flat_map(|curve| curve.values.iter().copied()).chain(panel.limits.iter().copied());
-    let (across, up, [top, bottom]) = axes(svg, place, &shortened(&panel.title, 40), time, all);
+    let (across, up, [top, bottom]) = axes(svg, place, &shortened(&panel.title, 40), axis, time, all);
     for Band { start, end, words } in &panel.bands {
         let (from, to) = (across.at(*start), across.at(*end));
         let numbers = [("x", from), ("y", top), ("width", (to - from).max(2.0)), ("height", bottom - top)];
@@ -109,6 +125,20 @@ fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, time: &[f64]) {
         svg.curve(curve, time, across, up);
     }
     svg.text(right, place.y + 26.0, &[("text-anchor", "end"), ("fill", QUIET)], &panel.note);
+}
+
+/// For each curve the number of its colour and dash.
+fn looks(curves: &[PanelCurve<'_>]) -> Vec<usize> {
+    let mut looks = Vec::with_capacity(curves.len());
+    for (at, curve) in curves.iter().enumerate() {
+        let before = looks.last().copied();
+        looks.push(match before {
+            Some(before) if curves[at - 1].name == curve.name => before,
+            Some(before) => before + 1,
+            None => 0,
+        });
+    }
+    looks
 }
 
 fn colour(index: usize) -> &'static str {

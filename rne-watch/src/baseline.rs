@@ -5,7 +5,9 @@ use rne_identify::{FittedModel, FrictionParameter, MotionError, Options, Stretch
 use rne_logs::Motion;
 use rne_model::Robot;
 
+use crate::WatchError;
 use crate::candidate::Scale;
+use crate::contact::ContactNoise;
 use crate::score::{Estimate, Score};
 
 /// Rows of a stretch that is left out at a time.
@@ -16,6 +18,9 @@ const PARTS: [usize; 2] = [4, 64];
 
 /// The weight of the mean of all candidates of a kind, in stretches.
 const SHARED: f64 = 4.0;
+
+/// Rows of a joint for each unknown that they may depend on.
+const ENOUGH: f64 = 2.75;
 
 /// A squared statistic counts as this at most.
 const LARGEST_SQUARE: f64 = 36.0;
@@ -41,6 +46,8 @@ pub struct Baseline {
     pub rows: u64,
     /// s
     pub duration: f64,
+    /// The noise of the observer, if it was measured.
+    pub contact: Option<ContactNoise>,
 }
 
 impl Baseline {
@@ -85,7 +92,21 @@ impl Baseline {
             rows: stretches.rows(),
             duration: stretches.duration(),
             model,
+            contact: None,
         })
+    }
+
+    /// Refuses a baseline of too few rows for its unknowns.
+    pub(crate) fn check(&self, structure: &Structure) -> Result<(), WatchError> {
+        #[allow(clippy::cast_precision_loss)] // some hundred
+        let (rows, unknowns) = (self.rows as f64, structure.count() as f64);
+        let friction = 3.0 * (structure.dof() - 1) as f64;
+        let needed = ENOUGH * (unknowns - friction);
+        if rows >= needed {
+            return Ok(());
+        }
+        let more = (needed - rows) * self.row();
+        Err(WatchError::ShortBaseline { duration: self.duration, needed: self.duration + more, cutoff: self.cutoff })
     }
 
     /// s: the time for which one row stands.

@@ -2,8 +2,10 @@
 
 use std::fmt;
 
-/// The reason why a motion cannot be watched.
-#[derive(Clone, Debug, PartialEq)]
+use rne_identify::{ArmLogError, MotionError, PassError};
+
+/// The reason why logs cannot be watched.
+#[derive(Debug)]
 #[non_exhaustive]
 pub enum WatchError {
     /// A motion of another number of joints than the robot's.
@@ -24,8 +26,21 @@ pub enum WatchError {
         /// The least number of samples.
         needed: usize,
     },
+    /// The logs of the baseline are too short to determine the parameters of the arm.
+    ShortBaseline {
+        /// s: the duration of the motions.
+        duration: f64,
+        /// s: the least duration.
+        needed: f64,
+        /// Hz: the low-pass.
+        cutoff: f64,
+    },
     /// A setting that is not a number above zero: its name.
     Setting(&'static str),
+    /// A motion is not one of the robot.
+    Motion(MotionError),
+    /// A log cannot be read to its end.
+    Log(ArmLogError),
 }
 
 impl fmt::Display for WatchError {
@@ -41,9 +56,31 @@ impl fmt::Display for WatchError {
                 index + 1
             ),
             Self::TooFew { found, needed } => write!(f, "{found} samples, and at least {needed} are needed"),
+            Self::ShortBaseline { duration, needed, cutoff } => write!(
+                f,
+                "{duration:.1} s are too short for a baseline of this arm behind a low-pass of {cutoff:.1} Hz: at least \
+                 {needed:.1} s of motion are needed"
+            ),
             Self::Setting(name) => write!(f, "{name} must be a finite number above 0"),
+            Self::Motion(error) => error.fmt(f),
+            Self::Log(error) => error.fmt(f),
         }
     }
 }
 
 impl std::error::Error for WatchError {}
+
+impl From<MotionError> for WatchError {
+    fn from(error: MotionError) -> Self {
+        Self::Motion(error)
+    }
+}
+
+impl From<PassError<Self>> for WatchError {
+    fn from(error: PassError<Self>) -> Self {
+        match error {
+            PassError::Log(error) => Self::Log(error),
+            PassError::Motion(error) => error,
+        }
+    }
+}

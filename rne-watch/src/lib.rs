@@ -41,16 +41,20 @@
 #![warn(missing_debug_implementations)]
 
 mod baseline;
+mod baseline_file;
 mod candidate;
 mod changes;
 mod contact;
 mod error;
 mod event;
+mod picture;
+mod report;
 
 mod score;
 mod selection;
 mod settings;
 mod signals;
+mod trend;
 
 pub use crate::baseline::Baseline;
 pub use crate::candidate::{Candidate, Scale};
@@ -59,6 +63,9 @@ pub use crate::contact::{Contact, ContactNoise, JointNoise, contact_limits, cont
 pub use crate::error::WatchError;
 pub use crate::event::{Cause, Event, unit};
 
+pub use crate::picture::svg;
+pub use crate::report::{Report, changes, watch};
 pub use crate::selection::Statistic;
 pub use crate::settings::Settings;
 pub use crate::signals::Signals;
+pub use crate::trend::{Trend, TrendRow};

@@ -1,35 +1,69 @@
-//! The picture of what was watched.
+//! The picture of a log that was watched.
 
-use rne_model::Robot;
+use rne_model::{Robot, one_line};
 use rne_plot::{Band, Panel, PanelCurve, panels};
 
-use crate::{Baseline, Report, Signals};
+use crate::contact::contact_limits;
+use crate::event::Event;
+use crate::{Report, Settings};
 
-/// Residual and external torque of each joint over time, with the observer's thresholds and the events, as an SVG.
-/// `about` says what the motion is. Texts of the robot file are shown and do nothing.
+/// What is left of the torques of each joint, the observer's torque with its thresholds, and the events, as an SVG; the
+/// torques of changed parameters are drawn as their own curve. Empty without signals. `about` says what the log is.
+/// Texts of the robot file are shown and do nothing.
 #[must_use]
-pub fn svg(robot: &Robot, signals: &Signals, baseline: &Baseline, report: &Report, about: &str) -> String {
-    let joints = robot.joints.iter().enumerate().take(signals.dof());
+pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> String {
+    let Some(signals) = &report.signals else { return String::new() };
+    let limits = contact_limits(signals, &report.contact, settings);
+    let bound = |joint: usize, sign: f64| -> Vec<f64> {
+        let mean = report.contact.joints[joint].mean;
+        limits[joint].iter().map(|limit| mean + sign * limit).collect()
+    };
+    let bounds: Vec<[Vec<f64>; 2]> = (0..signals.dof()).map(|joint| [bound(joint, 1.0), bound(joint, -1.0)]).collect();
+    let residuals: Vec<Vec<f64>> = (0..signals.dof())
+        .map(|joint| {
+            let explained = report.explained[joint].iter().copied().chain(std::iter::repeat(0.0));
+            signals.residual[joint].iter().zip(explained).map(|(left, explained)| left + explained).collect()
+        })
+        .collect();
+    let is_explained = report.explained.iter().flatten().any(|torque| *torque != 0.0);
     let panel = |(joint, row): (usize, &rne_model::Joint)| {
         let unit = row.row.kind.effort_unit();
-        let curves = vec![
-            PanelCurve { name: "residual: measured less model", values: &signals.residual[joint] },
-            PanelCurve { name: "external torque, by the observer", values: &signals.external[joint] },
-        ];
-        let limit = report.thresholds.get(joint).zip(baseline.external.get(joint));
-        let limits = limit.map_or(Vec::new(), |(thresholds, level)| {
-            [1.0, -1.0].map(|sign| level.mean + sign * thresholds.external * level.deviation).to_vec()
+        let mut curves = vec![PanelCurve { name: "residual: measured - model", values: &residuals[joint] }];
+        if is_explained {
+            curves.push(PanelCurve { name: "explained by changed parameters", values: &report.explained[joint] });
+        }
+        curves.push(PanelCurve { name: "external torque, by the observer", values: &signals.external[joint] });
+        curves.push(PanelCurve { name: "threshold of contacts", values: &bounds[joint][0] });
+        curves.push(PanelCurve { name: "threshold of contacts", values: &bounds[joint][1] });
+        let is_here = |event: &&Event| {
+            event.joint.is_none_or(|of| of == joint) || event.others.contains(&joint)
+        };
+        let bands = report.events.iter().filter(is_here).map(|event| Band {
+            start: event.since,
+            end: event.until,
+            words: words(robot, event),
         });
-        let events = report.events.iter().filter(|event| event.joint == joint);
-        let bands = events.map(|event| Band {
-            start: event.start,
-            end: event.end,
-            words: format!("{}, peak {:.3} {unit}, {:.3} s to {:.3} s", event.test, event.peak, event.start, event.end),
-        });
-        let note = report.errors.get(joint).copied().flatten();
-        let note = note.map_or(String::new(), |error| format!("prediction error {:.1} %", 100.0 * error));
-        Panel { title: format!("{} {}, {unit}", joint + 1, row.name), note, curves, limits, bands: bands.collect() }
+        let note = format!("residual {:.3} {unit}, RMS", report.changes.residual[joint]);
+        Panel {
+            title: format!("{} {}, {unit}", joint + 1, row.name),
+            note,
+            curves,
+            limits: Vec::new(),
+            bands: bands.collect(),
+        }
     };
+    let joints = robot.joints.iter().enumerate().take(signals.dof());
     let title = robot.title.as_deref().unwrap_or(&robot.name);
     panels(&format!("Watched: {title}"), title, about, &signals.time, &joints.map(panel).collect::<Vec<_>>())
+}
+
+/// An event in words: `friction of elbow: coulomb 9.9 ± 0.5 N m, 0.3 s to 18.9 s`.
+fn words(robot: &Robot, event: &Event) -> String {
+    let joint = event.joint.map_or(String::new(), |joint| format!(" of {}", one_line(&robot.joints[joint].name)));
+    let deviation =
+        if event.deviation.is_finite() { format!(" ± {:.3}", event.deviation) } else { String::new() };
+    format!(
+        "{}{joint}: {} {:.3}{deviation} {}, {:.3} s to {:.3} s",
+        event.cause, event.parameter, event.value, event.unit, event.since, event.until
+    )
 }

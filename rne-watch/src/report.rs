@@ -1,0 +1,246 @@
+//! Watching the logs of an arm: changes of its parameters first, then contacts in what these leave.
+
+use rne_identify::{ArmLog, Part, Stretches, Structure};
+use rne_logs::Motion;
+use rne_model::Robot;
+
+use crate::contact::{Contact, ContactNoise, contacts};
+use crate::event::{Cause, Event, unit};
+use crate::{Baseline, Candidate, Changes, Settings, Signals, WatchError};
+
+/// s: contacts that are closer are one, such as those on both sides of the border of two pieces.
+const JOINED: f64 = 0.25;
+
+/// States of a picture.
+const DRAWN: u64 = 20_000;
+
+/// A model is worse on motions that it has not seen. In another log the noise of the observer is larger by the first
+/// factor, and the error of the model's terms, which may have any sign there, by the second.
+const ELSEWHERE: [f64; 2] = [1.5, 2.0];
+
+/// The result for a log.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Report {
+    /// Events, one for each cause: changes of parameters in the order of what they explain, then contacts by time.
+    pub events: Vec<Event>,
+    /// The comparison of all parameters with the baseline.
+    pub changes: Changes,
+    /// The noise of the observer from which the thresholds of contacts follow.
+    pub contact: ContactNoise,
+    /// The signals of the log, thinned for a picture.
+    pub signals: Option<Signals>,
+    /// For the same samples the torques that changed parameters add, joint by joint, N m or N.
+    pub explained: Vec<Vec<f64>>,
+    /// Whether the picture ends where time goes back.
+    pub is_cut: bool,
+}
+
+impl Baseline {
+    /// The baseline of logs in which nothing happened; they are opened to watch.
+    ///
+    /// # Errors
+    /// When the logs are too short, not logs of the robot, or cannot be read.
+    pub fn of_logs(
+        robot: &Robot,
+        quiet: &ArmLog,
+        settings: &Settings,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Self, WatchError> {
+        let structure = Self::structure(robot, quiet.cutoff());
+        let mut baseline = Self::of_parameters(&structure, quiet, progress)?;
+        let all = noise(robot, quiet, settings, progress, &|_, _| Ok(Vec::new()))?;
+        let mut contact = ContactNoise::covering(&all).ok_or(WatchError::TooFew { found: 0, needed: 1 })?;
+        each_signals(robot, quiet, settings, progress, &|_, _| Ok(Vec::new()), &mut |_, signals, _| {
+            contact = std::mem::take(&mut contact).silent(&signals, settings)?;
+            Ok(())
+        })?;
+        baseline.contact = Some(contact.widened(ELSEWHERE[0], ELSEWHERE[1]));
+        Ok(baseline)
+    }
+
+    /// The baseline of a log itself, against the robot file: for an arm of which there is no quiet log.
+    ///
+    /// # Errors
+    /// When the log is too short, not one of the robot, or cannot be read.
+    pub fn of_file(robot: &Robot, log: &ArmLog, progress: &mut dyn FnMut(f64)) -> Result<Self, WatchError> {
+        let structure = Self::structure(robot, log.cutoff());
+        Ok(Self::of_parameters(&structure, log, progress)?.against_file(&structure))
+    }
+
+    fn of_parameters(
+        structure: &Structure,
+        log: &ArmLog,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Self, WatchError> {
+        let judged = log.judged(progress).map_err(WatchError::Log)?;
+        let baseline = Self::of::<WatchError>(structure, |take| {
+            judged
+                .pass_runs_to_ends(&mut |run, motion| take(run, motion).map_err(WatchError::from), progress)
+                .map_err(WatchError::from)
+        })?;
+        baseline.check(structure)?;
+        Ok(baseline)
+    }
+}
+
+/// Looks for events in logs of a robot, which are opened to watch with the low-pass of the baseline. `is_drawn` keeps
+/// what a picture needs; `progress` is called with the fraction of each pass that was read.
+///
+/// # Errors
+/// When the logs are too short, not logs of the robot, or cannot be read.
+pub fn watch(
+    robot: &Robot,
+    baseline: &Baseline,
+    log: &ArmLog,
+    settings: &Settings,
+    is_drawn: bool,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Report, WatchError> {
+    settings.check()?;
+    let structure = Baseline::structure(robot, baseline.cutoff);
+    let changes = changes(&structure, baseline, log, progress)?;
+    let explain = |run: u64, motion: &Motion| Ok(changes.torques(&structure, baseline, run, motion)?);
+    let contact = match &baseline.contact {
+        Some(contact) => contact.clone(),
+        None => ContactNoise::typical(&noise(robot, log, settings, progress, &explain)?)
+            .ok_or(WatchError::TooFew { found: 0, needed: 1 })?,
+    };
+    let stride = usize::try_from(log.states().div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
+    let mut found: Vec<(u64, Vec<Contact>)> = Vec::new();
+    let mut signals: Option<Signals> = None;
+    let mut is_cut = false;
+    let mut explained = vec![Vec::new(); robot.dof()];
+    each_signals(robot, log, settings, progress, &explain, &mut |run, piece, added| {
+        let contacts = contacts(&piece, &contact, settings)?;
+        match found.last_mut() {
+            Some((last, of_run)) if *last == run => of_run.extend(contacts),
+            _ => found.push((run, contacts)),
+        }
+        if is_drawn && !is_cut {
+            let thin = piece.thinned(stride);
+            is_cut = signals.as_ref().is_some_and(|all: &Signals| all.time.last() >= thin.time.first());
+            if !is_cut {
+                let columns = explained.iter_mut().zip(added);
+                columns.for_each(|(all, added)| all.extend(added.iter().step_by(stride)));
+                match &mut signals {
+                    Some(all) => all.append(thin),
+                    None => signals = Some(thin),
+                }
+            }
+        }
+        Ok(())
+    })?;
+    let mut events = changes.events.clone();
+    for (run, of_run) in found {
+        events.extend(touches(robot, &contact, run, Contact::joined(of_run, JOINED)));
+    }
+    Ok(Report { events, changes, contact, signals, explained, is_cut })
+}
+
+/// Compares the parameters of an arm in logs with a baseline, without a look for contacts.
+///
+/// # Errors
+/// When the logs are too short, not logs of the robot, or cannot be read.
+pub fn changes(
+    structure: &Structure,
+    baseline: &Baseline,
+    log: &ArmLog,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Changes, WatchError> {
+    let judged = log.judged(progress).map_err(WatchError::Log)?;
+    let mut stretches = Stretches::new(structure, &baseline.model);
+    judged
+        .pass_runs_to_ends(
+            &mut |run, motion| stretches.absorb(structure, run, motion).map_err(WatchError::from),
+            progress,
+        )
+        .map_err(WatchError::from)?;
+    let (found, needed) = (usize::try_from(stretches.rows()).unwrap_or(usize::MAX), 2);
+    Changes::of(structure, baseline, &stretches)
+        .filter(|_| found >= needed)
+        .ok_or(WatchError::TooFew { found, needed })
+}
+
+/// Torques of a run's motion that are explained already, joint by joint, N m or N; without any joint, none is.
+type Explain<'a> = &'a dyn Fn(u64, &Motion) -> Result<Vec<Vec<f64>>, WatchError>;
+
+/// The noise of each piece of a log that is long enough.
+fn noise(
+    robot: &Robot,
+    log: &ArmLog,
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64),
+    explain: Explain<'_>,
+) -> Result<Vec<ContactNoise>, WatchError> {
+    let mut all = Vec::new();
+    each_signals(robot, log, settings, progress, explain, &mut |_, signals, _| {
+        all.push(ContactNoise::of(&signals, 0..signals.time.len())?);
+        Ok(())
+    })?;
+    Ok(all)
+}
+
+/// Hands on the signals of each piece of a log that is long enough, less what is explained already.
+fn each_signals(
+    robot: &Robot,
+    log: &ArmLog,
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64),
+    explain: Explain<'_>,
+    take: &mut dyn FnMut(u64, Signals, &[Vec<f64>]) -> Result<(), WatchError>,
+) -> Result<(), WatchError> {
+    let mut pieces = 0;
+    let unless_short = |found: Result<(), WatchError>| match found {
+        Err(WatchError::TooFew { .. }) => Ok(false),
+        other => other.map(|()| true),
+    };
+    let mut one = |run: u64, motion: &Motion| -> Result<(), WatchError> {
+        let added = explain(run, motion)?;
+        let mut rest = motion.clone();
+        for (tau, added) in rest.tau.iter_mut().zip(&added) {
+            tau.iter_mut().zip(added).for_each(|(tau, added)| *tau -= added);
+        }
+        let taken = Signals::new(robot, &rest, settings.gain).and_then(|signals| take(run, signals, &added));
+        pieces += u64::from(unless_short(taken)?);
+        Ok(())
+    };
+    log.pass_runs(Part::All, &mut one, progress).map_err(WatchError::from)?;
+    if pieces == 0 { Err(WatchError::TooFew { found: 0, needed: 1 }) } else { Ok(()) }
+}
+
+/// Events of a run: contacts of several joints at one time have one cause.
+fn touches(robot: &Robot, noise: &ContactNoise, run: u64, contacts: Vec<Contact>) -> Vec<Event> {
+    let strength = |contact: &Contact| contact.peak.abs() / noise.joints[contact.joint].deviation;
+    let mut groups: Vec<Vec<Contact>> = Vec::new();
+    for contact in contacts {
+        let ends = |group: &Vec<Contact>| group.iter().fold(f64::NEG_INFINITY, |end, of| end.max(of.end));
+        match groups.last_mut() {
+            Some(group) if contact.start <= ends(group) + JOINED => group.push(contact),
+            _ => groups.push(vec![contact]),
+        }
+    }
+    let event = |group: Vec<Contact>| {
+        let most = group.iter().max_by(|a, b| strength(a).total_cmp(&strength(b))).copied()?;
+        let mut others: Vec<usize> = group.iter().map(|of| of.joint).filter(|joint| *joint != most.joint).collect();
+        others.sort_unstable();
+        others.dedup();
+        Some(Event {
+            cause: Cause::Contact,
+            joint: Some(most.joint),
+            parameter: "external",
+            value: most.peak,
+            file_value: 0.0,
+            baseline_value: 0.0,
+            deviation: noise.joints[most.joint].deviation,
+            half_interval: f64::NAN,
+            unit: unit(robot, Candidate::Offset(most.joint)),
+            run,
+            since: group.iter().fold(f64::INFINITY, |start, of| start.min(of.start)),
+            until: group.iter().fold(f64::NEG_INFINITY, |end, of| end.max(of.end)),
+            is_whole: false,
+            others,
+        })
+    };
+    groups.into_iter().filter_map(event).collect()
+}
