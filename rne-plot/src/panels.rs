@@ -51,14 +51,7 @@ pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Pane
 
 /// Panels like those of [`panels`], over numbers that are no times; `axis` says what they are.
 #[must_use]
-pub fn panels_over(
-    axis: &str,
-    name: &str,
-    title: &str,
-    about: &str,
-    time: &[f64],
-    panels: &[Panel<'_>],
-) -> String {
+pub fn panels_over(axis: &str, name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
     let columns = if panels.len() == 1 { 1 } else { 2 };
     #[allow(clippy::cast_precision_loss)] // at most some dozens
     let rows = panels.len().div_ceil(columns) as f64;

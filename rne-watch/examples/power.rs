@@ -73,7 +73,8 @@ fn with(robot: &Robot, motion: &Motion, fault: Fault, since: f64) -> Motion {
             let arm = DynArm::from_robot(&bare);
             for at in 0..motion.len() {
                 let of = |list: &[Vec<f64>]| -> Vec<f64> { list.iter().map(|column| column[at]).collect() };
-                let torque = arm.inverse_dynamics(&of(&motion.q), &of(&motion.qd), &of(&motion.qdd)).expect("of the arm");
+                let torque =
+                    arm.inverse_dynamics(&of(&motion.q), &of(&motion.qd), &of(&motion.qdd)).expect("of the arm");
                 if motion.time[at] >= since {
                     changed.tau.iter_mut().zip(torque).for_each(|(column, torque)| column[at] += torque);
                 }
@@ -115,16 +116,38 @@ fn main() {
                     .zip(&found.residual)
                     .map(|(before, now)| format!("{:.1}", now / before))
                     .collect();
-                println!("{arm} {split} {reversed} unchanged: {} events, residual ratio {ratios:?}", found.events.len());
+                println!(
+                    "{arm} {split} {reversed} unchanged: {} events, residual ratio {ratios:?}",
+                    found.events.len()
+                );
                 for event in &found.events {
-                    println!("   {} {:?} {} {:.3} from {:.3} ± {:.3}, {:.1}..{:.1}", event.cause, event.joint.map(|j| j + 1), event.parameter, event.value, event.baseline_value, event.deviation, event.since, event.until);
+                    println!(
+                        "   {} {:?} {} {:.3} from {:.3} ± {:.3}, {:.1}..{:.1}",
+                        event.cause,
+                        event.joint.map(|j| j + 1),
+                        event.parameter,
+                        event.value,
+                        event.baseline_value,
+                        event.deviation,
+                        event.since,
+                        event.until
+                    );
                 }
                 let mut top = found.statistics.clone();
                 top.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
                 for statistic in top.iter().take(3) {
-                    println!("      {:?} ratio {:.2} change {:.3} dev {:.3} threshold {:.3}", statistic.candidate, statistic.ratio(), statistic.change, statistic.deviation, statistic.threshold);
+                    println!(
+                        "      {:?} ratio {:.2} change {:.3} dev {:.3} threshold {:.3}",
+                        statistic.candidate,
+                        statistic.ratio(),
+                        statistic.change,
+                        statistic.deviation,
+                        statistic.threshold
+                    );
                 }
-                if split != 0.5 && split != 0.6 { continue; }
+                if split != 0.5 && split != 0.6 {
+                    continue;
+                }
                 for fault in faults(structure.dof()) {
                     let (joint, size) = match fault {
                         Fault::Coulomb(joint, part) => (Some(joint), part * base.scale.friction[joint]),
@@ -141,13 +164,25 @@ fn main() {
                         None => event.cause == Cause::Payload,
                     });
                     let inside = first.is_some_and(|event| (event.change() - size).abs() < event.half_interval);
-                    println!("   {fault:?} detected {} named {named} inside {inside} events {} {:?}", first.is_some(), found.events.len(), first.map(|event| (event.change(), event.deviation, event.is_whole)));
+                    println!(
+                        "   {fault:?} detected {} named {named} inside {inside} events {} {:?}",
+                        first.is_some(),
+                        found.events.len(),
+                        first.map(|event| (event.change(), event.deviation, event.is_whole))
+                    );
                     let _ = Candidate::Payload;
                     if std::env::var("DBG").is_ok() {
                         let mut top = found.statistics.clone();
                         top.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
                         for statistic in top.iter().take(2) {
-                            println!("      {:?} ratio {:.2} change {:.3} dev {:.3} threshold {:.3}", statistic.candidate, statistic.ratio(), statistic.change, statistic.deviation, statistic.threshold);
+                            println!(
+                                "      {:?} ratio {:.2} change {:.3} dev {:.3} threshold {:.3}",
+                                statistic.candidate,
+                                statistic.ratio(),
+                                statistic.change,
+                                statistic.deviation,
+                                statistic.threshold
+                            );
                         }
                     }
                 }

@@ -196,8 +196,7 @@ fn left_out(structure: &Structure, model: &FittedModel, stretches: &[Stretch]) -
     let others = model.without(structure, stretches)?;
     let score = Score::new(structure, &others, stretches)?;
     let estimates = score.estimates(&(0..score.len()), &[]);
-    let square = |estimate: Option<Estimate>| {
-        estimate.map_or(0.0, |estimate| (estimate.value() / estimate.deviation).powi(2))
-    };
+    let square =
+        |estimate: Option<Estimate>| estimate.map_or(0.0, |estimate| (estimate.value() / estimate.deviation).powi(2));
     Some(estimates.into_iter().map(square).collect())
 }

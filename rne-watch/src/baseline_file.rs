@@ -210,7 +210,9 @@ impl Reading<'_> {
         for (row, node) in rows.iter().enumerate() {
             let numbers = self.list_of(node)?;
             if numbers.len() != count - row {
-                return Err(self.refuse_at(node, &format!("{} numbers, and {} are expected", numbers.len(), count - row)));
+                return Err(
+                    self.refuse_at(node, &format!("{} numbers, and {} are expected", numbers.len(), count - row))
+                );
             }
             for (column, number) in (row..count).zip(numbers) {
                 matrix[(row, column)] = number;
@@ -220,4 +222,3 @@ impl Reading<'_> {
         Ok(matrix)
     }
 }
-

@@ -62,9 +62,7 @@ impl Candidate {
                 let regrouping = &structure.parameters().regrouping;
                 let tip = PER_LINK * (structure.dof() - 1);
                 let mut columns = DMatrix::zeros(structure.count(), MOMENTS);
-                columns
-                    .view_mut((0, 0), (regrouping.nrows(), MOMENTS))
-                    .copy_from(&regrouping.columns(tip, MOMENTS));
+                columns.view_mut((0, 0), (regrouping.nrows(), MOMENTS)).copy_from(&regrouping.columns(tip, MOMENTS));
                 columns
             }
         }

@@ -36,7 +36,8 @@ impl Changes {
     pub fn of(structure: &Structure, baseline: &Baseline, log: &Stretches) -> Option<Self> {
         let selection = Selection::of(structure, baseline, log.list())?;
         let findings = selection.findings();
-        let mut events: Vec<Event> = findings.iter().map(|found| event(structure, baseline, &selection, found)).collect();
+        let mut events: Vec<Event> =
+            findings.iter().map(|found| event(structure, baseline, &selection, found)).collect();
         let residual = residual(structure, baseline, &selection);
         for (joint, (now, before)) in residual.iter().zip(&baseline.residual).enumerate() {
             if *now > GROWN * before {
@@ -73,8 +74,7 @@ impl Changes {
                 continue;
             }
             let added = baseline.model.torques(structure, motion, change)?;
-            let is_active =
-                |time: f64| (run > first.0 || time >= first.1) && (run < last.0 || time <= last.1);
+            let is_active = |time: f64| (run > first.0 || time >= first.1) && (run < last.0 || time <= last.1);
             for (sum, added) in sum.iter_mut().zip(added) {
                 for ((sum, added), time) in sum.iter_mut().zip(added).zip(&motion.time) {
                     *sum += if is_active(*time) { added } else { 0.0 };

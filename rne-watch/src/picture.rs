@@ -35,9 +35,7 @@ pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> 
         curves.push(PanelCurve { name: "external torque, by the observer", values: &signals.external[joint] });
         curves.push(PanelCurve { name: "threshold of contacts", values: &bounds[joint][0] });
         curves.push(PanelCurve { name: "threshold of contacts", values: &bounds[joint][1] });
-        let is_here = |event: &&Event| {
-            event.joint.is_none_or(|of| of == joint) || event.others.contains(&joint)
-        };
+        let is_here = |event: &&Event| event.joint.is_none_or(|of| of == joint) || event.others.contains(&joint);
         let bands = report.events.iter().filter(is_here).map(|event| Band {
             start: event.since,
             end: event.until,
@@ -60,8 +58,7 @@ pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> 
 /// An event in words: `friction of elbow: coulomb 9.9 ± 0.5 N m, 0.3 s to 18.9 s`.
 fn words(robot: &Robot, event: &Event) -> String {
     let joint = event.joint.map_or(String::new(), |joint| format!(" of {}", one_line(&robot.joints[joint].name)));
-    let deviation =
-        if event.deviation.is_finite() { format!(" ± {:.3}", event.deviation) } else { String::new() };
+    let deviation = if event.deviation.is_finite() { format!(" ± {:.3}", event.deviation) } else { String::new() };
     format!(
         "{}{joint}: {} {:.3}{deviation} {}, {:.3} s to {:.3} s",
         event.cause, event.parameter, event.value, event.unit, event.since, event.until

@@ -68,11 +68,7 @@ impl Baseline {
         Ok(Self::of_parameters(&structure, log, progress)?.against_file(&structure))
     }
 
-    fn of_parameters(
-        structure: &Structure,
-        log: &ArmLog,
-        progress: &mut dyn FnMut(f64),
-    ) -> Result<Self, WatchError> {
+    fn of_parameters(structure: &Structure, log: &ArmLog, progress: &mut dyn FnMut(f64)) -> Result<Self, WatchError> {
         let judged = log.judged(progress).map_err(WatchError::Log)?;
         let baseline = Self::of::<WatchError>(structure, |take| {
             judged
@@ -157,9 +153,7 @@ pub fn changes(
         )
         .map_err(WatchError::from)?;
     let (found, needed) = (usize::try_from(stretches.rows()).unwrap_or(usize::MAX), 2);
-    Changes::of(structure, baseline, &stretches)
-        .filter(|_| found >= needed)
-        .ok_or(WatchError::TooFew { found, needed })
+    Changes::of(structure, baseline, &stretches).filter(|_| found >= needed).ok_or(WatchError::TooFew { found, needed })
 }
 
 /// Torques of a run's motion that are explained already, joint by joint, N m or N; without any joint, none is.

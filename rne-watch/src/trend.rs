@@ -56,9 +56,10 @@ impl Trend {
     /// Adds a log.
     pub fn push(&mut self, name: String, changes: &Changes) {
         let of = |candidate: Candidate, before: f64| {
-            let found = changes.events.iter().find(|event| {
-                (event.joint, event.parameter) == (candidate.joint(), candidate.parameter())
-            });
+            let found = changes
+                .events
+                .iter()
+                .find(|event| (event.joint, event.parameter) == (candidate.joint(), candidate.parameter()));
             let statistic = || changes.statistics.iter().find(|statistic| statistic.candidate == candidate);
             match (found, statistic()) {
                 (Some(event), _) => (event.value, event.deviation),

@@ -13,6 +13,27 @@ use crate::palette::{TITLE, WARNING};
 use crate::render::layout::wrap;
 use crate::render::log_remark::{error_sentence, remark_sentence};
 use crate::values::log_arguments::LogArguments;
+use rne_watch::WatchError;
+
+/// ns: earlier stamps are since the start of a machine.
+const LEAST_DATE: i64 = 315_360_000_000_000_000;
+
+/// ns
+const DAY: i64 = 86_400_000_000_000;
+
+/// The date of a number of days since 1970-01-01, in the Gregorian calendar.
+///
+/// H. F. Fliegel, T. C. van Flandern, A machine algorithm for processing calendar dates, CACM 11 (1968), 657.
+fn date(days: i64) -> String {
+    let l = days + 2_440_588 + 68_569;
+    let n = 4 * l / 146_097;
+    let l = l - (146_097 * n + 3) / 4;
+    let i = 4000 * (l + 1) / 1_461_001;
+    let l = l - 1461 * i / 4 + 31;
+    let j = 80 * l / 2447;
+    let (day, l) = (l - 2447 * j / 80, j / 11);
+    format!("{:04}-{:02}-{day:02}", 100 * (n - 49) + i + l, j + 2 - 12 * l)
+}
 
 /// Logs of an arm.
 pub(crate) struct MotionLog(ArmLog);
@@ -29,6 +50,17 @@ impl MotionLog {
         let bar = reading::bar("read", false);
         let log = ArmLog::open_with_progress(paths, robot, &options, &mut |share| reading::show(&bar, share));
         log.map(Self).map_err(|error| failure(&error))
+    }
+
+    /// The logs themselves.
+    pub(crate) fn log(&self) -> &ArmLog {
+        &self.0
+    }
+
+    /// The day of the first state, UTC, such as 2026-11-23; none where times do not count from 1970.
+    pub(crate) fn day(&self) -> Option<String> {
+        let origin = self.0.log().layout().origin;
+        (origin > LEAST_DATE).then(|| date(origin.div_euclid(DAY)))
     }
 
     /// The logs through the filter with which a robot file is judged; runs that are too short for it are included.
@@ -84,22 +116,21 @@ impl MotionLog {
         let bar = reading::bar("read", false);
         self.0.pass_with_progress(part, take, &mut |share| reading::show(&bar, share)).map_err(stopped)
     }
-
-    /// The same without the ends of runs, each motion with the number of its run, from 0.
-    pub(crate) fn pass_runs<E: Display>(
-        &self,
-        part: Part,
-        take: &mut dyn FnMut(u64, &Motion) -> Result<(), E>,
-    ) -> Result<(), Failure> {
-        let bar = reading::bar("read", false);
-        self.0.pass_runs(part, take, &mut |share| reading::show(&bar, share)).map_err(stopped)
-    }
 }
 
 fn stopped<E: Display>(error: PassError<E>) -> Failure {
     match error {
         PassError::Log(error) => failure(&error),
         PassError::Motion(error) => Failure::input(error),
+    }
+}
+
+/// The failure for logs that cannot be watched; `words` name them.
+pub(crate) fn watch_failure(error: &WatchError, words: &str) -> Failure {
+    match error {
+        WatchError::Log(error) => failure(error),
+        WatchError::TooFew { .. } => Failure::input(format_args!("{words} is too short to watch")),
+        other => Failure::input(format_args!("{words}: {other}")),
     }
 }
 

@@ -12,4 +12,5 @@ pub(crate) mod log_remedy;
 pub(crate) mod log_report;
 pub(crate) mod physics;
 pub(crate) mod remedy;
+pub(crate) mod watch_report;
 pub(crate) mod worksheet;
