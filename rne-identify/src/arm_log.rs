@@ -238,19 +238,6 @@ impl ArmLog {
         self.hand_on(self.motions()?, part, take, progress)
     }
 
-    /// Hands all motions to a function up to the ends of runs, each with the number of its run, from 0, and reports the
-    /// fraction that was read, 0 to 1.
-    ///
-    /// # Errors
-    /// Those of [`ArmLog::pass`].
-    pub fn pass_runs_to_ends<E>(
-        &self,
-        take: &mut dyn FnMut(u64, &Motion) -> Result<(), E>,
-        progress: &mut dyn FnMut(f64),
-    ) -> Result<(), PassError<E>> {
-        self.hand_on(self.motions()?.with_ends(), Part::All, take, progress)
-    }
-
     fn motions<E>(&self) -> Result<Motions<'_>, PassError<E>> {
         self.log.motions(&self.survey).map_err(|error| PassError::Log(ArmLogError::log(error)))
     }

@@ -40,7 +40,10 @@ impl Changes {
             findings.iter().map(|found| event(structure, baseline, &selection, found)).collect();
         let residual = residual(structure, baseline, &selection);
         for (joint, (now, before)) in residual.iter().zip(&baseline.residual).enumerate() {
-            if *now > GROWN * before {
+            // a change that was found has a shape of its own, which the model need not have
+            let is_explained =
+                findings.iter().any(|found| found.statistic.candidate.joint().is_none_or(|of| of == joint));
+            if *now > GROWN * before && !is_explained {
                 events.push(grown(structure, &selection, joint, [*now, *before]));
             }
         }

@@ -72,7 +72,7 @@ impl Baseline {
         let judged = log.judged(progress).map_err(WatchError::Log)?;
         let baseline = Self::of::<WatchError>(structure, |take| {
             judged
-                .pass_runs_to_ends(&mut |run, motion| take(run, motion).map_err(WatchError::from), progress)
+                .pass_runs(Part::All, &mut |run, motion| take(run, motion).map_err(WatchError::from), progress)
                 .map_err(WatchError::from)
         })?;
         baseline.check(structure)?;
@@ -147,7 +147,8 @@ pub fn changes(
     let judged = log.judged(progress).map_err(WatchError::Log)?;
     let mut stretches = Stretches::new(structure, &baseline.model);
     judged
-        .pass_runs_to_ends(
+        .pass_runs(
+            Part::All,
             &mut |run, motion| stretches.absorb(structure, run, motion).map_err(WatchError::from),
             progress,
         )

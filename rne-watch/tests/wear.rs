@@ -1,0 +1,146 @@
+//! Wear and payloads computed into two public logs of real arms: what has changed is named, with its size and time; of
+//! what has not changed nothing is said.
+
+mod common;
+
+use common::{Fault, PUBLIC, baseline, changes, noisy, public, split, with};
+use fastrand::Rng;
+use rne_identify::Structure;
+use rne_logs::Motion;
+use rne_model::Robot;
+use rne_watch::{Baseline, Cause, Event};
+
+/// The arm of a public log: its robot, its equations, its motion.
+struct Arm {
+    robot: Robot,
+    structure: Structure,
+    motion: Motion,
+}
+
+fn arm(name: &str) -> Arm {
+    let (_, cutoff) = PUBLIC.into_iter().find(|(of, _)| *of == name).expect("a public log");
+    let (robot, motion) = public(name, cutoff);
+    Arm { structure: Baseline::structure(&robot, cutoff), robot, motion }
+}
+
+/// The events of the second half of a log with a fault, which may begin in its middle.
+fn events(arm: &Arm, quiet: &Baseline, watched: &Motion, fault: Fault, since: f64) -> Vec<Event> {
+    changes(&arm.structure, quiet, &with(&arm.robot, watched, fault, since)).events
+}
+
+const ALWAYS: f64 = f64::NEG_INFINITY;
+
+/// A part of a joint's Coulomb friction, N m.
+fn friction(quiet: &Baseline, joint: usize, part: f64) -> f64 {
+    part * quiet.scale.friction[joint]
+}
+
+#[test]
+fn an_unchanged_log_has_no_event() {
+    for (name, _) in PUBLIC {
+        let arm = arm(name);
+        for (fraction, is_reversed) in [(0.5, false), (0.5, true), (0.6, false), (0.6, true)] {
+            let [quiet, watched] = split(&arm.motion, fraction, is_reversed);
+            let quiet = baseline(&arm.structure, &quiet);
+            let found = changes(&arm.structure, &quiet, &watched);
+            assert_eq!(found.events, [], "{name} {fraction} {is_reversed}");
+            let nearest = found.nearest().expect("candidates");
+            println!("{name} {fraction} {is_reversed}: {:?} {:.2}", nearest.candidate, nearest.ratio());
+        }
+    }
+}
+
+/// More friction of one joint is one event: friction of that joint, as large as it is.
+#[test]
+fn friction_that_grows_is_named() {
+    for (name, joint, part) in [("ur10", 2, 0.25), ("ur10", 3, 0.5), ("panda", 4, 1.0), ("panda", 6, 1.0)] {
+        let arm = arm(name);
+        let [quiet, watched] = split(&arm.motion, 0.5, false);
+        let quiet = baseline(&arm.structure, &quiet);
+        let size = friction(&quiet, joint, part);
+        let found = events(&arm, &quiet, &watched, Fault::Coulomb(joint, size), ALWAYS);
+        assert_eq!(found.len(), 1, "{name}: {found:?}");
+        let event = &found[0];
+        println!("{name} joint {}: {:.3} of {size:.3} ± {:.3}", joint + 1, event.change(), event.deviation);
+        assert_eq!((event.cause, event.joint, event.parameter), (Cause::Friction, Some(joint), "coulomb"));
+        assert!((event.change() - size).abs() < event.half_interval, "{event:?}");
+        assert!(event.is_whole, "{event:?}");
+    }
+}
+
+#[test]
+fn friction_that_grows_from_the_middle_on_has_its_time() {
+    // the baseline is the first half; the log that is watched is all of it, with more friction from the middle on
+    for (name, joint, part) in [("ur10", 2, 0.25), ("ur10", 3, 0.5), ("panda", 4, 1.0), ("panda", 6, 1.0)] {
+        let arm = arm(name);
+        let [quiet, rest] = split(&arm.motion, 0.5, false);
+        let quiet = baseline(&arm.structure, &quiet);
+        let since = rest.time[0];
+        let size = friction(&quiet, joint, part);
+        let found = events(&arm, &quiet, &arm.motion, Fault::Coulomb(joint, size), since);
+        assert_eq!(found.len(), 1, "{name}: {found:?}");
+        println!("{name} joint {}: since {:.2} s, which is {since:.2} s", joint + 1, found[0].since);
+        assert_eq!((found[0].cause, found[0].joint), (Cause::Friction, Some(joint)));
+        assert!((found[0].since - since).abs() < 2.0, "{found:?}");
+    }
+}
+
+#[test]
+fn a_payload_is_weighed() {
+    for (name, mass) in [("ur10", 1.0), ("ur10", 2.0), ("ur10", 3.0), ("panda", 0.5), ("panda", 1.0)] {
+        let arm = arm(name);
+        let [quiet, watched] = split(&arm.motion, 0.5, false);
+        let quiet = baseline(&arm.structure, &quiet);
+        let found = events(&arm, &quiet, &watched, Fault::Payload(mass), ALWAYS);
+        assert_eq!(found.len(), 1, "{name} {mass}: {found:?}");
+        println!("{name}: {:.2} ± {:.2} kg of {mass}", found[0].value, found[0].deviation);
+        assert_eq!((found[0].cause, found[0].joint, found[0].unit), (Cause::Payload, None, "kg"));
+        assert!((found[0].value - mass).abs() < 0.3, "{found:?}");
+    }
+}
+
+/// The intervals hold: 200 logs with noise of half the residual of each joint, and a baseline of its own for each tenth.
+#[test]
+fn intervals_hold_the_true_size() {
+    let cases = [("ur10", Some(2), 0.25), ("ur10", Some(3), 0.5), ("panda", Some(4), 1.0), ("panda", Some(6), 1.0)];
+    for (name, joint, part) in cases.into_iter().chain([("ur10", None, 1.0)]) {
+        let arm = arm(name);
+        let [quiet, watched] = split(&arm.motion, 0.5, false);
+        let plain = baseline(&arm.structure, &quiet);
+        let noise: Vec<f64> = plain.model.noise.iter().map(|noise| 0.5 * noise).collect();
+        let size = joint.map_or(1.0, |joint| friction(&plain, joint, part));
+        let fault = joint.map_or(Fault::Payload(size), |joint| Fault::Coulomb(joint, size));
+        let watched = with(&arm.robot, &watched, fault, ALWAYS);
+        let mut rng = Rng::with_seed(28);
+        let (mut found, mut named, mut held) = (0, 0, 0);
+        let draws = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 20 } else { 4 };
+        for _ in 0..draws {
+            let before = baseline(&arm.structure, &noisy(&quiet, &noise, &mut rng));
+            for _ in 0..10 {
+                let log = noisy(&watched, &noise, &mut rng);
+                let events = changes(&arm.structure, &before, &log).events;
+                let Some(event) = events.first() else { continue };
+                found += 1;
+                let is_named = event.joint == joint && matches!(event.cause, Cause::Friction | Cause::Payload);
+                named += u32::from(is_named);
+                held += u32::from(is_named && (event.change() - size).abs() < event.half_interval);
+            }
+        }
+        println!("{name} {fault:?}: of {} found {found}, named {named}, inside {held}", 10 * draws);
+        assert!(10 * named >= 9 * 10 * draws, "{name} {fault:?}: {named} of {}", 10 * draws);
+        assert!(10 * held >= 9 * named, "{name} {fault:?}: {held} of {named}");
+    }
+}
+
+/// Quiet logs of simulated arms: with the noise, the steps and the delay of real ones.
+#[test]
+fn simulated_quiet_logs_have_no_event() {
+    let arms = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 100 } else { 12 };
+    let mut found = Vec::new();
+    for seed in 0..arms {
+        let simulated = common::simulated::Simulated::new(seed);
+        let quiet = baseline(&simulated.structure, &simulated.quiet);
+        found.extend(changes(&simulated.structure, &quiet, &simulated.watched).events);
+    }
+    assert_eq!(found, [], "of {arms} logs");
+}
