@@ -209,7 +209,7 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
 /// Axes with their grid, and the curves; returns the scales.
 pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curves: &[Curve<'_>]) -> (Scale, Scale) {
     let values = curves.iter().flat_map(|curve| curve.values.iter().copied());
-    let (across, up, _) = axes(svg, place, title, "t, s", time, values);
+    let (across, up, _) = axes(svg, place, title, SECONDS, time, values);
     for curve in curves {
         svg.curve(curve, time, across, up);
     }
@@ -217,6 +217,9 @@ pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curv
 }
 
 /// Axes with their grid for values over times; returns the scales, and where the axes are between: [top, bottom].
+/// The axis of times.
+pub(crate) const SECONDS: &str = "t, s";
+
 pub(crate) fn axes(
     svg: &mut Svg,
     place: Place,
@@ -235,7 +238,9 @@ pub(crate) fn axes(
     if !title.is_empty() {
         svg.text(place.x, place.y + 26.0, &[("font-size", "17"), ("font-weight", "600")], title);
     }
-    for tick in across.ticks(if place.width > 800.0 { 10.0 } else { 6.0 }) {
+    // what is counted has no parts
+    let is_shown = |tick: &f64| axis == SECONDS || tick.fract() == 0.0;
+    for tick in across.ticks(if place.width > 800.0 { 10.0 } else { 6.0 }).into_iter().filter(is_shown) {
         let x = across.at(tick);
         svg.stroke(x, top, x, bottom, GRID, "", 1.0);
         svg.text(x, bottom + 19.0, &[("text-anchor", "middle"), ("fill", QUIET)], &label(tick));

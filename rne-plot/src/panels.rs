@@ -1,7 +1,7 @@
 //! A picture of panels below each other's times: curves of a joint each, limits, and stretches that are marked.
 
 use crate::chart::{
-    COLOURS, Curve, HEAD, PANEL, Place, QUIET, SIDE, Svg, TEXT, WIDTH, axes, pixels, shortened, width_of,
+    COLOURS, Curve, HEAD, PANEL, Place, QUIET, SECONDS, SIDE, Svg, TEXT, WIDTH, axes, pixels, shortened, width_of,
 };
 
 /// A curve of a panel.
@@ -46,10 +46,10 @@ const MARKED: &str = "#f7dfa5";
 /// `title` stands above it and `about` below that. Texts are shown and do nothing.
 #[must_use]
 pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
-    panels_over("t, s", name, title, about, time, panels)
+    panels_over(SECONDS, name, title, about, time, panels)
 }
 
-/// Panels like those of [`panels`], over numbers that are no times; `axis` says what they are.
+/// Panels like those of [`panels`], over whole numbers; `axis` says what is counted.
 #[must_use]
 pub fn panels_over(axis: &str, name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
     let columns = if panels.len() == 1 { 1 } else { 2 };

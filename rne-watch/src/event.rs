@@ -70,6 +70,8 @@ pub struct Event {
     pub deviation: f64,
     /// Half the width of the interval of 95 %; not a number for contacts and residuals.
     pub half_interval: f64,
+    /// The change that would be an event; not a number for contacts.
+    pub threshold: f64,
     /// The unit of all values.
     pub unit: &'static str,
     /// The number of the run in which it begins, from 0.
@@ -80,6 +82,8 @@ pub struct Event {
     pub until: f64,
     /// Whether it lasts from the beginning of the log to its end.
     pub is_whole: bool,
+    /// Whether it lasts until the end of the log.
+    pub lasts: bool,
     /// Further joints that the same event moves, counted from 0.
     pub others: Vec<usize>,
 }

@@ -68,4 +68,4 @@ pub use crate::report::{Report, changes, watch};
 pub use crate::selection::Statistic;
 pub use crate::settings::Settings;
 pub use crate::signals::Signals;
-pub use crate::trend::{Trend, TrendRow};
+pub use crate::trend::{Trend, TrendRow, TrendValue};

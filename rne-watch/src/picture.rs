@@ -28,13 +28,13 @@ pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> 
     let is_explained = report.explained.iter().flatten().any(|torque| *torque != 0.0);
     let panel = |(joint, row): (usize, &rne_model::Joint)| {
         let unit = row.row.kind.effort_unit();
-        let mut curves = vec![PanelCurve { name: "residual: measured - model", values: &residuals[joint] }];
+        let mut curves = vec![PanelCurve { name: "residual", values: &residuals[joint] }];
         if is_explained {
-            curves.push(PanelCurve { name: "explained by changed parameters", values: &report.explained[joint] });
+            curves.push(PanelCurve { name: "changed parameters", values: &report.explained[joint] });
         }
-        curves.push(PanelCurve { name: "external torque, by the observer", values: &signals.external[joint] });
-        curves.push(PanelCurve { name: "threshold of contacts", values: &bounds[joint][0] });
-        curves.push(PanelCurve { name: "threshold of contacts", values: &bounds[joint][1] });
+        curves.push(PanelCurve { name: "external torque", values: &signals.external[joint] });
+        curves.push(PanelCurve { name: "contact threshold", values: &bounds[joint][0] });
+        curves.push(PanelCurve { name: "contact threshold", values: &bounds[joint][1] });
         let is_here = |event: &&Event| event.joint.is_none_or(|of| of == joint) || event.others.contains(&joint);
         let bands = report.events.iter().filter(is_here).map(|event| Band {
             start: event.since,

@@ -229,11 +229,13 @@ fn touches(robot: &Robot, noise: &ContactNoise, run: u64, contacts: Vec<Contact>
             baseline_value: 0.0,
             deviation: noise.joints[most.joint].deviation,
             half_interval: f64::NAN,
+            threshold: f64::NAN,
             unit: unit(robot, Candidate::Offset(most.joint)),
             run,
             since: group.iter().fold(f64::INFINITY, |start, of| start.min(of.start)),
             until: group.iter().fold(f64::NEG_INFINITY, |end, of| end.max(of.end)),
             is_whole: false,
+            lasts: false,
             others,
         })
     };

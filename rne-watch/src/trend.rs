@@ -7,7 +7,8 @@ use rne_plot::{Panel, PanelCurve, panels_over};
 
 use crate::candidate::Candidate;
 use crate::changes::{Changes, values};
-use crate::event::unit;
+use crate::event::{Event, unit};
+use crate::selection::Statistic;
 use rne_identify::Structure;
 
 use crate::Baseline;
@@ -18,14 +19,25 @@ use crate::Baseline;
 pub struct TrendRow {
     /// The name of the log, of the day or of the group.
     pub name: String,
-    /// Coulomb friction of each joint with its standard deviation, N m or N.
-    pub friction: Vec<(f64, f64)>,
-    /// The payload with its standard deviation, kg.
-    pub payload: (f64, f64),
+    /// Coulomb friction of each joint, N m or N.
+    pub friction: Vec<TrendValue>,
+    /// The payload, kg.
+    pub payload: TrendValue,
     /// Root mean square of what the model leaves of each joint's torque, N m or N.
     pub residual: Vec<f64>,
     /// The number of events.
     pub events: usize,
+}
+
+/// A parameter in one log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrendValue {
+    /// The value in the log; not a number if the log does not determine it.
+    pub value: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+    /// The change against the baseline that is an event.
+    pub threshold: f64,
 }
 
 /// The parameters of an arm in several logs, all compared with the same baseline.
@@ -34,8 +46,6 @@ pub struct TrendRow {
 pub struct Trend {
     /// Coulomb friction of each joint in the robot file and in the baseline, N m or N.
     pub friction: Vec<[f64; 2]>,
-    /// The smallest change of each joint's friction that is an event, N m or N, and of the payload, kg.
-    pub least: (Vec<f64>, f64),
     /// A row for each log.
     pub rows: Vec<TrendRow>,
 }
@@ -45,10 +55,8 @@ impl Trend {
     #[must_use]
     pub fn new(structure: &Structure, baseline: &Baseline) -> Self {
         let joints = 0..structure.dof();
-        let least = |candidate| baseline.scale.least(candidate);
         Self {
             friction: joints.clone().map(|joint| values(structure, baseline, Candidate::Coulomb(joint))).collect(),
-            least: (joints.map(|joint| least(Candidate::Coulomb(joint))).collect(), least(Candidate::Payload)),
             rows: Vec::new(),
         }
     }
@@ -62,9 +70,13 @@ impl Trend {
                 .find(|event| (event.joint, event.parameter) == (candidate.joint(), candidate.parameter()));
             let statistic = || changes.statistics.iter().find(|statistic| statistic.candidate == candidate);
             match (found, statistic()) {
-                (Some(event), _) => (event.value, event.deviation),
-                (None, Some(statistic)) => (before + statistic.change, statistic.deviation),
-                (None, None) => (f64::NAN, f64::NAN),
+                (Some(Event { value, deviation, threshold, .. }), _) => {
+                    TrendValue { value: *value, deviation: *deviation, threshold: *threshold }
+                }
+                (None, Some(Statistic { change, deviation, threshold, .. })) => {
+                    TrendValue { value: before + change, deviation: *deviation, threshold: *threshold }
+                }
+                (None, None) => TrendValue { value: f64::NAN, deviation: f64::NAN, threshold: f64::NAN },
             }
         };
         let friction = self.friction.iter().enumerate();
@@ -91,59 +103,29 @@ impl Trend {
         text += ",payload,payload_deviation,events\n";
         for row in &self.rows {
             text += &name(&row.name);
-            for ((value, deviation), residual) in row.friction.iter().zip(&row.residual) {
+            for (TrendValue { value, deviation, .. }, residual) in row.friction.iter().zip(&row.residual) {
                 let _ = write!(text, ",{value:.6},{deviation:.6},{residual:.6}");
             }
-            let _ = writeln!(text, ",{:.6},{:.6},{}", row.payload.0, row.payload.1, row.events);
+            let _ = writeln!(text, ",{:.6},{:.6},{}", row.payload.value, row.payload.deviation, row.events);
         }
         text
     }
 
-    /// Coulomb friction of each joint and the payload over the logs, with intervals of 95 %, as an SVG. Dashed lines are
-    /// the smallest changes that are events. `about` says what was compared.
+    /// Coulomb friction of each joint and the payload over the logs, with intervals of 95 % and the thresholds of events,
+    /// as an SVG. `about` says what was compared.
     #[must_use]
     pub fn svg(&self, robot: &Robot, about: &str) -> String {
         #[allow(clippy::cast_precision_loss)] // a number of logs
         let numbers: Vec<f64> = (1..=self.rows.len()).map(|number| number as f64).collect();
-        let joints = self.friction.iter().enumerate();
-        let mut series: Vec<Series> = joints
-            .map(|(joint, [_, before])| Series {
-                title: format!(
-                    "{} {}: Coulomb friction, {}",
-                    joint + 1,
-                    robot.joints[joint].name,
-                    unit(robot, Candidate::Coulomb(joint))
-                ),
-                values: self.rows.iter().map(|row| row.friction[joint]).collect(),
-                limits: [-1.0, 1.0].map(|sign| before + sign * self.least.0[joint]),
-            })
-            .collect();
-        series.push(Series {
-            title: "payload, kg".to_owned(),
-            values: self.rows.iter().map(|row| row.payload).collect(),
-            limits: [-self.least.1, self.least.1],
-        });
-        let bounds: Vec<[Vec<f64>; 3]> = series
-            .iter()
-            .map(|series| {
-                [0.0, 1.0, -1.0].map(|sign| {
-                    series.values.iter().map(|(value, deviation)| value + sign * INTERVAL * deviation).collect()
-                })
-            })
-            .collect();
-        let panels = series.iter().zip(&bounds).map(|(series, [values, high, low])| Panel {
-            title: series.title.clone(),
-            note: String::new(),
-            curves: vec![
-                PanelCurve { name: "value", values },
-                PanelCurve { name: "interval of 95 %", values: high },
-                PanelCurve { name: "interval of 95 %", values: low },
-            ],
-            limits: series.limits.to_vec(),
-            bands: Vec::new(),
-        });
+        let of_joint = |(joint, [_, before]): (usize, &[f64; 2])| {
+            let unit = unit(robot, Candidate::Coulomb(joint));
+            let title = format!("{} {}: Coulomb friction, {unit}", joint + 1, robot.joints[joint].name);
+            Series::new(title, *before, self.rows.iter().map(|row| row.friction[joint]))
+        };
+        let mut series: Vec<Series> = self.friction.iter().enumerate().map(of_joint).collect();
+        series.push(Series::new("payload, kg".to_owned(), 0.0, self.rows.iter().map(|row| row.payload)));
+        let panels: Vec<Panel<'_>> = series.iter().map(Series::panel).collect();
         let title = robot.title.as_deref().unwrap_or(&robot.name);
-        let panels: Vec<Panel<'_>> = panels.collect();
         panels_over("log", &format!("Trend of {title}"), title, about, &numbers, &panels)
     }
 }
@@ -151,8 +133,28 @@ impl Trend {
 /// Deviations of an interval of 95 %.
 const INTERVAL: f64 = 1.96;
 
+/// The curves of a panel: the value, the ends of its interval, the thresholds.
 struct Series {
     title: String,
-    values: Vec<(f64, f64)>,
-    limits: [f64; 2],
+    curves: [Vec<f64>; 5],
+}
+
+impl Series {
+    fn new(title: String, before: f64, values: impl Iterator<Item = TrendValue> + Clone) -> Self {
+        let of = |each: &dyn Fn(TrendValue) -> f64| values.clone().map(each).collect();
+        let curves = [
+            of(&|of| of.value),
+            of(&|of| of.value + INTERVAL * of.deviation),
+            of(&|of| of.value - INTERVAL * of.deviation),
+            of(&|of| before + of.threshold),
+            of(&|of| before - of.threshold),
+        ];
+        Self { title, curves }
+    }
+
+    fn panel(&self) -> Panel<'_> {
+        let names = ["value", "interval of 95 %", "interval of 95 %", "threshold", "threshold"];
+        let curves = names.into_iter().zip(&self.curves).map(|(name, values)| PanelCurve { name, values }).collect();
+        Panel { title: self.title.clone(), note: String::new(), curves, limits: Vec::new(), bands: Vec::new() }
+    }
 }

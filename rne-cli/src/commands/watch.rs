@@ -66,8 +66,8 @@ pub(crate) struct Arguments {
     /// Plot residuals and events, or the trend (SVG)
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// Write the trend as a table (CSV)
-    #[arg(long, value_name = "CSV", requires = "by")]
+    /// Write the trend as a table; - is standard output
+    #[arg(long, value_name = "CSV", requires = "by", conflicts_with = "json")]
     csv: Option<PathBuf>,
     /// Overwrite existing files
     #[arg(long)]
@@ -294,6 +294,9 @@ fn trend(
     if let Some(path) = &arguments.plot {
         remark += &output_file::write_new(path, &trend.svg(robot, &about), sources, arguments.force)?;
     }
+    if arguments.csv.as_deref().is_some_and(output_file::is_standard_output) {
+        return Ok(Outcome { text: trend.csv(robot), remark, at_fault });
+    }
     if let Some(path) = &arguments.csv {
         remark += &output_file::write_new(path, &trend.csv(robot), sources, arguments.force)?;
     }
@@ -321,9 +324,10 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
         )));
     }
     output_file::check_picture(arguments.plot.as_deref())?;
+    let csv = arguments.csv.clone().filter(|path| !output_file::is_standard_output(path));
     let places = [
         (&arguments.plot, (Format::Svg, "<svg")),
-        (&arguments.csv, (Format::Csv, "log,")),
+        (&csv, (Format::Csv, "log,")),
         (&arguments.save_baseline, (Format::RobotFile, "# A baseline of ")),
     ];
     for (path, kind) in places {

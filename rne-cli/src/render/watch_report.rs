@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use rne_identify::JointError;
 use rne_model::{Robot, one_line};
-use rne_watch::{Baseline, Candidate, Cause, Changes, Event, Report, Statistic, Trend, unit};
+use rne_watch::{Baseline, Candidate, Cause, Changes, Event, Report, Statistic, Trend, TrendValue, unit};
 use serde::Serialize;
 
 use crate::files::motion_log::MotionLog;
@@ -87,6 +87,19 @@ fn margin(robot: &Robot, statistic: &Statistic) -> String {
     )
 }
 
+/// A value with its deviation, both with the digits that the deviation leaves: `0.454 ± 0.011`.
+fn with_deviation(value: f64, deviation: f64) -> String {
+    if !(value.is_finite() && deviation.is_finite() && deviation > 0.0) {
+        return "not known".to_owned();
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
+    let digits = (1.0 - deviation.log10().floor()).clamp(0.0, 12.0) as usize;
+    let value = format!("{value:.digits$}");
+    // no sign before a zero
+    let value = if value.trim_start_matches(['-', '0', '.']).is_empty() { value.replace('-', "") } else { value };
+    format!("{value} ± {deviation:.digits$}")
+}
+
 fn signed(value: f64) -> String {
     let digits = rounded(value.abs(), 3);
     if value < 0.0 { format!("-{digits}") } else { format!("+{digits}") }
@@ -96,7 +109,7 @@ fn signed(value: f64) -> String {
 pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
     let unit = event.unit;
     let joint = event.joint.map_or(String::new(), |joint| one_line(&robot.joints[joint].name));
-    let value = format!("{} ± {} {unit}", rounded(event.value, 3), rounded(event.deviation, 2));
+    let value = format!("{} {unit}", with_deviation(event.value, event.deviation));
     let percent = |base: f64| {
         let part = 100.0 * event.change() / base.abs();
         if part.is_finite() && part.abs() < 1000.0 { format!(", {part:+.0} %") } else { String::new() }
@@ -135,6 +148,7 @@ fn times(event: &Event, has_runs: bool) -> String {
     match event.cause {
         _ if event.is_whole => "in the whole log".to_owned(),
         Cause::Contact => format!("{run}{:.2} s to {:.2} s", event.since, event.until),
+        _ if event.lasts => format!("{run}since {:.1} s", event.since),
         _ => format!("{run}since {:.1} s, until {:.1} s", event.since, event.until),
     }
 }
@@ -167,7 +181,7 @@ pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>]) -> Stri
     let joints = changing(trend);
     let mut cells = vec![vec!["  log".to_owned(), "events".to_owned(), "payload, kg".to_owned()]];
     cells[0].extend(joints.iter().map(|joint| shortened(&one_line(&robot.joints[*joint].name), 14)));
-    let with = |(value, deviation): (f64, f64)| format!("{} ± {}", rounded(value, 3), rounded(deviation, 2));
+    let with = |of: TrendValue| with_deviation(of.value, of.deviation);
     for row in &trend.rows {
         let mut line = vec![format!("  {}", shortened(&row.name, 20)), row.events.to_string(), with(row.payload)];
         line.extend(joints.iter().map(|joint| with(row.friction[*joint])));
@@ -201,9 +215,10 @@ pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>]) -> Stri
 /// The joints whose friction changes most from log to log, in the order of the arm.
 fn changing(trend: &Trend) -> Vec<usize> {
     let range = |joint: &usize| {
-        let values = trend.rows.iter().map(|row| row.friction[*joint].0);
+        let values = trend.rows.iter().map(|row| row.friction[*joint].value);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
-        (high - low) / trend.least.0[*joint]
+        let least = trend.rows.iter().map(|row| row.friction[*joint].threshold).fold(f64::INFINITY, f64::min);
+        (high - low) / least
     };
     let mut joints: Vec<usize> = (0..trend.friction.len()).collect();
     joints.sort_by(|a, b| range(b).total_cmp(&range(a)));
@@ -238,11 +253,14 @@ pub(crate) struct OfEvent {
     baseline_value: f64,
     deviation: Option<f64>,
     half_interval: Option<f64>,
+    threshold: Option<f64>,
     unit: &'static str,
     run: u64,
     since: f64,
     until: f64,
     whole: bool,
+    /// Whether it lasts until the end of the log.
+    lasts: bool,
     /// Further joints of a contact.
     also: Vec<usize>,
     /// Causes that the log cannot tell from this one.
@@ -297,11 +315,13 @@ impl OfEvent {
             baseline_value: event.baseline_value,
             deviation: finite(event.deviation),
             half_interval: finite(event.half_interval),
+            threshold: finite(event.threshold),
             unit: event.unit,
             run: event.run + 1,
             since: event.since,
             until: event.until,
             whole: event.is_whole,
+            lasts: event.lasts,
             also: event.others.iter().map(|joint| joint + 1).collect(),
             rivals: if event.cause == Cause::Friction { vec!["temperature", "speed"] } else { Vec::new() },
         }
@@ -374,6 +394,7 @@ struct OfFriction {
     name: String,
     coulomb: Option<f64>,
     coulomb_deviation: Option<f64>,
+    threshold: Option<f64>,
     file_value: f64,
     residual: f64,
     unit: &'static str,
@@ -383,11 +404,12 @@ impl TrendReply {
     pub(crate) fn of(robot: &Robot, words: &str, trend: &Trend, events: &[Vec<Event>]) -> Self {
         let rows = trend.rows.iter().zip(events).map(|(row, events)| {
             let joints = row.friction.iter().zip(&row.residual).enumerate();
-            let joints = joints.map(|(joint, ((value, deviation), residual))| OfFriction {
+            let joints = joints.map(|(joint, (of, residual))| OfFriction {
                 joint: joint + 1,
                 name: robot.joints[joint].name.clone(),
-                coulomb: finite(*value),
-                coulomb_deviation: finite(*deviation),
+                coulomb: finite(of.value),
+                coulomb_deviation: finite(of.deviation),
+                threshold: finite(of.threshold),
                 file_value: trend.friction[joint][0],
                 residual: *residual,
                 unit: unit(robot, Candidate::Coulomb(joint)),
@@ -395,8 +417,8 @@ impl TrendReply {
             OfRow {
                 log: row.name.clone(),
                 events: events.iter().map(|event| OfEvent::of(robot, event)).collect(),
-                payload: finite(row.payload.0),
-                payload_deviation: finite(row.payload.1),
+                payload: finite(row.payload.value),
+                payload_deviation: finite(row.payload.deviation),
                 joints: joints.collect(),
             }
         });
