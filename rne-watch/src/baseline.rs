@@ -19,6 +19,10 @@ const PARTS: [usize; 2] = [4, 64];
 /// The weight of the mean of all candidates of a kind, in stretches.
 const SHARED: f64 = 4.0;
 
+/// The error of a robot file on another motion than that of its identification, in errors between two logs: files of
+/// the first half of a public log, compared with the second half, have changes of 0.8 thresholds with 1.
+const DOUBT_OF_FILE: f64 = 2.5;
+
 /// Rows of a joint for each unknown that they may depend on.
 const ENOUGH: f64 = 2.75;
 
@@ -46,6 +50,9 @@ pub struct Baseline {
     pub rows: u64,
     /// s
     pub duration: f64,
+    /// The factor by which the error of the model is larger than between two logs of one arm: 1, or more for the links of
+    /// a robot file, which come from another motion.
+    pub doubt: f64,
     /// The noise of the observer, if it was measured.
     pub contact: Option<ContactNoise>,
 }
@@ -92,6 +99,7 @@ impl Baseline {
             rows: stretches.rows(),
             duration: stretches.duration(),
             model,
+            doubt: 1.0,
             contact: None,
         })
     }
@@ -118,6 +126,7 @@ impl Baseline {
     /// its own baseline.
     #[must_use]
     pub fn against_file(mut self, structure: &Structure) -> Self {
+        self.doubt = DOUBT_OF_FILE;
         self.model.solution = FittedModel::of_file(structure, &self.model.transitions).solution;
         self
     }

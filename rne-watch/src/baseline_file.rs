@@ -131,6 +131,7 @@ impl Baseline {
             residual: read.numbers("residual", dof)?,
             rows,
             duration: read.number("duration")?,
+            doubt: 1.0,
             contact,
         })
     }

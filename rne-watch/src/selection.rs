@@ -161,14 +161,14 @@ impl<'a> Selection<'a> {
     /// The estimate of a change with its deviation, which is larger where only a part of the log tells it.
     fn statistic(&self, change: &Change, estimate: &Estimate) -> Statistic {
         let candidate = self.candidate(change.candidate);
-        let Baseline { scale, inflation, .. } = self.baseline;
+        let Baseline { scale, inflation, doubt, .. } = self.baseline;
         let is_part = change.window.start > 0 || change.window.end < self.score.len();
         let [deviations, size, alike] = if is_part {
             [DEVIATIONS_OF_PART, SIZE_OF_PART, (ALIKE / self.duration(&change.window)).max(1.0)]
         } else {
             [DEVIATIONS, 1.0, 1.0]
         };
-        let model = alike * scale.model_error(candidate);
+        let model = alike * doubt * scale.model_error(candidate);
         let deviation = (inflation[change.candidate] * estimate.deviation).hypot(model);
         let threshold = (deviations * deviation).max(size * scale.least(candidate));
         Statistic { candidate, change: estimate.value(), deviation, threshold }
