@@ -22,6 +22,7 @@ mod random;
 mod smoothing;
 mod steady;
 mod structure;
+mod verdict;
 mod written;
 
 pub use excitation::{BaseExcitation, Excitation, ExcitationOptions, ExcitationProgress, JointUse, excite};
@@ -34,6 +35,7 @@ pub use information::{Information, MotionError, Rejected, Weighting, WrongNumber
 pub use least_squares::LeastSquares;
 pub use motion_limits::{AskedLimits, MotionLimits};
 pub use parameters::{Base, Parameters};
-pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};
+pub use prediction::{JointError, Prediction, SPEEDS, Standstill, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use structure::{Options, Structure};
+pub use verdict::{Doubt, Evidence, Excited, JointVerdict, Verdict};

@@ -14,7 +14,7 @@ use crate::outcome::Failure;
 use crate::palette::{TITLE, TYPED, WARNING};
 use crate::render::layout::wrap;
 use crate::render::log_remedy;
-use crate::render::log_report::{left_out, notes_of_motion};
+use crate::render::log_report::{left_out, notes};
 use crate::values::log_arguments::{self, LogArguments};
 use crate::values::numbers::rounded;
 
@@ -121,7 +121,7 @@ impl MotionLog {
         options.cutoff = Some(read_to);
         let log = Log::open(paths, options.clone()).map_err(failure)?;
         let survey = reading::survey(&log, false).map_err(failure)?;
-        remarks.extend(notes_of_motion(&log, &survey));
+        remarks.extend(notes(&log, &survey));
         for (joint, (least, greatest)) in log.layout().joints.iter().zip(&survey.efforts) {
             if least == greatest {
                 let what = format!("efforts of {joint} are {} throughout: are they measured?", rounded(*least, 3));

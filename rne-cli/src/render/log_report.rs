@@ -246,8 +246,9 @@ pub(crate) fn left_out(log: &Log, survey: &Survey) -> impl Iterator<Item = (u64,
     all.into_iter().chain([(counts.not_finite, not_finite)]).filter(|(count, _)| *count > 0)
 }
 
-/// Remarks, and whether they are warnings.
-fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
+/// Remarks on a log, also on what its efforts are, and whether they are warnings. Every command that reads logs prints
+/// these.
+pub(crate) fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     let layout = log.layout();
     let mut notes = notes_of_motion(log, survey);
     if !layout.has_efforts {
@@ -266,7 +267,7 @@ fn takes_torques(log: &Log) -> bool {
 }
 
 /// Remarks on everything but what efforts are, and whether they are warnings.
-pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
+fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     let layout = log.layout();
     let mut notes: Vec<(String, bool)> = layout.notes.iter().map(|note| (note.clone(), false)).collect();
     if let Some((joint, range)) = survey.may_be_degrees(log) {
