@@ -1,7 +1,7 @@
 //! Verdict on a model: the joints that it predicts, the reasons where it does not, and the parameters that a motion which
 //! excites more would determine.
 
-use rne_model::Robot;
+use rne_model::{Joint, Robot};
 
 use crate::identifiability::Parameter;
 use crate::identification::{BaseReport, Identification, JointReport};
@@ -88,6 +88,8 @@ pub enum Doubt {
     Standstill(Standstill),
     /// The logs do not determine the friction of the joint.
     FrictionNotExcited,
+    /// The robot file that is judged has no friction for the joint.
+    WithoutFriction,
     /// The held-out error is this many times the error on the data from which the model was identified.
     Grown(f64),
 }
@@ -131,11 +133,14 @@ impl Verdict {
     /// Verdict on a robot file by its errors on logs.
     #[must_use]
     pub fn of_file(robot: &Robot, errors: &[JointError]) -> Self {
-        let joint = |(error, is_unknown): (&JointError, bool)| {
-            let doubts = if is_unknown { vec![Doubt::NotExcited] } else { Vec::new() };
+        let joint = |((error, joint), is_unknown): ((&JointError, &Joint), bool)| {
+            let mut doubts = if is_unknown { vec![Doubt::NotExcited] } else { Vec::new() };
+            if joint.motor.is_none_or(|motor| motor.viscous == 0.0 && motor.coulomb == [0.0; 2]) {
+                doubts.push(Doubt::WithoutFriction);
+            }
             JointVerdict::new(None, Some(*error), doubts, !is_unknown)
         };
-        let joints = errors.iter().zip(Identification::not_excited(robot)).map(joint).collect();
+        let joints = errors.iter().zip(&robot.joints).zip(Identification::not_excited(robot)).map(joint).collect();
         Self { evidence: Evidence::Judged, joints, excited: None }
     }
 
@@ -157,7 +162,8 @@ impl JointVerdict {
             && standstill.duration() >= STANDSTILL
             && error.part_at_rest >= AT_REST
         {
-            let causes = |doubt: &Doubt| !matches!(doubt, Doubt::FrictionNotExcited | Doubt::Grown(_));
+            let causes =
+                |doubt: &Doubt| !matches!(doubt, Doubt::FrictionNotExcited | Doubt::WithoutFriction | Doubt::Grown(_));
             let place = verdict.doubts.iter().filter(|doubt| causes(doubt)).count();
             verdict.doubts.insert(place, Doubt::Standstill(standstill));
         }

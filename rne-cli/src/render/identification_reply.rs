@@ -76,6 +76,7 @@ enum OfDoubt {
     Outliers { rows: u64, first: f64 },
     Standstill { from: f64, until: f64, part_of_squared_error: Option<f64> },
     FrictionNotExcited,
+    WithoutFriction,
     HeldOutErrorGrown { factor: Option<f64> },
     Other,
 }
@@ -249,6 +250,7 @@ impl OfDoubt {
                 part_of_squared_error: verdict.error().and_then(|error| finite(error.part_at_rest)),
             },
             Doubt::FrictionNotExcited => Self::FrictionNotExcited,
+            Doubt::WithoutFriction => Self::WithoutFriction,
             Doubt::Grown(factor) => Self::HeldOutErrorGrown { factor: finite(*factor) },
             _ => Self::Other,
         }

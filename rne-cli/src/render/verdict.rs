@@ -36,7 +36,10 @@ impl Worded<'_> {
     /// The verdict in sentences below a heading.
     pub(crate) fn below(&self, heading: &str) -> String {
         let joints = || self.robot.joints.iter().zip(&self.verdict.joints);
-        let doubtful: Vec<(&Joint, &JointVerdict)> = joints().filter(|(_, verdict)| !verdict.is_predicted).collect();
+        let mut doubtful: Vec<(&Joint, &JointVerdict)> =
+            joints().filter(|(_, verdict)| !verdict.is_predicted).collect();
+        doubtful.sort_by_key(|(_, verdict)| verdict.doubts.is_empty());
+        let with_reasons = doubtful.iter().filter(|(_, verdict)| !verdict.doubts.is_empty()).count();
         let first = wrap(&self.first(), "");
         let last = self.verdict.excited.as_ref().map(|excited| self.excited(excited)).unwrap_or_default();
         // as many reasons as there is room for
@@ -47,7 +50,7 @@ impl Worded<'_> {
             let lines = [vec![first.clone()], lines, last.clone()].concat();
             format!("{heading}{}\n", lines.join("\n"))
         };
-        let fits = (0..=doubtful.len()).rev().find(|explained| whole(*explained).lines().count() <= LINES);
+        let fits = (0..=with_reasons).rev().find(|explained| whole(*explained).lines().count() <= LINES);
         whole(fits.unwrap_or(0))
     }
 
@@ -89,13 +92,8 @@ impl Worded<'_> {
         let is_cause = |doubt: &&Doubt| verdict.doubts.len() == 1 || !matches!(doubt, Doubt::Grown(_));
         let causes = verdict.doubts.iter().filter(is_cause);
         let reasons: Vec<String> = causes.map(|doubt| self.reason(joint, verdict, doubt)).collect();
-        let reasons = match (reasons.is_empty(), self.verdict.evidence) {
-            (false, _) => reasons.join("; "),
-            (true, Evidence::Judged) => format!("no cause is known; {TYPED}rne watch{TYPED:#} looks for one"),
-            (true, _) => "no cause is known".to_owned(),
-        };
         let (named, fails) = (named(joint, verdict), self.not_predicted());
-        wrap(&format!("{named} is {WARNING}{fails}{WARNING:#}: {reasons}."), "  ")
+        wrap(&format!("{named} is {WARNING}{fails}{WARNING:#}: {}.", reasons.join("; ")), "  ")
     }
 
     /// Joints for whose reasons there is no room.
@@ -120,6 +118,7 @@ impl Worded<'_> {
             Doubt::NotExcited if self.verdict.evidence == Evidence::Judged => {
                 "its file says that it was not excited when it was identified".to_owned()
             }
+            Doubt::WithoutFriction => "the robot file has no friction for it".to_owned(),
             Doubt::NotExcited => "its torque in this log is mostly noise".to_owned(),
             Doubt::Offset { offset, .. } => {
                 format!("it has an offset of {} {unit}, more than a robot file can store", rounded(*offset, 3))
@@ -196,7 +195,7 @@ impl Worded<'_> {
         align.extend([Align::Right, Align::Left, Align::Left]);
         let lines = columns(&align, &cells);
         let (title, of_residual) =
-            if both { (" on the fitted and on the held-out part", ", on the held-out part") } else { ("errors", "") };
+            if both { (" on the fitted and on the held-out part", ", on the held-out part") } else { ("", "") };
         let all = match self.verdict.evidence {
             Evidence::Judged => "errors by speed, too",
             _ => "parameters, friction and errors by speed",
@@ -229,6 +228,7 @@ impl Worded<'_> {
             Some(Doubt::Offset { .. }) => ": offset",
             Some(Doubt::Outliers(_)) => ": outliers",
             Some(Doubt::Standstill(_)) => ": stands still",
+            Some(Doubt::WithoutFriction) => ": no friction in the file",
             Some(Doubt::FrictionNotExcited) => ": friction not excited",
             Some(_) => ": larger than fitted",
         };
