@@ -31,7 +31,6 @@ const DRAWN: u64 = 4000;
 Examples:
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv -o identified.yaml
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --hold-out 0.3
-  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --all
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {

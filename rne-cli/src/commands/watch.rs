@@ -101,7 +101,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
     let quiet = match &arguments.quiet[..] {
         [] => None,
-        logs => Some(MotionLog::open_wide(logs, &robot, &arguments.reading.with_cutoff(log.cutoff))?),
+        logs => {
+            let quiet = MotionLog::open_wide(logs, &robot, &arguments.reading.with_cutoff(log.cutoff))?;
+            Some(quiet.without_remarks_of(&log))
+        }
     };
     let mut remark = log.remark(PAGE);
     remark += &quiet.as_ref().map_or_else(String::new, |quiet| quiet.remark(PAGE));

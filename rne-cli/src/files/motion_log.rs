@@ -143,6 +143,12 @@ impl MotionLog {
         Ok(Self { log, options, survey, cutoff: self.cutoff, read_to, remarks: Vec::new() })
     }
 
+    /// The log without the remarks that another log has, too.
+    pub(crate) fn without_remarks_of(mut self, other: &Self) -> Self {
+        self.remarks.retain(|remark| !other.remarks.contains(remark));
+        self
+    }
+
     /// Remarks on the log, in lines of a width.
     pub(crate) fn remark(&self, width: usize) -> String {
         let mut text = String::new();

@@ -55,7 +55,7 @@ fn one_wrong_effort_spoils_nothing() {
         ("inf", ["message 201 at 8.000 s", "left out: 1 messages"]),
     ] {
         let log = with_effort(&folder.join("log.csv"), effort);
-        let called = rne(&["identify", ARM, &log]);
+        let called = rne(&["identify", ARM, &log, "--all"]);
         let err = called.err.replace("\n         ", " ");
         assert!(called.status == 0 && said.iter().all(|said| err.contains(said)), "{effort}: {called:?}");
         let [viscous, forward, backward] = friction(&called.out)[..] else { panic!("{}", called.out) };
@@ -77,7 +77,7 @@ fn what_is_of_no_free_motion_does_not_count() {
         }
     });
     for (log, said) in [("docs/desk_arm_knock.csv", "the first at 9.29 s"), (&failed, "the first at 7.81 s")] {
-        let called = rne(&["identify", ARM, log]);
+        let called = rne(&["identify", ARM, log, "--all"]);
         let words = called.said();
         let warned = words.contains("rows of shoulder are outliers and are ignored") && words.contains(said);
         assert!(called.status == 0 && warned, "{called:?}");
@@ -103,7 +103,7 @@ fn nothing_is_excited_by_an_arm_that_stands_still() {
         cells[4..7].fill("0".to_owned());
     });
     let out = folder.join("still.yaml");
-    let called = rne(&["identify", ARM, &still, "-o", out.to_str().expect("UTF-8")]);
+    let called = rne(&["identify", ARM, &still, "--all", "-o", out.to_str().expect("UTF-8")]);
     assert_eq!(called.status, 1, "{called:?}");
     assert!(called.out.contains(", 0 of them excited;"), "{}", called.out);
     assert!(!called.out.contains("± 0 "), "{}", called.out);
@@ -176,7 +176,7 @@ fn what_cannot_be_identified_is_said() {
     });
     fails(2, &["identify", ARM, &degrees, "-o", out], &["more than 4π", "--degrees"]);
     let text = fine(&["identify", ARM, &degrees, "--degrees"]);
-    assert!(text.contains("15 of them excited"), "{text}");
+    assert!(text.contains("The log determines all 15 base parameters"), "{text}");
     let without = fs::read_to_string(format!("{ROOT}/{LOG}")).expect("a log").replace("shoulder_effort", "other");
     let path = folder.join("without.csv");
     fs::write(&path, without).expect("a file");
@@ -225,12 +225,12 @@ fn without_friction_there_is_none() {
     let out = folder.join("out.yaml");
     let path = out.to_str().expect("UTF-8");
     let file = "docs/desk_arm_identified.yaml";
-    let called = rne(&["identify", file, LOG, "--no-friction", "-o", path]);
+    let called = rne(&["identify", file, LOG, "--no-friction", "--all", "-o", path]);
     assert_eq!(called.status, 0, "{called:?}");
     let text = fs::read_to_string(&out).expect("a robot file");
     assert!(!text.contains("viscous") && !text.contains("coulomb"), "{text}");
     // what is said of the log is what the file that is written says of it
-    let judged = fine(&["identify", path, LOG, "--judge"]);
+    let judged = fine(&["identify", path, LOG, "--judge", "--all"]);
     let table = |text: &str| text.split_once("error: RMS of").expect("a table").1.to_owned();
     assert_eq!(table(&judged), table(&called.out));
 }
@@ -239,10 +239,10 @@ fn without_friction_there_is_none() {
 #[test]
 fn a_file_is_judged_by_all_that_there_is() {
     let folder = folder("identify_judge");
-    let text = fine(&["identify", "docs/desk_arm_identified.yaml", LOG, "--judge"]);
+    let text = fine(&["identify", "docs/desk_arm_identified.yaml", LOG, "--judge", "--all"]);
     assert!(text.replace('\n', " ").contains("400 of 400 states"), "{text}");
     let spike = with_effort(&folder.join("log.csv"), "10000");
-    let judged = rne(&["identify", "docs/desk_arm_identified.yaml", &spike, "--judge"]);
+    let judged = rne(&["identify", "docs/desk_arm_identified.yaml", &spike, "--judge", "--all"]);
     assert!(judged.said().contains("10000 of shoulder"), "{judged:?}");
     let row = judged.out.lines().find(|line| line.starts_with("  shoulder")).expect("a row");
     let unfiltered = row.split_whitespace().nth(3).and_then(|word| word.parse::<f64>().ok());
