@@ -160,7 +160,7 @@ impl Worded<'_> {
         let _ = write!(text, ". It does not excite {}.", unknown.join(", "));
         // a command is not broken into lines
         let command = format!("rne excite {}", one_line(&self.file.display().to_string())).replace(' ', TIED);
-        let next = format!("To excite more, record the motion that {TYPED}{command}{TYPED:#} designs.");
+        let next = format!("To excite more, record the motion that {TYPED}`{command}`{TYPED:#} designs.");
         vec![wrap(&text, ""), wrap(&next, "")]
     }
 
