@@ -1,5 +1,5 @@
-//! Verdict on a model: the joints that it predicts, the reasons where it does not, and the parameters that a motion which
-//! excites more would determine.
+//! Verdict on a model: the joints that it predicts, the reasons where it does not, and the parameters that the logs do
+//! not excite.
 
 use rne_model::{Joint, Robot};
 

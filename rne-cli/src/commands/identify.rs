@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         } else {
             text += &worded.errors(log.cutoff);
         }
-        return Ok(Outcome { text, remark, ..Outcome::default() });
+        return Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() });
     }
     let options = options(arguments, log.cutoff);
     let (training, held) = match arguments.hold_out {
@@ -141,7 +141,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         };
         let what = format!("nothing is excited: the log determines no link and no friction of this arm{not_written}");
         remark += &warning(&what);
-        return Ok(Outcome { text, remark, at_fault: true });
+        return Ok(Outcome { text, remark, remark_last: true, at_fault: true });
     }
     if let Some(path) = &arguments.output {
         let file = found.robot_file(&log.words());
@@ -151,7 +151,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
         remark += &output_file::write_new(path, &file, &sources, arguments.force)?;
     }
-    Ok(Outcome { text, remark, ..Outcome::default() })
+    Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() })
 }
 
 /// The verdict, the errors and, with `--all`, every number.

@@ -148,7 +148,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("thresholds from: {usual}"), PAGE, "  "));
     text += &events_table(&robot, &watched.events, log.runs() > 1);
     text += &errors_table(&robot, &judged, &errors, &Identification::not_excited(&robot), "errors on the log");
-    Ok(Outcome { text, remark, at_fault })
+    Ok(Outcome { text, remark, at_fault, ..Outcome::default() })
 }
 
 /// Hands the signals of a log to what takes them, piece by piece; how many pieces were long enough for it.

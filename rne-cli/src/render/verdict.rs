@@ -202,7 +202,8 @@ impl Worded<'_> {
         };
         let about = format!(
             "error: RMS of measured - predicted torque over the standard deviation of the measured torque, both \
-             low-passed at {cutoff:.1} Hz, at most {} counts as {}; residual: this RMS itself{of_residual}. {TYPED}--all{TYPED:#} prints {all}.",
+             low-passed at {cutoff:.1} Hz, at most {} counts as {}; residual: this RMS itself{of_residual}. \
+             {TYPED}--all{TYPED:#} prints {all}.",
             percent(Verdict::limit()),
             self.not_predicted().trim_start_matches("not ")
         );

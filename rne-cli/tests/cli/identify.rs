@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::call::{EFFORTS as TAKEN_AS_TORQUES, ROOT, fails, fine, folder, rne};
+use crate::call::{EFFORTS as TAKEN_AS_TORQUES, ROOT, command, fails, fine, folder, rne};
 
 const ARM: &str = "docs/desk_arm.yaml";
 const LOG: &str = "docs/desk_arm_log.csv";
@@ -309,8 +309,8 @@ fn the_verdict_is_the_first_block() {
                 "predicts 5 of 6 joints on held-out data (from 13.5 s on), with errors of ",
                 " to 15 % of the standard deviation of the measured torque",
                 "wrist_3_joint (68 %) is not predicted: it stands still from 17.9 to 19.2 s",
-                "determines 18 of 36 base parameters and the friction of all 6 joints. It does not excite 18 inertias of \
-                 links 2 to 6",
+                "determines 18 of 36 base parameters and the friction of all 6 joints",
+                "It does not excite 18 inertias of links 2 to 6",
                 "record the motion that `rne excite rne-identify/tests/logs/ur10_log.yaml` designs",
             ][..],
         ),
@@ -350,6 +350,19 @@ fn the_verdict_is_the_first_block() {
     let block = first_block(&fine(&["identify", ARM, LOG, "--judge"]));
     assert!(block.contains("waist (71 %) is not predicted: the robot file has no friction for it"), "{block}");
     assert!(!block.contains("determines") && !block.contains("rne excite"), "{block}");
+}
+
+/// On a terminal, which shows both streams, the verdict stands before notes and warnings.
+#[test]
+fn remarks_come_after_the_verdict() {
+    let path = folder("identify_streams").join("both.txt");
+    let both = fs::File::create(&path).expect("a file");
+    let mut call = command(&[&["identify"][..], &UR10, &["--hold-out", "0.3"]].concat());
+    let status = call.stdout(both.try_clone().expect("a file")).stderr(both).status().expect("rne runs");
+    let said = fs::read_to_string(&path).expect("a file");
+    assert!(status.success() && said.starts_with("ur10_log from ur10.csv"), "{said}");
+    let (verdict, warning) = (said.find("wrist_3_joint (68"), said.find("warning: the held-out"));
+    assert!(verdict.is_some() && verdict < warning, "{said}");
 }
 
 /// However many joints are not predicted, there are ten lines.
@@ -421,6 +434,18 @@ fn row(out: &str, name: &str) -> Vec<f64> {
     line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
 }
 
+/// The keys of a value and of all that is in it.
+fn keys_of(value: &Value, seen: &mut Vec<String>) {
+    match value {
+        Value::Object(of) => of.iter().for_each(|(key, value)| {
+            seen.push(key.clone());
+            keys_of(value, seen);
+        }),
+        Value::Array(of) => of.iter().for_each(|value| keys_of(value, seen)),
+        _ => (),
+    }
+}
+
 /// The JSON has the numbers of the tables, with deviations.
 #[test]
 fn the_reply_is_the_account() {
@@ -433,18 +458,8 @@ fn the_reply_is_the_account() {
     let keys: Vec<&String> = reply.as_object().expect("an object").keys().collect();
     let mut documented = fs::read_to_string(format!("{ROOT}/docs/identify.md")).expect("a page");
     documented = documented.split_once("## As JSON").expect("a section").1.to_owned();
-    fn walk(value: &Value, seen: &mut Vec<String>) {
-        match value {
-            Value::Object(of) => of.iter().for_each(|(key, value)| {
-                seen.push(key.clone());
-                walk(value, seen);
-            }),
-            Value::Array(of) => of.iter().for_each(|value| walk(value, seen)),
-            _ => (),
-        }
-    }
     let mut seen = Vec::new();
-    walk(&reply, &mut seen);
+    keys_of(&reply, &mut seen);
     for key in seen {
         assert!(documented.contains(&format!("`{key}`")), "{key} is not in docs/identify.md");
     }
