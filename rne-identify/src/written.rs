@@ -113,7 +113,10 @@ fn of_link(identification: &Identification, report: &JointReport, joint: usize) 
             short(report.error.residual)
         )
     } else if report.error.as_read < 10.0 {
-        format!("joint not excited: no model explains {:.0} % of its unfiltered effort", 100.0 * report.error.as_read)
+        format!(
+            "joint not excited: no model explains {:.0} % of its effort before the low-pass",
+            100.0 * report.error.as_read
+        )
     } else {
         "joint not excited: its effort does not change but by noise".to_owned()
     }

@@ -14,6 +14,9 @@ use crate::values::numbers::rounded;
 /// Lines of the verdict at most, its heading included: joints that do not fit are named without reasons.
 const LINES: usize = 10;
 
+/// Joints that are named without reasons at most; the others are counted.
+const SHOWN: usize = 5;
+
 /// A blank at which no line breaks.
 pub(crate) const TIED: &str = "\u{A0}";
 
@@ -105,10 +108,13 @@ impl Worded<'_> {
             }
             _ => named(joint, verdict),
         };
-        let named: Vec<String> = joints.iter().map(of).collect();
+        let mut named: Vec<String> = joints.iter().take(SHOWN).map(of).collect();
+        if joints.len() > SHOWN {
+            named.push(format!("{} more", joints.len() - SHOWN));
+        }
         let fails = self.not_predicted();
         let also = if is_more { format!("Also {fails}") } else { fails.replacen('n', "N", 1) };
-        (!named.is_empty()).then(|| wrap(&format!("{also}: {}.", named.join(", ")), "  "))
+        (!named.is_empty()).then(|| wrap(&format!("{also}: {}.", enumerated(&named)), "  "))
     }
 
     fn reason(&self, joint: &Joint, verdict: &JointVerdict, doubt: &Doubt) -> String {
@@ -157,7 +163,7 @@ impl Worded<'_> {
         if unknown.is_empty() {
             return vec![wrap(&(text + "."), "")];
         }
-        let _ = write!(text, ". It does not excite {}.", unknown.join(", "));
+        let _ = write!(text, ". It does not excite {}.", enumerated(&unknown));
         // a command is not broken into lines
         let command = format!("rne excite {}", one_line(&self.file.display().to_string())).replace(' ', TIED);
         let next = format!("To excite more, record the motion that {TYPED}`{command}`{TYPED:#} designs.");
@@ -317,21 +323,28 @@ fn group(kind: &str, place: &str, of: &[usize]) -> Option<String> {
     Some(format!("{} {plural} of {}", of.len(), listed(place, of)))
 }
 
-/// Links or joints by their numbers from 1: `link 2`, `links 2 and 4`, `links 2 to 6`.
+/// Links or joints by their numbers from 1: `link 2`, `links 2 and 4`, `links 2 to 6 and 8`.
 fn listed(noun: &str, places: &[usize]) -> String {
     let mut numbers: Vec<usize> = places.iter().map(|place| place + 1).collect();
     numbers.sort_unstable();
     numbers.dedup();
-    match numbers.as_slice() {
-        [] => format!("no {noun}"),
-        [one] => format!("{noun} {one}"),
-        [first, .., last] if last - first + 1 == numbers.len() && numbers.len() > 2 => {
-            format!("{noun}s {first} to {last}")
-        }
-        [before @ .., last] => {
-            let before: Vec<String> = before.iter().map(usize::to_string).collect();
-            format!("{noun}s {} and {last}", before.join(", "))
-        }
+    let plural = if numbers.len() == 1 { "" } else { "s" };
+    let words: Vec<String> = numbers
+        .chunk_by(|one, next| one + 1 == *next)
+        .flat_map(|run| match run {
+            [first, _, .., last] => vec![format!("{first} to {last}")],
+            few => few.iter().map(usize::to_string).collect(),
+        })
+        .collect();
+    format!("{noun}{plural} {}", enumerated(&words))
+}
+
+/// `a, b and c`
+fn enumerated(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [before @ .., last] => format!("{} and {last}", before.join(", ")),
     }
 }
 
@@ -377,6 +390,7 @@ mod tests {
         assert_eq!(listed("link", &[3, 1, 1]), "links 2 and 4");
         assert_eq!(listed("link", &[1, 2, 3]), "links 2 to 4");
         assert_eq!(listed("joint", &[0, 1, 3]), "joints 1, 2 and 4");
+        assert_eq!(listed("link", &[0, 1, 2, 4, 5, 6]), "links 1 to 3 and 5 to 7");
         let parameters = [Parameter::Link(1, 4), Parameter::Link(2, 9), Parameter::Link(0, 1), Parameter::Rotor(0)];
         let said = ["1 moment of mass of link 1", "2 inertias of links 2 and 3", "1 rotor inertia of joint 1"];
         assert_eq!(groups(&parameters), said);

@@ -319,7 +319,7 @@ fn the_verdict_is_the_first_block() {
             &[
                 "predicts 4 of 7 joints on held-out data (from 11.8 s on)",
                 "fer_joint1 (23 %) is not predicted: its torque in this log is mostly noise",
-                "not predicted: fer_joint5 (28 %, fitted 7.1 %), fer_joint7 (39 %, fitted 12 %)",
+                "not predicted: fer_joint5 (28 %, fitted 7.1 %) and fer_joint7 (39 %, fitted 12 %)",
                 "determines 18 of 43 base parameters",
             ],
         ),
