@@ -20,6 +20,8 @@ pub(crate) struct Outcome {
     pub(crate) text: String,
     /// Remarks for standard error, styled: not part of the answer.
     pub(crate) remark: String,
+    /// Whether the remarks come after the text: a text that begins with a verdict comes first.
+    pub(crate) remark_last: bool,
     /// Whether the answer is that the input is at fault.
     pub(crate) at_fault: bool,
 }

@@ -27,8 +27,11 @@ pub(crate) fn room() -> usize {
 
 /// Prints what a command returned.
 pub(crate) fn show(outcome: &Outcome) -> ExitCode {
-    let _ = write(AutoStream::auto(io::stderr().lock()), &outcome.remark);
-    match write(AutoStream::auto(io::stdout().lock()), &outcome.text) {
+    let (before, after) = if outcome.remark_last { ("", &*outcome.remark) } else { (&*outcome.remark, "") };
+    let _ = write(AutoStream::auto(io::stderr().lock()), before);
+    let written = write(AutoStream::auto(io::stdout().lock()), &outcome.text);
+    let _ = write(AutoStream::auto(io::stderr().lock()), after);
+    match written {
         // `rne show … | head` has read enough.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}
         Err(error) => {

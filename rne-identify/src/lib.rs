@@ -25,6 +25,7 @@ mod smoothing;
 mod steady;
 mod stretches;
 mod structure;
+mod verdict;
 mod written;
 
 pub use arm_log::{
@@ -41,7 +42,8 @@ pub use information::{Information, MotionError, Rejected, Weighting, WrongNumber
 pub use least_squares::{LeastSquares, student};
 pub use motion_limits::{AskedLimits, MotionLimits};
 pub use parameters::{Base, Parameters};
-pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};
+pub use prediction::{JointError, Prediction, SPEEDS, Standstill, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use stretches::{Stretch, Stretches};
 pub use structure::{Options, Structure};
+pub use verdict::{Doubt, Evidence, Excited, JointVerdict, Verdict};

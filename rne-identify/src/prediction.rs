@@ -14,6 +14,9 @@ const WINDOW: usize = 4096;
 /// Speeds, rad/s or m/s, that part errors: standing still, creeping, slow, fast.
 pub const SPEEDS: [f64; 3] = [0.02, 0.1, 0.5];
 
+/// Longest gap between states of one standstill, in intervals between states.
+const GAP: f64 = 4.0;
+
 /// Comparison of the torques of a robot file with those of logs, in memory that does not grow with them.
 #[derive(Clone, Debug)]
 pub struct Prediction {
@@ -27,8 +30,9 @@ pub struct Prediction {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointError {
-    /// Root mean square of measured minus predicted, both behind the same low-pass, over the deviation of the measured
-    /// effort: of the states about which the log has the whole kernel of the low-pass, unless it is shorter than that.
+    /// Root mean square of measured minus predicted torques, both after the same low-pass, over the standard deviation
+    /// of the measured effort: of the states about which the log has the whole kernel of the low-pass, unless it is
+    /// shorter than that.
     pub error: f64,
     /// Root mean square of recorded minus predicted over the deviation of the recorded effort: at every instant, and
     /// efforts as the log has them, before any filter.
@@ -41,8 +45,30 @@ pub struct JointError {
     pub deviation: f64,
     /// Root mean square of what is left at speeds up to each of [`SPEEDS`], and above; NaN where the joint was at none.
     pub by_speed: [f64; 4],
+    /// Part of the squared residual that arose at speeds up to the first of [`SPEEDS`], 0 to 1.
+    pub part_at_rest: f64,
+    /// Longest standstill of the joint: no speed is above the first of [`SPEEDS`]. `None` if it never stood still.
+    pub standstill: Option<Standstill>,
     /// Number of states.
     pub states: u64,
+}
+
+/// An interval of time in which a joint stood still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Standstill {
+    /// Time of its first state in the log, s.
+    pub start: f64,
+    /// Time of its last state, s.
+    pub end: f64,
+}
+
+impl Standstill {
+    /// Its duration, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.end - self.start
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,6 +81,9 @@ struct Sums {
     inner: u64,
     filtered: f64,
     by_speed: [(u64, f64); 4],
+    longest: Option<Standstill>,
+    /// The standstill that may go on with the next state.
+    current: Option<Standstill>,
 }
 
 /// The running deviation of a series of numbers.
@@ -131,6 +160,7 @@ impl Prediction {
         let inner = self.inner(&motion.time);
         let recorded = if motion.recorded.is_empty() { &motion.tau } else { &motion.recorded };
         for (joint, sums) in self.sums.iter_mut().enumerate() {
+            sums.take_speeds(&motion.time, &motion.qd[joint]);
             for (at, (measured, of)) in pairs[joint].iter().enumerate() {
                 sums.take(motion.tau[joint][at], recorded[joint][at], predicted[joint][at]);
                 if inner.contains(&at) {
@@ -202,6 +232,27 @@ impl Sums {
     }
 
     #[allow(clippy::cast_precision_loss)]
+    fn take_speeds(&mut self, time: &[f64], speeds: &[f64]) {
+        let step = match time {
+            [first, .., last] => (last - first) / (time.len() - 1) as f64,
+            _ => 0.0,
+        };
+        for (time, speed) in time.iter().zip(speeds) {
+            if speed.abs() > SPEEDS[0] {
+                self.current = None;
+                continue;
+            }
+            let follows = |standstill: &Standstill| (0.0..=GAP * step).contains(&(time - standstill.end));
+            let start = self.current.filter(follows).map_or(*time, |standstill| standstill.start);
+            let current = Standstill { start, end: *time };
+            self.current = Some(current);
+            if self.longest.is_none_or(|longest| longest.duration() < current.duration()) {
+                self.longest = Some(current);
+            }
+        }
+    }
+
+    #[allow(clippy::cast_precision_loss)]
     fn error(&self) -> JointError {
         let root = |sum: f64, states: u64| (sum / states as f64).sqrt();
         let deviation = root(self.measured.squares, self.states);
@@ -213,6 +264,8 @@ impl Sums {
             residual,
             deviation,
             by_speed: self.by_speed.map(|(states, squares)| root(squares, states)),
+            part_at_rest: if self.filtered > 0.0 { self.by_speed[0].1 / self.filtered } else { 0.0 },
+            standstill: self.longest,
             states: self.states,
         }
     }

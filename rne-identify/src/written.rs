@@ -65,6 +65,8 @@ impl Fit {
 fn described(robot: &Robot, logs: &str, added: &str) -> Robot {
     let mut robot = robot.clone();
     let geometry = one_line(&robot.source);
+    // the title that the geometry came with is that of other links
+    robot.title = Some(format!("{} identified from {}", one_line(&robot.name), one_line(logs)));
     robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
     robot.notes = Some(format!(
         "- identified: torques are those of the log, single numbers of a link are one choice among many with the same \
@@ -103,11 +105,18 @@ fn head(identification: &Identification) -> String {
 fn of_link(identification: &Identification, report: &JointReport, joint: usize) -> String {
     let unit = identification.robot.joints[joint].row.kind.effort_unit();
     if let (true, Some((offset, _))) = (report.is_excited(), report.offset) {
-        format!("identified; an offset of {} {unit} is more than its Coulomb friction holds", short(offset))
+        format!("identified: an offset of {} {unit} is more than its Coulomb friction holds", short(offset))
     } else if report.is_excited() {
-        format!("identified; residual {} {unit}, {:.1} %", short(report.error.residual), 100.0 * report.error.error)
+        format!(
+            "identified: error {:.1} %, residual {} {unit}",
+            100.0 * report.error.error,
+            short(report.error.residual)
+        )
     } else if report.error.as_read < 10.0 {
-        format!("joint not excited: no model explains {:.0} % of its effort", 100.0 * report.error.as_read)
+        format!(
+            "joint not excited: no model explains {:.0} % of its effort before the low-pass",
+            100.0 * report.error.as_read
+        )
     } else {
         "joint not excited: its effort does not change but by noise".to_owned()
     }

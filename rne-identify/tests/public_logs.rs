@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use rne_identify::{JointError, MotionError, Options, Prediction, identify};
+use rne_identify::{
+    Doubt, Evidence, Identification, JointError, MotionError, Options, Prediction, Standstill, Verdict, identify,
+};
 use rne_logs::{Log, Motion, median};
 use rne_model::Robot;
 
@@ -41,8 +43,8 @@ fn part(motion: &Motion, range: std::ops::Range<usize>) -> Motion {
     }
 }
 
-/// Errors on the part that was held back, and whether each joint is excited.
-fn held_out(arm: &str) -> (Vec<JointError>, Vec<bool>) {
+/// What is identified from the first part of a log, and its errors on the part that was held back.
+fn held_out(arm: &str) -> (Identification, Vec<JointError>) {
     let robot = std::fs::read_to_string(file(&format!("{arm}_log.yaml"))).unwrap();
     let robot = Robot::from_yaml(&robot).unwrap_or_else(|report| panic!("{report}"));
     let motion = motion(&format!("{arm}.csv"));
@@ -54,7 +56,7 @@ fn held_out(arm: &str) -> (Vec<JointError>, Vec<bool>) {
     let found = identify(&robot, options, 1.0, |take| -> Result<(), MotionError> { take(&training) }).unwrap();
     let mut prediction = Prediction::new(&found.robot, Some(CUTOFF));
     prediction.absorb(&part(&motion, until..whole)).unwrap();
-    (prediction.errors(), found.joints.iter().map(rne_identify::JointReport::is_excited).collect())
+    (found, prediction.errors())
 }
 
 /// What `logs/baseline.py` prints, in percent.
@@ -64,7 +66,8 @@ const BASELINES: [(&str, &[f64]); 2] =
 #[test]
 fn public_logs_are_predicted_better_than_by_a_textbook() {
     for (arm, baseline) in BASELINES {
-        let (errors, excited) = held_out(arm);
+        let (found, errors) = held_out(arm);
+        let excited: Vec<bool> = found.joints.iter().map(rne_identify::JointReport::is_excited).collect();
         let filtered: Vec<f64> = errors.iter().map(|error| 100.0 * error.error).collect();
         let unfiltered: Vec<f64> = errors.iter().map(|error| 100.0 * error.unfiltered).collect();
         println!("{arm} error {filtered:.1?} unfiltered {unfiltered:.1?} excited {excited:?} baseline {baseline:?}");
@@ -77,4 +80,85 @@ fn public_logs_are_predicted_better_than_by_a_textbook() {
         assert!(median(filtered) < 0.75 * median(baseline.to_vec()));
         assert!(median(unfiltered) < median(baseline.to_vec()));
     }
+}
+
+/// The longest time after `after`, s, in which the log's own velocities of a joint (from 0) are at most 0.02 rad/s.
+fn longest_rest(name: &str, joint: usize, after: f64) -> (f64, f64) {
+    let text = std::fs::read_to_string(file(name)).unwrap();
+    let column = text.lines().next().unwrap().split(',').position(|name| name == format!("qd{}", joint + 1)).unwrap();
+    let (mut longest, mut start) = ((0.0, 0.0), None);
+    for row in text.lines().skip(1) {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let rests = cells[0] >= after && cells[column].abs() <= 0.02;
+        start = rests.then(|| start.unwrap_or(cells[0]));
+        if let Some(start) = start.filter(|start| cells[0] - start > longest.1 - longest.0) {
+            longest = (start, cells[0]);
+        }
+    }
+    longest
+}
+
+/// The verdict names the joints that are not predicted, and why: wrist 3 of the UR10 stands still at the end.
+#[test]
+fn verdicts_name_the_joints_and_the_reasons() {
+    let (found, errors) = held_out("ur10");
+    let verdict = Verdict::of(&found, Some(&errors));
+    assert_eq!((verdict.evidence, verdict.predicted()), (Evidence::HeldOut, 5));
+    let wrist = &verdict.joints[5];
+    assert!(!wrist.is_predicted && verdict.joints[..5].iter().all(|joint| joint.is_predicted));
+    let Some(Doubt::Standstill(standstill)) = wrist.doubts.first() else { panic!("{wrist:?}") };
+    let (start, end) = longest_rest("ur10.csv", 5, 13.5);
+    assert!(
+        (start - standstill.start).abs() < 0.2 && (end - standstill.end).abs() < 0.05,
+        "{standstill:?} {start} {end}"
+    );
+    assert!(wrist.other.unwrap().part_at_rest > 0.5);
+    // manifold: wrist 1 is still predicted
+    let grown: Vec<bool> = verdict.joints.iter().map(|joint| joint.growth().is_some()).collect();
+    let expected: Vec<bool> = found
+        .joints
+        .iter()
+        .zip(&errors)
+        .map(|(of, error)| error.error > 2.0 * of.error.error && error.error > 0.05)
+        .collect();
+    assert!(grown == expected && grown[3] && grown[5] && !grown[2], "{grown:?}");
+    let excited = verdict.excited.unwrap();
+    assert_eq!(excited.base_parameters, 36);
+    assert_eq!(excited.known_parameters(), found.bases.iter().filter(|base| base.is_excited()).count());
+    assert_eq!(excited.known_frictions(), 6);
+
+    let (found, errors) = held_out("panda");
+    let verdict = Verdict::of(&found, Some(&errors));
+    let predicted: Vec<bool> = verdict.joints.iter().map(|joint| joint.is_predicted).collect();
+    assert_eq!(predicted, [false, true, true, true, false, true, false]);
+    assert_eq!(verdict.joints[0].doubts, [Doubt::NotExcited]);
+    assert!(matches!(verdict.joints[4].doubts[..], [Doubt::Grown(factor)] if factor > 2.0), "{:?}", verdict.joints[4]);
+    // without other data nothing has grown
+    let fitted = Verdict::of(&found, None);
+    assert_eq!(fitted.evidence, Evidence::Fitted);
+    assert!(fitted.joints.iter().all(|joint| joint.other.is_none() && joint.growth().is_none()));
+}
+
+/// A standstill that pieces of a motion share is one, and a gap between runs ends it.
+#[test]
+fn standstills_go_on_in_the_next_piece() {
+    let robot = Robot::from_yaml(&std::fs::read_to_string(file("ur10_log.yaml")).unwrap()).unwrap();
+    let whole = motion("ur10.csv");
+    let standstill = |pieces: &[Motion]| -> Standstill {
+        let mut prediction = Prediction::new(&robot, Some(CUTOFF));
+        for piece in pieces {
+            prediction.absorb(piece).unwrap();
+        }
+        prediction.errors()[5].standstill.unwrap()
+    };
+    let expected = standstill(std::slice::from_ref(&whole));
+    assert!(expected.duration() > 1.0, "{expected:?}");
+    let middle = whole.time.partition_point(|time| *time < 0.5 * (expected.start + expected.end));
+    let (before, mut after) = (part(&whole, 0..middle), part(&whole, middle..whole.len()));
+    assert_eq!(standstill(&[before.clone(), after.clone()]), expected);
+    for time in &mut after.time {
+        *time += 10.0;
+    }
+    let apart = standstill(&[before, after]);
+    assert!(apart.duration() < expected.duration(), "{apart:?}");
 }

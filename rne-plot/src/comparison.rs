@@ -5,36 +5,46 @@ use rne_model::Robot;
 use crate::chart::subscript;
 use crate::panels::{Panel, PanelCurve, panels};
 
-/// Measured and predicted torques by joint, N m (N where it slides), over times in s, as an SVG of 1280 pixels width:
-/// for each joint both and their difference. `about` says what was measured. Texts of the robot file are shown and do
-/// nothing.
+/// Measured and predicted torques of an arm.
+#[derive(Clone, Copy, Debug)]
+pub struct Comparison<'a> {
+    /// Title of the picture: the arm and the log.
+    pub title: &'a str,
+    /// Line below the title: the part of the log, and the filter.
+    pub about: &'a str,
+    /// Times, s.
+    pub time: &'a [f64],
+    /// Measured torques by joint, N m or N.
+    pub measured: &'a [Vec<f64>],
+    /// Predicted torques by joint, N m or N.
+    pub predicted: &'a [Vec<f64>],
+    /// A note on each joint, such as its error; empty for no notes.
+    pub notes: &'a [String],
+}
+
+/// Draws measured and predicted torques and their difference for each joint, as an SVG of 1280 pixels width. Texts of
+/// the robot file are shown and do nothing.
 #[must_use]
-pub fn comparison_svg(
-    robot: &Robot,
-    time: &[f64],
-    measured: &[Vec<f64>],
-    predicted: &[Vec<f64>],
-    about: &str,
-) -> String {
-    let left = |(measured, predicted): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
+pub fn comparison_svg(robot: &Robot, comparison: &Comparison<'_>) -> String {
+    let Comparison { title, about, time, measured, predicted, notes } = *comparison;
+    let residual = |(measured, predicted): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
         measured.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect()
     };
-    let left: Vec<Vec<f64>> = measured.iter().zip(predicted).map(left).collect();
+    let residuals: Vec<Vec<f64>> = measured.iter().zip(predicted).map(residual).collect();
     let panel = |joint: usize| {
         let unit = robot.joints[joint].row.kind.effort_unit();
         Panel {
             title: format!("τ{} {}, {unit}", subscript(joint + 1), robot.joints[joint].name),
-            note: String::new(),
+            note: notes.get(joint).cloned().unwrap_or_default(),
             curves: vec![
                 PanelCurve { name: "measured", values: &measured[joint] },
                 PanelCurve { name: "predicted", values: &predicted[joint] },
-                PanelCurve { name: "left: measured minus predicted", values: &left[joint] },
+                PanelCurve { name: "residual: measured - predicted", values: &residuals[joint] },
             ],
             limits: Vec::new(),
             bands: Vec::new(),
         }
     };
-    let all: Vec<Panel<'_>> = (0..robot.dof().min(left.len())).map(panel).collect();
-    let title = robot.title.as_deref().unwrap_or(&robot.name);
-    panels(&format!("Measured and predicted torques of {title}"), title, about, time, &all)
+    let all: Vec<Panel<'_>> = (0..robot.dof().min(residuals.len())).map(panel).collect();
+    panels(&format!("Measured and predicted torques: {title}"), title, about, time, &all)
 }

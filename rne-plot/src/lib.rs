@@ -27,7 +27,7 @@ mod scale;
 mod trajectory;
 
 pub use crate::chart::svg;
-pub use crate::comparison::comparison_svg;
+pub use crate::comparison::{Comparison, comparison_svg};
 pub use crate::history::{Peak, TorqueHistory};
 pub use crate::panels::{Band, Panel, PanelCurve, panels, panels_over};
 pub use crate::parts::TorqueParts;

@@ -1,22 +1,24 @@
 //! `rne identify`: links, rotors and friction from logs.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::{Identification, JointError, MotionError, Options, Part, Prediction, Purpose, identify};
+use rne_identify::{Identification, JointError, MotionError, Options, Part, Prediction, Purpose, Verdict, identify};
 use rne_logs::Motion;
-use rne_model::{FrictionTransition, JointKind, Robot, one_line};
-use rne_plot::comparison_svg;
+use rne_model::{Robot, one_line};
+use rne_plot::{Comparison, comparison_svg};
 
-use crate::commands::prediction_errors::{errors_table, prediction};
+use crate::commands::prediction_errors::errors_table;
 use crate::files::file_name::Format;
 use crate::files::motion_log::MotionLog;
 use crate::files::output_file::{self, check_picture, check_place, is_standard_output, will_be_same};
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{QUIET, TITLE, WARNING};
-use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::palette::{TITLE, TYPED, WARNING};
+use crate::render::identification_reply::{Extent, Reply};
+use crate::render::identified_parameters;
+use crate::render::layout::{PAGE, wrap};
+use crate::render::verdict::{TIED, Worded};
 use crate::values::log_arguments::LogArguments;
 use crate::values::numbers::{checked, rounded};
 
@@ -56,6 +58,12 @@ pub(crate) struct Arguments {
     /// Only compute the errors of FILE on the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
     judge: bool,
+    /// Print every parameter, and errors by speed
+    #[arg(long, conflicts_with = "json")]
+    all: bool,
+    /// Print verdict, parameters and errors as JSON
+    #[arg(long)]
+    json: bool,
     /// Plot measured and predicted torques (SVG)
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
@@ -77,12 +85,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let purpose = if arguments.judge { Purpose::Judge } else { Purpose::Fit };
     let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading, purpose)?;
     let mut remark = log.remark(PAGE);
-    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff());
-    let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
     if arguments.judge {
-        text += &judged(&robot, &log, Part::All, &Identification::not_excited(&robot), "errors on the log")?;
-        draw(arguments, &robot, &log, Part::All, &sources, &mut remark)?;
-        return Ok(Outcome { text, remark, ..Outcome::default() });
+        let judged = Judged::of(&robot, &log, Part::All)?;
+        let verdict = Verdict::of_file(&robot, &judged.errors);
+        let about = format!("{} on {}", one_line(&robot.name), log.words());
+        draw(arguments, &robot, &log, &judged, [about, "the whole log".to_owned()], &sources, &mut remark)?;
+        if arguments.json {
+            let reply = Reply::of_file(&robot, &verdict, logs(arguments), log.cutoff(), judged.extent);
+            return Ok(Outcome { remark, ..Outcome::json(&reply)? });
+        }
+        let worded = Worded { verdict: &verdict, robot: &robot, file: &arguments.file, held_out: "", rows: 0 };
+        let mut text = worded.below(&heading(&robot, &log));
+        if arguments.all {
+            let unknown = Identification::not_excited(&robot);
+            text += &errors_table(&robot, &log, &judged.errors, &unknown, "errors on the log");
+        } else {
+            text += &worded.errors(log.cutoff());
+        }
+        return Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() });
     }
     let options = options(arguments, log.cutoff());
     let (training, held) = match arguments.hold_out {
@@ -90,22 +110,38 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => (Part::All, None),
     };
     let found = identify(&robot, options, arguments.pull, |take| log.pass(training, take))?;
-    text += &account(&found, &log);
-    if let Some(part) = held {
-        text += &judged(&found.robot, &log, part, &unknown(&found), "errors on the held-out part of the log")?;
+    let held_out = held.map(|part| Judged::of(&found.robot, &log, part)).transpose()?;
+    let verdict = Verdict::of(&found, held_out.as_ref().map(|held_out| &held_out.errors[..]));
+    let place = held_out.as_ref().map_or_else(String::new, |held_out| held_out.words(&log));
+    let worded =
+        Worded { verdict: &verdict, robot: &found.robot, file: &arguments.file, held_out: &place, rows: found.rows };
+    if arguments.plot.is_some() {
+        let title = format!("{} identified from {}", one_line(&robot.name), log.words());
+        let (part, about) = match &held_out {
+            Some(_) => (None, format!("held-out part of the log, {place}")),
+            None => (Some(Judged::of(&found.robot, &log, Part::All)?), "the data of the identification".to_owned()),
+        };
+        if let Some(drawn) = part.as_ref().or(held_out.as_ref()) {
+            draw(arguments, &found.robot, &log, drawn, [title, about], &sources, &mut remark)?;
+        }
     }
-    draw(arguments, &found.robot, &log, held.unwrap_or(Part::All), &sources, &mut remark)?;
-    for what in warnings(&found) {
-        let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, PAGE - 9, "         "));
+    for what in warnings(&found).into_iter().chain(worded.grown()) {
+        remark += &warning(&what);
     }
+    let text = if arguments.json {
+        let held_out = held_out.as_ref().map(|held_out| held_out.extent);
+        Outcome::json(&Reply::of(&found, &verdict, logs(arguments), log.cutoff(), held_out))?.text
+    } else {
+        account(arguments, &worded, &found, &log, held_out.as_ref())
+    };
     if !found.is_anything_excited() {
         let not_written = match &arguments.output {
             Some(path) => format!(", so {} is not written", one_line(&path.display().to_string())),
             None => String::new(),
         };
         let what = format!("nothing is excited: the log determines no link and no friction of this arm{not_written}");
-        let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, PAGE - 9, "         "));
-        return Ok(Outcome { text, remark, at_fault: true });
+        remark += &warning(&what);
+        return Ok(Outcome { text, remark, remark_last: true, at_fault: true });
     }
     if let Some(path) = &arguments.output {
         let file = found.robot_file(&log.words());
@@ -115,7 +151,78 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
         remark += &output_file::write_new(path, &file, &sources, arguments.force)?;
     }
-    Ok(Outcome { text, remark, ..Outcome::default() })
+    Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() })
+}
+
+/// The verdict, the errors and, with `--all`, every number.
+fn account(
+    arguments: &Arguments,
+    worded: &Worded<'_>,
+    found: &Identification,
+    log: &MotionLog,
+    held_out: Option<&Judged>,
+) -> String {
+    let mut text = worded.below(&heading(&found.robot, log));
+    if !arguments.all {
+        return text + &worded.errors(log.cutoff());
+    }
+    let unknown: Vec<bool> = found.joints.iter().map(|joint| !joint.is_excited()).collect();
+    let table = |errors: &[JointError], title: &str| errors_table(&found.robot, log, errors, &unknown, title);
+    let fitted: Vec<JointError> = found.joints.iter().map(|joint| joint.error).collect();
+    text += &identified_parameters::tables(found);
+    let on_fitted = if held_out.is_some() { "errors on the fitted part of the log" } else { "errors on the log" };
+    text += &table(&fitted, on_fitted);
+    if let Some(held_out) = held_out {
+        text += &table(&held_out.errors, "errors on the held-out part of the log");
+    }
+    text
+}
+
+/// The robot and the log.
+fn heading(robot: &Robot, log: &MotionLog) -> String {
+    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff());
+    format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "))
+}
+
+fn warning(what: &str) -> String {
+    format!("{WARNING}warning{WARNING:#}: {}\n", wrap(what, PAGE - 9, "         ").replace(TIED, " "))
+}
+
+fn logs(arguments: &Arguments) -> Vec<String> {
+    arguments.logs.iter().map(|log| log.display().to_string()).collect()
+}
+
+/// A part of a log on which a robot was judged.
+struct Judged {
+    part: Part,
+    errors: Vec<JointError>,
+    extent: Extent,
+}
+
+impl Judged {
+    fn of(robot: &Robot, log: &MotionLog, part: Part) -> Result<Self, Failure> {
+        let mut prediction = Prediction::new(robot, Some(log.cutoff()));
+        let mut extent = Extent::default();
+        log.pass(part, &mut |motion| {
+            if let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) {
+                extent.from.get_or_insert(*first);
+                extent.until = Some(*last);
+                extent.states += motion.len() as u64;
+                extent.duration += last - first;
+            }
+            prediction.absorb(motion)
+        })?;
+        Ok(Self { part, errors: prediction.errors(), extent })
+    }
+
+    /// The part in words, such as `from 13.5 s on`.
+    fn words(&self, log: &MotionLog) -> String {
+        match self.extent.from {
+            // times of several runs may begin anew
+            Some(from) if log.runs() == 1 => format!("from {from:.1} s on"),
+            _ => format!("the last {} of {} states", self.extent.states, log.states()),
+        }
+    }
 }
 
 /// Warnings about a log.
@@ -157,6 +264,11 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
         let shown = one_line(&plot.display().to_string());
         return Err(Failure::usage(format_args!("{shown} is both the robot file and the picture; name two files")));
     }
+    if arguments.json && arguments.output.as_deref().is_some_and(is_standard_output) {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--json{TYPED:#} and {TYPED}-o -{TYPED:#} both write to standard output; name a file for the robot"
+        )));
+    }
     check_picture(plot)?;
     for (path, kind) in [(output, (Format::RobotFile, "# Identified")), (plot, (Format::Svg, "<svg"))] {
         if let Some(path) = path {
@@ -174,156 +286,21 @@ fn options(arguments: &Arguments, cutoff: f64) -> Options {
     options
 }
 
-/// The joints that are not excited.
-fn unknown(found: &Identification) -> Vec<bool> {
-    found.joints.iter().map(|joint| !joint.is_excited()).collect()
-}
-
-/// The result as tables.
-fn account(found: &Identification, log: &MotionLog) -> String {
-    let of_links =
-        found.structure.parameters().bases.iter().filter(|base| matches!(base.kept, rne_identify::Parameter::Link(..)));
-    let of_links = of_links.count();
-    let excited = found.bases.iter().filter(|base| base.is_excited()).count();
-    let mut text = String::new();
-    let rotors = match found.bases.len() - of_links {
-        0 => String::new(),
-        count => format!(" and {count} of rotors"),
-    };
-    let _ = writeln!(
-        text,
-        "{of_links} base parameters of the links{rotors}, {excited} of them excited; condition number {}",
-        rounded(found.least_squares.condition, 0)
-    );
-    let certificate = &found.feasible.certificate;
-    let _ = writeln!(
-        text,
-        "{QUIET}{} rows per joint over {:.1} s, {} segments; every link is a physical body, margin {:.1e}{QUIET:#}",
-        found.rows, found.duration, found.least_squares.segments, certificate.margin
-    );
-    if let Some((delay, deviation)) = found.delay {
-        let _ = writeln!(
-            text,
-            "{QUIET}torques lag {:.1} ± {:.1} ms behind the positions{QUIET:#}",
-            1e3 * delay,
-            1e3 * deviation
-        );
-    }
-    let mut cells = vec![["  parameter", "value", "", "deviation", "", "written", "unit"].map(str::to_owned)];
-    for (base, report) in found.structure.parameters().bases.iter().zip(&found.bases) {
-        let unit = found.structure.unit(base.kept).to_owned();
-        let (value, deviation, percent) = if report.is_excited() {
-            let percent = 100.0 * report.deviation / report.value.abs();
-            let percent = if percent < 1000.0 { format!("{percent:.1} %") } else { "> 999 %".to_owned() };
-            (rounded(report.value, 4), rounded(report.deviation, 4), percent)
-        } else {
-            ("not excited".to_owned(), rounded(report.deviation, 4), String::new())
-        };
-        let name = format!("  {}", report.name);
-        cells.push([name, value, "±".to_owned(), deviation, percent, rounded(report.written, 4), unit]);
-    }
-    let align = [Align::Left, Align::Right, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
-    push_table(&mut text, "base parameters: by least squares, and as written to the robot file", &align, &cells);
-    friction(&mut text, found);
-    inertia_of_rotors(&mut text, found);
-    let errors: Vec<JointError> = found.joints.iter().map(|joint| joint.error).collect();
-    text += &errors_table(&found.robot, log, &errors, &unknown(found), "errors on the log");
-    text
-}
-
-fn friction(text: &mut String, found: &Identification) {
-    let heading = ["  joint", "viscous", "Coulomb +", "Coulomb -", "transition"].map(str::to_owned);
-    let mut cells = vec![heading];
-    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
-        let Some(friction) = report.friction else { return };
-        let with = |(value, deviation): (f64, f64)| {
-            if report.is_friction_excited() {
-                format!("{} ± {}", rounded(value, 3), rounded(deviation, 3))
-            } else {
-                "not excited".to_owned()
-            }
-        };
-        cells.push([
-            format!("  {}", shortened(&one_line(&joint.name), 14)),
-            with(friction[0]),
-            with(friction[1]),
-            with(friction[2]),
-            report
-                .transition
-                .filter(|_| report.is_friction_excited())
-                .map_or_else(String::new, |transition| turns(transition, joint.row.kind)),
-        ]);
-    }
-    let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right];
-    let kinds: Vec<JointKind> = found.robot.joints.iter().map(|joint| joint.row.kind).collect();
-    let units = match (kinds.contains(&JointKind::Revolute), kinds.contains(&JointKind::Prismatic)) {
-        (_, false) => "N m s/rad, N m",
-        (false, true) => "N s/m, N",
-        (true, true) => "N m s/rad, N m or N s/m, N",
-    };
-    let title = format!("friction at the joint, {units}; transition: speed or displacement");
-    push_table(text, &title, &align, &cells);
-}
-
-/// The speed or the displacement in which friction changes its sign.
-fn turns(transition: FrictionTransition, kind: JointKind) -> String {
-    let unit = kind.position_unit();
-    match transition {
-        FrictionTransition::Speed(speed) => format!("{speed} {unit}/s"),
-        FrictionTransition::Displacement(length) => format!("{length} {unit}"),
-    }
-}
-
-/// The rotors, where they were asked for.
-fn inertia_of_rotors(text: &mut String, found: &Identification) {
-    let mut cells = vec![["  joint", "rotor", "", ""].map(str::to_owned)];
-    let bases = || found.structure.parameters().bases.iter().zip(&found.bases);
-    for (at, (joint, report)) in found.robot.joints.iter().zip(&found.joints).enumerate() {
-        let Some(rotor) = report.rotor else { return };
-        let [unit, link] = match joint.row.kind {
-            JointKind::Revolute => ["kg m²", "inertia"],
-            JointKind::Prismatic => ["kg", "mass"],
-        };
-        let known = bases().find(|(base, _)| base.kept == rne_identify::Parameter::Rotor(at)).map(|(_, of)| of);
-        let said = match known {
-            None => format!("not separable from the {link} of links"),
-            Some(base) if base.is_excited() => String::new(),
-            Some(_) => "not excited".to_owned(),
-        };
-        cells.push([format!("  {}", shortened(&one_line(&joint.name), 14)), rounded(rotor, 4), unit.to_owned(), said]);
-    }
-    push_table(
-        text,
-        "inertia of the rotors at the joint",
-        &[Align::Left, Align::Right, Align::Left, Align::Left],
-        &cells,
-    );
-}
-
-/// How well a robot predicts a part of a log.
-fn judged(robot: &Robot, log: &MotionLog, part: Part, unknown: &[bool], title: &str) -> Result<String, Failure> {
-    Ok(errors_table(robot, log, &prediction(robot, log, part)?, unknown, title))
-}
-
-/// Draws a part of the log.
+/// Draws a part of the log; a title, and what is below it.
 fn draw(
     arguments: &Arguments,
     robot: &Robot,
     log: &MotionLog,
-    part: Part,
+    judged: &Judged,
+    [title, about]: [String; 2],
     sources: &[&Path],
     remark: &mut String,
 ) -> Result<(), Failure> {
     let Some(path) = &arguments.plot else { return Ok(()) };
-    let mut states = 0;
-    log.pass(part, &mut |motion| {
-        states += motion.len() as u64;
-        Ok::<(), MotionError>(())
-    })?;
-    let stride = usize::try_from(states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
+    let stride = usize::try_from(judged.extent.states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
     let prediction = Prediction::new(robot, Some(log.cutoff()));
     let (mut time, mut pairs) = (Vec::new(), vec![Vec::new(); robot.dof()]);
-    log.pass(part, &mut |motion: &Motion| {
+    log.pass(judged.part, &mut |motion: &Motion| {
         time.extend(motion.time.iter().step_by(stride));
         for (all, of) in pairs.iter_mut().zip(prediction.pairs(motion)?) {
             all.extend(of.into_iter().step_by(stride));
@@ -333,8 +310,20 @@ fn draw(
     let side = |of: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
         pairs.iter().map(|pairs: &Vec<(f64, f64)>| pairs.iter().map(of).collect()).collect()
     };
-    let about = format!("{}, both low-passed at {:.1} Hz", log.words(), log.cutoff());
-    let svg = comparison_svg(robot, &time, &side(|pair| pair.0), &side(|pair| pair.1), &about);
+    let (measured, predicted) = (side(|pair| pair.0), side(|pair| pair.1));
+    // the number of the table
+    let notes: Vec<String> = judged.errors.iter().map(|error| format!("error {:.1} %", 100.0 * error.error)).collect();
+    let svg = comparison_svg(
+        robot,
+        &Comparison {
+            title: &title,
+            about: &format!("{about}; both torques low-passed at {:.1} Hz", log.cutoff()),
+            time: &time,
+            measured: &measured,
+            predicted: &predicted,
+            notes: &notes,
+        },
+    );
     *remark += &output_file::write_new(path, &svg, sources, arguments.force)?;
     Ok(())
 }

@@ -117,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     } else {
         format!("{GOOD}wrote{GOOD:#} {}, {states} states\n", path.display())
     };
-    Ok(Outcome { text, remark, at_fault: false })
+    Ok(Outcome { text, remark, ..Outcome::default() })
 }
 
 /// Reason for which writing stopped.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::{Identification, Part, Purpose};
+use rne_identify::{ArmLogRemark, Identification, Part, Purpose};
 use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Report, Settings, Trend, changes, svg, watch};
 
@@ -103,6 +103,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 struct Known {
     baseline: Baseline,
     words: String,
+    /// Remarks that were printed already.
+    remarks: Vec<ArmLogRemark>,
 }
 
 /// The baseline of quiet logs, or of a file.
@@ -119,7 +121,7 @@ fn known_baseline(
         let text = String::from_utf8_lossy(&bytes);
         let baseline = Baseline::from_yaml(&shown, &text, robot).map_err(|report| Failure::from(&report))?;
         let words = format!("{} ({:.1} s)", one_line(&shown), baseline.duration);
-        return Ok(Some(Known { baseline, words }));
+        return Ok(Some(Known { baseline, words, remarks: Vec::new() }));
     }
     if arguments.quiet.is_empty() {
         return Ok(None);
@@ -143,7 +145,7 @@ fn known_baseline(
         let text = baseline.to_yaml(robot, &quiet.words());
         *remark += &output_file::write_new(path, &text, sources, arguments.force)?;
     }
-    Ok(Some(Known { baseline, words: quiet.words() }))
+    Ok(Some(Known { baseline, words: quiet.words(), remarks: quiet.log().remarks().to_vec() }))
 }
 
 fn warn(remark: &mut String, what: &str) {
@@ -167,7 +169,7 @@ fn baseline_of(robot: &Robot, known: Option<Known>, log: &MotionLog) -> Result<K
     let bar = reading::bar("read", false);
     let baseline = Baseline::of_file(robot, log.log(), &mut |share| reading::show(&bar, share))
         .map_err(|error| watch_failure(&error, &log.words()))?;
-    Ok(Known { baseline, words: "the robot file".to_owned() })
+    Ok(Known { baseline, words: "the robot file".to_owned(), remarks: Vec::new() })
 }
 
 fn events(
@@ -179,8 +181,8 @@ fn events(
     mut remark: String,
 ) -> Result<Outcome, Failure> {
     let log = open(arguments, &arguments.logs, robot, known.as_ref())?;
-    remark += &log.remark(PAGE);
-    let Known { baseline, words } = baseline_of(robot, known, &log)?;
+    remark += &log.remark_beside(known.as_ref().map_or(&[], |known| &known.remarks), PAGE);
+    let Known { baseline, words, .. } = baseline_of(robot, known, &log)?;
     let bar = reading::bar("read", false);
     let report =
         watch(robot, &baseline, log.log(), settings, arguments.plot.is_some(), &mut |share| reading::show(&bar, share))
@@ -210,7 +212,7 @@ fn events(
         text += &watch_report::parameters(robot, &baseline, &report.changes);
         text += &errors_table(robot, &judged, &errors, &Identification::not_excited(robot), "errors on the log");
     }
-    Ok(Outcome { text, remark, at_fault })
+    Ok(Outcome { text, remark, at_fault, remark_last: true })
 }
 
 fn draw(
@@ -273,7 +275,7 @@ fn trend(
         Some(_) => None,
         None => groups.first().map(|(_, paths)| open(arguments, paths, robot, None)).transpose()?,
     };
-    let known = match &first {
+    let mut known = match &first {
         Some(log) => baseline_of(robot, None, log)?,
         None => known.ok_or_else(|| Failure::input("there is no log"))?,
     };
@@ -282,7 +284,8 @@ fn trend(
     let mut events = Vec::new();
     for (name, paths) in groups {
         let log = open(arguments, &paths, robot, Some(&known))?;
-        remark += &log.remark(PAGE);
+        remark += &log.remark_beside(&known.remarks, PAGE);
+        known.remarks.extend(log.log().remarks().iter().cloned());
         let bar = reading::bar("read", false);
         let found = changes(&structure, &known.baseline, log.log(), &mut |share| reading::show(&bar, share))
             .map_err(|error| watch_failure(&error, &log.words()))?;
@@ -295,7 +298,7 @@ fn trend(
         remark += &output_file::write_new(path, &trend.svg(robot, &about), sources, arguments.force)?;
     }
     if arguments.csv.as_deref().is_some_and(output_file::is_standard_output) {
-        return Ok(Outcome { text: trend.csv(robot), remark, at_fault });
+        return Ok(Outcome { text: trend.csv(robot), remark, at_fault, ..Outcome::default() });
     }
     if let Some(path) = &arguments.csv {
         remark += &output_file::write_new(path, &trend.csv(robot), sources, arguments.force)?;
@@ -310,7 +313,7 @@ fn trend(
     let head = format!("{}: {about}", one_line(&robot.name));
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&head, PAGE, "  "));
     text += &watch_report::trend(robot, &trend, &events);
-    Ok(Outcome { text, remark, at_fault })
+    Ok(Outcome { text, remark, at_fault, remark_last: true })
 }
 
 /// Whether what is written can be, before any log is read.

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write as _};
 use std::path::PathBuf;
 
-use rne_identify::{ArmLog, ArmLogError, ArmLogOptions, Part, PassError, Purpose};
+use rne_identify::{ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, Part, PassError, Purpose};
 use rne_logs::Motion;
 use rne_model::{Robot, one_line};
 
@@ -81,9 +81,14 @@ impl MotionLog {
 
     /// Remarks on the log, in lines of a width.
     pub(crate) fn remark(&self, width: usize) -> String {
+        self.remark_beside(&[], width)
+    }
+
+    /// Remarks on the log that are not among others, in lines of a width.
+    pub(crate) fn remark_beside(&self, others: &[ArmLogRemark], width: usize) -> String {
         let mut text = String::new();
-        for remark in self.0.remarks() {
-            let Some(line) = remark_sentence(remark) else { continue };
+        for remark in self.0.remarks().iter().filter(|remark| !others.contains(remark)) {
+            let line = remark_sentence(remark);
             let (word, style) = if remark.is_warning() { ("warning", WARNING) } else { ("note", TITLE) };
             let indent = " ".repeat(word.len() + 2);
             let wrapped = wrap(&one_line(&line), width - indent.len(), &indent);

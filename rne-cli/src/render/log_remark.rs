@@ -19,12 +19,11 @@ pub(crate) fn log_remark(remark: &Remark) -> String {
     format!("{remark}{options}")
 }
 
-/// A remark on logs that are compared with a model; none where it says nothing about the comparison.
-pub(crate) fn remark_sentence(remark: &ArmLogRemark) -> Option<String> {
+/// A remark on logs of an arm.
+pub(crate) fn remark_sentence(remark: &ArmLogRemark) -> String {
     match remark {
-        ArmLogRemark::Log(Remark::TakenForTorques) => None,
-        ArmLogRemark::Log(remark) => Some(log_remark(remark)),
-        other => Some(other.to_string()),
+        ArmLogRemark::Log(remark) => log_remark(remark),
+        other => other.to_string(),
     }
 }
 

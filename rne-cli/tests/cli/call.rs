@@ -49,10 +49,18 @@ pub(crate) fn rne_reading(arguments: &[&str], text: &str) -> Called {
     called(child.wait_with_output().expect("rne ends"))
 }
 
-/// A call that succeeds and says nothing on standard error, but which positions are outside of the limits of the file.
+/// The remark on efforts of a log whose unit nobody said, in the lines of `rne identify` and `rne watch`.
+pub(crate) const EFFORTS: &str = "note: efforts are taken as torques, N m, or forces, N; if they are currents,\n      \
+                                  give the N m/A with --torque-constant\n";
+
+/// A call that succeeds and says nothing on standard error, but which positions are outside of the limits of the file,
+/// and that efforts are taken as torques.
 pub(crate) fn fine(arguments: &[&str]) -> String {
     let called = rne(arguments);
-    let is_note = |line: &str| line.starts_with("note: q") && line.contains(" is outside of the limits of ");
+    let is_note = |line: &str| {
+        line.starts_with("note: q") && line.contains(" is outside of the limits of ")
+            || EFFORTS.lines().any(|of| of == line)
+    };
     let said: Vec<&str> = called.err.lines().filter(|line| !is_note(line)).collect();
     assert!(called.status == 0 && said.is_empty(), "{arguments:?}: {called:?}");
     called.out

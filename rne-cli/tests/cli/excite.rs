@@ -69,7 +69,7 @@ fn a_log_of_the_trajectory_identifies_the_arm() {
     let motion = fs::read_to_string(&csv).expect("a trajectory");
     let rows = motion.lines().zip(torques.lines()).map(|(state, torque)| format!("{state},{torque}\n"));
     fs::write(&log, rows.collect::<String>()).expect("a log");
-    let found = rne(&["identify", DESK, &log, "--no-friction"]).out;
+    let found = rne(&["identify", DESK, &log, "--no-friction", "--all"]).out;
     assert!(found.contains("15 base parameters of the links, 15 of them excited"), "{found}");
     // what the upper arm and all that hangs at the elbow weigh, times where: 3 kg at 0.18 m, 1.5 kg at 0.4 m
     let mcx2 = found.lines().find(|line| line.trim_start().starts_with("mcx2")).expect("a parameter");

@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use crate::call::{ROOT, fails, fine, folder, rne};
+use serde_json::Value;
+
+use crate::call::{EFFORTS as TAKEN_AS_TORQUES, ROOT, command, fails, fine, folder, rne};
 
 const ARM: &str = "docs/desk_arm.yaml";
 const LOG: &str = "docs/desk_arm_log.csv";
@@ -55,7 +57,7 @@ fn one_wrong_effort_spoils_nothing() {
         ("inf", ["message 201 at 8.000 s", "left out: 1 messages"]),
     ] {
         let log = with_effort(&folder.join("log.csv"), effort);
-        let called = rne(&["identify", ARM, &log]);
+        let called = rne(&["identify", ARM, &log, "--all"]);
         let err = called.err.replace("\n         ", " ");
         assert!(called.status == 0 && said.iter().all(|said| err.contains(said)), "{effort}: {called:?}");
         let [viscous, forward, backward] = friction(&called.out)[..] else { panic!("{}", called.out) };
@@ -77,7 +79,7 @@ fn what_is_of_no_free_motion_does_not_count() {
         }
     });
     for (log, said) in [("docs/desk_arm_knock.csv", "the first at 9.29 s"), (&failed, "the first at 7.81 s")] {
-        let called = rne(&["identify", ARM, log]);
+        let called = rne(&["identify", ARM, log, "--all"]);
         let words = called.said();
         let warned = words.contains("rows of shoulder are outliers and are ignored") && words.contains(said);
         assert!(called.status == 0 && warned, "{called:?}");
@@ -103,7 +105,7 @@ fn nothing_is_excited_by_an_arm_that_stands_still() {
         cells[4..7].fill("0".to_owned());
     });
     let out = folder.join("still.yaml");
-    let called = rne(&["identify", ARM, &still, "-o", out.to_str().expect("UTF-8")]);
+    let called = rne(&["identify", ARM, &still, "--all", "-o", out.to_str().expect("UTF-8")]);
     assert_eq!(called.status, 1, "{called:?}");
     assert!(called.out.contains(", 0 of them excited;"), "{}", called.out);
     assert!(!called.out.contains("± 0 "), "{}", called.out);
@@ -176,7 +178,7 @@ fn what_cannot_be_identified_is_said() {
     });
     fails(2, &["identify", ARM, &degrees, "-o", out], &["more than 4π", "--degrees"]);
     let text = fine(&["identify", ARM, &degrees, "--degrees"]);
-    assert!(text.contains("15 of them excited"), "{text}");
+    assert!(text.contains("The log determines all 15 base parameters"), "{text}");
     let without = fs::read_to_string(format!("{ROOT}/{LOG}")).expect("a log").replace("shoulder_effort", "other");
     let path = folder.join("without.csv");
     fs::write(&path, without).expect("a file");
@@ -225,12 +227,12 @@ fn without_friction_there_is_none() {
     let out = folder.join("out.yaml");
     let path = out.to_str().expect("UTF-8");
     let file = "docs/desk_arm_identified.yaml";
-    let called = rne(&["identify", file, LOG, "--no-friction", "-o", path]);
+    let called = rne(&["identify", file, LOG, "--no-friction", "--all", "-o", path]);
     assert_eq!(called.status, 0, "{called:?}");
     let text = fs::read_to_string(&out).expect("a robot file");
     assert!(!text.contains("viscous") && !text.contains("coulomb"), "{text}");
     // what is said of the log is what the file that is written says of it
-    let judged = fine(&["identify", path, LOG, "--judge"]);
+    let judged = fine(&["identify", path, LOG, "--judge", "--all"]);
     let table = |text: &str| text.split_once("error: RMS of").expect("a table").1.to_owned();
     assert_eq!(table(&judged), table(&called.out));
 }
@@ -239,10 +241,10 @@ fn without_friction_there_is_none() {
 #[test]
 fn a_file_is_judged_by_all_that_there_is() {
     let folder = folder("identify_judge");
-    let text = fine(&["identify", "docs/desk_arm_identified.yaml", LOG, "--judge"]);
+    let text = fine(&["identify", "docs/desk_arm_identified.yaml", LOG, "--judge", "--all"]);
     assert!(text.replace('\n', " ").contains("400 of 400 states"), "{text}");
     let spike = with_effort(&folder.join("log.csv"), "10000");
-    let judged = rne(&["identify", "docs/desk_arm_identified.yaml", &spike, "--judge"]);
+    let judged = rne(&["identify", "docs/desk_arm_identified.yaml", &spike, "--judge", "--all"]);
     assert!(judged.said().contains("10000 of shoulder"), "{judged:?}");
     let row = judged.out.lines().find(|line| line.starts_with("  shoulder")).expect("a row");
     let unfiltered = row.split_whitespace().nth(3).and_then(|word| word.parse::<f64>().ok());
@@ -284,4 +286,251 @@ fn places_are_looked_at_first() {
     assert_eq!(fs::read_to_string(&out).expect("a file"), called.out);
     // once more is the same
     assert!(rne(&["identify", ARM, LOG, "-o", &out]).err.contains("up to date"));
+}
+
+const UR10: [&str; 2] = ["rne-identify/tests/logs/ur10_log.yaml", "rne-identify/tests/logs/ur10.csv"];
+const PANDA: [&str; 2] = ["rne-identify/tests/logs/panda_log.yaml", "rne-identify/tests/logs/panda.csv"];
+
+/// The first block of what is printed.
+fn first_block(out: &str) -> String {
+    let lines: Vec<&str> = out.lines().take_while(|line| !line.is_empty()).collect();
+    assert!(lines.len() <= 10 && lines.iter().all(|line| line.chars().count() <= 80), "{out}");
+    lines.join(" ").split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The verdict stands first: how many joints the model predicts and how well, which it does not and why, and what a
+/// motion that excites more would teach.
+#[test]
+fn the_verdict_is_the_first_block() {
+    for (log, said) in [
+        (
+            UR10,
+            &[
+                "predicts 5 of 6 joints on held-out data (from 13.5 s on), with errors of ",
+                " to 15 % of the standard deviation of the measured torque",
+                "wrist_3_joint (68 %) is not predicted: it stands still from 17.9 to 19.2 s",
+                "determines 18 of 36 base parameters and the friction of all 6 joints",
+                "It does not excite 18 inertias of links 2 to 6",
+                "record the motion that `rne excite rne-identify/tests/logs/ur10_log.yaml` designs",
+            ][..],
+        ),
+        (
+            PANDA,
+            &[
+                "predicts 4 of 7 joints on held-out data (from 11.8 s on)",
+                "fer_joint1 (23 %) is not predicted: its torque in this log is mostly noise",
+                "not predicted: fer_joint5 (28 %, fitted 7.1 %) and fer_joint7 (39 %, fitted 12 %)",
+                "determines 18 of 43 base parameters",
+            ],
+        ),
+    ] {
+        let called = rne(&[&["identify"][..], &log, &["--hold-out", "0.3"]].concat());
+        assert_eq!(called.status, 0, "{called:?}");
+        let block = first_block(&called.out);
+        for said in said {
+            assert!(block.contains(said), "{said}\n{block}");
+        }
+        // tables of parameters are for who asks
+        for title in ["base parameters: by least squares", "friction at the joint", "on the held-out part of the log"] {
+            assert!(!called.out.contains(title), "{}", called.out);
+            let all = rne(&[&["identify"][..], &log, &["--hold-out", "0.3", "--all"]].concat()).out;
+            assert!(all.contains(title) && first_block(&all) == block, "{all}");
+        }
+    }
+    // without other data it is said that there is none
+    let block = first_block(&fine(&["identify", ARM, LOG]));
+    let said = "reproduces all 3 joints on the data that it was fitted to";
+    assert!(
+        block.contains(said) && block.contains("--hold-out 0.3 computes errors on data that it was not"),
+        "{block}"
+    );
+    let block = first_block(&fine(&["identify", ARM, LOG, "--hold-out", "0.3"]));
+    assert!(!block.contains("fitted") && block.contains("predicts all 3 joints on held-out data"), "{block}");
+    // a file that is judged without its friction
+    let block = first_block(&fine(&["identify", ARM, LOG, "--judge"]));
+    assert!(block.contains("waist (71 %) is not predicted: the robot file has no friction for it"), "{block}");
+    assert!(!block.contains("determines") && !block.contains("rne excite"), "{block}");
+}
+
+/// On a terminal, which shows both streams, the verdict stands before notes and warnings.
+#[test]
+fn remarks_come_after_the_verdict() {
+    let path = folder("identify_streams").join("both.txt");
+    let both = fs::File::create(&path).expect("a file");
+    let mut call = command(&[&["identify"][..], &UR10, &["--hold-out", "0.3"]].concat());
+    let status = call.stdout(both.try_clone().expect("a file")).stderr(both).status().expect("rne runs");
+    let said = fs::read_to_string(&path).expect("a file");
+    assert!(status.success() && said.starts_with("ur10_log from ur10.csv"), "{said}");
+    let (verdict, warning) = (said.find("wrist_3_joint (68"), said.find("warning: the held-out"));
+    assert!(verdict.is_some() && verdict < warning, "{said}");
+}
+
+/// However many joints are not predicted, there are ten lines.
+#[test]
+fn a_verdict_has_ten_lines_at_most() {
+    let folder = folder("identify_verdict");
+    let shuffled = |path: &Path| {
+        changed(path, |row, cells| {
+            // efforts that no model explains
+            for (column, cell) in cells[EFFORTS].iter_mut().enumerate() {
+                *cell = if (row * (7 + column)) % 13 < 6 { "20" } else { "-20" }.to_owned();
+            }
+        })
+    };
+    let log = shuffled(&folder.join("a_log_with_quite_a_long_name_so_that_the_heading_takes_two_lines.csv"));
+    let called = rne(&["identify", ARM, &log, "--hold-out", "0.4"]);
+    let block = first_block(&called.out);
+    assert!(block.contains("predicts no joint on held-out data"), "{block}");
+    for joint in ["waist (", "shoulder (", "elbow ("] {
+        assert!(block.contains(joint), "{block}");
+    }
+}
+
+/// A held-out error that is manifold the fitted one is a warning with the joint's name and both numbers.
+#[test]
+fn a_manifold_error_is_a_warning() {
+    let called = rne(&[&["identify"][..], &UR10, &["--hold-out", "0.3"]].concat());
+    let said = called.said();
+    let (_, said) =
+        said.split_once("warning: the held-out error is more than twice the error on the fitted part: ").expect("one");
+    for joint in ["wrist_1_joint (10 %, fitted 4.7 %)", "wrist_3_joint (68 %, fitted 21 %)"] {
+        assert!(said.contains(joint), "{said}");
+    }
+    assert!(!said.contains("elbow_joint"), "{said}");
+    for arguments in [&[UR10[0], UR10[1]][..], &[ARM, LOG, "--hold-out", "0.3"]] {
+        let called = rne(&[&["identify"], arguments].concat());
+        assert!(!called.said().contains("held-out error"), "{called:?}");
+    }
+}
+
+/// `rne log`, `rne identify` and `rne watch` say in the same words that efforts are taken as torques; not where the log
+/// or the caller gives a unit.
+#[test]
+fn efforts_that_are_taken_as_torques_are_said() {
+    let folder = folder("identify_efforts");
+    let said = |arguments: &[&str]| {
+        let called = rne(arguments);
+        (called.out + &called.err).split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let sentence = TAKEN_AS_TORQUES.split_whitespace().collect::<Vec<_>>().join(" ");
+    let log = fs::read_to_string(format!("{ROOT}/{LOG}")).expect("a log").replace("_effort", "_torque [Nm]");
+    let named = folder.join("named.csv");
+    fs::write(&named, log).expect("a file");
+    let named = named.to_str().expect("UTF-8");
+    for command in [&["log"][..], &["identify", ARM], &["identify", ARM, "--judge"], &["watch", ARM]] {
+        assert_eq!(said(&[command, &[LOG]].concat()).matches(&sentence).count(), 1, "{command:?}");
+        for other in [&[named][..], &[LOG, "--torque-constant", "1"]] {
+            assert!(!said(&[command, other].concat()).contains("taken as torques"), "{command:?} {other:?}");
+        }
+    }
+    // both logs of a watch say it once
+    let watched = ["watch", "docs/desk_arm_identified.yaml", "docs/desk_arm_knock.csv", "--quiet", LOG];
+    assert_eq!(said(&watched).matches(&sentence).count(), 1);
+}
+
+/// The numbers of a table's row.
+fn row(out: &str, name: &str) -> Vec<f64> {
+    let line = out.lines().find(|line| line.starts_with(&format!("  {name} "))).expect("a row");
+    line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+}
+
+/// The keys of a value and of all that is in it.
+fn keys_of(value: &Value, seen: &mut Vec<String>) {
+    match value {
+        Value::Object(of) => of.iter().for_each(|(key, value)| {
+            seen.push(key.clone());
+            keys_of(value, seen);
+        }),
+        Value::Array(of) => of.iter().for_each(|value| keys_of(value, seen)),
+        _ => (),
+    }
+}
+
+/// The JSON has the numbers of the tables, with deviations.
+#[test]
+fn the_reply_is_the_account() {
+    let arguments = [&["identify"][..], &UR10, &["--hold-out", "0.3"]].concat();
+    let json = |more: &[&str]| -> Value {
+        let called = rne(&[&arguments[..], more].concat());
+        serde_json::from_str(&called.out).unwrap_or_else(|error| panic!("{error}: {called:?}"))
+    };
+    let reply = json(&["--json"]);
+    let keys: Vec<&String> = reply.as_object().expect("an object").keys().collect();
+    let mut documented = fs::read_to_string(format!("{ROOT}/docs/identify.md")).expect("a page");
+    documented = documented.split_once("## As JSON").expect("a section").1.to_owned();
+    let mut seen = Vec::new();
+    keys_of(&reply, &mut seen);
+    for key in seen {
+        assert!(documented.contains(&format!("`{key}`")), "{key} is not in docs/identify.md");
+    }
+    assert!(keys.len() >= 11, "{keys:?}");
+    assert_eq!(reply["robot"], "ur10_log");
+    assert_eq!(reply["logs"][0], UR10[1]);
+    assert_eq!(reply["verdict"]["errors_on"], "held_out");
+    assert_eq!(reply["verdict"]["not_predicted"][0], "wrist_3_joint");
+    assert_eq!(reply["verdict"]["excited_base_parameters"], 18);
+    assert_eq!(
+        reply["states"].as_u64().expect("a count") + reply["held_out"]["states"].as_u64().expect("a count"),
+        602
+    );
+    let doubt = &reply["joints"][5]["doubts"][0];
+    assert!(doubt["reason"] == "standstill" && doubt["from"].as_f64().is_some_and(|from| from > 17.5), "{doubt}");
+
+    let all = rne(&[&arguments[..], &["--all"]].concat()).out;
+    let text = rne(&arguments).out;
+    let errors = row(&text, "elbow_joint");
+    let elbow = &reply["joints"][2];
+    let near = |a: &Value, b: f64, step: f64| a.as_f64().is_some_and(|a| (a - b).abs() <= 0.5001 * step);
+    assert!(near(&elbow["fitted"]["error"], 0.01 * errors[0], 1e-3), "{elbow} {errors:?}");
+    assert!(near(&elbow["held_out"]["error"], 0.01 * errors[1], 1e-3), "{elbow} {errors:?}");
+    assert!(near(&elbow["held_out"]["residual"], errors[2], 1e-3), "{elbow} {errors:?}");
+    let mass =
+        &reply["base_parameters"].as_array().expect("a list").iter().find(|base| base["name"] == "mcx3").expect("mcx3");
+    let numbers = row(&all, "mcx3");
+    assert!(near(&mass["value"], numbers[0], 1e-4) && near(&mass["deviation"], numbers[1], 1e-4), "{mass} {numbers:?}");
+    let friction = &reply["friction"][2];
+    let (_, below) = all.split_once("friction at the joint").expect("a table");
+    let numbers = row(below, "elbow_joint");
+    for (at, key) in ["viscous", "coulomb_forward", "coulomb_backward"].into_iter().enumerate() {
+        assert!(near(&friction[key]["value"], numbers[2 * at], 1e-3), "{friction} {numbers:?}");
+        assert!(near(&friction[key]["deviation"], numbers[2 * at + 1], 1e-3), "{friction} {numbers:?}");
+    }
+    assert!(all.contains("lag 10.5 ± 4.8 ms") && near(&reply["delay"]["value"], 0.0105, 1e-4), "{}", reply["delay"]);
+
+    let judged: Value =
+        serde_json::from_str(&fine(&["identify", "docs/desk_arm_identified.yaml", LOG, "--judge", "--json"]))
+            .expect("JSON");
+    assert_eq!(judged["verdict"]["errors_on"], "judged");
+    assert!(judged["joints"][0]["judged"]["error"].is_number() && judged["states"] == 400, "{judged}");
+    fails(2, &["identify", ARM, LOG, "--json", "-o", "-"], &["--json and -o - both write to standard output"]);
+    fails(2, &["identify", ARM, LOG, "--json", "--all"], &["--all"]);
+}
+
+/// A picture and a robot file name the log, not the title of the file with the geometry; the picture's errors are
+/// those of the table.
+#[test]
+fn titles_name_the_log() {
+    let folder = folder("identify_titles");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let read = |name: &str| fs::read_to_string(folder.join(name)).expect("a file");
+    let out = fs::read_to_string(format!("{ROOT}/{ARM}")).expect("a robot file");
+    assert!(out.contains("title: Desk arm (RRR)"));
+    let (held, whole, judged, arm) = (path("held.svg"), path("whole.svg"), path("judged.svg"), path("arm.yaml"));
+    let text = rne(&["identify", ARM, LOG, "--hold-out", "0.3", "--plot", &held, "-o", &arm]).out;
+    assert_eq!(rne(&["identify", ARM, LOG, "--plot", &whole]).status, 0);
+    assert_eq!(rne(&["identify", &arm, LOG, "--judge", "--plot", &judged]).status, 0);
+    let title = "desk_arm identified from desk_arm_log.csv (400 states at 25 Hz)";
+    assert!(read("arm.yaml").contains(&format!("title: {title}")));
+    for (picture, said) in [
+        ("held.svg", [title, "held-out part of the log, from 11.2 s on; both torques low-passed at 1.6 Hz"]),
+        ("whole.svg", [title, "the data of the identification; both"]),
+        ("judged.svg", ["desk_arm on desk_arm_log.csv (400 states at 25 Hz)", "the whole log; both"]),
+    ] {
+        let svg = read(picture);
+        assert!(said.iter().all(|said| svg.contains(said)) && !svg.contains("RRR"), "{svg:.800}");
+    }
+    for joint in ["waist", "shoulder", "elbow"] {
+        let error = format!(">error {:.1} %<", row(&text, joint)[1]);
+        assert!(read("held.svg").contains(&error), "{joint}: {error}");
+    }
 }

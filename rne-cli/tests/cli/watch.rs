@@ -146,7 +146,7 @@ fn a_dead_channel_is_not_in_order() {
 /// The errors of a watch are those of a judge, whatever is usual.
 #[test]
 fn errors_are_those_of_a_judge() {
-    let judged = fine(&["identify", ARM, KNOCK, "--judge"]);
+    let judged = fine(&["identify", ARM, KNOCK, "--judge", "--all"]);
     let (_, judged) = judged.split_once("error: RMS of").expect("a table");
     for more in [&[][..], &["--quiet", QUIET]] {
         let watched = rne(&[&["watch", ARM, KNOCK], more].concat());

@@ -1,0 +1,405 @@
+//! The verdict of an identification in words, and its errors by joint.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use rne_identify::{Doubt, Evidence, Excited, JointVerdict, Parameter, Verdict};
+use rne_logs::median;
+use rne_model::{Joint, Robot, one_line};
+
+use crate::palette::{GOOD, QUIET, TITLE, TYPED, WARNING};
+use crate::render::layout::{self, Align, PAGE, columns, shortened};
+use crate::values::numbers::rounded;
+
+/// Lines of the verdict at most, its heading included: joints that do not fit are named without reasons.
+const LINES: usize = 10;
+
+/// Joints that are named without reasons at most; the others are counted.
+const SHOWN: usize = 5;
+
+/// A blank at which no line breaks.
+pub(crate) const TIED: &str = "\u{A0}";
+
+/// The option for errors on other data; no line breaks in it.
+const HOLD_OUT: &str = "--hold-out\u{A0}0.3";
+
+/// A verdict with what its words name.
+pub(crate) struct Worded<'a> {
+    pub(crate) verdict: &'a Verdict,
+    pub(crate) robot: &'a Robot,
+    /// Robot file that was given.
+    pub(crate) file: &'a Path,
+    /// Held-out part of the log in words, such as `from 13.5 s on`.
+    pub(crate) held_out: &'a str,
+    /// Rows of each joint.
+    pub(crate) rows: u64,
+}
+
+impl Worded<'_> {
+    /// The verdict in sentences below a heading.
+    pub(crate) fn below(&self, heading: &str) -> String {
+        let joints = || self.robot.joints.iter().zip(&self.verdict.joints);
+        let mut doubtful: Vec<(&Joint, &JointVerdict)> =
+            joints().filter(|(_, verdict)| !verdict.is_predicted).collect();
+        doubtful.sort_by_key(|(_, verdict)| verdict.doubts.is_empty());
+        let with_reasons = doubtful.iter().filter(|(_, verdict)| !verdict.doubts.is_empty()).count();
+        let first = wrap(&self.first(), "");
+        let last = self.verdict.excited.as_ref().map(|excited| self.excited(excited)).unwrap_or_default();
+        // as many reasons as there is room for
+        let whole = |explained: usize| {
+            let sentences = doubtful[..explained].iter().map(|(joint, verdict)| self.explained(joint, verdict));
+            let mut lines: Vec<String> = sentences.collect();
+            lines.extend(self.others(&doubtful[explained..], explained > 0));
+            let lines = [vec![first.clone()], lines, last.clone()].concat();
+            format!("{heading}{}\n", lines.join("\n"))
+        };
+        let fits = (0..=with_reasons).rev().find(|explained| whole(*explained).lines().count() <= LINES);
+        whole(fits.unwrap_or(0))
+    }
+
+    /// How many joints the model predicts, and how well.
+    fn first(&self) -> String {
+        let Verdict { evidence, joints, .. } = self.verdict;
+        let [does, data] = match evidence {
+            Evidence::Fitted => ["The model reproduces", "on the data that it was fitted to"],
+            Evidence::Judged => ["The robot file predicts", "on this log"],
+            _ => ["The model predicts", "on held-out data"],
+        };
+        let predicted = joints.iter().filter(|joint| joint.is_predicted);
+        let errors: Vec<f64> = predicted.filter_map(|joint| Some(joint.error()?.error)).collect();
+        let style = if errors.len() == joints.len() { GOOD } else { WARNING };
+        let mut text = format!("{does} {style}{}{style:#} {data}", counted(errors.len(), joints.len()).of("joint"));
+        if *evidence == Evidence::HeldOut {
+            let _ = write!(text, " ({})", self.held_out);
+        }
+        if !errors.is_empty() {
+            let noun = if errors.len() == 1 { "an error" } else { "errors" };
+            let _ =
+                write!(text, ", with {noun} of {} of the standard deviation of the measured torque", range(&errors));
+        }
+        text.push('.');
+        if *evidence == Evidence::Fitted {
+            let _ = write!(text, " {TYPED}{HOLD_OUT}{TYPED:#} computes errors on data that it was not fitted to.");
+        }
+        text
+    }
+
+    /// The words for a joint that the model does not predict.
+    fn not_predicted(&self) -> &'static str {
+        if self.verdict.evidence == Evidence::Fitted { "not reproduced" } else { "not predicted" }
+    }
+
+    /// The sentence on a joint that the model does not predict.
+    fn explained(&self, joint: &Joint, verdict: &JointVerdict) -> String {
+        // that the error has grown is no cause
+        let is_cause = |doubt: &&Doubt| verdict.doubts.len() == 1 || !matches!(doubt, Doubt::Grown(_));
+        let causes = verdict.doubts.iter().filter(is_cause);
+        let reasons: Vec<String> = causes.map(|doubt| self.reason(joint, verdict, doubt)).collect();
+        let (named, fails) = (named(joint, verdict), self.not_predicted());
+        wrap(&format!("{named} is {WARNING}{fails}{WARNING:#}: {}.", reasons.join("; ")), "  ")
+    }
+
+    /// Joints for whose reasons there is no room.
+    fn others(&self, joints: &[(&Joint, &JointVerdict)], is_more: bool) -> Option<String> {
+        let of = |(joint, verdict): &(&Joint, &JointVerdict)| match (verdict.growth(), verdict.fitted) {
+            (Some(_), Some(fitted)) => {
+                let both = format!(", fitted {})", percent(fitted.error));
+                named(joint, verdict).trim_end_matches(')').to_owned() + &both
+            }
+            _ => named(joint, verdict),
+        };
+        let mut named: Vec<String> = joints.iter().take(SHOWN).map(of).collect();
+        if joints.len() > SHOWN {
+            named.push(format!("{} more", joints.len() - SHOWN));
+        }
+        let fails = self.not_predicted();
+        let also = if is_more { format!("Also {fails}") } else { fails.replacen('n', "N", 1) };
+        (!named.is_empty()).then(|| wrap(&format!("{also}: {}.", enumerated(&named)), "  "))
+    }
+
+    fn reason(&self, joint: &Joint, verdict: &JointVerdict, doubt: &Doubt) -> String {
+        let unit = joint.row.kind.effort_unit();
+        match doubt {
+            Doubt::Unexplained => "no model of this arm explains its efforts".to_owned(),
+            Doubt::NotExcited if self.verdict.evidence == Evidence::Judged => {
+                "its file says that it was not excited when it was identified".to_owned()
+            }
+            Doubt::WithoutFriction => "the robot file has no friction for it".to_owned(),
+            Doubt::NotExcited => "its torque in this log is mostly noise".to_owned(),
+            Doubt::Offset { offset, .. } => {
+                format!("it has an offset of {} {unit}, more than a robot file can store", rounded(*offset, 3))
+            }
+            Doubt::Outliers(rejected) => {
+                format!("{} of {} rows are outliers, the first at {:.1} s", rejected.rows, self.rows, rejected.time)
+            }
+            Doubt::Standstill(standstill) => format!(
+                "it stands still from {:.1} to {:.1} s, and its friction at rest is not known ({} of its squared error \
+                 arises at rest)",
+                standstill.start,
+                standstill.end,
+                percent(verdict.error().map_or(f64::NAN, |error| error.part_at_rest))
+            ),
+            Doubt::FrictionNotExcited => "the log does not excite its friction".to_owned(),
+            Doubt::Grown(factor) => {
+                let fitted = verdict.fitted.map_or(f64::NAN, |error| error.error);
+                format!("its error is {factor:.1} times the error on the fitted part ({})", percent(fitted))
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// How many parameters are excited, which are not, and what to do about it.
+    fn excited(&self, excited: &Excited) -> Vec<String> {
+        let parameters = counted(excited.known_parameters(), excited.base_parameters).of("base parameter");
+        let mut text = format!("The log determines {parameters}");
+        if excited.frictions > 0 {
+            let joints = counted(excited.known_frictions(), excited.frictions).of("joint");
+            let _ = write!(text, " and the friction of {joints}");
+        }
+        let mut unknown = groups(&excited.unknown_parameters);
+        if !excited.unknown_friction.is_empty() {
+            unknown.push(format!("the friction of {}", listed("joint", &excited.unknown_friction)));
+        }
+        if unknown.is_empty() {
+            return vec![wrap(&(text + "."), "")];
+        }
+        let _ = write!(text, ". It does not excite {}.", enumerated(&unknown));
+        // a command is not broken into lines
+        let command = format!("rne excite {}", one_line(&self.file.display().to_string())).replace(' ', TIED);
+        let next = format!("To excite more, record the motion that {TYPED}`{command}`{TYPED:#} designs.");
+        vec![wrap(&text, ""), wrap(&next, "")]
+    }
+
+    /// Errors by joint: one row each.
+    pub(crate) fn errors(&self, cutoff: f64) -> String {
+        let has = |side: fn(&JointVerdict) -> bool| self.verdict.joints.iter().any(side);
+        let (has_fitted, has_other) = (has(|joint| joint.fitted.is_some()), has(|joint| joint.other.is_some()));
+        let both = has_fitted && has_other;
+        let mut heading = vec!["  joint"];
+        heading.extend(has_fitted.then_some(if both { "fitted" } else { "error" }));
+        heading.extend(has_other.then_some(if both { "held out" } else { "error" }));
+        heading.extend(["residual", "", ""]);
+        let mut cells: Vec<Vec<String>> = vec![heading.into_iter().map(str::to_owned).collect()];
+        for (joint, verdict) in self.robot.joints.iter().zip(&self.verdict.joints) {
+            let mut row = vec![format!("  {}", shortened(&one_line(&joint.name), 20))];
+            row.extend([verdict.fitted, verdict.other].into_iter().flatten().map(|error| tenths(error.error)));
+            row.push(verdict.error().map_or(String::new(), |error| rounded(error.residual, 3)));
+            row.push(joint.row.kind.effort_unit().to_owned());
+            row.push(self.mark(verdict));
+            cells.push(row);
+        }
+        let mut last = vec!["  median".to_owned()];
+        let sides: [fn(&JointVerdict) -> Option<f64>; 2] =
+            [|joint| Some(joint.fitted?.error), |joint| Some(joint.other?.error)];
+        for side in sides {
+            let errors: Vec<f64> = self.verdict.joints.iter().filter_map(side).collect();
+            last.extend((!errors.is_empty()).then(|| tenths(median(errors))));
+        }
+        cells.push(last);
+        let mut align = vec![Align::Left, Align::Right];
+        align.extend(both.then_some(Align::Right));
+        align.extend([Align::Right, Align::Left, Align::Left]);
+        let lines = columns(&align, &cells);
+        let (title, of_residual) =
+            if both { (" on the fitted and on the held-out part", ", on the held-out part") } else { ("", "") };
+        let all = match self.verdict.evidence {
+            Evidence::Judged => "errors by speed, too",
+            _ => "parameters, friction and errors by speed",
+        };
+        let about = format!(
+            "error: RMS of measured - predicted torque over the standard deviation of the measured torque, both \
+             low-passed at {cutoff:.1} Hz, at most {} counts as {}; residual: this RMS itself{of_residual}. \
+             {TYPED}--all{TYPED:#} prints {all}.",
+            percent(Verdict::limit()),
+            self.not_predicted().trim_start_matches("not ")
+        );
+        let about = wrap(&about, "");
+        let mut text = format!("\n{TITLE}errors by joint{title}{TITLE:#}\n{QUIET}{about}\n{}{QUIET:#}\n", lines[0]);
+        for line in &lines[1..] {
+            let fails = self.not_predicted();
+            let marked = line.replace(fails, &format!("{WARNING}{fails}{WARNING:#}"));
+            let _ = writeln!(text, "{marked}");
+        }
+        text
+    }
+
+    /// The mark of a joint that is not predicted, with the first reason.
+    fn mark(&self, verdict: &JointVerdict) -> String {
+        if verdict.is_predicted {
+            return String::new();
+        }
+        let reason = match verdict.doubts.first() {
+            None => "",
+            Some(Doubt::Unexplained) => ": unexplained efforts",
+            Some(Doubt::NotExcited) => ": not excited",
+            Some(Doubt::Offset { .. }) => ": offset",
+            Some(Doubt::Outliers(_)) => ": outliers",
+            Some(Doubt::Standstill(_)) => ": stands still",
+            Some(Doubt::WithoutFriction) => ": no friction in the file",
+            Some(Doubt::FrictionNotExcited) => ": friction not excited",
+            Some(_) => ": larger than fitted",
+        };
+        format!("{}{reason}", self.not_predicted())
+    }
+
+    /// The warning on joints whose held-out error is much larger than the error on the data of the identification.
+    pub(crate) fn grown(&self) -> Option<String> {
+        let joints = self.robot.joints.iter().zip(&self.verdict.joints);
+        let named = joints.filter(|(_, verdict)| verdict.growth().is_some()).map(|(joint, verdict)| {
+            let part = |error: Option<rne_identify::JointError>| percent(error.map_or(f64::NAN, |error| error.error));
+            format!("{} ({}, fitted {})", one_line(&joint.name), part(verdict.other), part(verdict.fitted))
+        });
+        let named: Vec<String> = named.collect();
+        (!named.is_empty()).then(|| {
+            format!(
+                "the held-out error is more than twice the error on the fitted part: {}. The model fits these joints \
+                 better than it predicts them; a longer log, or a log of a motion that excites more, helps",
+                named.join(", ")
+            )
+        })
+    }
+}
+
+/// A joint with the error that decides.
+fn named(joint: &Joint, verdict: &JointVerdict) -> String {
+    let error = verdict.error().map_or(f64::NAN, |error| error.error);
+    format!("{} ({})", shortened(&one_line(&joint.name), 30), percent(error))
+}
+
+/// How many of all.
+#[derive(Clone, Copy)]
+enum Counted {
+    No,
+    Some(usize, usize),
+    All(usize),
+}
+
+fn counted(count: usize, all: usize) -> Counted {
+    match count {
+        0 => Counted::No,
+        count if count == all => Counted::All(all),
+        count => Counted::Some(count, all),
+    }
+}
+
+impl Counted {
+    /// The count with its noun: `no joint`, `5 of 6 joints`, `all 6 joints`.
+    fn of(self, noun: &str) -> String {
+        match self {
+            Self::No => format!("no {noun}"),
+            Self::Some(count, all) => format!("{count} of {all} {noun}s"),
+            Self::All(1) => format!("the {noun}"),
+            Self::All(all) => format!("all {all} {noun}s"),
+        }
+    }
+}
+
+/// Kinds of parameters: those of a link by their places, then the rotors'.
+const KINDS: [(&str, std::ops::Range<usize>); 3] = [("mass", 0..1), ("moment of mass", 1..4), ("inertia", 4..10)];
+
+/// Parameters by kind: `18 inertias of links 2 to 6`.
+fn groups(parameters: &[Parameter]) -> Vec<String> {
+    let mut said = Vec::new();
+    for (kind, range) in KINDS {
+        let of = |parameter: &Parameter| match parameter {
+            Parameter::Link(link, index) if range.contains(index) => Some(*link),
+            _ => None,
+        };
+        said.extend(group(kind, "link", &parameters.iter().filter_map(of).collect::<Vec<_>>()));
+    }
+    let rotor = |parameter: &Parameter| if let Parameter::Rotor(joint) = parameter { Some(*joint) } else { None };
+    said.extend(group("rotor inertia", "joint", &parameters.iter().filter_map(rotor).collect::<Vec<_>>()));
+    said
+}
+
+fn group(kind: &str, place: &str, of: &[usize]) -> Option<String> {
+    let plural = match (of.len(), kind) {
+        (0, _) => return None,
+        (1, kind) => kind.to_owned(),
+        (_, "mass") => "masses".to_owned(),
+        (_, "moment of mass") => "moments of mass".to_owned(),
+        (_, kind) => format!("{kind}s"),
+    };
+    Some(format!("{} {plural} of {}", of.len(), listed(place, of)))
+}
+
+/// Links or joints by their numbers from 1: `link 2`, `links 2 and 4`, `links 2 to 6 and 8`.
+fn listed(noun: &str, places: &[usize]) -> String {
+    let mut numbers: Vec<usize> = places.iter().map(|place| place + 1).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let plural = if numbers.len() == 1 { "" } else { "s" };
+    let words: Vec<String> = numbers
+        .chunk_by(|one, next| one + 1 == *next)
+        .flat_map(|run| match run {
+            [first, _, .., last] => vec![format!("{first} to {last}")],
+            few => few.iter().map(usize::to_string).collect(),
+        })
+        .collect();
+    format!("{noun}{plural} {}", enumerated(&words))
+}
+
+/// `a, b and c`
+fn enumerated(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [before @ .., last] => format!("{} and {last}", before.join(", ")),
+    }
+}
+
+/// Words in lines of a page.
+fn wrap(text: &str, indent: &str) -> String {
+    layout::wrap(text, PAGE, indent).replace(TIED, " ")
+}
+
+/// Errors from the smallest to the largest.
+fn range(errors: &[f64]) -> String {
+    let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (from, to) = (percent(least), percent(most));
+    if from == to { to } else { format!("{} to {to}", from.trim_end_matches("\u{A0}%")) }
+}
+
+/// A part in two digits of percent; no line breaks in it.
+fn percent(part: f64) -> String {
+    match 100.0 * part {
+        percent if percent.is_nan() => "no error".to_owned(),
+        percent if percent < 9.95 => format!("{percent:.1}{TIED}%"),
+        percent if percent < 1000.0 => format!("{percent:.0}{TIED}%"),
+        _ => format!(">{TIED}999{TIED}%"),
+    }
+}
+
+/// A part in percent with one decimal, for a table.
+fn tenths(part: f64) -> String {
+    match 100.0 * part {
+        percent if percent.is_nan() => "-".to_owned(),
+        percent if percent < 1000.0 => format!("{percent:.1} %"),
+        _ => "> 999 %".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_listed_as_a_reader_would() {
+        assert_eq!(listed("link", &[1]), "link 2");
+        assert_eq!(listed("link", &[3, 1, 1]), "links 2 and 4");
+        assert_eq!(listed("link", &[1, 2, 3]), "links 2 to 4");
+        assert_eq!(listed("joint", &[0, 1, 3]), "joints 1, 2 and 4");
+        assert_eq!(listed("link", &[0, 1, 2, 4, 5, 6]), "links 1 to 3 and 5 to 7");
+        let parameters = [Parameter::Link(1, 4), Parameter::Link(2, 9), Parameter::Link(0, 1), Parameter::Rotor(0)];
+        let said = ["1 moment of mass of link 1", "2 inertias of links 2 and 3", "1 rotor inertia of joint 1"];
+        assert_eq!(groups(&parameters), said);
+    }
+
+    #[test]
+    fn ranges_of_errors_are_short() {
+        assert_eq!(range(&[0.0391, 0.153, 0.05]), "3.9 to 15 %".replace(" %", "\u{A0}%"));
+        assert_eq!(range(&[0.0391]), "3.9 %".replace(" %", "\u{A0}%"));
+        assert_eq!(range(&[0.0996, 0.1004]), "10 %".replace(" %", "\u{A0}%"));
+    }
+}
