@@ -74,6 +74,10 @@ impl Baseline {
     pub fn from_yaml(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
         let root = document::read(name, text, KIND)?;
         let read = Reading { name, text, root: &root };
+        #[allow(clippy::float_cmp)] // a whole number
+        if read.number("format")? != f64::from(FORMAT) {
+            return Err(read.refuse("format", &format!("this rne reads baselines of format {FORMAT}")));
+        }
         let cutoff = read.number("cutoff").and_then(|cutoff| read.check("cutoff", cutoff, cutoff > 0.0))?;
         let structure = Self::structure(robot, cutoff);
         let (dof, count) = (structure.dof(), structure.count());

@@ -243,6 +243,25 @@ fn the_knock_is_what_the_page_says() {
     }
 }
 
+/// The worn log is the log, and from 8 s on 0.15 N m at the elbow in the direction of its motion.
+#[test]
+fn the_worn_log_is_what_the_page_says() {
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(Path::new(ROOT).join("docs").join(name)).expect("a log");
+        let row = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        text.lines().skip(1).map(row).collect()
+    };
+    let (log, worn) = (rows("desk_arm_log.csv"), rows("desk_arm_worn.csv"));
+    assert_eq!(log.len(), worn.len());
+    for (row, with) in log.iter().zip(&worn) {
+        let added = if row[0] >= 8.0 && row[6] != 0.0 { 0.15 * row[6].signum() } else { 0.0 };
+        for (column, (before, after)) in row.iter().zip(with).enumerate() {
+            let added = if column == 9 { added } else { 0.0 };
+            assert!((after - before - added).abs() <= 0.005 + 1e-9, "{} s, column {column}: {before} {after}", row[0]);
+        }
+    }
+}
+
 #[test]
 fn commands_of_documents_work() {
     // by which the page on watching goes
