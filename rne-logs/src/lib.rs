@@ -37,6 +37,8 @@ pub use crate::columns::unit::{Dimension, JointUnits};
 pub use crate::error::LogError;
 pub use crate::formats::format::Format;
 pub use crate::formats::guard::is_guarded;
+#[cfg(feature = "parquet")]
+pub use crate::formats::motion_parquet::MotionParquet;
 pub use crate::formats::npy::Npy;
 pub use crate::log::motion::Motion;
 pub use crate::log::motions::{Motions, Piece};

@@ -94,6 +94,7 @@ const STEPS: &[Step] = &[
             "test",
             "--features",
             "rne-cli/full",
+            "--lib",
             "--test",
             "logs",
             "--test",

@@ -1,16 +1,16 @@
 //! `rne log`: what a log of an arm has, and its motion, filtered.
 
-use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::ProgressBar;
 use rne_identify::{ArmLogRemark, check_units, joint_options};
-use rne_logs::{Cutoff, Log, LogError, Motion, Survey};
+use rne_logs::{Cutoff, Log};
 
-use crate::files::file_name::{self, Format};
+use crate::files::file_name::Format;
 use crate::files::input_file::is_standard_input;
+use crate::files::motion_file::{self, Stopped, Written};
 use crate::files::motion_log;
 use crate::files::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::files::reading;
@@ -26,6 +26,7 @@ use crate::values::log_arguments::{LogArguments, failure};
 Examples:
   rne log docs/desk_arm_log.csv
   rne log docs/desk_arm_log.csv --cutoff 4 -o motion.csv
+  rne log docs/desk_arm_log.csv -o motion.parquet
   rne log docs/desk_arm_log.csv --robot docs/desk_arm.yaml --json
 
 Formats: CSV and npy; ROS 2 bags (*.db3, *.mcap) and Parquet if rne was built
@@ -38,7 +39,7 @@ pub(crate) struct Arguments {
     /// Select the joints of this robot file
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// Filtered motion (CSV); - is standard output
+    /// Filtered motion: *.csv, *.parquet; - is standard output
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite an existing file
@@ -75,11 +76,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Err(Failure::usage(what));
     }
     let out = arguments.out.as_deref();
+    let mut format = Format::Csv;
     let is_result_shown = out.is_some_and(is_standard_output);
     if let Some(path) = out.filter(|path| !is_standard_output(path)) {
         let sources: Vec<&Path> = arguments.files.iter().chain(&arguments.robot).map(PathBuf::as_path).collect();
         check_new(path, None, &sources, arguments.force)?;
-        file_name::format(path, &[Format::Csv])?;
+        format = motion_file::format(path)?;
     }
     let (log, matched) = arguments.open()?;
     let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error, &[]))?;
@@ -93,9 +95,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         log_report::text(&log, &survey, matched.as_ref())
     };
     let Some(path) = out else { return Ok(Outcome { text, at_fault, ..Outcome::default() }) };
+    let written = [Written { log: &log, survey: &survey, label: "" }];
     let states = if is_result_shown {
-        let mut out = BufWriter::new(io::stdout().lock());
-        let written = write(&log, &survey, &ProgressBar::hidden(), &mut out);
+        let mut out = BufWriter::new(io::stdout());
+        let written = motion_file::write(&written, None, format, &ProgressBar::hidden(), &mut out);
         match written.and_then(|states| out.flush().map(|()| states).map_err(Stopped::Unwritable)) {
             // `rne log … -o - | head` has read enough
             Err(Stopped::Unwritable(error)) if error.kind() == io::ErrorKind::BrokenPipe => 1,
@@ -106,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             Ok(states) => states,
         }
     } else {
-        write_file(&log, &survey, path)?
+        write_file(&written, path, format)?
     };
     if states == 0 {
         let what = format!("{}: no sample is left after the filter", arguments.files[0].display());
@@ -120,18 +123,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark, at_fault: false })
 }
 
-/// Reason for which writing stopped.
-enum Stopped {
-    Unreadable(LogError),
-    Unwritable(io::Error),
-}
-
-fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
+fn write_file(logs: &[Written<'_>], path: &Path, format: Format) -> Result<u64, Failure> {
     let unwritable = |error: io::Error| unwritable(path, &error);
     let replacement = Replacement::begin(path).map_err(unwritable)?;
     let mut out = BufWriter::new(replacement.file().map_err(unwritable)?);
     let bar = reading::bar("filtered", false);
-    let written = write(log, survey, &bar, &mut out);
+    let written = motion_file::write(logs, None, format, &bar, &mut out);
     bar.finish_and_clear();
     let states = written.map_err(|stopped| match stopped {
         Stopped::Unreadable(error) => failure(&error, &[]),
@@ -141,38 +138,6 @@ fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
     drop(out);
     if states > 0 {
         replacement.keep().map_err(unwritable)?;
-    }
-    Ok(states)
-}
-
-/// Writes the filtered motion; how many states it has.
-fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) -> Result<u64, Stopped> {
-    let mut motions = log.motions(survey).map_err(Stopped::Unreadable)?;
-    let joints = log.layout().joints.len();
-    let mut header = "t".to_owned();
-    for (quantity, is_there) in [("q", true), ("qd", true), ("qdd", true), ("tau", log.layout().has_efforts)] {
-        for joint in (1..=joints).filter(|_| is_there) {
-            let _ = write!(header, ",{quantity}{joint}");
-        }
-    }
-    let mut states = 0;
-    let mut line = String::new();
-    while let Some(piece) = motions.next() {
-        let piece = piece.map_err(Stopped::Unreadable)?;
-        reading::show(bar, motions.progress());
-        if states == 0 {
-            writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
-        }
-        let Motion { time, q, qd, qdd, tau, .. } = &piece.motion;
-        for (i, time) in time.iter().enumerate() {
-            line.clear();
-            let _ = write!(line, "{time}");
-            for list in [q, qd, qdd, tau].into_iter().flatten() {
-                let _ = write!(line, ",{}", list[i]);
-            }
-            writeln!(out, "{line},{}", piece.run + 1).map_err(Stopped::Unwritable)?;
-        }
-        states += time.len() as u64;
     }
     Ok(states)
 }

@@ -120,9 +120,10 @@ pub(crate) fn typed(folder: &Path, command: &str) -> Output {
         .expect("a shell")
 }
 
-/// A command that reads bags, where this build does not: `cargo xtask verify formats` runs it.
+/// A command with formats that this build does not have: `cargo xtask verify formats` runs it.
 fn is_left_out(command: &str) -> bool {
     !cfg!(feature = "bags") && command.starts_with("cargo run --features bags -- ")
+        || !cfg!(feature = "full") && command.starts_with("cargo run --features full -- ")
 }
 
 /// A command of rne, as it is called where it is installed; `None` for any other.
@@ -130,7 +131,7 @@ fn of_rne(command: &str) -> Option<String> {
     if command == "cargo run" {
         return Some("rne".to_owned());
     }
-    let starts = ["cargo run -- ", "cargo run --features bags -- ", "rne "];
+    let starts = ["cargo run -- ", "cargo run --features bags -- ", "cargo run --features full -- ", "rne "];
     let arguments = starts.iter().find_map(|start| command.strip_prefix(start))?;
     Some(format!("rne {arguments}").replace("NAME", "puma560"))
 }
