@@ -45,6 +45,7 @@ pub use crate::log::motions::{Motions, Piece};
 pub use crate::log::pass::{Counts, Interruption, InvalidSample};
 pub use crate::log::remark::{LeftOut, Reason, Remark};
 pub use crate::log::survey::{Cutoff, Run, Survey};
+pub use crate::log::values::LabelValue;
 pub use crate::log::{Layout, Log};
 pub use crate::options::{Angles, Options};
 pub use crate::remedy::{Remedy, Setting};

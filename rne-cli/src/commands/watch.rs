@@ -31,10 +31,8 @@ const DRAWN: u64 = 20_000;
 #[command(after_help = "\
 Examples:
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv
-  rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv --json
 
-Exit status 1: there are events, or the model does not explain some joint.
-docs/watch.md explains the tests.")]
+Exit status 1: events, or torques that are not explained. See docs/watch.md.")]
 pub(crate) struct Arguments {
     /// Robot file with friction, from `rne identify`
     #[arg(value_name = "FILE")]

@@ -7,6 +7,7 @@ pub(crate) mod heading;
 pub(crate) mod highlight;
 pub(crate) mod layout;
 pub(crate) mod letters;
+pub(crate) mod log_groups;
 pub(crate) mod log_remark;
 pub(crate) mod log_remedy;
 pub(crate) mod log_report;

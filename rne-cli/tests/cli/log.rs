@@ -385,7 +385,7 @@ fn columns_that_are_not_understood_are_named() {
     let efforts =
         "--map Achse1.effort=Achse1_Moment --map Achse2.effort=Achse2_Moment --map Achse3.effort=Achse3_Moment";
     fails(1, &judge, &["name the columns:", efforts]);
-    fails(2, &["log", log], &["--map time='Zeit [s]' names the column of times"]);
+    fails(2, &["log", log], &["--time-column 'Zeit [s]' names the column of times"]);
     let map = [&["--map", "time=Zeit [s]"], efforts.split(' ').collect::<Vec<_>>().as_slice()].concat();
     let errors = |said: &str| said.split_once('\n').expect("two lines").1.to_owned();
     let mapped = errors(&judged(log, &map));
