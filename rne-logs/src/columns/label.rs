@@ -9,7 +9,7 @@ use crate::spelling::{instead, listed};
 pub(crate) const MOST_VALUES: usize = 1000;
 
 /// Words for an arm, as names of columns have them.
-const ARMS: [&str; 7] = ["robot", "arm", "manipulator", "machine", "device", "asset", "serial"];
+const ARMS: [&str; 6] = ["robot", "arm", "manipulator", "machine", "device", "asset"];
 
 /// Words that may follow them.
 const ENDS: [&str; 7] = ["", "id", "name", "number", "nr", "no", "serial"];
@@ -49,7 +49,9 @@ impl Label {
 pub(crate) fn names_arms(column: &str) -> bool {
     let last = column.rsplit(['/', '.']).next().unwrap_or_default();
     let word: String = last.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-    ARMS.iter().any(|arm| word.strip_prefix(arm).is_some_and(|end| ENDS.contains(&end)))
+    // a column `serial` may count rows
+    matches!(word.as_str(), "serialnumber" | "serialno" | "serialnr")
+        || ARMS.iter().any(|arm| word.strip_prefix(arm).is_some_and(|end| ENDS.contains(&end)))
 }
 
 /// The place of a column among the names of a table.
@@ -71,7 +73,9 @@ mod tests {
         {
             assert!(names_arms(name), "{name}");
         }
-        for name in ["q1", "run", "arm_temperature", "robot_mode", "identity", "unit", "warm", "name", "robot_q_1"] {
+        for name in
+            ["q1", "run", "arm_temperature", "robot_mode", "identity", "unit", "warm", "name", "serial", "robot_q_1"]
+        {
             assert!(!names_arms(name), "{name}");
         }
     }

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
+use crate::columns::label::Label;
 use crate::columns::unit::{FileUnits, JointUnits};
 use crate::formats::format::Format;
 use crate::formats::sample::{Sample, Source};
@@ -53,7 +54,9 @@ impl<'a> Chain<'a> {
 
     /// Refuses a second arm: a log is of one.
     fn check_arm(&mut self) -> Result<(), LogError> {
-        for label in self.source.labels().iter().filter(|label| !label.is_selecting()) {
+        // a row without a text says nothing of its arm
+        let names_one = |label: &&Label| !label.is_selecting() && !label.value.is_empty();
+        for label in self.source.labels().iter().filter(names_one) {
             match self.arms.iter().find(|(column, _)| *column == label.name) {
                 None => self.arms.push((label.name.clone(), label.value.clone())),
                 Some((_, first)) if *first == label.value => {}

@@ -111,6 +111,11 @@ fn a_second_arm_is_refused_with_the_option_that_selects_one() {
     assert!(refused(&[a.clone(), b], Options::default()).to_string().contains("two arms, r1 and r2"));
     let (_second, b) = log(csv_of("r1", &times(10.0)));
     assert_eq!(survey(&[a, b], Options::default()).unwrap().1.run_count, 2);
+    // a missing text is no other arm
+    let gappy = csv_of("r1", &times(0.0)).replacen("\nr1,0.1", "\n,0.1", 3);
+    assert!(gappy.contains("\n,0.1"));
+    let (_folder, path) = log(gappy);
+    assert_eq!(survey(&[path], Options::default()).unwrap().1.counts.states, 500);
     let error = refused(std::slice::from_ref(&both), options("robot_id", "r3"));
     assert!(error.is_of_request() && error.to_string().contains("no row has r3"), "{error}");
     assert!(error.to_string().ends_with("it has r1, r2"), "{error}");
