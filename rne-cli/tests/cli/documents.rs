@@ -120,9 +120,10 @@ pub(crate) fn typed(folder: &Path, command: &str) -> Output {
         .expect("a shell")
 }
 
-/// A command that reads bags, where this build does not: `cargo xtask verify formats` runs it.
+/// A command with formats that this build does not have: `cargo xtask verify formats` runs it.
 fn is_left_out(command: &str) -> bool {
     !cfg!(feature = "bags") && command.starts_with("cargo run --features bags -- ")
+        || !cfg!(feature = "full") && command.starts_with("cargo run --features full -- ")
 }
 
 /// A command of rne, as it is called where it is installed; `None` for any other.
@@ -130,7 +131,7 @@ fn of_rne(command: &str) -> Option<String> {
     if command == "cargo run" {
         return Some("rne".to_owned());
     }
-    let starts = ["cargo run -- ", "cargo run --features bags -- ", "rne "];
+    let starts = ["cargo run -- ", "cargo run --features bags -- ", "cargo run --features full -- ", "rne "];
     let arguments = starts.iter().find_map(|start| command.strip_prefix(start))?;
     Some(format!("rne {arguments}").replace("NAME", "puma560"))
 }
@@ -167,8 +168,9 @@ fn tried(folder: &Path, document: &str, command: &str) -> Option<String> {
     let called = of_rne(command).unwrap_or_else(|| panic!("{document}: nobody runs `{command}`"));
     let output = typed(folder, &called);
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
-    // an answer with a slip in it is marked wrong, a knock is an event, and only that
-    let status = i32::from(command.ends_with("-wrong.csv") || command.contains("_knock.csv"));
+    // an answer with a slip in it is marked wrong, a knock and wear are events, and only that
+    let is_event = command.contains("_knock.csv") || command.contains("_worn.csv");
+    let status = i32::from(command.ends_with("-wrong.csv") || is_event);
     assert_eq!(output.status.code(), Some(status), "{document}: `{command}`: {err}");
     Some(out + &err)
 }
