@@ -1,4 +1,4 @@
-//! What is known about an arm from logs in which nothing happened.
+//! The parameters of an arm, with their uncertainty, from logs in which nothing happened.
 
 use nalgebra::{DMatrix, DVector};
 use rne_identify::{FittedModel, FrictionParameter, MotionError, Options, Stretch, Stretches, Structure};
@@ -50,8 +50,8 @@ pub struct Baseline {
     pub rows: u64,
     /// s
     pub duration: f64,
-    /// The factor by which the error of the model is larger than between two logs of one arm: 1, or more for the links of
-    /// a robot file, which come from another motion.
+    /// The factor by which the error of the model is larger than between two logs of one arm: 1, or more for the links
+    /// of a robot file, which come from another motion.
     pub doubt: f64,
     /// The noise of the observer, if it was measured.
     pub contact: Option<ContactNoise>,
@@ -107,9 +107,9 @@ impl Baseline {
     /// Refuses a baseline of too few rows for its unknowns.
     pub(crate) fn check(&self, structure: &Structure) -> Result<(), WatchError> {
         #[allow(clippy::cast_precision_loss)] // some hundred
-        let (rows, unknowns) = (self.rows as f64, structure.count() as f64);
-        let friction = 3.0 * (structure.dof() - 1) as f64;
-        let needed = ENOUGH * (unknowns - friction);
+        let [rows, unknowns, others] = [self.rows as f64, structure.count() as f64, (structure.dof() - 1) as f64];
+        // of friction a joint feels its own
+        let needed = ENOUGH * (unknowns - 3.0 * others);
         if rows >= needed {
             return Ok(());
         }

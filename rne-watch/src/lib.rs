@@ -1,5 +1,5 @@
-//! Watches an arm by its logs: which parameters have changed against a quiet log ([`Baseline`], [`Changes`]), what touched
-//! the arm ([`contacts`]), both as events with one cause each ([`watch`], [`Event`]), and the parameters from log to log
+//! Watches an arm by its logs: parameters that have changed against a quiet log ([`Baseline`], [`Changes`]), contacts
+//! ([`contacts`]), both as events with one cause each ([`watch`], [`Event`]), and the parameters from log to log
 //! ([`Trend`]).
 //!
 //! A change is estimated by least squares over both logs, which have all parameters in common but the changed ones: the

@@ -15,7 +15,7 @@ use crate::score::{Change, Estimate, Projected, Score};
 /// A change is an event from this many deviations on.
 const DEVIATIONS: f64 = 3.0;
 
-/// The same for a change that does not last from the beginning to the end of the log, because many times are tried.
+/// A change that does not last from the beginning to the end of the log needs more, because many times are tried.
 const DEVIATIONS_OF_PART: f64 = 3.3;
 
 /// The factor by which the smallest change is larger then.
@@ -229,7 +229,7 @@ impl<'a> Selection<'a> {
         let steps = ((self.duration(&(0..count)) / STEP) as usize).clamp(1, STEPS);
         let starts = (1..steps).map(|step| step * count / steps..count);
         let is_long = |window: &Range<usize>| self.duration(window) >= SHORTEST;
-        [0..count].into_iter().chain(starts.filter(is_long)).collect()
+        std::iter::once(0..count).chain(starts.filter(is_long)).collect()
     }
 
     /// The change with the beginning and the end that explain most, of all stretches about those that were tried.

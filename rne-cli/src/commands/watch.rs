@@ -59,7 +59,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero("it is a number above 0"))]
     hold: f64,
     /// False contacts per hour [default: 0.01]
-    #[arg(long, value_name = "RATE", default_value_t = 0.01, hide_default_value = true, value_parser = above_zero("it is a number above 0"))]
+    #[arg(long, value_name = "RATE", default_value_t = 0.01, hide_default_value = true,
+        value_parser = above_zero("it is a number above 0"))]
     false_alarms: f64,
     /// Plot residuals and events, or the trend (SVG)
     #[arg(long, value_name = "SVG")]
@@ -244,8 +245,8 @@ fn groups(
             log.day().ok_or_else(|| {
                 let shown = one_line(&path.display().to_string());
                 Failure::usage(format_args!(
-                    "the times of {shown} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares the \
-                     logs one by one"
+                    "the times of {shown} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares \
+                     the logs one by one"
                 ))
             })?
         } else {

@@ -127,8 +127,9 @@ fn days_are_dates() {
     for (name, start) in [("a", 1_795_428_000_u64), ("b", 1_709_200_800)] {
         let moved = log.lines().enumerate().map(|(at, line)| match line.split_once(',') {
             Some((time, rest)) if at > 0 => {
-                let time: f64 = time.parse().expect("a number");
-                format!("{}.{:02},{rest}\n", start + time as u64, ((time - time.floor()) * 100.0).round() as u64)
+                let (seconds, parts) = time.split_once('.').expect("a number");
+                let seconds: u64 = seconds.parse().expect("a whole number");
+                format!("{}.{parts},{rest}\n", start + seconds)
             }
             _ => format!("{line}\n"),
         });
