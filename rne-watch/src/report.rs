@@ -68,7 +68,15 @@ impl Baseline {
         Ok(Self::of_parameters(&structure, log, progress)?.against_file(&structure))
     }
 
-    fn of_parameters(structure: &Structure, log: &ArmLog, progress: &mut dyn FnMut(f64)) -> Result<Self, WatchError> {
+    /// The baseline of logs for changes of parameters alone, without the noise of contacts.
+    ///
+    /// # Errors
+    /// When the logs are too short, not logs of the robot, or cannot be read.
+    pub fn of_parameters(
+        structure: &Structure,
+        log: &ArmLog,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Self, WatchError> {
         let judged = log.judged(progress).map_err(WatchError::Log)?;
         let baseline = Self::of::<WatchError>(structure, |take| {
             judged

@@ -113,7 +113,7 @@ fn intervals_hold_the_true_size() {
         let watched = with(&arm.robot, &watched, fault, ALWAYS);
         let mut rng = Rng::with_seed(28);
         let (mut found, mut named, mut held) = (0, 0, 0);
-        let draws = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 20 } else { 4 };
+        let draws = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 20 } else { 2 };
         for _ in 0..draws {
             let before = baseline(&arm.structure, &noisy(&quiet, &noise, &mut rng));
             for _ in 0..10 {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_identify::{ArmLogRemark, Identification, Part, Purpose};
+use rne_logs::{LabelValue, Log};
 use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Report, Settings, Trend, changes, svg, watch};
 
@@ -18,7 +19,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED, WARNING};
 use crate::render::layout::{PAGE, wrap};
 use crate::render::watch_report::{self, Reply, TrendReply};
-use crate::values::log_arguments::LogArguments;
+use crate::values::log_arguments::{self, LogArguments};
 use crate::values::numbers::above_zero;
 
 /// Find changes of an arm in its logs: friction, payload, contacts
@@ -46,8 +47,8 @@ pub(crate) struct Arguments {
     /// Save the quiet logs as a baseline, for later
     #[arg(long, value_name = "YAML", requires = "quiet")]
     save_baseline: Option<PathBuf>,
-    /// Compare groups of logs: log or day
-    #[arg(long, value_name = "GROUP", value_parser = ["log", "day"], hide_possible_values = true)]
+    /// Compare groups of rows: log, day or a column
+    #[arg(long, value_name = "GROUP")]
     by: Option<String>,
     /// Print all parameters with their thresholds
     #[arg(long)]
@@ -93,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut remark = String::new();
     let known = known_baseline(arguments, &robot, &settings, &sources, &mut remark)?;
     match &arguments.by {
-        Some(by) => trend(arguments, &robot, known, by == "day", &sources, remark),
+        Some(by) => trend(arguments, &robot, known, by, &sources, remark),
         None => events(arguments, &robot, known, &settings, &sources, remark),
     }
 }
@@ -152,12 +153,15 @@ fn warn(remark: &mut String, what: &str) {
 }
 
 /// Opens logs with the low-pass of a baseline.
-fn open(arguments: &Arguments, paths: &[PathBuf], robot: &Robot, known: Option<&Known>) -> Result<MotionLog, Failure> {
-    let reading = match known {
+fn open(arguments: &Arguments, group: &Group, robot: &Robot, known: Option<&Known>) -> Result<MotionLog, Failure> {
+    let mut reading = match known {
         Some(known) => arguments.reading.with_cutoff(known.baseline.cutoff),
         None => arguments.reading.clone(),
     };
-    MotionLog::open(paths, robot, &reading, Purpose::Watch)
+    if let Some((column, text)) = &group.rows {
+        reading = reading.with_rows(column, text);
+    }
+    MotionLog::open(&group.paths, robot, &reading, Purpose::Watch)
 }
 
 /// The baseline that is known, or that of the log itself against the robot file.
@@ -179,7 +183,8 @@ fn events(
     sources: &[&Path],
     mut remark: String,
 ) -> Result<Outcome, Failure> {
-    let log = open(arguments, &arguments.logs, robot, known.as_ref())?;
+    let all = Group { name: String::new(), paths: arguments.logs.clone(), rows: None };
+    let log = open(arguments, &all, robot, known.as_ref())?;
     remark += &log.remark_beside(known.as_ref().map_or(&[], |known| &known.remarks), PAGE);
     let Known { baseline, words, .. } = baseline_of(robot, known, &log)?;
     let bar = reading::bar("read", false);
@@ -231,68 +236,90 @@ fn draw(
     Ok(remark)
 }
 
-/// Groups of logs, each with its name.
-fn groups(
-    arguments: &Arguments,
-    robot: &Robot,
-    known: Option<&Known>,
-    by_day: bool,
-) -> Result<Vec<(String, Vec<PathBuf>)>, Failure> {
-    let mut groups: Vec<(String, Vec<PathBuf>)> = Vec::new();
-    for path in &arguments.logs {
-        let name = if by_day {
-            let log = open(arguments, std::slice::from_ref(path), robot, known)?;
-            log.day().ok_or_else(|| {
-                let shown = one_line(&path.display().to_string());
-                Failure::usage(format_args!(
-                    "the times of {shown} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares \
-                     the logs one by one"
-                ))
-            })?
-        } else {
-            one_line(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy())
+/// Logs that are compared as one, or some rows of them.
+struct Group {
+    name: String,
+    paths: Vec<PathBuf>,
+    /// The column and the text of the rows that are read; all rows without.
+    rows: Option<(String, String)>,
+}
+
+/// The groups of a trend, in the order of the logs.
+fn groups(arguments: &Arguments, robot: &Robot, known: Option<&Known>, by: &str) -> Result<Vec<Group>, Failure> {
+    if !["log", "day"].contains(&by) {
+        let bar = reading::bar("read", false);
+        let options = arguments.reading.options();
+        let values = Log::values(&arguments.logs, by, &options, |share| reading::show(&bar, share))
+            .map_err(|error| log_arguments::failure(&error, &[]))?;
+        let of = |found: LabelValue| Group {
+            paths: arguments.logs.clone(),
+            rows: Some((by.to_owned(), found.value.clone())),
+            name: found.value,
         };
-        match groups.iter_mut().find(|(of, _)| by_day && *of == name) {
-            Some((_, paths)) => paths.push(path.clone()),
-            None => groups.push((name, vec![path.clone()])),
+        return Ok(values.into_iter().map(of).collect());
+    }
+    let mut groups: Vec<Group> = Vec::new();
+    for path in &arguments.logs {
+        let name = one_line(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
+        let mut group = Group { name, paths: vec![path.clone()], rows: None };
+        if by == "day" {
+            let day = open(arguments, &group, robot, known)?.day();
+            group.name = day.ok_or_else(|| {
+                Failure::usage(format_args!(
+                    "the times of {} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares the logs \
+                     one by one",
+                    group.name
+                ))
+            })?;
+        }
+        match groups.iter_mut().find(|of| by == "day" && of.name == group.name) {
+            Some(of) => of.paths.push(path.clone()),
+            None => groups.push(group),
         }
     }
     Ok(groups)
+}
+
+/// The baseline of the first group, with which the others are compared if nothing else is known.
+fn of_first(arguments: &Arguments, robot: &Robot, group: &Group) -> Result<Known, Failure> {
+    let log = open(arguments, group, robot, None)?;
+    let structure = Baseline::structure(robot, log.cutoff());
+    let bar = reading::bar("read", false);
+    let baseline = Baseline::of_parameters(&structure, log.log(), &mut |share| reading::show(&bar, share))
+        .map_err(|error| watch_failure(&error, &log.words()))?;
+    Ok(Known { baseline, words: format!("the first, {}", group.name), remarks: Vec::new() })
 }
 
 fn trend(
     arguments: &Arguments,
     robot: &Robot,
     known: Option<Known>,
-    by_day: bool,
+    by: &str,
     sources: &[&Path],
     mut remark: String,
 ) -> Result<Outcome, Failure> {
-    let groups = groups(arguments, robot, known.as_ref(), by_day)?;
-    // the first log is what the others are compared with, if nothing else is known
-    let first = match known {
-        Some(_) => None,
-        None => groups.first().map(|(_, paths)| open(arguments, paths, robot, None)).transpose()?,
-    };
-    let mut known = match &first {
-        Some(log) => baseline_of(robot, None, log)?,
-        None => known.ok_or_else(|| Failure::input("there is no log"))?,
+    let groups = groups(arguments, robot, known.as_ref(), by)?;
+    let mut known = match known {
+        Some(known) => known,
+        None => of_first(arguments, robot, &groups[0])?,
     };
     let structure = Baseline::structure(robot, known.baseline.cutoff);
     let mut trend = Trend::new(&structure, &known.baseline);
     let mut events = Vec::new();
-    for (name, paths) in groups {
-        let log = open(arguments, &paths, robot, Some(&known))?;
+    for group in groups {
+        let log = open(arguments, &group, robot, Some(&known))?;
         remark += &log.remark_beside(&known.remarks, PAGE);
         known.remarks.extend(log.log().remarks().iter().cloned());
         let bar = reading::bar("read", false);
         let found = changes(&structure, &known.baseline, log.log(), &mut |share| reading::show(&bar, share))
             .map_err(|error| watch_failure(&error, &log.words()))?;
-        trend.push(name, &found);
+        trend.push(group.name, &found);
         events.push(found.events);
     }
     let at_fault = events.iter().any(|events| !events.is_empty());
-    let about = format!("{} logs compared with {}", trend.rows.len(), known.words);
+    let what = if ["log", "day"].contains(&by) { by } else { "group" };
+    let plural = if trend.rows.len() == 1 { "" } else { "s" };
+    let about = format!("{} {what}{plural} compared with {}", trend.rows.len(), known.words);
     if let Some(path) = &arguments.plot {
         remark += &output_file::write_new(path, &trend.svg(robot, &about), sources, arguments.force)?;
     }

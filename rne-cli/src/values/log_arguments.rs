@@ -98,6 +98,13 @@ impl LogArguments {
         Self { cutoff: Some(cutoff), ..self.clone() }
     }
 
+    /// The arguments with only the rows that have a text in a column.
+    pub(crate) fn with_rows(&self, column: &str, text: &str) -> Self {
+        let mut rows = self.clone();
+        rows.select.push((column.to_owned(), text.to_owned()));
+        rows
+    }
+
     /// Options for the reader of logs.
     pub(crate) fn options(&self) -> Options {
         let angles = match (self.degrees, self.radians) {

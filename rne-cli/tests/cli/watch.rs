@@ -117,6 +117,29 @@ fn a_trend_has_a_row_for_each_log() {
     fails(2, &["watch", ARM, KNOCK, "--quiet", QUIET, "--csv", "t.csv"], &["--by"]);
 }
 
+/// Rows with one text in a column are one group.
+#[test]
+fn a_column_has_groups() {
+    let folder = folder("watch_groups");
+    let mut table = String::new();
+    for (log, task) in [(QUIET, "pick"), (WORN, "place")] {
+        let text = fs::read_to_string(format!("{ROOT}/{log}")).expect("a log");
+        let header = usize::from(!table.is_empty());
+        for (at, line) in text.lines().enumerate().skip(header) {
+            writeln!(table, "{line},{}", if at == 0 { "task" } else { task }).expect("a text grows");
+        }
+    }
+    let path = folder.join("tasks.csv");
+    fs::write(&path, table).expect("a file");
+    let path = path.to_str().expect("UTF-8");
+    let called = rne(&["watch", ARM, path, "--by", "task"]);
+    assert_eq!(called.status, 1, "{}", called.err);
+    let words = called.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("2 groups compared with") && words.contains("place: friction of elbow"), "{}", called.out);
+    assert!(!words.contains("pick: "), "{}", called.out);
+    fails(2, &["watch", ARM, path, "--by", "tsk"], &["tsk", "task"]);
+}
+
 /// Logs of one day are one group, by the date of their times.
 #[test]
 fn days_are_dates() {
