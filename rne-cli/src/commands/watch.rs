@@ -301,7 +301,10 @@ fn trend(
     let groups = groups(arguments, robot, known.as_ref(), by)?;
     let mut known = match known {
         Some(known) => known,
-        None => of_first(arguments, robot, &groups[0])?,
+        None => {
+            let first = groups.first().ok_or_else(|| Failure::input("the logs have no rows"))?;
+            of_first(arguments, robot, first)?
+        }
     };
     let structure = Baseline::structure(robot, known.baseline.cutoff);
     let mut trend = Trend::new(&structure, &known.baseline);
