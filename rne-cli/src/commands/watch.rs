@@ -266,8 +266,8 @@ fn groups(arguments: &Arguments, robot: &Robot, known: Option<&Known>, by: &str)
             let day = open(arguments, &group, robot, known)?.day();
             group.name = day.ok_or_else(|| {
                 Failure::usage(format_args!(
-                    "the times of {} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares the logs \
-                     one by one",
+                    "the times of {} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares the \
+                     logs one by one",
                     group.name
                 ))
             })?;
