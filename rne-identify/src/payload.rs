@@ -213,9 +213,10 @@ impl Payload {
         let mut robot = robot.clone();
         let PayloadNumber { value, deviation, .. } = self.mass;
         let last = robot.joints.last().map(|joint| one_line(&joint.name)).unwrap_or_default();
-        let does = if is_added { "is part of the link" } else { "is not added to the link" };
+        let does = if is_added { "added to" } else { "not added to" };
         let logs = one_line(logs);
-        let note = format!("- payload: {value:.3} ± {deviation:.3} kg, identified from {logs}, {does} of {last}");
+        let note =
+            format!("- payload: {value:.3} ± {deviation:.3} kg, {does} the link of {last}; identified from {logs}");
         robot.notes = Some(match &robot.notes {
             Some(notes) => format!("{}\n{note}", notes.trim_end()),
             None => note,
@@ -298,7 +299,8 @@ impl Equations {
         };
         let parts = (0..number).map(part).collect();
         let errors = totals.iter().enumerate().flat_map(|(joint, total)| errors(structure, model, joint, total));
-        let mut equations = Self { parts, errors: errors.collect(), noise: model.noise.clone(), factors: vec![1.0; dof] };
+        let mut equations =
+            Self { parts, errors: errors.collect(), noise: model.noise.clone(), factors: vec![1.0; dof] };
         equations.settle_noise();
         equations
     }
@@ -332,7 +334,8 @@ impl Equations {
             for joint in 0..self.factors.len() {
                 let offset = PER_LINK + FRICTION * joint + FrictionParameter::Offset as usize;
                 let of = |part: &Vec<DMatrix<f64>>| (row.dot(&(&part[joint] * &row)), part[joint][(offset, offset)]);
-                let (squares, weight) = self.parts.iter().map(of).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
+                let (squares, weight) =
+                    self.parts.iter().map(of).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
                 let mean = squares / weight / self.noise[joint].powi(2);
                 self.factors[joint] = if mean > 1.0 { 1.0 / mean } else { 1.0 };
             }

@@ -168,7 +168,11 @@ fn a_payload_of_the_desk_arm_is_weighed() {
     let empty = payload(&robot, &second, 1.6);
     assert!(is_within(empty.mass, 0.0, 1.0) && !empty.is_there(), "{empty:?}");
     for mass in [0.3, 1.0, 2.0] {
-        check(&format!("desk arm {mass} kg"), &payload(&robot, &carrying(&robot, &second, body(mass)), 1.6), body(mass));
+        check(
+            &format!("desk arm {mass} kg"),
+            &payload(&robot, &carrying(&robot, &second, body(mass)), 1.6),
+            body(mass),
+        );
     }
 }
 
@@ -230,7 +234,9 @@ fn a_payload_behind_a_sliding_joint_is_weighed() {
 fn a_log_without_motion_has_a_mass_only_by_gravity() {
     let mut rng = Rng::with_seed(28);
     // upright, gravity acts on no joint but the lift
-    for (name, about, is_felt) in [("cylindrical_rpp", vec![0.3, 0.5, 0.5], true), ("planar3", vec![0.2, 0.4, 0.3], false)] {
+    for (name, about, is_felt) in
+        [("cylindrical_rpp", vec![0.3, 0.5, 0.5], true), ("planar3", vec![0.2, 0.4, 0.3], false)]
+    {
         let mut robot = shipped(name);
         if !is_felt {
             robot.gravity = [0.0; 3];

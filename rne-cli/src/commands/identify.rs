@@ -35,7 +35,7 @@ Examples:
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv -o identified.yaml
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --hold-out 0.3
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge
-  rne identify identified.yaml loaded.csv --payload -o with_tool.yaml")]
+  rne identify docs/desk_arm_identified.yaml docs/desk_arm_loaded.csv --payload")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// Robot file with the geometry of the arm
@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     /// Only compute the errors of FILE on the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
     judge: bool,
-    /// Keep links and friction of FILE; identify the payload at the last link
+    /// Identify only the payload at the last link
     #[arg(long, conflicts_with_all = ["judge", "rotors", "no_friction", "hold_out", "pull"])]
     payload: bool,
     /// Print every parameter, and errors by speed

@@ -31,7 +31,10 @@ impl WordedPayload<'_> {
         let Payload { mass, com, inertia, .. } = self.payload;
         if self.payload.is_there() {
             let centre = ["cx", "cy", "cz"].into_iter().zip(com).map(|(name, number)| (name, number, "m"));
-            let moments = Payload::INERTIA.into_iter().zip(inertia).map(|(name, number)| (name, number, "kg m²"));
+            // one row says that nothing is known of the inertia
+            let is_known = inertia.iter().any(|number| number.is_excited);
+            let names = if is_known { &Payload::INERTIA[..] } else { &["J"] };
+            let moments = names.iter().zip(inertia).map(|(name, number)| (*name, number, "kg m²"));
             let rows = [("m", mass, "kg")].into_iter().chain(centre).chain(moments);
             let row = |(name, number, unit): (&str, &PayloadNumber, &str)| {
                 let value = if number.is_excited {
@@ -52,7 +55,8 @@ impl WordedPayload<'_> {
                 let name = shortened(&one_line(&joint.name), NAME);
                 cells.push([format!("  {name}"), percent(before.error), percent(after.error)]);
             }
-            let title = "error: RMS of measured - predicted torque over its standard deviation";
+            let title = "errors by joint: RMS of measured - predicted torque over the standard deviation\nof the measured \
+                         torque, both low-passed";
             push_table(&mut text, title, &[Align::Left, Align::Right, Align::Right], &cells);
         }
         text
@@ -91,7 +95,8 @@ impl WordedPayload<'_> {
             (!finite.is_empty()).then(|| percent(median(finite)))
         };
         if let (Some(before), Some(after)) = (middle(self.errors), self.with.and_then(middle)) {
-            text += &format!("; the model with it predicts the torques with a median error of {after} instead of {before}");
+            text +=
+                &format!("; the model with it predicts the torques with a median error of {after} instead of {before}");
         }
         text
     }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::files::motion_log::MotionLog;
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
-use crate::values::numbers::rounded;
+use crate::values::numbers::{rounded, with_deviation};
 
 /// Events that are shown; the others are counted.
 const SHOWN: usize = 40;
