@@ -543,7 +543,9 @@ const LOADED: &str = "docs/desk_arm_loaded.csv";
 fn a_payload_is_found_and_written() {
     let written = folder("identify_payload").join("with_payload.yaml");
     let written = written.to_str().expect("UTF-8");
-    let out = fine(&["identify", IDENTIFIED, LOADED, "--payload", "-o", written]);
+    let called = rne(&["identify", IDENTIFIED, LOADED, "--payload", "-o", written]);
+    assert_eq!(called.status, 0, "{called:?}");
+    let out = called.out;
     let verdict = out.lines().nth(1).expect("a verdict");
     assert!(verdict.starts_with("payload 0.80") && verdict.contains("centre of mass (0.02"), "{out}");
     let reply: Value =
