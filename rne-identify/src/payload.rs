@@ -143,7 +143,8 @@ impl Payload {
         Ok(Self { delay, rows: stretches.rows(), ..found })
     }
 
-    /// The payload of an estimate; `moment` is the error of the model as a first moment, kg m, and as an inertia, kg m².
+    /// The payload of an estimate; `moment` is the error of the model as a first moment and inertia, kg m and
+    /// kg m².
     fn of(robot: &Robot, all: &Estimate, jackknife: &Numbers, moment: f64) -> Self {
         let arm: f64 = robot.joints.iter().map(|joint| joint.row.link.mass).sum();
         let error = if arm > 0.0 { MODEL_ERROR * (arm / LIGHT).min(1.0) } else { MODEL_ERROR };

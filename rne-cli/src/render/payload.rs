@@ -1,5 +1,7 @@
 //! An identified payload in words and as JSON: docs/identify.md lists the keys.
 
+use std::fmt::Write as _;
+
 use rne_identify::{JointError, Payload, PayloadNumber};
 use rne_logs::median;
 use rne_model::{Robot, one_line};
@@ -55,8 +57,8 @@ impl WordedPayload<'_> {
                 let name = shortened(&one_line(&joint.name), NAME);
                 cells.push([format!("  {name}"), percent(before.error), percent(after.error)]);
             }
-            let title = "errors by joint: RMS of measured - predicted torque over the standard deviation\nof the measured \
-                         torque, both low-passed";
+            let title = "errors by joint: RMS of measured - predicted torque over the standard deviation\n\
+                         of the measured torque, both low-passed";
             push_table(&mut text, title, &[Align::Left, Align::Right, Align::Right], &cells);
         }
         text
@@ -95,8 +97,10 @@ impl WordedPayload<'_> {
             (!finite.is_empty()).then(|| percent(median(finite)))
         };
         if let (Some(before), Some(after)) = (middle(self.errors), self.with.and_then(middle)) {
-            text +=
-                &format!("; the model with it predicts the torques with a median error of {after} instead of {before}");
+            let _ = write!(
+                text,
+                "; the model with it predicts the torques with a median error of {after} instead of {before}"
+            );
         }
         text
     }
