@@ -102,7 +102,9 @@ impl FittedModel {
     pub fn without(&self, structure: &Structure, stretches: &[Stretch]) -> Option<Self> {
         let count = structure.count();
         let mut left_out = DMatrix::zeros(count + 1, count + 1);
-        stretches.iter().for_each(|stretch| stretch.add_to(structure, &mut left_out));
+        for stretch in stretches {
+            stretch.add_to(structure, &mut left_out);
+        }
         let of_columns = left_out.view((0, 0), (count, count)).clone_owned();
         let of_torques = left_out.view((0, count), (count, 1)).column(0).clone_owned();
         let information = &self.information - of_columns;

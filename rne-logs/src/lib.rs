@@ -37,12 +37,15 @@ pub use crate::columns::unit::{Dimension, JointUnits};
 pub use crate::error::LogError;
 pub use crate::formats::format::Format;
 pub use crate::formats::guard::is_guarded;
+#[cfg(feature = "parquet")]
+pub use crate::formats::motion_parquet::MotionParquet;
 pub use crate::formats::npy::Npy;
 pub use crate::log::motion::Motion;
 pub use crate::log::motions::{Motions, Piece};
 pub use crate::log::pass::{Counts, Interruption, InvalidSample};
 pub use crate::log::remark::{LeftOut, Reason, Remark};
 pub use crate::log::survey::{Cutoff, Run, Survey};
+pub use crate::log::values::LabelValue;
 pub use crate::log::{Layout, Log};
 pub use crate::options::{Angles, Options};
 pub use crate::remedy::{Remedy, Setting};

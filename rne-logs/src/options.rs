@@ -38,6 +38,8 @@ pub struct Options {
     /// Quantities of an array's columns, in order: `time`, `q`, `qd`, `tau`, each but the first for every joint.
     /// Empty: all of these. Other formats have names, and refuse it.
     pub columns: Vec<String>,
+    /// Columns of a table and texts: only the rows that have each of these texts in its column are read.
+    pub select: Vec<(String, String)>,
     /// Meanings of columns of a table, which take precedence over their names. Arrays and bags refuse them.
     pub map: Vec<Mapping>,
 }
@@ -77,6 +79,7 @@ impl Default for Options {
             time_unit: None,
             rate: None,
             columns: Vec::new(),
+            select: Vec::new(),
             map: Vec::new(),
         }
     }

@@ -34,6 +34,13 @@ pub enum Setting {
     Rate,
     /// [`Options::columns`](crate::Options::columns)
     Columns,
+    /// [`Options::select`](crate::Options::select) with a column, and a text in it that would do.
+    Select {
+        /// The name of the column.
+        column: String,
+        /// A text in the column.
+        value: String,
+    },
     /// [`Options::map`](crate::Options::map) of a table that has these columns: [`suggested`](crate::suggested) makes a
     /// proposal.
     Map(Vec<String>),

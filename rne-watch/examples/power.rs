@@ -68,8 +68,8 @@ fn print(rows: &[Row]) {
     );
     for (name, cells) in rows {
         let cell = |cell: &Cell| format!("{} / {} / {}", cell.detected, cell.named, cell.inside);
-        let cells = cells.iter().map(|of| format!("{:>16}", cell(of))).collect::<String>();
-        println!("{name:<28}{cells}");
+        let cells: Vec<String> = cells.iter().map(|of| format!("{:>16}", cell(of))).collect();
+        println!("{name:<28}{}", cells.concat());
     }
 }
 

@@ -1,4 +1,4 @@
-//! What is known about an arm from logs in which nothing happened.
+//! The parameters of an arm, with their uncertainty, from logs in which nothing happened.
 
 use nalgebra::{DMatrix, DVector};
 use rne_identify::{FittedModel, FrictionParameter, MotionError, Options, Stretch, Stretches, Structure};
@@ -50,8 +50,8 @@ pub struct Baseline {
     pub rows: u64,
     /// s
     pub duration: f64,
-    /// The factor by which the error of the model is larger than between two logs of one arm: 1, or more for the links of
-    /// a robot file, which come from another motion.
+    /// The factor by which the error of the model is larger than between two logs of one arm: 1, or more for the links
+    /// of a robot file, which come from another motion.
     pub doubt: f64,
     /// The noise of the observer, if it was measured.
     pub contact: Option<ContactNoise>,
@@ -107,9 +107,9 @@ impl Baseline {
     /// Refuses a baseline of too few rows for its unknowns.
     pub(crate) fn check(&self, structure: &Structure) -> Result<(), WatchError> {
         #[allow(clippy::cast_precision_loss)] // some hundred
-        let (rows, unknowns) = (self.rows as f64, structure.count() as f64);
-        let friction = 3.0 * (structure.dof() - 1) as f64;
-        let needed = ENOUGH * (unknowns - friction);
+        let [rows, unknowns, others] = [self.rows as f64, structure.count() as f64, (structure.dof() - 1) as f64];
+        // of friction a joint feels its own
+        let needed = ENOUGH * (unknowns - 3.0 * others);
         if rows >= needed {
             return Ok(());
         }
@@ -168,7 +168,8 @@ fn residual(structure: &Structure, model: &FittedModel, stretches: &Stretches) -
     for quarter in quarters.map(|range| &list[range]) {
         let Some(others) = model.without(structure, quarter) else { continue };
         for (joint, sum) in sums.iter_mut().enumerate() {
-            quarter.iter().for_each(|stretch| sum.add(structure, joint, stretch, &others.solution));
+            let each = quarter.iter().map(|stretch| Residual::of(structure, joint, stretch, &others.solution));
+            *sum = each.fold(*sum, Residual::plus);
         }
     }
     sums.iter().zip(&model.noise).map(|(sum, noise)| sum.root_mean_square().unwrap_or(*noise).max(*noise)).collect()
@@ -182,21 +183,29 @@ pub(crate) struct Residual {
 }
 
 impl Residual {
-    pub(crate) fn add(&mut self, structure: &Structure, joint: usize, stretch: &Stretch, unknowns: &DVector<f64>) {
+    pub(crate) fn of(structure: &Structure, joint: usize, stretch: &Stretch, unknowns: &DVector<f64>) -> Self {
         let count = structure.count();
         let mut products = DMatrix::zeros(count + 1, count + 1);
         stretch.add_joint(structure, joint, &mut products);
         let mut row = DVector::from_element(count + 1, 1.0);
         row.rows_mut(0, count).copy_from(&-unknowns);
-        self.squares += row.dot(&(&products * &row));
         let ones = FittedModel::place(structure, joint, FrictionParameter::Offset);
-        self.weight += ones.map_or(0.0, |one| products[(one, one)]);
+        let weight = ones.map_or(0.0, |one| products[(one, one)]);
+        Self { squares: row.dot(&(&products * &row)), weight }
+    }
+
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { squares: self.squares + other.squares, weight: self.weight + other.weight }
+    }
+
+    pub(crate) fn mean_square(self) -> f64 {
+        // weights are one over the variance
+        if self.weight > 0.0 { (self.squares / self.weight).max(0.0) } else { 0.0 }
     }
 
     /// N m or N; `None` without rows.
-    pub(crate) fn root_mean_square(&self) -> Option<f64> {
-        // weights are one over the variance
-        (self.weight > 0.0).then(|| (self.squares / self.weight).max(0.0).sqrt())
+    pub(crate) fn root_mean_square(self) -> Option<f64> {
+        (self.weight > 0.0).then(|| self.mean_square().sqrt())
     }
 }
 

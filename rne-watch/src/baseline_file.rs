@@ -29,7 +29,8 @@ impl Baseline {
             format!("[{}]", all.join(", "))
         };
         let mut text = format!(
-            "# A baseline of {}, written by rne from {}.\n# `rne watch` compares later logs with it.\nformat: {FORMAT}\n",
+            "# A baseline of {}, written by rne from {}.\n# Later logs of the arm are compared with it.\n\
+             format: {FORMAT}\n",
             one_line(&robot.name),
             one_line(logs)
         );
@@ -55,7 +56,9 @@ impl Baseline {
             ("inflation", &self.inflation),
             ("solution", self.model.solution.as_slice()),
         ];
-        lists.iter().for_each(|(key, numbers)| line(key, &list(numbers)));
+        for (key, numbers) in lists {
+            line(key, &list(numbers));
+        }
         let contact = self.contact.iter().flat_map(|noise| &noise.joints);
         let contact: Vec<f64> = contact.flat_map(|of| [of.mean, of.deviation, of.part, of.terms, of.inertia]).collect();
         line("contact", &list(&contact));
@@ -74,6 +77,10 @@ impl Baseline {
     pub fn from_yaml(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
         let root = document::read(name, text, KIND)?;
         let read = Reading { name, text, root: &root };
+        #[allow(clippy::float_cmp)] // a whole number
+        if read.number("format")? != f64::from(FORMAT) {
+            return Err(read.refuse("format", &format!("this rne reads baselines of format {FORMAT}")));
+        }
         let cutoff = read.number("cutoff").and_then(|cutoff| read.check("cutoff", cutoff, cutoff > 0.0))?;
         let structure = Self::structure(robot, cutoff);
         let (dof, count) = (structure.dof(), structure.count());

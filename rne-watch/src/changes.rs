@@ -15,6 +15,16 @@ use crate::selection::{Finding, Selection, Statistic};
 /// The error of the model has grown where its residual is this many times that of the baseline.
 const GROWN: f64 = 3.0;
 
+/// A time in a log: the number of the run, and s.
+type Instant = (u64, f64);
+
+/// A change of all unknowns from one time to another one.
+#[derive(Clone, Debug, PartialEq)]
+struct Window {
+    ends: [Instant; 2],
+    change: DVector<f64>,
+}
+
 /// The changes between a baseline and a log.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -23,11 +33,10 @@ pub struct Changes {
     pub events: Vec<Event>,
     /// All other parameters, with their thresholds.
     pub statistics: Vec<Statistic>,
-    /// Root mean square of what the baseline's model leaves of each joint's torque, N m or N, with all changes that were
-    /// found.
+    /// Root mean square of the torque of each joint that the baseline's model with all changes does not explain, N m
+    /// or N.
     pub residual: Vec<f64>,
-    /// The changes of all unknowns, with the first and the last time: run and seconds.
-    windows: Vec<([(u64, f64); 2], DVector<f64>)>,
+    windows: Vec<Window>,
 }
 
 impl Changes {
@@ -39,11 +48,13 @@ impl Changes {
         let mut events: Vec<Event> =
             findings.iter().map(|found| event(structure, baseline, &selection, found)).collect();
         let residual = residual(structure, baseline, &selection);
+        // the errors of a file are those of another motion
+        let has_quiet_log = baseline.doubt == 1.0;
         for (joint, (now, before)) in residual.iter().zip(&baseline.residual).enumerate() {
             // a change that was found has a shape of its own, which the model need not have
             let is_explained =
                 findings.iter().any(|found| found.statistic.candidate.joint().is_none_or(|of| of == joint));
-            if *now > GROWN * before && !is_explained {
+            if *now > GROWN * before && !is_explained && has_quiet_log {
                 events.push(grown(structure, &selection, joint, [*now, *before]));
             }
         }
@@ -56,7 +67,8 @@ impl Changes {
             let is_last = window.end == selection.stretches.len();
             [first, if is_last { (last.0, f64::INFINITY) } else { last }]
         };
-        let windows = selection.changes().into_iter().map(|(window, change)| (ends(&window), change)).collect();
+        let changes = selection.changes().into_iter();
+        let windows = changes.map(|(window, change)| Window { ends: ends(&window), change }).collect();
         Some(Self { events, statistics: selection.statistics(), residual, windows })
     }
 
@@ -72,7 +84,7 @@ impl Changes {
         motion: &Motion,
     ) -> Result<Vec<Vec<f64>>, MotionError> {
         let mut sum = vec![vec![0.0; motion.len()]; structure.dof()];
-        for ([first, last], change) in &self.windows {
+        for Window { ends: [first, last], change } in &self.windows {
             if run < first.0 || run > last.0 {
                 continue;
             }
@@ -159,14 +171,14 @@ fn grown(structure: &Structure, selection: &Selection<'_>, joint: usize, [value,
     }
 }
 
-/// The root mean square of what the model leaves of each joint, with all changes that were found, N m or N.
+/// The root mean square of what the model leaves of each joint, with all changes that were found, N m or N; over
+/// the stretches in which nobody touches the arm.
 fn residual(structure: &Structure, baseline: &Baseline, selection: &Selection<'_>) -> Vec<f64> {
     let unknowns = selection.unknowns();
     let of_joint = |joint: usize| {
-        let mut sum = Residual::default();
-        for (stretch, unknowns) in selection.stretches.iter().zip(&unknowns) {
-            sum.add(structure, joint, stretch, unknowns);
-        }
+        let stretches = selection.stretches.iter().zip(&unknowns);
+        let each = stretches.map(|(stretch, unknowns)| Residual::of(structure, joint, stretch, unknowns));
+        let sum = each.fold(Residual::default(), Residual::plus);
         sum.root_mean_square().unwrap_or(baseline.residual[joint])
     };
     (0..structure.dof()).map(of_joint).collect()

@@ -58,7 +58,7 @@ impl fmt::Display for WatchError {
             Self::TooFew { found, needed } => write!(f, "{found} samples, and at least {needed} are needed"),
             Self::ShortBaseline { duration, needed, cutoff } => write!(
                 f,
-                "{duration:.1} s are too short for a baseline of this arm behind a low-pass of {cutoff:.1} Hz: at least \
+                "{duration:.1} s are too short for a baseline of this arm after a low-pass of {cutoff:.1} Hz: at least \
                  {needed:.1} s of motion are needed"
             ),
             Self::Setting(name) => write!(f, "{name} must be a finite number above 0"),

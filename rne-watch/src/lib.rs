@@ -1,41 +1,31 @@
-//! Watches an arm by its motions: what its efforts are beyond the model ([`Signals`]), how large that is while nothing
-//! happens ([`Baseline`]), and where more happens ([`watch`], [`Event`]), with a picture ([`svg`]).
+//! Watches an arm by its logs: parameters that have changed against a quiet log ([`Baseline`], [`Changes`]), contacts
+//! ([`contacts`]), both as events with one cause each ([`watch`], [`Event`]), and the parameters from log to log
+//! ([`Trend`]).
 //!
-//! Three tests look at every joint. Each may raise so many false alarms in an hour, and no more:
+//! A change is estimated by least squares over both logs, which have all parameters in common but the changed ones: the
+//! module `score` has the equations, `selection` the competition of the causes. Contacts are found by the momentum
+//! observer in what the changes leave.
 //!
-//! | test | looks at | finds | threshold |
-//! |---|---|---|---|
-//! | [`Test::External`] | the momentum observer | collisions, a hand, a payload | k deviations for a time of hold |
-//! | [`Test::Offset`] | the residual, measured less model | a payload, an offset of a sensor | a cumulative sum |
-//! | [`Test::Friction`] | the residual in the direction of motion | wear, a brake, cold grease | a cumulative sum |
+//! ```no_run
+//! use rne_identify::{ArmLog, ArmLogOptions, Purpose};
+//! use rne_watch::{Baseline, Settings, watch};
 //!
-//! How the thresholds follow from the rate is in the modules' words: [`Thresholds`].
-//!
-//! ```
-//! use rne_logs::Motion;
-//! use rne_watch::{Baseline, Settings, Signals, watch};
-//!
-//! let file = rne_robots::find("planar2").expect("it is shipped");
-//! let robot = rne_model::Robot::from_yaml(file.yaml)?;
-//! // ten seconds at rest, where the model explains all but a ripple
-//! let time: Vec<f64> = (0..1000).map(|tick| 0.01 * f64::from(tick)).collect();
-//! let weight = rne_runtime::DynArm::from_robot(&robot).gravity_torques(&[0.3, -0.5])?;
-//! let still = |value: f64| vec![value; 1000];
-//! let ripple = |mean: f64| time.iter().map(|t| mean + 0.02 * (1e4 * t * t).sin()).collect::<Vec<_>>();
-//! let motion = Motion {
-//!     q: vec![still(0.3), still(-0.5)],
-//!     qd: vec![still(0.0), still(0.0)],
-//!     qdd: vec![still(0.0), still(0.0)],
-//!     tau: vec![ripple(weight[0]), ripple(weight[1])],
-//!     time,
-//!     ..Motion::default()
-//! };
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = std::fs::read_to_string("arm.yaml")?;
+//! let robot = rne_model::Robot::from_yaml(&text).map_err(|report| report.to_string())?;
+//! let mut options = ArmLogOptions { purpose: Purpose::Watch, ..ArmLogOptions::default() };
+//! let quiet = ArmLog::open(&["quiet.csv".into()], &robot, &options)?;
 //! let settings = Settings::default();
-//! let signals = Signals::new(&robot, &motion, settings.gain)?;
-//! let baseline = Baseline::of(&signals, 0..500)?;
-//! let report = watch(&signals, &baseline, &settings)?;
-//! assert!(report.events.is_empty());
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! let baseline = Baseline::of_logs(&robot, &quiet, &settings, &mut |_| ())?;
+//! // both logs pass the same filter
+//! options.log.cutoff = Some(baseline.cutoff);
+//! let log = ArmLog::open(&["today.csv".into()], &robot, &options)?;
+//! let report = watch(&robot, &baseline, &log, &settings, false, &mut |_| ())?;
+//! for event in &report.events {
+//!     println!("{}: {} {} since {} s", event.cause, event.value, event.unit, event.since);
+//! }
+//! # Ok(())
+//! # }
 //! ```
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]

@@ -7,7 +7,7 @@ use crate::contact::contact_limits;
 use crate::event::Event;
 use crate::{Report, Settings};
 
-/// What is left of the torques of each joint, the observer's torque with its thresholds, and the events, as an SVG; the
+/// The residual torque of each joint, the observer's torque with its thresholds, and the events, as an SVG; the
 /// torques of changed parameters are drawn as their own curve. Empty without signals. `about` says what the log is.
 /// Texts of the robot file are shown and do nothing.
 #[must_use]

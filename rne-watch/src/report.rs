@@ -160,6 +160,9 @@ pub fn changes(
 /// Torques of a run's motion that are explained already, joint by joint, N m or N; without any joint, none is.
 type Explain<'a> = &'a dyn Fn(u64, &Motion) -> Result<Vec<Vec<f64>>, WatchError>;
 
+/// Takes the signals of a piece of a run, with the torques that are explained already.
+type Take<'a> = &'a mut dyn FnMut(u64, Signals, &[Vec<f64>]) -> Result<(), WatchError>;
+
 /// The noise of each piece of a log that is long enough.
 fn noise(
     robot: &Robot,
@@ -183,7 +186,7 @@ fn each_signals(
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
     explain: Explain<'_>,
-    take: &mut dyn FnMut(u64, Signals, &[Vec<f64>]) -> Result<(), WatchError>,
+    take: Take<'_>,
 ) -> Result<(), WatchError> {
     let mut pieces = 0;
     let unless_short = |found: Result<(), WatchError>| match found {

@@ -5,14 +5,17 @@ use std::ops::Range;
 use nalgebra::DVector;
 use rne_identify::{Stretch, Structure};
 
+use rne_logs::median;
+
 use crate::Baseline;
+use crate::baseline::Residual;
 use crate::candidate::{Candidate, Scale};
 use crate::score::{Change, Estimate, Projected, Score};
 
 /// A change is an event from this many deviations on.
 const DEVIATIONS: f64 = 3.0;
 
-/// The same for a change that does not last from the beginning to the end of the log, because many times are tried.
+/// A change that does not last from the beginning to the end of the log needs more, because many times are tried.
 const DEVIATIONS_OF_PART: f64 = 3.3;
 
 /// The factor by which the smallest change is larger then.
@@ -42,6 +45,12 @@ const ALIKE: f64 = 8.0;
 
 /// s: a change that a moment as short as this explains is a contact and no change of a parameter.
 const MOMENT: f64 = 1.0;
+
+/// The mean square of a stretch that stands out, in medians of all stretches: seven deviations of normal noise.
+const OUTLIER: f64 = 108.0;
+
+/// Rounds in which stretches that stand out are left out.
+const ROUNDS: usize = 3;
 
 /// The estimate of a change that lasts, with the bounds that make it an event.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,14 +94,45 @@ pub(crate) struct Selection<'a> {
 impl<'a> Selection<'a> {
     /// The changes of a log; `None` where the log and the baseline together tell nothing.
     pub(crate) fn of(structure: &'a Structure, baseline: &'a Baseline, stretches: &'a [Stretch]) -> Option<Self> {
-        let mut one = Self::empty(structure, baseline, stretches.iter().collect())?;
-        // a log has few moments in which somebody touches the arm: half of it must remain
-        while 2 * one.stretches.len() > stretches.len() {
+        let mut one = Self::selected(structure, baseline, stretches.iter().collect())?;
+        for _ in 0..ROUNDS {
+            let contacts = one.outliers();
+            if contacts.is_empty() || 4 * (one.stretches.len() - contacts.len()) < 3 * stretches.len() {
+                break;
+            }
+            let kept = one.stretches.iter().enumerate().filter(|(at, _)| !contacts.contains(at));
+            one = Self::selected(structure, baseline, kept.map(|(_, stretch)| *stretch).collect())?;
+        }
+        Some(one)
+    }
+
+    /// Selects changes, without the moments that explain one alone: a log has few of them, so half of it must remain.
+    fn selected(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
+        let count = stretches.len();
+        let mut one = Self::empty(structure, baseline, stretches)?;
+        while 2 * one.stretches.len() > count {
             let Some(moment) = one.select() else { break };
             let rest = one.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
             one = Self::empty(structure, baseline, rest.map(|(_, stretch)| *stretch).collect())?;
         }
         Some(one)
+    }
+
+    /// The stretches that stand out from the others, with all changes that were found: somebody touches the arm there.
+    fn outliers(&self) -> Vec<usize> {
+        let unknowns = self.unknowns();
+        let mut found = Vec::new();
+        for joint in 0..self.structure.dof() {
+            let stretches = self.stretches.iter().zip(&unknowns);
+            let each: Vec<f64> = stretches
+                .map(|(stretch, unknowns)| Residual::of(self.structure, joint, stretch, unknowns).mean_square())
+                .collect();
+            let usual = median(each.clone());
+            found.extend(each.iter().enumerate().filter(|(_, square)| **square > OUTLIER * usual).map(|(at, _)| at));
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
     }
 
     fn empty(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
@@ -189,7 +229,7 @@ impl<'a> Selection<'a> {
         let steps = ((self.duration(&(0..count)) / STEP) as usize).clamp(1, STEPS);
         let starts = (1..steps).map(|step| step * count / steps..count);
         let is_long = |window: &Range<usize>| self.duration(window) >= SHORTEST;
-        [0..count].into_iter().chain(starts.filter(is_long)).collect()
+        std::iter::once(0..count).chain(starts.filter(is_long)).collect()
     }
 
     /// The change with the beginning and the end that explain most, of all stretches about those that were tried.

@@ -111,8 +111,8 @@ impl Trend {
         text
     }
 
-    /// Coulomb friction of each joint and the payload over the logs, with intervals of 95 % and the thresholds of events,
-    /// as an SVG. `about` says what was compared.
+    /// Coulomb friction of each joint and the payload over the logs, with intervals of 95 % and the thresholds of
+    /// events, as an SVG. `about` names the logs that were compared.
     #[must_use]
     pub fn svg(&self, robot: &Robot, about: &str) -> String {
         #[allow(clippy::cast_precision_loss)] // a number of logs
@@ -140,8 +140,9 @@ struct Series {
 }
 
 impl Series {
-    fn new(title: String, before: f64, values: impl Iterator<Item = TrendValue> + Clone) -> Self {
-        let of = |each: &dyn Fn(TrendValue) -> f64| values.clone().map(each).collect();
+    fn new(title: String, before: f64, values: impl Iterator<Item = TrendValue>) -> Self {
+        let values: Vec<TrendValue> = values.collect();
+        let of = |each: &dyn Fn(TrendValue) -> f64| values.iter().copied().map(each).collect();
         let curves = [
             of(&|of| of.value),
             of(&|of| of.value + INTERVAL * of.deviation),

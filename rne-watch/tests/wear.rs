@@ -99,7 +99,7 @@ fn a_payload_is_weighed() {
     }
 }
 
-/// The intervals hold: 200 logs with noise of half the residual of each joint, and a baseline of its own for each tenth.
+/// The intervals hold: 200 logs with noise of half the residual of each joint, and a new baseline for every ten.
 #[test]
 fn intervals_hold_the_true_size() {
     let cases = [("ur10", Some(2), 0.25), ("ur10", Some(3), 0.5), ("panda", Some(4), 1.0), ("panda", Some(6), 1.0)];

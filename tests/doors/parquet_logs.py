@@ -9,6 +9,11 @@ import numpy
 import pyarrow
 import pyarrow.parquet
 
+try:
+    import polars
+except ImportError:
+    polars = None
+
 import harness
 from logs import READERS, arm, read_by_all
 
@@ -363,6 +368,34 @@ for kind in ("lists", "columns"):
         f"two arms, clock of the right one, {kind}", lambda trial, kind=kind: clock_of_the_right_arm(trial, kind)
     )
 parquet("two arms", two_arms, "refused")
+
+# A motion that is written: other readers find the numbers of CSV in it.
+
+
+def motion_for_others(trial, make, is_stamped):
+    log = trial.write("log.parquet", lambda path: pyarrow.parquet.write_table(make(), path))
+    columns = filtered(trial, log)
+    trial.rne("log", log, "-o", "motion.parquet", writes=["motion.parquet"], names="log.parquet", expected="taken")
+    motion = pyarrow.parquet.read_table(trial.folder / "motion.parquet")
+    for quantity in ("q", "qd", "qdd", "tau"):
+        lists = numpy.array(motion[quantity].to_pylist()).T
+        if not all(numpy.array_equal(lists[joint], columns[f"{quantity}{joint + 1}"]) for joint in (0, 1)):
+            trial.fault(f"rne log -o motion.parquet: {quantity} is not that of CSV")
+    if set(map(tuple, motion["name"].to_pylist())) != {("a", "b")} or set(motion["run"].to_pylist()) != {1}:
+        trial.fault("rne log -o motion.parquet: the names of joints or the numbers of runs are wrong")
+    time = motion["time"]
+    if is_stamped != pyarrow.types.is_timestamp(time.type):
+        trial.fault(f"rne log -o motion.parquet: times are {time.type}")
+    seconds = time.cast(pyarrow.int64()).to_numpy() * 1e-9 - 1.7e9 if is_stamped else time.to_numpy()
+    if not numpy.allclose(seconds, columns["t"], rtol=0, atol=1e-6):
+        trial.fault("rne log -o motion.parquet: times are not those of CSV")
+    if polars and polars.read_parquet(trial.folder / "motion.parquet")["q"].to_list() != motion["q"].to_pylist():
+        trial.fault("polars reads other positions")
+
+
+STAMPS = pyarrow.array(NANOSECONDS + 1_700_000_000_000_000_000, pyarrow.timestamp("ns"))
+CASES.add("motion for other readers", lambda trial: motion_for_others(trial, lists, False))
+CASES.add("motion with stamps", lambda trial: motion_for_others(trial, lambda: lists(t=STAMPS), True))
 
 # Files with noise.
 

@@ -178,7 +178,7 @@ onto("firmware", "a folder that is not there", "firmware", "taken", writes=["fir
 onto("firmware", "a folder of somebody", "mine", "refused", folder_of_somebody)
 
 # A format of tables that `rne log` does not write must not get a table of another format under its name.
-onto("log", "Parquet", "out.parquet", "refused")
+onto("log", "a bag", "out.mcap", "refused")
 
 # C: a header beside the source.
 onto("emit c", "a header of somebody", "arm.c", "usage", lambda folder: (folder / "arm.h").write_text("// mine\n"))

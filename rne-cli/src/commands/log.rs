@@ -1,32 +1,34 @@
 //! `rne log`: what a log of an arm has, and its motion, filtered.
 
-use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::ProgressBar;
-use rne_identify::{ArmLogRemark, check_units, joint_options};
-use rne_logs::{Cutoff, Log, LogError, Motion, Survey};
+use rne_identify::{check_units, joint_options};
+use rne_logs::{Log, Options};
 
-use crate::files::file_name::{self, Format};
+use crate::files::file_name::Format;
 use crate::files::input_file::is_standard_input;
+use crate::files::motion_file::{self, Stopped, Written};
 use crate::files::motion_log;
 use crate::files::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::files::reading;
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::GOOD;
-use crate::render::log_report::{self, Reply};
+use crate::render::log_groups::{self, Group};
+use crate::render::log_report::{self, Described, Reply};
 use crate::values::log_arguments::{LogArguments, failure};
 
 /// Describe a log of an arm; filter it and add accelerations
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne log docs/desk_arm_log.csv
   rne log docs/desk_arm_log.csv --cutoff 4 -o motion.csv
   rne log docs/desk_arm_log.csv --robot docs/desk_arm.yaml --json
+  rne log docs/two_arms_log.csv --by robot_id
+  rne log docs/two_arms_log.csv --where robot_id=r2
 
 Formats: CSV and npy; ROS 2 bags (*.db3, *.mcap) and Parquet if rne was built
 with these features. docs/logs.md describes the columns.")]
@@ -38,7 +40,10 @@ pub(crate) struct Arguments {
     /// Select the joints of this robot file
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// Filtered motion (CSV); - is standard output
+    /// Describe the rows of each text in this column
+    #[arg(long, value_name = "COLUMN")]
+    by: Option<String>,
+    /// Filtered motion: *.csv, *.parquet; - is standard output
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite an existing file
@@ -52,9 +57,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// The log, by the joints of the robot where there is one, and how they were matched.
-    fn open(&self) -> Result<(Log, Option<ArmLogRemark>), Failure> {
-        let mut options = self.reading.options();
+    /// Opens and surveys the log, by the joints of the robot where there is one.
+    fn describe(&self, mut options: Options, is_result_shown: bool) -> Result<Described, Failure> {
         let mut matched = None;
         let robot = self.robot.as_deref().map(robot_file::robot).transpose()?;
         if let Some(robot) = &robot {
@@ -65,7 +69,26 @@ impl Arguments {
         if let Some(robot) = &robot {
             check_units(robot, log.layout()).map_err(|error| motion_log::failure(&error))?;
         }
-        Ok((log, matched))
+        let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error, &[]))?;
+        Ok(Described { log, survey, matched })
+    }
+
+    /// Describes the rows of each text in a column.
+    fn describe_each(&self, column: &str, is_result_shown: bool) -> Result<Vec<Group>, Failure> {
+        let options = self.reading.options();
+        let bar = reading::bar("read", is_result_shown);
+        let values = Log::values(&self.files, column, &options, |share| reading::show(&bar, share));
+        bar.finish_and_clear();
+        let described = |value: &str| {
+            let mut options = options.clone();
+            options.select.push((column.to_owned(), value.to_owned()));
+            self.describe(options, is_result_shown)
+        };
+        let values = values.map_err(|error| failure(&error, &[]))?;
+        Ok(values
+            .into_iter()
+            .map(|found| Group { described: described(&found.value), value: found.value, rows: found.rows })
+            .collect())
     }
 }
 
@@ -75,27 +98,61 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Err(Failure::usage(what));
     }
     let out = arguments.out.as_deref();
+    let mut format = Format::Csv;
     let is_result_shown = out.is_some_and(is_standard_output);
     if let Some(path) = out.filter(|path| !is_standard_output(path)) {
         let sources: Vec<&Path> = arguments.files.iter().chain(&arguments.robot).map(PathBuf::as_path).collect();
         check_new(path, None, &sources, arguments.force)?;
-        file_name::format(path, &[Format::Csv])?;
+        format = motion_file::format(path)?;
     }
-    let (log, matched) = arguments.open()?;
-    let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error, &[]))?;
-    let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
-    let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
-    let text = if is_result_shown {
-        String::new()
-    } else if arguments.json {
-        Outcome::json(&Reply::of(&log, &survey, matched.as_ref()))?.text
-    } else {
-        log_report::text(&log, &survey, matched.as_ref())
+    if let Some(column) = &arguments.by {
+        let groups = arguments.describe_each(column, is_result_shown)?;
+        if groups.iter().all(|group| group.described.is_err())
+            && let Some(group) = groups.first()
+            && let Err(error) = &group.described
+        {
+            return Err(group.failure(column, error));
+        }
+        let at_fault = groups.iter().any(Group::is_at_fault);
+        let text = match (is_result_shown, arguments.json) {
+            (true, _) => String::new(),
+            (false, true) => Outcome::json(&log_groups::Reply::of(column, &groups))?.text,
+            (false, false) => log_groups::text(&arguments.files, column, &groups),
+        };
+        let Some(path) = out else { return Ok(Outcome { text, at_fault, ..Outcome::default() }) };
+        let mut logs = Vec::new();
+        for group in &groups {
+            let described = group.described.as_ref().map_err(|error| group.failure(column, error))?;
+            logs.push(Written { log: &described.log, survey: &described.survey, label: &group.value });
+        }
+        return written(arguments, &logs, Some(column), path, format, text);
+    }
+    let described = arguments.describe(arguments.reading.options(), is_result_shown)?;
+    let text = match (is_result_shown, arguments.json) {
+        (true, _) => String::new(),
+        (false, true) => Outcome::json(&Reply::of(&described))?.text,
+        (false, false) => log_report::text(&described),
     };
-    let Some(path) = out else { return Ok(Outcome { text, at_fault, ..Outcome::default() }) };
+    let Some(path) = out else {
+        return Ok(Outcome { text, at_fault: described.is_at_fault(), ..Outcome::default() });
+    };
+    let logs = [Written { log: &described.log, survey: &described.survey, label: "" }];
+    written(arguments, &logs, None, path, format, text)
+}
+
+/// Writes the motions of logs.
+fn written(
+    arguments: &Arguments,
+    logs: &[Written<'_>],
+    label: Option<&str>,
+    path: &Path,
+    format: Format,
+    text: String,
+) -> Result<Outcome, Failure> {
+    let is_result_shown = is_standard_output(path);
     let states = if is_result_shown {
-        let mut out = BufWriter::new(io::stdout().lock());
-        let written = write(&log, &survey, &ProgressBar::hidden(), &mut out);
+        let mut out = BufWriter::new(io::stdout());
+        let written = motion_file::write(logs, label, format, &ProgressBar::hidden(), &mut out);
         match written.and_then(|states| out.flush().map(|()| states).map_err(Stopped::Unwritable)) {
             // `rne log … -o - | head` has read enough
             Err(Stopped::Unwritable(error)) if error.kind() == io::ErrorKind::BrokenPipe => 1,
@@ -106,7 +163,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             Ok(states) => states,
         }
     } else {
-        write_file(&log, &survey, path)?
+        write_file(logs, label, path, format)?
     };
     if states == 0 {
         let what = format!("{}: no sample is left after the filter", arguments.files[0].display());
@@ -120,18 +177,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark, ..Outcome::default() })
 }
 
-/// Reason for which writing stopped.
-enum Stopped {
-    Unreadable(LogError),
-    Unwritable(io::Error),
-}
-
-fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
+fn write_file(logs: &[Written<'_>], label: Option<&str>, path: &Path, format: Format) -> Result<u64, Failure> {
     let unwritable = |error: io::Error| unwritable(path, &error);
     let replacement = Replacement::begin(path).map_err(unwritable)?;
     let mut out = BufWriter::new(replacement.file().map_err(unwritable)?);
     let bar = reading::bar("filtered", false);
-    let written = write(log, survey, &bar, &mut out);
+    let written = motion_file::write(logs, label, format, &bar, &mut out);
     bar.finish_and_clear();
     let states = written.map_err(|stopped| match stopped {
         Stopped::Unreadable(error) => failure(&error, &[]),
@@ -141,38 +192,6 @@ fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
     drop(out);
     if states > 0 {
         replacement.keep().map_err(unwritable)?;
-    }
-    Ok(states)
-}
-
-/// Writes the filtered motion; how many states it has.
-fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) -> Result<u64, Stopped> {
-    let mut motions = log.motions(survey).map_err(Stopped::Unreadable)?;
-    let joints = log.layout().joints.len();
-    let mut header = "t".to_owned();
-    for (quantity, is_there) in [("q", true), ("qd", true), ("qdd", true), ("tau", log.layout().has_efforts)] {
-        for joint in (1..=joints).filter(|_| is_there) {
-            let _ = write!(header, ",{quantity}{joint}");
-        }
-    }
-    let mut states = 0;
-    let mut line = String::new();
-    while let Some(piece) = motions.next() {
-        let piece = piece.map_err(Stopped::Unreadable)?;
-        reading::show(bar, motions.progress());
-        if states == 0 {
-            writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
-        }
-        let Motion { time, q, qd, qdd, tau, .. } = &piece.motion;
-        for (i, time) in time.iter().enumerate() {
-            line.clear();
-            let _ = write!(line, "{time}");
-            for list in [q, qd, qdd, tau].into_iter().flatten() {
-                let _ = write!(line, ",{}", list[i]);
-            }
-            writeln!(out, "{line},{}", piece.run + 1).map_err(Stopped::Unwritable)?;
-        }
-        states += time.len() as u64;
     }
     Ok(states)
 }

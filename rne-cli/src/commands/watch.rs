@@ -25,12 +25,10 @@ use crate::values::numbers::above_zero;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne watch docs/desk_arm_identified.yaml docs/desk_arm_worn.csv --quiet docs/desk_arm_log.csv
-  rne watch arm.yaml today.csv --quiet quiet.csv --save-baseline arm.baseline.yaml
-  rne watch arm.yaml monday.csv tuesday.csv --baseline arm.baseline.yaml --by log --plot trend.svg
+  rne watch docs/desk_arm_identified.yaml docs/desk_arm_worn.csv \\
+    --quiet docs/desk_arm_log.csv
 
-Exit status 1: there are events, or the model does not explain some joint.
-docs/watch.md explains events and thresholds.")]
+Exit status 1: events, or torques that are not explained. See docs/watch.md.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// Robot file with friction, from `rne identify`
@@ -60,8 +58,9 @@ pub(crate) struct Arguments {
     /// Shortest contact to report, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero("it is a number above 0"))]
     hold: f64,
-    /// Permitted false contacts per hour, all joints
-    #[arg(long, value_name = "RATE", default_value_t = 0.01, value_parser = above_zero("it is a number above 0"))]
+    /// False contacts per hour [default: 0.01]
+    #[arg(long, value_name = "RATE", default_value_t = 0.01, hide_default_value = true,
+        value_parser = above_zero("it is a number above 0"))]
     false_alarms: f64,
     /// Plot residuals and events, or the trend (SVG)
     #[arg(long, value_name = "SVG")]
@@ -246,8 +245,8 @@ fn groups(
             log.day().ok_or_else(|| {
                 let shown = one_line(&path.display().to_string());
                 Failure::usage(format_args!(
-                    "the times of {shown} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares the \
-                     logs one by one"
+                    "the times of {shown} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares \
+                     the logs one by one"
                 ))
             })?
         } else {

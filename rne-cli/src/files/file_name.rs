@@ -10,6 +10,7 @@ use crate::palette::TYPED;
 pub(crate) enum Format {
     Csv,
     Npy,
+    Parquet,
     RobotFile,
     Urdf,
     Svg,
@@ -19,20 +20,19 @@ pub(crate) enum Format {
 }
 
 /// Ends of names that say something, though nothing of it is written here.
-const OTHERS: [&str; 16] = [
-    "bag", "cc", "cpp", "cxx", "db3", "hpp", "jpg", "json", "mcap", "npz", "parquet", "pdf", "png", "py", "toml",
-    "xacro",
-];
+const OTHERS: [&str; 15] =
+    ["bag", "cc", "cpp", "cxx", "db3", "hpp", "jpg", "json", "mcap", "npz", "pdf", "png", "py", "toml", "xacro"];
 
 impl Format {
-    const ALL: [Self; 8] =
-        [Self::Csv, Self::Npy, Self::RobotFile, Self::Urdf, Self::Svg, Self::Html, Self::Rust, Self::C];
+    const ALL: [Self; 9] =
+        [Self::Csv, Self::Npy, Self::Parquet, Self::RobotFile, Self::Urdf, Self::Svg, Self::Html, Self::Rust, Self::C];
 
     /// Ends of names, the usual one first.
     const fn ends(self) -> &'static [&'static str] {
         match self {
             Self::Csv => &["csv"],
             Self::Npy => &["npy"],
+            Self::Parquet => &["parquet"],
             Self::RobotFile => &["yaml", "yml"],
             Self::Urdf => &["urdf", "xml"],
             Self::Svg => &["svg"],

@@ -5,6 +5,7 @@ pub(crate) mod csv_table;
 pub(crate) mod file_name;
 pub(crate) mod input_file;
 pub(crate) mod interruption;
+pub(crate) mod motion_file;
 pub(crate) mod motion_log;
 pub(crate) mod output_file;
 pub(crate) mod output_folder;

@@ -11,6 +11,10 @@ use crate::render::log_remedy;
 pub(crate) fn log_remark(remark: &Remark) -> String {
     let options = match remark {
         Remark::MayBeDegrees { .. } => ": use --degrees if they are degrees, --radians if they are radians or metres",
+        Remark::TimeGoesBack { columns, .. } => {
+            let column = columns.first().map_or("COLUMN", String::as_str);
+            return format!("{remark}: `rne log` describes each with --by {}", log_remedy::quoted(column.to_owned()));
+        }
         Remark::VelocitiesDisagree { .. } => "; --derive-velocities ignores them",
         Remark::Currents(_) => ": give the factor to torques in N m/A with --torque-constant",
         Remark::TakenForTorques => "; if they are currents, give the N m/A with --torque-constant",

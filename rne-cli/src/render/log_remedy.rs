@@ -12,7 +12,8 @@ pub(crate) fn sentence(error: &LogError, joints: &[String]) -> String {
         }
         Remedy::Give(Setting::Map(columns)) => format!("name the columns: {}", map(&suggested(columns, joints))),
         Remedy::Give(Setting::TimeColumn(columns)) => {
-            format!("{} names the column of times", map(&suggested(columns, &[])))
+            let column = suggested(columns, &[]).pop().map_or_else(|| "COLUMN".to_owned(), |mapping| mapping.column);
+            format!("--time-column {} names the column of times", quoted(column))
         }
         Remedy::Give(setting) => given(setting),
         Remedy::LeaveOut(setting) => format!("remove {}", option(setting)),
@@ -25,12 +26,16 @@ pub(crate) fn sentence(error: &LogError, joints: &[String]) -> String {
 
 /// The options that map columns, to be typed into a shell.
 pub(crate) fn map(mappings: &[Mapping]) -> String {
-    let is_word = |text: &str| text.chars().all(|c| c.is_alphanumeric() || "._-/=".contains(c));
-    let quoted = |text: String| if is_word(&text) { text } else { format!("'{}'", text.replace('\'', "'\\''")) };
     let options = mappings
         .iter()
         .map(|mapping| format!("--map {}={}", quoted(mapping.target.to_string()), quoted(mapping.column.clone())));
     options.collect::<Vec<_>>().join(" ")
+}
+
+/// A text as a word of a shell.
+pub(crate) fn quoted(text: String) -> String {
+    let is_word = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "._-/=".contains(c));
+    if is_word { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
 
 /// The option of a setting with what it says.
@@ -49,6 +54,11 @@ fn given(setting: &Setting) -> String {
         Setting::TimeUnit => "s, ms, us or ns says the unit".to_owned(),
         Setting::Rate => "HZ says the sampling rate".to_owned(),
         Setting::Columns => "says the order, as in --columns time,q,tau".to_owned(),
+        Setting::Select { column, value } => {
+            let by = quoted(column.clone());
+            let one = quoted(format!("{column}={value}"));
+            return format!("--where {one} reads the rows of one; `rne log` describes each with --by {by}");
+        }
         Setting::Map(_) | Setting::TimeColumn(_) => "names a column".to_owned(),
     };
     format!("{} {about}", option(setting))
@@ -64,7 +74,9 @@ fn option(setting: &Setting) -> &'static str {
         Setting::Cutoff => "--cutoff",
         Setting::TimeUnit => "--time-unit",
         Setting::Rate => "--rate",
-        Setting::Map(_) | Setting::TimeColumn(_) => "--map",
+        Setting::Map(_) => "--map",
+        Setting::TimeColumn(_) => "--time-column",
+        Setting::Select { .. } => "--where",
         Setting::Columns => "--columns",
     }
 }

@@ -3,17 +3,67 @@
 use std::fmt::Write as _;
 
 use rne_identify::ArmLogRemark;
-use rne_logs::{Cutoff, Format, LeftOut, Log, Run, Survey};
+use rne_logs::{Cutoff, Format, Interruption, LeftOut, Log, Remark, Run, Survey};
 use rne_model::one_line;
 use serde::Serialize;
 
-use crate::palette::{QUIET, TITLE, WARNING};
+use crate::palette::{QUIET, Style, TITLE, WARNING};
 use crate::render::layout::{Align, columns, wrap};
 use crate::render::log_remark::log_remark;
 use crate::terminal;
 
-/// Runs that are shown; the others are counted.
+/// Lines of runs that are shown; the other runs are counted.
 const SHOWN: usize = 20;
+
+/// Runs that begin for one reason and are shown one by one; more are one line.
+const FEW: usize = 3;
+
+/// A log that was surveyed.
+pub(crate) struct Described {
+    pub(crate) log: Log,
+    pub(crate) survey: Survey,
+    /// How its joints were matched with those of a robot, if there is something to say.
+    pub(crate) matched: Option<ArmLogRemark>,
+}
+
+impl Described {
+    /// Whether the log cannot be filtered until an option says more.
+    pub(crate) fn is_at_fault(&self) -> bool {
+        let Self { log, survey, .. } = self;
+        survey.may_be_degrees(log).is_some() || !log.unsaid_currents().is_empty() || survey.cutoff == Cutoff::Unknown
+    }
+
+    /// Remarks on the log.
+    pub(crate) fn notes(&self) -> Vec<Note> {
+        let matched = self.matched.iter().map(|remark| Note {
+            text: remark.to_string(),
+            is_warning: remark.is_warning(),
+            is_reason: false,
+        });
+        let remarks = self.log.remarks(&self.survey);
+        let remarks = remarks.iter().map(|remark| Note {
+            text: log_remark(remark),
+            is_warning: remark.is_warning(),
+            is_reason: matches!(remark, Remark::MayBeDegrees { .. } | Remark::TimeGoesBack { .. }),
+        });
+        matched.chain(remarks).collect()
+    }
+}
+
+/// A remark in words.
+pub(crate) struct Note {
+    pub(crate) text: String,
+    pub(crate) is_warning: bool,
+    /// Whether it may be the reason for which runs begin.
+    is_reason: bool,
+}
+
+impl Note {
+    fn push(&self, text: &mut String) {
+        let (word, style) = if self.is_warning { ("warning", WARNING) } else { ("note", QUIET) };
+        push_remark(text, word, style, &self.text);
+    }
+}
 
 /// A log as JSON has it.
 #[derive(Serialize)]
@@ -56,7 +106,7 @@ struct OfLeftOut {
 
 impl OfLeftOut {
     fn of(left_out: &LeftOut) -> Self {
-        Self { why: left_out.reason.to_string(), messages: left_out.count }
+        Self { why: left_out.why(), messages: left_out.count }
     }
 }
 
@@ -71,7 +121,8 @@ struct OfRun {
 }
 
 impl Reply {
-    pub(crate) fn of(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> Self {
+    pub(crate) fn of(described: &Described) -> Self {
+        let Described { log, survey, .. } = described;
         let layout = log.layout();
         let ends = ends(survey);
         let joint = |(joint, name): (usize, &String)| OfJoint {
@@ -112,13 +163,14 @@ impl Reply {
                 Cutoff::Unknown => "unknown",
             },
             dropped_states: survey.dropped,
-            notes: notes(log, survey, matched).into_iter().map(|(note, _)| note).collect(),
+            notes: described.notes().into_iter().map(|note| note.text).collect(),
         }
     }
 }
 
 /// A log for people.
-pub(crate) fn text(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> String {
+pub(crate) fn text(described: &Described) -> String {
+    let Described { log, survey, .. } = described;
     let layout = log.layout();
     let mut text = String::new();
     let files: Vec<String> = log.files().iter().map(|file| file.display().to_string()).collect();
@@ -137,20 +189,34 @@ pub(crate) fn text(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -
         counts.messages,
         short(1.0 / layout.step)
     );
+    // the reasons for which states are missing and runs begin
+    let mut reasons = String::new();
+    for left_out in log.left_out(survey) {
+        let _ = writeln!(reasons, "{WARNING}left out{WARNING:#}: {}", one_line(&left_out.to_string()));
+    }
+    let (first, others): (Vec<_>, Vec<_>) = described.notes().into_iter().partition(|note| note.is_reason);
+    for note in &first {
+        note.push(&mut reasons);
+    }
+    if !reasons.is_empty() {
+        text += &reasons;
+        text.push('\n');
+    }
     text += &joints(log, survey);
     text.push('\n');
     text += &runs(survey);
     text.push('\n');
     text += &filter(log, survey);
-    for LeftOut { count, reason, .. } in log.left_out(survey) {
-        let _ = writeln!(text, "{WARNING}left out{WARNING:#}: {count} messages {}", one_line(&reason.to_string()));
-    }
-    for (note, is_warning) in notes(log, survey, matched) {
-        let (word, style) = if is_warning { ("warning", WARNING) } else { ("note", QUIET) };
-        let wrapped = wrap(&format!("{word}: {note}"), terminal::width(100), "  ");
-        let _ = writeln!(text, "{style}{word}{style:#}{}", wrapped.trim_end().strip_prefix(word).unwrap_or(&wrapped));
+    for note in &others {
+        note.push(&mut text);
     }
     text
+}
+
+/// Appends a remark behind its word.
+pub(crate) fn push_remark(text: &mut String, word: &str, style: Style, remark: &str) {
+    let wrapped = wrap(&format!("{word}: {remark}"), terminal::width(100), "  ");
+    let _ = writeln!(text, "{style}{word}{style:#}{}", wrapped.trim_end().strip_prefix(word).unwrap_or(&wrapped));
 }
 
 fn joints(log: &Log, survey: &Survey) -> String {
@@ -171,31 +237,87 @@ fn joints(log: &Log, survey: &Survey) -> String {
     titled(&columns(&alignment, &lines))
 }
 
+/// The runs; those of one reason are one line, where there are many.
 fn runs(survey: &Survey) -> String {
     let titles = ["run", "start", "duration", "states", "jitter", "longest interval", "begins"];
     let mut lines = vec![titles.map(str::to_owned).to_vec()];
-    for (number, run) in survey.runs.iter().take(SHOWN).enumerate() {
+    let groups = by_reason(&survey.runs);
+    let mut shown = 0;
+    for group in groups.iter().take(SHOWN) {
+        shown += group.len();
+        let runs = || group.iter().map(|(_, run)| *run);
+        let most = |of: fn(&Run) -> f64| runs().map(of).fold(0.0, f64::max);
+        let number = group[0].0 + 1;
         lines.push(vec![
-            (number + 1).to_string(),
-            format!("{:.3} s", run.start),
-            format!("{:.3} s", run.duration),
-            run.states.to_string(),
-            format!("{} ms", short(run.jitter * 1e3)),
-            format!("{} ms", short(run.longest * 1e3)),
-            run.begins.to_string(),
+            if group.len() == 1 { number.to_string() } else { format!("{number} and {} more", group.len() - 1) },
+            format!("{:.3} s", group[0].1.start),
+            range(runs().map(|run| run.duration), |duration| format!("{duration:.3}")) + " s",
+            runs().map(|run| run.states).sum::<u64>().to_string(),
+            format!("{} ms", short(most(|run| run.jitter) * 1e3)),
+            format!("{} ms", short(most(|run| run.longest) * 1e3)),
+            reason(&runs().map(|run| run.begins).collect::<Vec<_>>()),
         ]);
     }
     let alignment = [Align::Right, Align::Right, Align::Right, Align::Right, Align::Right, Align::Right, Align::Left];
     let mut text = titled(&columns(&alignment, &lines));
-    let others = survey.run_count - survey.runs.len().min(SHOWN) as u64;
+    let others = survey.run_count - shown as u64;
     if others > 0 {
         let _ = writeln!(text, "{QUIET}and {others} other runs{QUIET:#}");
     }
     text
 }
 
+/// Runs with their numbers, from 0. Runs that begin for one reason are one group, where there are more than a few.
+fn by_reason(runs: &[Run]) -> Vec<Vec<(usize, &Run)>> {
+    let mut groups: Vec<Vec<(usize, &Run)>> = Vec::new();
+    for (number, run) in runs.iter().enumerate() {
+        let is_same = |group: &&mut Vec<(usize, &Run)>| is_one_reason(group[0].1.begins, run.begins);
+        match groups.iter_mut().find(is_same) {
+            Some(group) => group.push((number, run)),
+            None => groups.push(vec![(number, run)]),
+        }
+    }
+    let is_folded = |group: &Vec<(usize, &Run)>| group.len() > FEW;
+    let (folded, few): (Vec<_>, Vec<_>) = groups.into_iter().partition(is_folded);
+    let mut groups: Vec<_> = few.into_iter().flatten().map(|run| vec![run]).chain(folded).collect();
+    groups.sort_by_key(|group| group[0].0);
+    groups
+}
+
+fn is_one_reason(a: Interruption, b: Interruption) -> bool {
+    match (a, b) {
+        (Interruption::Jump { joint: a, .. }, Interruption::Jump { joint: b, .. }) => a == b,
+        _ => std::mem::discriminant(&a) == std::mem::discriminant(&b),
+    }
+}
+
+/// The reason for which runs begin, one for all of them.
+fn reason(begins: &[Interruption]) -> String {
+    let by = begins.iter().map(|begins| match begins {
+        Interruption::Gap { seconds } | Interruption::Reset { seconds } => *seconds,
+        Interruption::Jump { by, .. } => *by,
+        Interruption::Beginning | Interruption::Duplicate => 0.0,
+    });
+    let by = range(by, |by| format!("{by:.3}"));
+    match begins {
+        [one] => one.to_string(),
+        [Interruption::Gap { .. }, ..] => format!("after gaps of {by} s"),
+        [Interruption::Reset { .. }, ..] => format!("time went back by {by} s"),
+        [Interruption::Jump { joint, .. }, ..] => format!("joint {} jumped by {by}", joint + 1),
+        [one, ..] => one.to_string(),
+        [] => String::new(),
+    }
+}
+
+/// The least and the greatest of numbers; one where they look alike.
+fn range(numbers: impl Iterator<Item = f64>, shown: impl Fn(f64) -> String) -> String {
+    let (least, most) = numbers.fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
+    let (least, most) = (shown(least), shown(most));
+    if least == most { most } else { format!("{least} … {most}") }
+}
+
 /// The first line as a title.
-fn titled(lines: &[String]) -> String {
+pub(crate) fn titled(lines: &[String]) -> String {
     let mut text = String::new();
     for (place, line) in lines.iter().enumerate() {
         let line = line.trim_end();
@@ -230,12 +352,6 @@ fn filter(log: &Log, survey: &Survey) -> String {
     wrap(&text, terminal::width(100), "  ").trim_end().to_owned() + "\n"
 }
 
-/// Remarks, and whether they are warnings; `matched` says how joints were matched with those of a robot.
-fn notes(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> Vec<(String, bool)> {
-    let matched = matched.into_iter().map(|remark| (remark.to_string(), remark.is_warning()));
-    matched.chain(log.remarks(survey).iter().map(|remark| (log_remark(remark), remark.is_warning()))).collect()
-}
-
 fn ends(survey: &Survey) -> Option<&Vec<f64>> {
     match &survey.cutoff {
         Cutoff::Spectrum { ends, .. } => Some(ends),
@@ -244,7 +360,7 @@ fn ends(survey: &Survey) -> Option<&Vec<f64>> {
 }
 
 /// Four digits.
-fn short(number: f64) -> String {
+pub(crate) fn short(number: f64) -> String {
     if number == 0.0 {
         return "0".to_owned();
     }

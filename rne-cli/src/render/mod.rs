@@ -9,6 +9,7 @@ pub(crate) mod identification_reply;
 pub(crate) mod identified_parameters;
 pub(crate) mod layout;
 pub(crate) mod letters;
+pub(crate) mod log_groups;
 pub(crate) mod log_remark;
 pub(crate) mod log_remedy;
 pub(crate) mod log_report;

@@ -1,4 +1,4 @@
-//! What `rne watch` found, as text and as JSON.
+//! The result of `rne watch`, as text and as JSON.
 
 use std::fmt::Write as _;
 
@@ -55,7 +55,8 @@ pub(crate) fn events(robot: &Robot, baseline: &Baseline, report: &Report, has_ru
     let unknown: Vec<String> = unknown(robot, baseline, &report.changes);
     if !unknown.is_empty() {
         let said = format!(
-            "not watched: friction of {}, which the quiet log does not determine; `rne excite` makes a motion that does",
+            "not watched: friction of {}, which the quiet log does not determine; `rne excite` designs a motion that \
+             does",
             unknown.join(", ")
         );
         let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&said, PAGE, "  "));
@@ -179,7 +180,9 @@ pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>]) -> Stri
     let lines = crate::render::layout::columns(&align, &cells);
     let title = "Coulomb friction, N m or N, and payload; ± is one standard deviation";
     let mut text = format!("\n{TITLE}{title}{TITLE:#}\n{QUIET}{}{QUIET:#}\n", lines[0]);
-    lines[1..].iter().for_each(|line| text += &format!("{line}\n"));
+    for line in &lines[1..] {
+        let _ = writeln!(text, "{line}");
+    }
     let left_out = trend.friction.len() - joints.len();
     if left_out > 0 {
         let _ = writeln!(text, "{QUIET}  {left_out} joints that change less are in --csv, --json and --plot{QUIET:#}");

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use rne_logs::{Angles, LogError, Mapping, Options, TimeUnit};
+use rne_logs::{Angles, LogError, Mapping, Options, Target, TimeUnit};
 
 use crate::outcome::Failure;
 use crate::render::log_remedy;
@@ -43,6 +43,12 @@ pub(crate) struct LogArguments {
     /// Unit of the time column: s, ms, us, ns
     #[arg(long, value_name = "UNIT", value_parser = time_unit(), hide_possible_values = true)]
     time_unit: Option<TimeUnit>,
+    /// Name of the time column of a table
+    #[arg(long, value_name = "NAME")]
+    time_column: Option<String>,
+    /// Only read the rows with this text: robot_id=r1
+    #[arg(long = "where", value_name = "COLUMN=TEXT", value_parser = selection)]
+    select: Vec<(String, String)>,
     /// Sampling rate of a table without times
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     rate: Option<f64>,
@@ -60,6 +66,19 @@ fn mapping(text: &str) -> Result<Mapping, String> {
         .filter(|(_, column)| !column.trim().is_empty())
         .ok_or("write a meaning, `=` and a column, such as elbow.position='Pos 2 [deg]' or time='t [ms]'")?;
     Ok(Mapping { target: target.trim().parse()?, column: column.trim().to_owned() })
+}
+
+/// The mapping of a column of times.
+fn of_times(column: &str) -> Mapping {
+    Mapping { target: Target::Time, column: column.to_owned() }
+}
+
+fn selection(text: &str) -> Result<(String, String), String> {
+    let (column, value) = text
+        .split_once('=')
+        .filter(|(column, _)| !column.trim().is_empty())
+        .ok_or("write a column, `=` and a text in it, such as robot_id=r1")?;
+    Ok((column.trim().to_owned(), value.trim().to_owned()))
 }
 
 fn time_unit() -> impl TypedValueParser<Value = TimeUnit> {
@@ -98,7 +117,8 @@ impl LogArguments {
             time_unit: self.time_unit,
             rate: self.rate,
             columns: self.columns.clone(),
-            map: self.map.clone(),
+            select: self.select.clone(),
+            map: self.time_column.as_deref().map(of_times).into_iter().chain(self.map.iter().cloned()).collect(),
             ..Options::default()
         }
     }

@@ -120,9 +120,10 @@ pub(crate) fn typed(folder: &Path, command: &str) -> Output {
         .expect("a shell")
 }
 
-/// A command that reads bags, where this build does not: `cargo xtask verify formats` runs it.
+/// A command with formats that this build does not have: `cargo xtask verify formats` runs it.
 fn is_left_out(command: &str) -> bool {
     !cfg!(feature = "bags") && command.starts_with("cargo run --features bags -- ")
+        || !cfg!(feature = "full") && command.starts_with("cargo run --features full -- ")
 }
 
 /// A command of rne, as it is called where it is installed; `None` for any other.
@@ -130,7 +131,7 @@ fn of_rne(command: &str) -> Option<String> {
     if command == "cargo run" {
         return Some("rne".to_owned());
     }
-    let starts = ["cargo run -- ", "cargo run --features bags -- ", "rne "];
+    let starts = ["cargo run -- ", "cargo run --features bags -- ", "cargo run --features full -- ", "rne "];
     let arguments = starts.iter().find_map(|start| command.strip_prefix(start))?;
     Some(format!("rne {arguments}").replace("NAME", "puma560"))
 }
@@ -167,8 +168,9 @@ fn tried(folder: &Path, document: &str, command: &str) -> Option<String> {
     let called = of_rne(command).unwrap_or_else(|| panic!("{document}: nobody runs `{command}`"));
     let output = typed(folder, &called);
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
-    // an answer with a slip in it is marked wrong, a knock is an event, and only that
-    let status = i32::from(command.ends_with("-wrong.csv") || command.contains("_knock.csv"));
+    // an answer with a slip in it is marked wrong, a knock and wear are events, and only that
+    let is_event = command.contains("_knock.csv") || command.contains("_worn.csv");
+    let status = i32::from(command.ends_with("-wrong.csv") || is_event);
     assert_eq!(output.status.code(), Some(status), "{document}: `{command}`: {err}");
     Some(out + &err)
 }
@@ -239,6 +241,25 @@ fn the_knock_is_what_the_page_says() {
             // efforts have two digits behind the point
             assert!((after - before - added).abs() <= 0.005 + 1e-9, "{} s, column {column}: {before} {after}", row[0]);
             assert!(added != 0.0 || before == after, "{} s", row[0]);
+        }
+    }
+}
+
+/// The worn log is the log, and from 8 s on 0.15 N m at the elbow in the direction of its motion.
+#[test]
+fn the_worn_log_is_what_the_page_says() {
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(Path::new(ROOT).join("docs").join(name)).expect("a log");
+        let row = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        text.lines().skip(1).map(row).collect()
+    };
+    let (log, worn) = (rows("desk_arm_log.csv"), rows("desk_arm_worn.csv"));
+    assert_eq!(log.len(), worn.len());
+    for (row, with) in log.iter().zip(&worn) {
+        let added = if row[0] >= 8.0 && row[6] != 0.0 { 0.15 * row[6].signum() } else { 0.0 };
+        for (column, (before, after)) in row.iter().zip(with).enumerate() {
+            let added = if column == 9 { added } else { 0.0 };
+            assert!((after - before - added).abs() <= 0.005 + 1e-9, "{} s, column {column}: {before} {after}", row[0]);
         }
     }
 }

@@ -33,8 +33,12 @@ fn helps_fit_on_a_screen() {
             assert!(line.width() <= 80, "{command}: {} columns: {line}", line.width());
             assert_eq!(line, line.trim_end(), "{command}");
         }
-        let lines = help.lines().count();
-        assert!(lines <= 40, "{command}: {lines} lines");
+        // the options for reading a log are the same everywhere, below a heading of their own
+        let shared = help
+            .split_once("How the log is read:")
+            .map_or(0, |(_, rest)| rest.lines().skip(1).take_while(|line| line.starts_with("   ")).count());
+        let lines = help.lines().count() - shared;
+        assert!(lines <= 40 && shared <= 20, "{command}: {lines} lines and {shared}");
     }
 }
 
@@ -92,7 +96,9 @@ fn examples_of_helps_work() {
             let typed = example.replace("robots/*.yaml", "robots/planar*.yaml");
             let typed = typed.replace("~/", "./").replace("| man -l -", "| cat");
             let output = crate::documents::typed(&folder, &typed);
-            assert!(output.status.success(), "{example}: {}", String::from_utf8_lossy(&output.stderr));
+            // the arm of the example is worn
+            let is_event = typed.contains("_worn.csv") && output.status.code() == Some(1);
+            assert!(output.status.success() || is_event, "{example}: {}", String::from_utf8_lossy(&output.stderr));
         }
     }
 }

@@ -52,9 +52,9 @@ fn one_wrong_effort_spoils_nothing() {
     for (effort, said) in [
         ("10000", ["10000 of shoulder at 8.000", "an identification leaves such samples out"]),
         ("-60", ["-60 of shoulder at 8.000", "an identification leaves such samples out"]),
-        ("1e300", ["message 201 at 8.000 s", "effort of shoulder: 1.00e300"]),
-        ("1e155", ["message 201 at 8.000 s", "effort of shoulder: 1.00e155"]),
-        ("inf", ["message 201 at 8.000 s", "left out: 1 messages"]),
+        ("1e300", ["row 201 at 8.000 s", "effort of shoulder: 1.00e300"]),
+        ("1e155", ["row 201 at 8.000 s", "effort of shoulder: 1.00e155"]),
+        ("inf", ["row 201 at 8.000 s", "left out: 1 row"]),
     ] {
         let log = with_effort(&folder.join("log.csv"), effort);
         let called = rne(&["identify", ARM, &log, "--all"]);
@@ -169,7 +169,7 @@ fn what_cannot_be_identified_is_said() {
     fails(
         1,
         &["identify", ARM, &huge, "-o", out],
-        &["no message of the log contains a state of the arm", "effort of waist: 1.00e200"],
+        &["no row of the log contains a state of the arm", "effort of waist: 1.00e200"],
     );
     let degrees = changed(&folder.join("log.csv"), |_, cells| {
         for cell in &mut cells[1..7] {

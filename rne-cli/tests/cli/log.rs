@@ -10,6 +10,45 @@ const UR10: &str = "rne-logs/tests/data/ur10.db3";
 #[cfg(feature = "bags")]
 const PANDA: &str = "rne-logs/tests/data/panda.db3";
 
+/// Numbers of a table that `rne log -o -` writes.
+#[cfg(feature = "parquet")]
+fn numbers(csv: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    csv.lines().skip(1).map(row).collect()
+}
+
+/// Parquet has the numbers of CSV, and the names of the joints; `rne log` reads it as the log that it is.
+#[test]
+#[cfg(feature = "parquet")]
+fn a_motion_is_written_as_parquet() {
+    let folder = folder("log_parquet");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let log = "docs/desk_arm_log.csv";
+    let called = rne(&["log", log, "-o", &path("motion.parquet")]);
+    assert!(called.status == 0 && called.err.contains("motion.parquet, 344 states"), "{called:?}");
+    assert!(fs::read(path("motion.parquet")).expect("the motion").starts_with(b"PAR1"));
+    let again = fine(&["log", &path("motion.parquet")]);
+    for part in ["Parquet", "344 of 344 rows contain states, at 25 Hz", "waist", "shoulder", "elbow"] {
+        assert!(again.contains(part), "no `{part}` in {again}");
+    }
+    // the same filter makes the same numbers of both tables
+    assert_eq!(rne(&["log", log, "-o", &path("motion.csv")]).status, 0);
+    let of = |name: &str| numbers(&fine(&["log", &path(name), "--cutoff", "2", "-o", "-"]));
+    assert_eq!(of("motion.parquet"), of("motion.csv"));
+    let same = ["motion.parquet exists and is not changed"];
+    fails(2, &["log", log, "-o", &path("motion.parquet")], &same);
+}
+
+#[test]
+#[cfg(not(feature = "parquet"))]
+fn a_build_without_parquet_says_which_build_writes_it() {
+    let folder = folder("log_without_parquet");
+    let path = folder.join("motion.parquet");
+    let said = ["this build of rne does not write Parquet", "cargo install --path rne-cli --features full"];
+    fails(1, &["log", "docs/desk_arm_log.csv", "-o", path.to_str().expect("UTF-8")], &said);
+    assert!(!path.exists());
+}
+
 #[test]
 #[cfg(feature = "bags")]
 fn a_log_is_described() {
@@ -346,7 +385,7 @@ fn columns_that_are_not_understood_are_named() {
     let efforts =
         "--map Achse1.effort=Achse1_Moment --map Achse2.effort=Achse2_Moment --map Achse3.effort=Achse3_Moment";
     fails(1, &judge, &["name the columns:", efforts]);
-    fails(2, &["log", log], &["--map time='Zeit [s]' names the column of times"]);
+    fails(2, &["log", log], &["--time-column 'Zeit [s]' names the column of times"]);
     let map = [&["--map", "time=Zeit [s]"], efforts.split(' ').collect::<Vec<_>>().as_slice()].concat();
     let errors = |said: &str| said.split_once('\n').expect("two lines").1.to_owned();
     let mapped = errors(&judged(log, &map));
@@ -423,14 +462,10 @@ fn a_motion_is_written_into_names_of_its_format() {
     let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
     fs::write(path("log.csv"), table(|i| format!("{}", f64::from(i) * 0.01))).expect("a file");
     for (name, said) in [
-        (
-            "x.parquet",
-            "x.parquet ends with .parquet, which this command does not write; name a file that ends with .csv",
-        ),
-        ("x.mcap", "x.mcap ends with .mcap, which this command does not write"),
+        ("x.mcap", "x.mcap ends with .mcap, which this command does not write; name a file that ends with .csv or"),
         ("x.db3", "x.db3 ends with .db3, which this command does not write"),
         ("x.npy", "x.npy ends with .npy, which this command does not write"),
-        ("x", "has no ending that gives the format; name a file that ends with .csv"),
+        ("x", "has no ending that gives the format; name a file that ends with .csv or .parquet"),
     ] {
         fails(2, &["log", &path("log.csv"), "--cutoff", "8", "-o", &path(name)], &[said]);
         assert!(!folder.join(name).exists(), "{name}");

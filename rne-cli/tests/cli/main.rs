@@ -19,6 +19,7 @@ mod hostile;
 mod identify;
 mod import;
 mod log;
+mod log_tables;
 mod plans;
 mod plot;
 mod report;

@@ -180,9 +180,10 @@ impl fmt::Display for ArmLogError {
                 )
             }
             Self::NoStates { left_out } => {
-                let why: Vec<String> =
-                    left_out.iter().map(|left_out| format!("{} {}", left_out.count, left_out.reason)).collect();
-                write!(f, "no message of the log contains a state of the arm: {}", one_line(&why.join("; ")))
+                let why = left_out.iter().map(|left_out| format!("{} {}", left_out.count, left_out.why()));
+                let record = left_out.first().map_or("message", LeftOut::record);
+                let why = one_line(&why.collect::<Vec<_>>().join("; "));
+                write!(f, "no {record} of the log contains a state of the arm: {why}")
             }
             Self::NoCutoff => f.write_str("no run is long enough to choose a low-pass"),
             Self::Cutoff { cutoff, rate, longest, possible } => {

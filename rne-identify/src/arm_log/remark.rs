@@ -48,7 +48,7 @@ impl fmt::Display for ArmLogRemark {
             Self::ConstantEffort { joint, effort } => {
                 write!(f, "efforts of {joint} are {} throughout: are they measured?", rounded(*effort, 3))
             }
-            Self::LeftOut(left_out) => write!(f, "left out: {} messages {}", left_out.count, left_out.reason),
+            Self::LeftOut(left_out) => write!(f, "left out: {left_out}"),
         }
     }
 }

@@ -11,7 +11,7 @@ const HUBER: f64 = 2.5;
 /// back is held by any torque between both directions.
 const NEAR_REST: f64 = 0.25;
 
-/// The number of rows behind the filter that count as one where errors before the filter are white: a Gaussian kernel
+/// The number of rows after the filter that count as one where errors before the filter are white: a Gaussian kernel
 /// of width σ leaves the correlation exp(-t²/4σ²), whose integral is 2√π σ, and there is a row for every σ.
 pub(crate) const CORRELATED: f64 = 3.544_907_701_811_032;
 
@@ -47,8 +47,8 @@ pub struct Rejected {
 }
 
 impl Weighting {
-    /// The weighting by a solution of all unknowns, with the transition and the noise of each joint; `delay` is the time
-    /// by which the torques lag, s.
+    /// The weighting by a solution of all unknowns, with the transition and the noise of each joint; `delay` is the
+    /// time by which the torques lag, s.
     pub(crate) fn new(
         structure: &Structure,
         solution: &DVector<f64>,

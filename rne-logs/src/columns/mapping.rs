@@ -129,6 +129,9 @@ const HINTS: [(Quantity, &[&str]); 3] = [
     (Quantity::Effort, &["tau", "torque", "effort", "moment", "couple", "force", "kraft", "current", "strom"]),
 ];
 
+/// Words in names of columns that hint at times.
+const HINTS_OF_TIME: [&str; 6] = ["time", "stamp", "zeit", "temps", "clock", "date"];
+
 /// Mappings of a table for these joints, to be corrected by its owner: columns by hints in their names where there are
 /// any, else `COLUMN`.
 #[must_use]
@@ -139,7 +142,8 @@ pub fn suggested(columns: &[String], joints: &[String]) -> Vec<Mapping> {
         found.push(Mapping { target, column: column.map_or_else(|| "COLUMN".to_owned(), Clone::clone) });
     };
     if !columns.iter().any(|column| matches!(name::time(column), Some(Ok(_)))) {
-        suggest(Target::Time, columns.iter().find(is_time));
+        let hints = |column: &&String| HINTS_OF_TIME.iter().any(|hint| column.to_lowercase().contains(hint));
+        suggest(Target::Time, columns.iter().find(is_time).or_else(|| columns.iter().find(hints)));
     }
     for (index, joint) in joints.iter().enumerate() {
         for (quantity, hints) in HINTS {

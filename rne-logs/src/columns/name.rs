@@ -15,7 +15,7 @@ const WORDS: [(Quantity, &[&str]); 3] = [
 /// Words of efforts that are currents.
 const CURRENTS: [&str; 3] = ["current", "currents", "i"];
 
-const TIMES: [&str; 7] = ["time", "t", "timestamp", "stamp", "__time", "seconds", "time_from_start"];
+const TIMES: [&str; 8] = ["time", "t", "ts", "timestamp", "stamp", "__time", "seconds", "time_from_start"];
 
 const SEPARATORS: [char; 7] = ['/', '.', '_', '[', ']', ' ', ':'];
 

@@ -5,6 +5,7 @@ use std::io::{self, BufRead as _, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use crate::Options;
+use crate::columns::label::Label;
 use crate::columns::table::{Column, Columns};
 use crate::columns::unit::FileUnits;
 use crate::formats::sample::{Sample, Source};
@@ -21,6 +22,11 @@ pub(crate) struct CsvTable {
     reader: csv::Reader<Lines>,
     record: csv::ByteRecord,
     columns: Columns,
+    /// The columns' names.
+    header: Vec<String>,
+    labels: Vec<Label>,
+    /// The columns that have no number in the first row.
+    words: Vec<String>,
     clock: Clock,
     is_time_unit_known: bool,
     size: u64,
@@ -107,12 +113,25 @@ impl CsvTable {
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => {
                 let error = no_time(path, header.iter().map(String::as_str));
-                return Err(error.remedy(Remedy::Give(Setting::TimeColumn(header))));
+                let error = error.remedy(Remedy::Give(Setting::TimeColumn(header)));
+                return Err(error.remedy(Remedy::Give(Setting::Rate)));
             }
         };
         let is_time_unit_known = columns.time.is_none_or(|(_, said)| said.is_some()) || options.time_unit.is_some();
         let record = csv::ByteRecord::new();
-        Ok(Self { path: path.to_owned(), reader, record, columns, clock, is_time_unit_known, size, row: 0 })
+        Ok(Self {
+            path: path.to_owned(),
+            reader,
+            record,
+            columns,
+            header,
+            labels: Vec::new(),
+            words: Vec::new(),
+            clock,
+            is_time_unit_known,
+            size,
+            row: 0,
+        })
     }
 
     fn wrong(&self, what: impl std::fmt::Display) -> LogError {
@@ -133,6 +152,16 @@ impl CsvTable {
         })
     }
 
+    /// Whether the record is one of those that are selected.
+    fn is_selected(&mut self) -> bool {
+        let mut is_selected = true;
+        for label in &mut self.labels {
+            let cell = inner(self.record.get(label.place).unwrap_or_default());
+            is_selected &= label.take(&String::from_utf8_lossy(cell));
+        }
+        is_selected
+    }
+
     fn numbers(&self, columns: &[Option<Column>], numbers: &mut Vec<f64>) -> Result<(), LogError> {
         numbers.clear();
         for column in columns {
@@ -144,10 +173,19 @@ impl CsvTable {
 
 impl Source for CsvTable {
     fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
-        match self.reader.read_byte_record(&mut self.record) {
-            Ok(true) => {}
-            Ok(false) => return Ok(false),
-            Err(error) => return Err(self.wrong(reason(error))),
+        loop {
+            match self.reader.read_byte_record(&mut self.record) {
+                Ok(true) => {}
+                Ok(false) => return Ok(false),
+                Err(error) => return Err(self.wrong(reason(error))),
+            }
+            if self.is_selected() {
+                break;
+            }
+        }
+        if self.row == 0 {
+            let cells = self.header.iter().zip(&self.record);
+            self.words = cells.filter(|(_, cell)| is_word(cell)).map(|(name, _)| name.clone()).collect();
         }
         sample.measured = match self.clock {
             Clock::Column(place, unit) => {
@@ -199,13 +237,29 @@ impl Source for CsvTable {
     fn is_time_unit_known(&self) -> bool {
         self.is_time_unit_known
     }
+
+    fn label_columns(&self) -> Vec<String> {
+        self.header.clone()
+    }
+
+    fn word_columns(&self) -> Vec<String> {
+        self.words.clone()
+    }
+
+    fn hold(&mut self, column: usize, wanted: Option<&str>) {
+        self.labels.push(Label::new(column, &self.header[column], wanted));
+    }
+
+    fn labels(&self) -> &[Label] {
+        &self.labels
+    }
 }
 
 /// Error for a table without times.
 pub(crate) fn no_time<'a>(path: &Path, names: impl Iterator<Item = &'a str>) -> LogError {
     let what =
         format!("no column has times: its name is time, t, stamp or timestamp, and the columns are {}", listed(names));
-    LogError::request(path, what).remedy(Remedy::Give(Setting::Rate))
+    LogError::request(path, what)
 }
 
 /// Error for a table with times, if a sampling rate is given.
@@ -218,6 +272,12 @@ pub(crate) fn two_times(path: &Path, name: &str) -> LogError {
 fn of_comma(cell: &[u8]) -> &'static str {
     let is_like = cell.contains(&b',') && cell.iter().all(|byte| byte.is_ascii_digit() || b"+-,eE".contains(byte));
     if is_like { ": numbers have a decimal point, no decimal comma" } else { "" }
+}
+
+/// Whether a cell has a text that is no number.
+fn is_word(cell: &[u8]) -> bool {
+    let cell = std::str::from_utf8(inner(cell)).unwrap_or_default();
+    !cell.is_empty() && cell.parse::<f64>().is_err()
 }
 
 /// A cell without blanks and quotes.

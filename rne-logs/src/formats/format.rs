@@ -6,6 +6,7 @@ use std::fs::{self, File};
 use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
+use crate::columns::label;
 use crate::formats::csv_table::CsvTable;
 #[cfg(feature = "bags")]
 use crate::formats::mcap_bag::McapBag;
@@ -16,7 +17,7 @@ use crate::formats::sample::Source;
 #[cfg(feature = "bags")]
 use crate::formats::sqlite_bag::SqliteBag;
 use crate::remedy::{Remedy, Setting};
-use crate::{LogError, Options};
+use crate::{LogError, Options, Target};
 
 /// Format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,15 +114,39 @@ impl Format {
         }
     }
 
-    /// Opens a file of this format.
+    /// Opens a file of this format. Rows are selected as the options say, and columns that name arms are held.
     pub(crate) fn open(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
+        let mut source = self.source(path, options)?;
+        let columns = source.label_columns();
+        for (column, value) in &options.select {
+            if columns.is_empty() {
+                let what = format!("rows are selected by a column of a table; the format of this file is {self}");
+                let (column, value) = (column.clone(), value.clone());
+                return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Select { column, value })));
+            }
+            source.hold(label::find(path, &columns, column)?, Some(value));
+        }
+        for (place, column) in columns.iter().enumerate() {
+            if label::names_arms(column) && !source.labels().iter().any(|label| label.name == *column) {
+                source.hold(place, None);
+            }
+        }
+        Ok(source)
+    }
+
+    fn source(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
         if self != Self::Npy && !options.columns.is_empty() {
             let what = format!("an order of columns is for arrays of numpy; this is {self}, whose columns have names");
             return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Columns)));
         }
         if !matches!(self, Self::Csv | Self::Parquet) && !options.map.is_empty() {
-            let what = format!("a map of columns is for tables; the format of this file is {self}");
-            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Map(Vec::new()))));
+            let (what, setting) = if options.map.iter().all(|mapping| mapping.target == Target::Time) {
+                ("a column of times is named", Setting::TimeColumn(Vec::new()))
+            } else {
+                ("a map of columns is", Setting::Map(Vec::new()))
+            };
+            let what = format!("{what} for tables; the format of this file is {self}");
+            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(setting)));
         }
         if matches!(self, Self::Sqlite | Self::Mcap) && options.rate.is_some() {
             let what = "messages have times, and a sampling rate is for tables without times";

@@ -9,6 +9,8 @@ pub(crate) mod joint_state;
 pub(crate) mod list_columns;
 #[cfg(feature = "bags")]
 pub(crate) mod mcap_bag;
+#[cfg(feature = "parquet")]
+pub(crate) mod motion_parquet;
 pub(crate) mod npy;
 pub(crate) mod npy_array;
 #[cfg(feature = "parquet")]

@@ -52,7 +52,7 @@ impl NpyArray {
         };
         let (places, joints) = places(path, &asked, width)?;
         match (places[0], options.rate) {
-            (None, None) => return Err(no_time(path, asked.into_iter())),
+            (None, None) => return Err(no_time(path, asked.into_iter()).remedy(Remedy::Give(Setting::Rate))),
             (Some(_), Some(_)) => {
                 let others: Vec<&str> = asked.iter().copied().filter(|name| *name != QUANTITIES[0]).collect();
                 let what = format!(

@@ -1,5 +1,7 @@
 //! A column of a Parquet table, read by some rows at a time.
 
+use std::borrow::Cow;
+
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit as OfStamp, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
@@ -37,6 +39,11 @@ impl Kind {
 }
 
 impl Leaf {
+    /// Whether rows can be selected by the texts of the column, or by its numbers as texts.
+    pub(crate) fn has_texts(&self) -> bool {
+        !self.is_list && self.kind != Kind::Other
+    }
+
     pub(crate) fn of(leaf: &ColumnDescriptor) -> Self {
         let is_list = leaf.max_rep_level() == 1;
         let mut parts: Vec<&str> = leaf.path().parts().iter().map(String::as_str).collect();
@@ -169,7 +176,20 @@ impl Column {
 
     /// How many rows were taken.
     pub(crate) fn rows(&self) -> usize {
-        if self.is_list { self.ends.len() } else { self.numbers.len() }
+        if self.is_list { self.ends.len() } else { self.numbers.len().max(self.texts.len()) }
+    }
+
+    /// The text of a row of a column without lists, or its number as a text; empty where it is missing.
+    pub(crate) fn text(&self, row: usize) -> Cow<'_, str> {
+        if let Some(text) = self.texts.get(row) {
+            return Cow::Borrowed(text.as_utf8().unwrap_or_default());
+        }
+        Cow::Owned(match (self.integers.get(row), self.numbers[row]) {
+            (Some(&i64::MIN), _) => String::new(),
+            (Some(integer), _) => integer.to_string(),
+            (None, number) if number.is_nan() => String::new(),
+            (None, number) => number.to_string(),
+        })
     }
 
     fn span(&self, row: usize) -> std::ops::Range<usize> {

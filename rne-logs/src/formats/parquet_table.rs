@@ -8,6 +8,8 @@ use std::sync::Arc;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 
+use crate::columns::label::Label;
+use crate::columns::mapping::Mapped;
 use crate::columns::table::{self, Columns, note};
 use crate::columns::time_column::{TimeColumn, unread, within};
 use crate::columns::unit::FileUnits;
@@ -18,7 +20,7 @@ use crate::formats::parquet_column::{Column, Kind, Leaf};
 use crate::formats::parquet_pages::{Refused, Room, column_reader};
 use crate::formats::sample::{Sample, Source};
 use crate::remedy::{Remedy, Setting};
-use crate::{LogError, Options, TimeUnit};
+use crate::{LogError, Options, Target, TimeUnit};
 
 /// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
 const BATCH: usize = 1024;
@@ -45,7 +47,12 @@ pub(crate) struct ParquetTable {
     row: usize,
     rows: usize,
     read: u64,
+    /// Number of rows that were read and are selected.
+    selected: u64,
     all: u64,
+    /// The columns by whose texts rows can be selected, and those whose texts are held.
+    label_columns: Vec<(usize, Leaf)>,
+    labels: Vec<Label>,
     names: Vec<String>,
     units: FileUnits,
     unread: Vec<String>,
@@ -103,6 +110,9 @@ impl ParquetTable {
             row: 0,
             rows: 0,
             read: 0,
+            selected: 0,
+            label_columns: Vec::new(),
+            labels: Vec::new(),
             all: file.metadata().row_groups().iter().map(|group| u64::try_from(group.num_rows()).unwrap_or(0)).sum(),
             names: Vec::new(),
             units: FileUnits::default(),
@@ -111,6 +121,7 @@ impl ParquetTable {
             file,
         };
         table.assign(&leaves, options)?;
+        table.label_columns = leaves.into_iter().enumerate().filter(|(_, leaf)| leaf.has_texts()).collect();
         Ok(table)
     }
 
@@ -119,7 +130,8 @@ impl ParquetTable {
         let is_list = |leaf: &Leaf| leaf.is_list && leaf.kind.is_number() && within(&leaf.name, options).is_some();
         let lists = leaves.iter().enumerate().filter(|(_, leaf)| is_list(leaf));
         let lists = ListColumns::of(&self.path, lists.map(|(place, leaf)| (place, leaf.name.as_str())), options)?;
-        if let Some((position, factor)) = lists.position.filter(|_| options.map.is_empty()) {
+        let is_mapped_by_time_alone = options.map.iter().all(|mapping| mapping.target == Target::Time);
+        if let Some((position, factor)) = lists.position.filter(|_| is_mapped_by_time_alone) {
             let texts = leaves.iter().enumerate().filter(|(_, leaf)| leaf.is_list && leaf.kind == Kind::Text);
             let texts = texts.map(|(place, leaf)| (place, leaf.name.as_str()));
             let names = list_columns::names(&self.path, texts, &leaves[position].name, options)?;
@@ -131,8 +143,16 @@ impl ParquetTable {
             };
             self.units.others = lists.units;
             let mut times = Vec::new();
-            for (place, leaf) in leaves.iter().enumerate().filter(|(_, leaf)| !leaf.is_list) {
-                times.extend(TimeColumn::of(&self.path, place, &leaf.name, options)?);
+            let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
+            for place in &scalars {
+                times.extend(TimeColumn::of(&self.path, *place, &leaves[*place].name, options)?);
+            }
+            let header: Vec<String> = scalars.iter().map(|leaf| leaves[*leaf].name.clone()).collect();
+            for mapping in &options.map {
+                let found = mapping.find(&header).map_err(|what| LogError::request(&self.path, what))?;
+                if let (place, Mapped::Time(unit)) = found {
+                    times = vec![TimeColumn::mapped(scalars[place], unit)];
+                }
             }
             let name = |place: usize| leaves[place].name.as_str();
             let time = TimeColumn::choose(&self.path, &times, name, options)?;
@@ -185,7 +205,8 @@ impl ParquetTable {
             (None, None) => {
                 let error = no_time(&self.path, leaves.iter().map(|leaf| leaf.name.as_str()));
                 let columns = leaves.iter().map(|leaf| leaf.name.clone()).collect();
-                return Err(error.remedy(Remedy::Give(Setting::TimeColumn(columns))));
+                let error = error.remedy(Remedy::Give(Setting::TimeColumn(columns)));
+                return Err(error.remedy(Remedy::Give(Setting::Rate)));
             }
             (Some((leaf, _)), Some(_)) => return Err(two_times(&self.path, &leaves[leaf].name)),
             (Some((leaf, said)), None) => {
@@ -256,13 +277,25 @@ impl ParquetTable {
 
 impl Source for ParquetTable {
     fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
-        if self.row == self.rows && !self.fill()? {
-            return Ok(false);
+        loop {
+            if self.row == self.rows && !self.fill()? {
+                return Ok(false);
+            }
+            let (row, columns) = (self.row, &self.columns);
+            let mut is_selected = true;
+            for label in &mut self.labels {
+                is_selected &= label.take(&columns[label.place].text(row));
+            }
+            if is_selected {
+                break;
+            }
+            self.row += 1;
+            self.read += 1;
         }
         let row = self.row;
         let columns = &self.columns;
         sample.measured = match self.clock {
-            Clock::Step(step) => TimeUnit::step(self.read, step),
+            Clock::Step(step) => TimeUnit::step(self.selected, step),
             Clock::Column(place, unit) => columns[place].time(row, unit).ok_or_else(|| {
                 let (name, unit) = (&columns[place].name, unit.name());
                 let what = format!(
@@ -310,6 +343,7 @@ impl Source for ParquetTable {
         }
         self.row += 1;
         self.read += 1;
+        self.selected += 1;
         Ok(true)
     }
 
@@ -332,6 +366,25 @@ impl Source for ParquetTable {
 
     fn is_time_unit_known(&self) -> bool {
         self.is_time_unit_known
+    }
+
+    fn label_columns(&self) -> Vec<String> {
+        self.label_columns.iter().map(|(_, leaf)| leaf.name.clone()).collect()
+    }
+
+    fn word_columns(&self) -> Vec<String> {
+        let words = self.label_columns.iter().filter(|(_, leaf)| leaf.kind == Kind::Text);
+        words.map(|(_, leaf)| leaf.name.clone()).collect()
+    }
+
+    fn hold(&mut self, column: usize, wanted: Option<&str>) {
+        let (place, leaf) = &self.label_columns[column];
+        self.labels.push(Label::new(self.columns.len(), &leaf.name, wanted));
+        self.columns.push(Column::new(*place, leaf, 1.0));
+    }
+
+    fn labels(&self) -> &[Label] {
+        &self.labels
     }
 }
 

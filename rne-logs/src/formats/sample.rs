@@ -1,6 +1,7 @@
 //! A sample, into which every format is read: one message, or one row.
 
 use crate::LogError;
+use crate::columns::label::Label;
 use crate::columns::unit::FileUnits;
 
 /// One instant of a log: the joints of a message or a row, in its order.
@@ -59,6 +60,25 @@ pub(crate) trait Source {
     /// for seconds.
     fn is_time_unit_known(&self) -> bool {
         true
+    }
+
+    /// The names of columns by whose texts rows can be selected; empty where the format has no columns.
+    fn label_columns(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The names of those of these columns that have words and no numbers, once a row was read.
+    fn word_columns(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Holds the texts of a column, by its place among [`Source::label_columns`], from the first row on. Where a text
+    /// is wanted, only the rows that have it are read.
+    fn hold(&mut self, _column: usize, _wanted: Option<&str>) {}
+
+    /// The columns whose texts are held, with those of the last row.
+    fn labels(&self) -> &[Label] {
+        &[]
     }
 
     /// The topic that is read, where the format has topics.

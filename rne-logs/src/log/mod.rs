@@ -1,21 +1,23 @@
 //! A log: its files, what is read of them and by which names.
 
+pub(crate) mod chain;
 pub(crate) mod joints;
 pub(crate) mod motion;
 pub(crate) mod motions;
 pub(crate) mod pass;
 pub(crate) mod remark;
 pub(crate) mod survey;
+pub(crate) mod values;
 
-use std::collections::VecDeque;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::columns::quantity::Quantity;
-use crate::columns::unit::{Dimension, FileUnits, JointUnits};
+use crate::columns::unit::{Dimension, JointUnits};
 use crate::formats::format::{self, Format};
-use crate::formats::sample::{Sample, Source};
+use crate::formats::sample::Sample;
 use crate::limits::{LONGEST_GAP, MOST_BYTES};
+use crate::log::chain::Chain;
 use crate::log::joints::Joints;
 use crate::number::short;
 use crate::options::{Angles, Options};
@@ -79,6 +81,8 @@ pub struct Layout {
     /// The columns of a table that are not read: those like the columns of joints, and all others where no joint has a
     /// velocity, or none an effort.
     pub unread: Vec<String>,
+    /// The columns of a table that have words and no numbers, which may say of which arm or part a row is.
+    pub word_columns: Vec<String>,
     /// Remarks on what the file is.
     pub notes: Vec<String>,
 }
@@ -129,7 +133,16 @@ impl Log {
             size += sample.size();
             head.push(sample.clone());
         }
+        let word_columns = chain.source.word_columns();
         if head.is_empty() {
+            if let [(column, value)] = options.select.as_slice() {
+                let there = Self::values(&files, column, &options, |_| ())?;
+                let there = listed(there.iter().map(|found| found.value.as_str()));
+                return Err(LogError::request(
+                    path,
+                    format_args!("no row has {value} in the column {column}; it has {there}"),
+                ));
+            }
             let of_topic = topic.map_or(String::new(), |topic| format!(" on {topic}"));
             return Err(LogError::file(path, format_args!("there are no joint states{of_topic}")));
         }
@@ -192,6 +205,7 @@ impl Log {
             origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },
             units,
             unread,
+            word_columns,
             notes,
         };
         Ok(Self { files, options, joints, layout })
@@ -246,49 +260,6 @@ impl Log {
             [one] => one,
             ref each => each[joint],
         }
-    }
-}
-
-/// Files that are read one after another.
-pub(crate) struct Chain<'a> {
-    others: VecDeque<&'a PathBuf>,
-    count: usize,
-    options: &'a Options,
-    source: Box<dyn Source>,
-    format: Format,
-    /// Units of the first file.
-    units: FileUnits,
-}
-
-impl<'a> Chain<'a> {
-    pub(crate) fn open(files: &'a [PathBuf], options: &'a Options) -> Result<Self, LogError> {
-        let mut others: VecDeque<&PathBuf> = files.iter().collect();
-        let Some(first) = others.pop_front() else {
-            return Err(LogError::request(Path::new("log"), "no file is named"));
-        };
-        let format = Format::of(first)?;
-        let source = format.open(first, options)?;
-        Ok(Self { others, count: files.len(), options, units: source.units(), source, format })
-    }
-
-    pub(crate) fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
-        while !self.source.read(sample)? {
-            let Some(next) = self.others.pop_front() else { return Ok(false) };
-            self.source = Format::of(next)?.open(next, self.options)?;
-            let units = self.source.units();
-            let differ = |(joint, units): &(&String, &JointUnits)| self.units.of(joint) != **units;
-            if let Some(joint) = units.joints.iter().filter(differ).map(|(joint, _)| joint).min() {
-                let what = format!("the names of its columns say other units of {joint} than the first file says");
-                return Err(LogError::file(next, what));
-            }
-        }
-        Ok(true)
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "files are few")]
-    pub(crate) fn progress(&self) -> f64 {
-        let done = self.count - self.others.len() - 1;
-        (done as f64 + self.source.progress()) / self.count as f64
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::columns::quantity::Quantity;
 use crate::formats::sample::Sample;
-use crate::log::Chain;
+use crate::log::chain::Chain;
 use crate::log::joints::{Joints, Presence};
 use crate::signal::spikes::Spike;
 use crate::{Log, LogError};

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use crate::log::pass::InvalidSample;
-use crate::log::survey::Survey;
+use crate::log::pass::{Interruption, InvalidSample};
+use crate::log::survey::{Run, Survey};
 use crate::number::short;
+use crate::spelling::listed;
 use crate::{Counts, Log};
 
 /// Relative difference between velocities and differences of positions from which it is reported.
@@ -22,6 +23,13 @@ pub enum Remark {
         joint: String,
         /// rad, if they are radians
         range: f64,
+    },
+    /// Time goes back within a table, which may contain several logs.
+    TimeGoesBack {
+        /// How often.
+        times: usize,
+        /// The columns that have words, which may say of which log a row is.
+        columns: Vec<String>,
     },
     /// Joints of the log that are not read.
     IgnoredJoints(Vec<String>),
@@ -62,6 +70,7 @@ impl Remark {
             Self::MayBeDegrees { .. }
             | Self::VelocitiesDisagree { .. }
             | Self::Currents(_)
+            | Self::TimeGoesBack { .. }
             | Self::Spikes { .. }
             | Self::NoEfforts => true,
         }
@@ -74,6 +83,14 @@ impl fmt::Display for Remark {
             Self::File(text) => f.write_str(text),
             Self::MayBeDegrees { joint, range } => {
                 write!(f, "positions of {joint} range over {range:.1}, more than 4π")
+            }
+            Self::TimeGoesBack { times, columns } => {
+                let often = if *times == 1 { "once".to_owned() } else { format!("{times} times") };
+                write!(f, "time goes back {often}: does the table contain several logs? ")?;
+                match columns.as_slice() {
+                    [one] => write!(f, "The column {one} may name them"),
+                    several => write!(f, "The columns {} may name them", listed(several.iter().map(String::as_str))),
+                }
             }
             Self::IgnoredJoints(names) => write!(f, "joints of the log that are not read: {}", names.join(", ")),
             Self::VelocitiesDisagree { joint, share } => write!(
@@ -134,22 +151,38 @@ pub enum Reason {
     },
 }
 
-impl fmt::Display for Reason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::OtherJoints => "of other joints",
-            Self::SomeJoints => "without some of the joints",
-            Self::NoPositions => "without positions, or with another number of them",
-            Self::NoVelocities => "without velocities, which other messages contain",
-            Self::NoEfforts => "without efforts, which other messages contain",
-            Self::Repeated => "that repeat the message before, with its time",
-            Self::NotFinite { first } => {
-                f.write_str("with a value that is not a number (NaN, infinite, empty, beyond 1e12)")?;
-                let Some((InvalidSample { message, time, quantity, value, .. }, joint)) = first else { return Ok(()) };
+impl LeftOut {
+    /// Why they are left out, such as "without some of the joints".
+    #[must_use]
+    pub fn why(&self) -> String {
+        let one = self.record();
+        match &self.reason {
+            Reason::OtherJoints => "of other joints".to_owned(),
+            Reason::SomeJoints => "without some of the joints".to_owned(),
+            Reason::NoPositions => "without positions, or with another number of them".to_owned(),
+            Reason::NoVelocities => format!("without velocities, which other {one}s contain"),
+            Reason::NoEfforts => format!("without efforts, which other {one}s contain"),
+            Reason::Repeated => format!("that repeat the {one} before, with its time"),
+            Reason::NotFinite { first } => {
+                let what = "with a value that is not a number (NaN, infinite, empty, beyond 1e12)".to_owned();
+                let Some((InvalidSample { message, time, quantity, value, .. }, joint)) = first else { return what };
                 let value = short(*value);
-                return write!(f, "; the first is message {message} at {time:.3} s, {quantity} of {joint}: {value}");
+                format!("{what}; the first is {one} {message} at {time:.3} s, {quantity} of {joint}: {value}")
             }
-        })
+        }
+    }
+
+    /// The word for one of them, `row` or `message`.
+    #[must_use]
+    pub fn record(&self) -> &'static str {
+        if self.are_rows { "row" } else { "message" }
+    }
+}
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plural = if self.count == 1 { "" } else { "s" };
+        write!(f, "{} {}{plural} {}", self.count, self.record(), self.why())
     }
 }
 
@@ -161,6 +194,11 @@ impl Log {
         let mut remarks: Vec<Remark> = layout.notes.iter().cloned().map(Remark::File).collect();
         if let Some((joint, range)) = survey.may_be_degrees(self) {
             remarks.push(Remark::MayBeDegrees { joint: layout.joints[joint].clone(), range });
+        }
+        let is_back = |run: &&Run| matches!(run.begins, Interruption::Reset { .. });
+        let times = survey.runs.iter().filter(is_back).count();
+        if times > 0 && !layout.word_columns.is_empty() && self.options.select.is_empty() {
+            remarks.push(Remark::TimeGoesBack { times, columns: layout.word_columns.clone() });
         }
         if !layout.ignored.is_empty() {
             remarks.push(Remark::IgnoredJoints(layout.ignored.clone()));

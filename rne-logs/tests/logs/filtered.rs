@@ -206,7 +206,7 @@ fn a_cutoff_that_leaves_nothing_is_refused() {
         assert!(of(lowest * 0.99).is_err());
     }
     let error = of(1e300).unwrap_err();
-    assert!(error.to_string().contains("1.000e300 Hz is too high for samples at 100.0000 Hz"), "{error}");
+    assert!(error.to_string().contains("1.00e300 Hz is too high for samples at 100.0000 Hz"), "{error}");
     // no cut-off helps five states
     let (_folder, path) = file("five.csv", csv(&times(5, 100.0)));
     let options = Options { cutoff: Some(10.0), ..Options::default() };

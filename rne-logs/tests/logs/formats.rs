@@ -397,7 +397,7 @@ fn other_schemas_are_told() {
         (
             "no_time.csv",
             b"Zeit,q1,q2\n3,4,5\n".to_vec(),
-            "no column has times: its name is time, t, stamp or timestamp, and there is Zeit, q1, q2;",
+            "no column has times: its name is time, t, stamp or timestamp, and the columns are Zeit, q1, q2",
         ),
         ("words.csv", b"time,q1\n0,1\n0.1,two\n".to_vec(), "line 3: \"two\" is no number"),
         ("short.csv", b"time,q1,q2\n0,1,2\n0.1,2\n".to_vec(), "line 3: the line has 2 cells, the header 3"),

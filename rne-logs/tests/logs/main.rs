@@ -19,6 +19,7 @@ mod corrupt;
 mod filtered;
 #[cfg(feature = "full")]
 mod formats;
+mod labels;
 #[cfg(not(feature = "full"))]
 mod left_out;
 mod mapped;

@@ -176,7 +176,9 @@ fn integers_without_a_sign_have_none() {
     // beyond what nanoseconds count
     let columns = [Column::Int64("t", "(UINT_64)", long), Column::Numbers("q1", times(0.01))];
     let nanoseconds = Options { time_unit: Some(TimeUnit::Nanoseconds), ..Options::default() };
-    assert!(refused(&columns, nanoseconds).contains("row 0: t is missing, no number, or beyond the year 2262"));
+    assert!(
+        refused(&columns, nanoseconds).contains("row 0: t is missing, is not a number, or is later than the year 2262")
+    );
 }
 
 /// The table is one that pyarrow wrote.

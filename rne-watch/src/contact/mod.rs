@@ -1,4 +1,4 @@
-//! Contacts: torques of the environment, by the momentum observer, that are larger than its noise for longer than a hold.
+//! Contacts: torques of the environment, by the momentum observer, that are larger than its noise for a time of hold.
 
 mod noise;
 mod threshold;

@@ -1,8 +1,8 @@
 //! The threshold of contacts, from a rate of false alarms.
 //!
-//! Every joint gets the same share of the rate: the more joints there are, the higher is the threshold of each. Noise is
-//! taken to be normal, with the deviation of [`ContactNoise`](crate::ContactNoise), which changes along a motion with
-//! the error of the model.
+//! Every joint gets the same share of the rate: the more joints there are, the higher is the threshold of each. Noise
+//! is taken to be normal, with the deviation of [`ContactNoise`](crate::ContactNoise), which changes along a motion
+//! with the error of the model.
 //!
 //! If a signal must be above k deviations for a time of hold, then the rate of false alarms is at most 2 Q(k) / hold.
 //! This bound holds for noise of any spectrum: a signal that stays above for a hold is above at one of any instants

@@ -121,11 +121,11 @@ pub(crate) fn noisy(motion: &Motion, deviations: &[f64], rng: &mut Rng) -> Motio
     let mut noisy = motion.clone();
     for (tau, deviation) in noisy.tau.iter_mut().zip(deviations) {
         let mut state = normal(rng);
-        for at in 0..tau.len() {
+        for (at, tau) in tau.iter_mut().enumerate() {
             let step = if at == 0 { 0.0 } else { motion.time[at] - motion.time[at - 1] };
             let keep = (-step / 0.15).exp();
             state = keep * state + (1.0 - keep * keep).sqrt() * normal(rng);
-            tau[at] += deviation * state;
+            *tau += deviation * state;
         }
     }
     noisy

@@ -1,5 +1,5 @@
-//! Arms that are simulated: random links on two geometries, Fourier motions, noise, quantisation, a delay, friction that
-//! gives way over some travel.
+//! Arms that are simulated: random links on two geometries, Fourier motions, noise, quantisation, a delay, friction
+//! that gives way over some travel.
 
 use fastrand::Rng;
 use rne_identify::Structure;

@@ -1,0 +1,120 @@
+//! The rows of each text in a column of a log, as text and as JSON.
+
+use std::path::PathBuf;
+
+use rne_model::one_line;
+use serde::Serialize;
+
+use crate::outcome::Failure;
+use crate::palette::{QUIET, TITLE, WARNING};
+use crate::render::layout::{Align, columns};
+use crate::render::log_report::{self, Described, push_remark, short, titled};
+
+/// The rows of one text.
+pub(crate) struct Group {
+    pub(crate) value: String,
+    pub(crate) rows: u64,
+    pub(crate) described: Result<Described, Failure>,
+}
+
+impl Group {
+    pub(crate) fn is_at_fault(&self) -> bool {
+        self.described.as_ref().map_or(true, Described::is_at_fault)
+    }
+
+    /// The text as it is shown.
+    fn shown(&self) -> String {
+        if self.value.is_empty() { "(empty)".to_owned() } else { one_line(&self.value) }
+    }
+
+    /// The failure of this group, with its text.
+    pub(crate) fn failure(&self, column: &str, error: &Failure) -> Failure {
+        let what = format!("{} {}: {}", one_line(column), self.shown(), message(error));
+        Failure { status: error.status, ..Failure::input(what) }
+    }
+}
+
+/// The message of a failure without the word before it.
+fn message(failure: &Failure) -> String {
+    let text = anstream::adapter::strip_str(&failure.text).to_string();
+    text.strip_prefix("error: ").unwrap_or(&text).to_owned()
+}
+
+/// The groups of a column as JSON has them.
+#[derive(Serialize)]
+pub(crate) struct Reply {
+    by: String,
+    values: Vec<OfGroup>,
+}
+
+#[derive(Serialize)]
+struct OfGroup {
+    value: String,
+    rows: u64,
+    log: Option<log_report::Reply>,
+    error: Option<String>,
+}
+
+impl Reply {
+    pub(crate) fn of(column: &str, groups: &[Group]) -> Self {
+        let group = |group: &Group| OfGroup {
+            value: group.value.clone(),
+            rows: group.rows,
+            log: group.described.as_ref().ok().map(log_report::Reply::of),
+            error: group.described.as_ref().err().map(message),
+        };
+        Self { by: column.to_owned(), values: groups.iter().map(group).collect() }
+    }
+}
+
+/// The groups of a column for people: a line each, and their remarks, each once.
+pub(crate) fn text(files: &[PathBuf], column: &str, groups: &[Group]) -> String {
+    let files: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    let mut text = format!("{TITLE}{}{TITLE:#}  by {}\n\n", files.join(" "), one_line(column));
+    let titles = ["rows", "states", "runs", "duration", "rate", "cut-off"].map(str::to_owned);
+    let mut lines = vec![[&[one_line(column)], &titles[..]].concat()];
+    let mut remarks: Vec<(&str, String, Vec<String>)> = Vec::new();
+    let mut remark = |word: &'static str, remark: String, group: &Group| {
+        let found = remarks.iter_mut().find(|(other, said, _)| (*other, said.as_str()) == (word, remark.as_str()));
+        match found {
+            Some((.., values)) => values.push(group.shown()),
+            None => remarks.push((word, remark, vec![group.shown()])),
+        }
+    };
+    for group in groups {
+        let mut line = vec![group.shown(), group.rows.to_string()];
+        match &group.described {
+            Ok(described) => {
+                let survey = &described.survey;
+                let duration: f64 = survey.runs.iter().map(|run| run.duration).sum();
+                let cutoff = survey.cutoff.hertz().map_or_else(|| "none".to_owned(), |f| format!("{} Hz", short(f)));
+                line.extend([survey.counts.states.to_string(), survey.run_count.to_string()]);
+                line.extend([format!("{duration:.3} s"), format!("{} Hz", short(1.0 / described.log.layout().step))]);
+                line.push(cutoff);
+                for left_out in described.log.left_out(survey) {
+                    remark("warning", format!("left out: {left_out}"), group);
+                }
+                for note in described.notes() {
+                    remark(if note.is_warning { "warning" } else { "note" }, note.text, group);
+                }
+            }
+            Err(error) => {
+                line.extend(["0", "0", "", "", ""].map(str::to_owned));
+                remark("error", message(error), group);
+            }
+        }
+        lines.push(line);
+    }
+    text += &titled(&columns(&[&[Align::Left], &[Align::Right; 6][..]].concat(), &lines));
+    if !remarks.is_empty() {
+        text.push('\n');
+    }
+    // what is wrong comes first
+    remarks.sort_by_key(|(word, ..)| ["error", "warning", "note"].iter().position(|other| other == word));
+    for (word, remark, values) in &remarks {
+        let style = if *word == "note" { QUIET } else { WARNING };
+        let of = if values.len() == groups.len() { "all".to_owned() } else { values.join(", ") };
+        push_remark(&mut text, word, style, &format!("{of}: {remark}"));
+    }
+    text
+}
