@@ -394,7 +394,7 @@ fn robot_of(structure: &Structure, one: &Fit) -> Robot {
 }
 
 /// A link of a pseudo-inertia: mass, centre of mass, inertia about it.
-fn link(pseudo: &Matrix4<f64>) -> Link {
+pub(crate) fn link(pseudo: &Matrix4<f64>) -> Link {
     let [mass, hx, hy, hz, ..]: [f64; PER_LINK] = pseudo_inertia::parameters(pseudo);
     let com = [hx / mass, hy / mass, hz / mass];
     let second = pseudo.fixed_view::<3, 3>(0, 0);

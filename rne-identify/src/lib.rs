@@ -16,6 +16,7 @@ mod information;
 mod least_squares;
 mod motion_limits;
 mod parameters;
+mod payload;
 mod prediction;
 pub mod prior;
 pub mod pseudo_inertia;
@@ -42,6 +43,7 @@ pub use information::{Information, MotionError, Rejected, Weighting, WrongNumber
 pub use least_squares::{LeastSquares, student};
 pub use motion_limits::{AskedLimits, MotionLimits};
 pub use parameters::{Base, Parameters};
+pub use payload::{Payload, PayloadNumber};
 pub use prediction::{JointError, Prediction, SPEEDS, Standstill, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use stretches::{Stretch, Stretches};

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::{Identification, JointError, MotionError, Options, Part, Prediction, Purpose, Verdict, identify};
+use rne_identify::{
+    Identification, JointError, MotionError, Options, Part, Payload, Prediction, Purpose, Verdict, identify,
+};
 use rne_logs::Motion;
 use rne_model::{Robot, one_line};
 use rne_plot::{Comparison, comparison_svg};
@@ -18,6 +20,7 @@ use crate::palette::{TITLE, TYPED, WARNING};
 use crate::render::identification_reply::{Extent, Reply};
 use crate::render::identified_parameters;
 use crate::render::layout::{PAGE, wrap};
+use crate::render::payload::WordedPayload;
 use crate::render::verdict::{TIED, Worded};
 use crate::values::log_arguments::LogArguments;
 use crate::values::numbers::{checked, rounded};
@@ -31,7 +34,8 @@ const DRAWN: u64 = 4000;
 Examples:
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv -o identified.yaml
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --hold-out 0.3
-  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge")]
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge
+  rne identify docs/desk_arm_identified.yaml docs/desk_arm_loaded.csv --payload")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// Robot file with the geometry of the arm
@@ -58,6 +62,9 @@ pub(crate) struct Arguments {
     /// Only compute the errors of FILE on the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
     judge: bool,
+    /// Identify only the payload at the last link
+    #[arg(long, conflicts_with_all = ["judge", "rotors", "no_friction", "hold_out", "pull"])]
+    payload: bool,
     /// Print every parameter, and errors by speed
     #[arg(long, conflicts_with = "json")]
     all: bool,
@@ -103,6 +110,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             text += &worded.errors(log.cutoff());
         }
         return Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() });
+    }
+    if arguments.payload {
+        return payload(arguments, &robot, &log, &sources, remark);
     }
     let options = options(arguments, log.cutoff());
     let (training, held) = match arguments.hold_out {
@@ -150,6 +160,76 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             return Ok(Outcome { text: file, remark: remark + &text, ..Outcome::default() });
         }
         remark += &output_file::write_new(path, &file, &sources, arguments.force)?;
+    }
+    Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() })
+}
+
+/// Identifies the payload of a robot whose links are known.
+fn payload(
+    arguments: &Arguments,
+    robot: &Robot,
+    log: &MotionLog,
+    sources: &[&Path],
+    mut remark: String,
+) -> Result<Outcome, Failure> {
+    if robot.joints.iter().all(|joint| joint.row.link.mass == 0.0) {
+        let file = one_line(&arguments.file.display().to_string());
+        return Err(Failure::input(format_args!(
+            "no link of {file} has a mass, so a payload cannot be told from the links: identify the links from a log \
+             without payload first, {TYPED}rne identify {file} LOG -o identified.yaml{TYPED:#}"
+        )));
+    }
+    let found = Payload::identify(robot, log.cutoff(), |take| log.pass(Part::All, take))?;
+    let with = if found.is_there() { found.added_to(robot) } else { None };
+    let without = Judged::of(robot, log, Part::All)?;
+    let judged = with.as_ref().map(|with| Judged::of(with, log, Part::All)).transpose()?;
+    let worded = WordedPayload {
+        robot,
+        payload: &found,
+        errors: &without.errors,
+        with: judged.as_ref().map(|judged| &judged.errors[..]),
+    };
+    let text = if arguments.json {
+        Outcome::json(&worded.reply(logs(arguments), log.cutoff(), without.extent))?.text
+    } else {
+        let mut text = worded.below(&heading(robot, log));
+        if arguments.all {
+            let unknown = Identification::not_excited(robot);
+            text += &errors_table(robot, log, &without.errors, &unknown, "errors of FILE on the log");
+            if let Some(judged) = &judged {
+                text += &errors_table(robot, log, &judged.errors, &unknown, "errors with the payload on the log");
+            }
+        }
+        text
+    };
+    let drawn = with.as_ref().unwrap_or(robot);
+    let title = format!("{} on {}", one_line(&robot.name), log.words());
+    let about = if with.is_some() { "predicted with the payload" } else { "predicted without a payload" };
+    draw(arguments, drawn, log, judged.as_ref().unwrap_or(&without), [title, about.to_owned()], sources, &mut remark)?;
+    let is_lost = found.is_there() && with.is_none();
+    if !found.mass.is_excited || is_lost {
+        let why = if is_lost {
+            "the last link of FILE has less mass than the log would take from it, so the two are not of the same arm"
+        } else {
+            "the log does not determine the mass of a payload: record a motion in which gravity or accelerations load \
+             the joints"
+        };
+        let not_written = match &arguments.output {
+            Some(path) => format!("; {} is not written", one_line(&path.display().to_string())),
+            None => String::new(),
+        };
+        remark += &warning(&format!("{why}{not_written}"));
+        return Ok(Outcome { text, remark, remark_last: true, at_fault: true });
+    }
+    if let Some(path) = &arguments.output {
+        if with.is_none() {
+            remark += &warning("the log shows no payload, so the file is written with the links of FILE");
+        }
+        let file = found.robot_file(drawn, with.is_some(), &log.words());
+        if is_standard_output(path) {
+            return Ok(Outcome { text: file, remark: remark + &text, ..Outcome::default() });
+        }
+        remark += &output_file::write_new(path, &file, sources, arguments.force)?;
     }
     Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() })
 }

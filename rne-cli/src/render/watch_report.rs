@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::files::motion_log::MotionLog;
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
-use crate::values::numbers::rounded;
+use crate::values::numbers::{rounded, with_deviation};
 
 /// Events that are shown; the others are counted.
 const SHOWN: usize = 40;
@@ -86,19 +86,6 @@ fn margin(robot: &Robot, statistic: &Statistic) -> String {
         unit(robot, statistic.candidate),
         rounded(statistic.ratio(), 2)
     )
-}
-
-/// A value with its deviation, both with the digits that the deviation leaves: `0.454 ± 0.011`.
-fn with_deviation(value: f64, deviation: f64) -> String {
-    if !(value.is_finite() && deviation.is_finite() && deviation > 0.0) {
-        return "not known".to_owned();
-    }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
-    let digits = (1.0 - deviation.log10().floor()).clamp(0.0, 12.0) as usize;
-    let value = format!("{value:.digits$}");
-    // no sign before a zero
-    let value = if value.trim_start_matches(['-', '0', '.']).is_empty() { value.replace('-', "") } else { value };
-    format!("{value} ± {deviation:.digits$}")
 }
 
 fn signed(value: f64) -> String {

@@ -66,6 +66,19 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
+/// A value with its deviation, both with the digits that the deviation leaves: `0.454 ± 0.011`.
+pub(crate) fn with_deviation(value: f64, deviation: f64) -> String {
+    if !(value.is_finite() && deviation.is_finite() && deviation > 0.0) {
+        return "not known".to_owned();
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
+    let digits = (1.0 - deviation.log10().floor()).clamp(0.0, 12.0) as usize;
+    let value = format!("{value:.digits$}");
+    // no sign before a zero
+    let value = if value.trim_start_matches(['-', '0', '.']).is_empty() { value.replace('-', "") } else { value };
+    format!("{value} ± {deviation:.digits$}")
+}
+
 /// Half of the last digit of a decimal number; zero for an expression, which has all of its digits.
 pub(crate) fn resolution(number: &str) -> f64 {
     let (mantissa, exponent) = number.trim().split_once(['e', 'E']).unwrap_or((number.trim(), "0"));

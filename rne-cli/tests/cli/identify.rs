@@ -534,3 +534,110 @@ fn titles_name_the_log() {
         assert!(read("held.svg").contains(&error), "{joint}: {error}");
     }
 }
+
+const IDENTIFIED: &str = "docs/desk_arm_identified.yaml";
+const LOADED: &str = "docs/desk_arm_loaded.csv";
+
+/// The payload that was computed into the log is found, and the file with it predicts the log.
+#[test]
+fn a_payload_is_found_and_written() {
+    let written = folder("identify_payload").join("with_payload.yaml");
+    let written = written.to_str().expect("UTF-8");
+    let called = rne(&["identify", IDENTIFIED, LOADED, "--payload", "-o", written]);
+    assert_eq!(called.status, 0, "{called:?}");
+    let out = called.out;
+    let verdict = out.lines().nth(1).expect("a verdict");
+    assert!(verdict.starts_with("payload 0.80") && verdict.contains("centre of mass (0.02"), "{out}");
+    let reply: Value =
+        serde_json::from_str(&fine(&["identify", IDENTIFIED, LOADED, "--payload", "--json"])).expect("JSON");
+    let payload = &reply["payload"];
+    let number = |value: &Value, truth: f64| {
+        let [value, deviation] = ["value", "deviation"].map(|key| value[key].as_f64().expect("a number"));
+        assert!((value - truth).abs() < 3.0 * deviation, "{value} ± {deviation}, not {truth}");
+        deviation
+    };
+    assert!(number(&payload["mass"], 0.8) < 0.1);
+    for (axis, truth) in [0.02, 0.0, 0.05].into_iter().enumerate() {
+        assert!(number(&payload["com"][axis], truth) < 0.04);
+    }
+    assert_eq!((payload["found"].as_bool(), payload["inertia"].as_array().map(Vec::len)), (Some(true), Some(6)));
+    for joint in reply["joints"].as_array().expect("a list") {
+        let [before, after] = ["error", "error_with_payload"].map(|key| joint[key].as_f64().expect("a number"));
+        assert!(after < 0.1 * before, "{joint}");
+    }
+    let text = fs::read_to_string(written).expect("a file");
+    assert!(text.starts_with("# Identified payload") && text.contains("- payload: 0.80"), "{text}");
+    assert!(fine(&["identify", written, LOADED, "--judge"]).contains("predicts all 3 joints"));
+    // the payload is in the file now
+    let again = fine(&["identify", written, LOADED, "--payload"]);
+    assert!(again.lines().nth(1).is_some_and(|line| line.starts_with("no payload: ")), "{again}");
+    let mut keys = Vec::new();
+    keys_of(&reply, &mut keys);
+    let document = fs::read_to_string(format!("{ROOT}/docs/identify.md")).expect("a document");
+    assert!(keys.iter().all(|key| document.contains(&format!("`{key}`"))), "{keys:?}");
+}
+
+/// The desk arm stands still: the torque of gravity has the mass, and where there is no gravity nothing has it.
+#[test]
+fn a_payload_at_rest_is_felt_by_gravity_alone() {
+    let folder = folder("identify_payload_at_rest");
+    let pose = [0.3, 0.4, -0.6];
+    let q = pose.map(|angle| angle.to_string()).join(",");
+    let weightless = folder.join("weightless.yaml");
+    let text = fs::read_to_string(format!("{ROOT}/{IDENTIFIED}")).expect("a file");
+    assert!(text.contains("gravity: [0, 0, -9.81]"));
+    fs::write(&weightless, text.replace("gravity: [0, 0, -9.81]", "gravity: [0, 0, 0]")).expect("a file");
+    let weightless = weightless.to_str().expect("UTF-8");
+    for (file, is_felt) in [(IDENTIFIED, true), (weightless, false)] {
+        let zeros = "0,0,0";
+        let eval = ["eval", file, "--q", &q, "--qd", zeros, "--qdd", zeros, "--payload", "3,0,0,0", "--json"];
+        let torques: Value = serde_json::from_str(&fine(&eval)).expect("JSON");
+        let torques: Vec<f64> = torques["result"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(|torque| torque.as_f64().expect("a number"))
+            .collect();
+        let log = changed(&folder.join("rest.csv"), |row, cells| {
+            for joint in 0..3 {
+                cells[1 + joint] = pose[joint].to_string();
+                "0".clone_into(&mut cells[4 + joint]);
+                // less than the last digit of a sensor
+                let noise = [0.011, -0.017, 0.004, -0.002, 0.009][(row * (joint + 2) + row / 7) % 5];
+                cells[7 + joint] = (torques[joint] + noise).to_string();
+            }
+        });
+        let output = folder.join("out.yaml");
+        let _ = fs::remove_file(&output);
+        let path = output.to_str().expect("UTF-8");
+        let called = rne(&["identify", file, &log, "--payload", "--json", "-o", path]);
+        let reply: Value = serde_json::from_str(&called.out).expect("JSON");
+        let mass = &reply["payload"]["mass"];
+        assert_eq!(mass["excited"].as_bool(), Some(is_felt), "{} {}", called.out, called.err);
+        assert_eq!((called.status, output.exists()), (i32::from(!is_felt), is_felt), "{}", called.err);
+        assert_eq!(called.err.contains("does not determine the mass of a payload"), !is_felt, "{}", called.err);
+        if is_felt {
+            let [value, deviation] = ["value", "deviation"].map(|key| mass[key].as_f64().expect("a number"));
+            assert!((value - 3.0).abs() < 3.0 * deviation && deviation > 0.1, "{mass}");
+            assert!(
+                reply["payload"]["inertia"].as_array().is_some_and(|all| all.iter().all(|of| of["excited"] == false))
+            );
+        }
+    }
+}
+
+#[test]
+fn payloads_that_cannot_be_told_are_refused() {
+    for flag in [&["--rotors"][..], &["--no-friction"], &["--judge"], &["--hold-out", "0.3"], &["--pull", "2"]] {
+        let called = rne(&[&["identify", IDENTIFIED, LOADED, "--payload"], flag].concat());
+        assert_eq!(called.status, 2, "{flag:?}");
+        assert!(called.err.contains("cannot be used with"), "{}", called.err);
+    }
+    let bare = folder("identify_payload_bare").join("bare.yaml");
+    let text = fs::read_to_string(format!("{ROOT}/{ARM}")).expect("a file");
+    let without: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("link:")).collect();
+    fs::write(&bare, without.join("\n")).expect("a file");
+    let called = rne(&["identify", bare.to_str().expect("UTF-8"), LOADED, "--payload"]);
+    assert_eq!(called.status, 1);
+    assert!(called.err.contains("has a mass") && called.err.contains("-o identified.yaml"), "{}", called.err);
+}

@@ -1,0 +1,192 @@
+//! An identified payload in words and as JSON: docs/identify.md lists the keys.
+
+use std::fmt::Write as _;
+
+use rne_identify::{JointError, Payload, PayloadNumber};
+use rne_logs::median;
+use rne_model::{Robot, one_line};
+use serde::Serialize;
+
+use crate::palette::{GOOD, WARNING};
+use crate::render::identification_reply::Extent;
+use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::values::numbers::with_deviation;
+
+/// Columns of a joint's name.
+const NAME: usize = 24;
+
+/// A payload with what its words name.
+pub(crate) struct WordedPayload<'a> {
+    /// The robot without the payload.
+    pub(crate) robot: &'a Robot,
+    pub(crate) payload: &'a Payload,
+    /// Errors of the robot on the log.
+    pub(crate) errors: &'a [JointError],
+    /// Errors of the robot with the payload, if there is one.
+    pub(crate) with: Option<&'a [JointError]>,
+}
+
+impl WordedPayload<'_> {
+    /// The verdict below a heading, the numbers, and the errors by joint.
+    pub(crate) fn below(&self, heading: &str) -> String {
+        let mut text = format!("{heading}{}\n", wrap(&self.verdict(), PAGE, ""));
+        let Payload { mass, com, inertia, .. } = self.payload;
+        if self.payload.is_there() {
+            let centre = ["cx", "cy", "cz"].into_iter().zip(com).map(|(name, number)| (name, number, "m"));
+            // one row says that nothing is known of the inertia
+            let is_known = inertia.iter().any(|number| number.is_excited);
+            let names = if is_known { &Payload::INERTIA[..] } else { &["J"] };
+            let moments = names.iter().zip(inertia).map(|(name, number)| (*name, number, "kg m²"));
+            let rows = [("m", mass, "kg")].into_iter().chain(centre).chain(moments);
+            let row = |(name, number, unit): (&str, &PayloadNumber, &str)| {
+                let value = if number.is_excited {
+                    with_deviation(number.value, number.deviation)
+                } else {
+                    "not excited".to_owned()
+                };
+                [format!("  {name}"), value, unit.to_owned()]
+            };
+            let mut cells = vec![["  number".to_owned(), "value".to_owned(), "unit".to_owned()]];
+            cells.extend(rows.map(row));
+            let title = "payload in the frame of the last link, inertia about its centre of mass";
+            push_table(&mut text, title, &[Align::Left, Align::Right, Align::Left], &cells);
+        }
+        if let Some(with) = self.with {
+            let mut cells = vec![["  joint", "FILE", "with payload"].map(str::to_owned)];
+            for ((joint, before), after) in self.robot.joints.iter().zip(self.errors).zip(with) {
+                let name = shortened(&one_line(&joint.name), NAME);
+                cells.push([format!("  {name}"), percent(before.error), percent(after.error)]);
+            }
+            let title = "errors by joint: RMS of measured - predicted torque over the standard deviation\n\
+                         of the measured torque, both low-passed";
+            push_table(&mut text, title, &[Align::Left, Align::Right, Align::Right], &cells);
+        }
+        text
+    }
+
+    fn verdict(&self) -> String {
+        let Payload { mass, com, .. } = self.payload;
+        let kilograms = format!("{} kg", with_deviation(mass.value, mass.deviation));
+        if !mass.is_excited {
+            return format!("The log does {WARNING}not determine{WARNING:#} the mass of a payload.");
+        }
+        if !self.payload.is_there() {
+            return format!(
+                "{GOOD}no payload{GOOD:#}: the log shows a mass of {kilograms} at the last link beyond that of FILE"
+            );
+        }
+        let centre = if com.iter().all(|number| number.is_excited) {
+            let largest = com.iter().map(|number| number.deviation).fold(0.0, f64::max);
+            let each = com.map(|number| of_deviation(number.value, largest));
+            let deviation = of_deviation(largest, largest);
+            format!("centre of mass ({}) ± {deviation} m in the frame of the last link", each.join(", "))
+        } else {
+            let known = ["x", "y", "z"].into_iter().zip(com).filter(|(_, number)| number.is_excited);
+            let known: Vec<String> = known
+                .map(|(axis, number)| format!("{axis} {} m", with_deviation(number.value, number.deviation)))
+                .collect();
+            if known.is_empty() {
+                "centre of mass not excited".to_owned()
+            } else {
+                format!("centre of mass {} in the frame of the last link, the rest not excited", known.join(", "))
+            }
+        };
+        let mut text = format!("{GOOD}payload {kilograms}{GOOD:#}, {centre}");
+        let middle = |errors: &[JointError]| {
+            let finite: Vec<f64> = errors.iter().map(|error| error.error).filter(|error| error.is_finite()).collect();
+            (!finite.is_empty()).then(|| percent(median(finite)))
+        };
+        if let (Some(before), Some(after)) = (middle(self.errors), self.with.and_then(middle)) {
+            let _ = write!(
+                text,
+                "; the model with it predicts the torques with a median error of {after} instead of {before}"
+            );
+        }
+        text
+    }
+
+    /// The reply as JSON.
+    pub(crate) fn reply(&self, logs: Vec<String>, cutoff: f64, extent: Extent) -> Reply {
+        let Payload { mass, com, inertia, delay, .. } = self.payload;
+        let joint = |(at, joint): (usize, &rne_model::Joint)| OfJoint {
+            joint: at + 1,
+            name: joint.name.clone(),
+            error: self.errors.get(at).and_then(|error| finite(error.error)),
+            error_with_payload: self.with.and_then(|with| finite(with.get(at)?.error)),
+        };
+        Reply {
+            robot: self.robot.name.clone(),
+            logs,
+            states: extent.states,
+            duration: extent.duration,
+            cutoff,
+            payload: OfPayload {
+                found: self.payload.is_there(),
+                mass: Number::of(mass, "kg"),
+                com: com.map(|number| Number::of(&number, "m")),
+                inertia: inertia.map(|number| Number::of(&number, "kg m²")),
+            },
+            joints: self.robot.joints.iter().enumerate().map(joint).collect(),
+            delay: *delay,
+        }
+    }
+}
+
+/// A number with two digits of a deviation.
+fn of_deviation(value: f64, deviation: f64) -> String {
+    let text = with_deviation(value, deviation);
+    text.split(' ').next().unwrap_or_default().to_owned()
+}
+
+fn percent(part: f64) -> String {
+    if part.is_finite() { format!("{:.1} %", 100.0 * part) } else { "no motion".to_owned() }
+}
+
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
+}
+
+#[derive(Serialize)]
+pub(crate) struct Reply {
+    robot: String,
+    logs: Vec<String>,
+    states: u64,
+    duration: f64,
+    cutoff: f64,
+    payload: OfPayload,
+    joints: Vec<OfJoint>,
+    delay: f64,
+}
+
+#[derive(Serialize)]
+struct OfPayload {
+    found: bool,
+    mass: Number,
+    com: [Number; 3],
+    /// xx, yy, zz, xy, xz, yz
+    inertia: [Number; 6],
+}
+
+/// A number with its standard deviation; null where the log does not determine it.
+#[derive(Serialize)]
+struct Number {
+    value: Option<f64>,
+    deviation: Option<f64>,
+    unit: &'static str,
+    excited: bool,
+}
+
+impl Number {
+    fn of(number: &PayloadNumber, unit: &'static str) -> Self {
+        let of = |value: f64| finite(value).filter(|_| number.is_excited);
+        Self { value: of(number.value), deviation: of(number.deviation), unit, excited: number.is_excited }
+    }
+}
+
+#[derive(Serialize)]
+struct OfJoint {
+    joint: usize,
+    name: String,
+    error: Option<f64>,
+    error_with_payload: Option<f64>,
+}
