@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rne_identify::{ArmLog, JointError, Part, Prediction, Purpose};
-use rne_model::Robot;
+use rne_identify::{ArmLog, Identification, JointError, Part, Prediction, Purpose};
+use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Candidate, Cause, Event, Report, Settings, Statistic, Trend, changes, svg, unit, watch};
 
 use crate::arm::Arm;
@@ -14,6 +14,9 @@ use crate::errors::of_report;
 use crate::interruption::interruptible;
 use crate::log_errors::{of_arm_log, of_pass, of_watch};
 use crate::logs::{Reading, Said, finite, robot_of, said};
+
+/// N m or N: what is left of an effort where nothing is.
+const NOTHING: f64 = 1e-9;
 
 #[derive(IntoPyObject)]
 struct OfEvent {
@@ -168,6 +171,11 @@ impl Comparison {
                 let log = open(&paths, robot, reading, None, look)?;
                 add(remarks, &log);
                 let words = log.summary();
+                let names = unexplained(robot, &prediction_errors(robot, &log, look)?);
+                if !names.is_empty() {
+                    let what = "in the quiet log: is it a log of this arm?";
+                    remarks.push((true, format!("the model explains nothing of the torques of {names} {what}")));
+                }
                 let baseline =
                     Baseline::of_logs(robot, &log, settings, look).map_err(|error| of_watch(&error, &words))?;
                 let text = baseline.to_yaml(robot, &words);
@@ -196,6 +204,25 @@ fn add(remarks: &mut Vec<Said>, log: &ArmLog) {
             remarks.push(remark);
         }
     }
+}
+
+/// How far the torques of a robot are from those of a log, by joint.
+fn prediction_errors(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Vec<JointError>> {
+    let mut prediction = Prediction::new(robot, Some(log.cutoff()));
+    log.pass_with_progress(Part::All, &mut |motion| prediction.absorb(motion), look).map_err(of_pass)?;
+    Ok(prediction.errors())
+}
+
+/// The joints whose torques are no better predicted than by their mean, but those of which the file says that nothing is
+/// known: a rule of `rne watch`.
+fn unexplained(robot: &Robot, errors: &[JointError]) -> String {
+    let each = robot.joints.iter().zip(errors).zip(Identification::not_excited(robot));
+    let found = each.filter(|((_, error), unknown)| {
+        // an effort that does not change, and is what the model says, is explained
+        let is_nothing = error.deviation == 0.0 && error.residual <= NOTHING;
+        !unknown && !is_nothing && (error.error >= 1.0 || error.error.is_nan())
+    });
+    found.map(|((joint, _), _)| one_line(&joint.name)).collect::<Vec<_>>().join(", ")
 }
 
 /// A log that is its own baseline, compared with the robot file.
@@ -258,9 +285,13 @@ pub(crate) fn watched<'py>(
             .map_err(|error| of_watch(&error, &words))?;
         let picture = svg(&robot, &report, &settings, &words);
         let judged = log.judged(look).map_err(|error| of_arm_log(&error))?;
-        let mut prediction = Prediction::new(&robot, Some(judged.cutoff()));
-        judged.pass_with_progress(Part::All, &mut |motion| prediction.absorb(motion), look).map_err(of_pass)?;
-        let (errors, read_to) = (prediction.errors(), log.read_to());
+        let errors = prediction_errors(&robot, &judged, look)?;
+        let names = unexplained(&robot, &errors);
+        if !names.is_empty() {
+            let what = "does the robot file describe this arm, with its friction?";
+            remarks.push((true, format!("the model explains nothing of the torques of {names}: {what}")));
+        }
+        let read_to = log.read_to();
         Ok::<_, PyErr>(Watched { known, report, errors, words, read_to, picture })
     })??;
     let Watched { known, report, errors, .. } = &found;

@@ -82,5 +82,8 @@ def identify(robot, paths, *, hold_out=None, rotors=False, friction=True, regula
     arm = as_arm(robot)
     with files(paths, reading(**options)) as (found, given):
         reply = identified(arm, found, given, hold_out, rotors, friction, regularization)
+    if reply["robot_file"] is None:
+        nothing = "nothing is excited: the log determines no link and no friction of this arm, so there is no robot file"
+        reply["remarks"].append((True, nothing))
     warn(reply["remarks"])
     return Identification(reply)

@@ -32,8 +32,8 @@ class Watch:
     joint (from 1), name, parameter, value ± deviation in `unit`, file_value, baseline_value, threshold, since and until
     (s). `parameters` has all other parameters with their thresholds, `joints` the errors of the model. With `by`,
     `trend` has a dict for each log (log, events, payload, payload_deviation, joints), `csv` its table, and `events` those
-    of all logs, each with the key `log`; `parameters` and `joints` are empty then. `baseline` is that of the quiet logs, or None without any. `compared_with` says
-    what the logs are compared with, and `notes` has the remarks on them.
+    of all logs, each with the key `log`; `parameters` and `joints` are empty then. `baseline` is that of the quiet logs,
+    or None without any. `compared_with` says what the logs are compared with, and `notes` has the remarks on them.
     """
 
     def __init__(self, reply):
@@ -67,7 +67,12 @@ def _sentence(event):
     where = f"{event['log']}: " if "log" in event else ""
     deviation = "" if event["deviation"] is None else f" ± {event['deviation']:.3g}"
     size = f"{event['parameter']} {event['value']:.4g}{deviation} {event['unit']}, before {event['baseline_value']:.4g}"
-    when = "in the whole log" if event["whole"] else f"{event['since']:.2f} s to {event['until']:.2f} s"
+    if event["whole"]:
+        when = "in the whole log"
+    elif event["lasts"]:
+        when = f"since {event['since']:.2f} s"
+    else:
+        when = f"{event['since']:.2f} s to {event['until']:.2f} s"
     return f"{where}{event['cause']}{place}: {size}; {when}"
 
 
