@@ -161,7 +161,9 @@ impl Place {
     /// The command line, built, with whose numbers those of logs are compared; optimised, for the tests call it often.
     fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
-        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --package rne-cli")).quiet().run()?;
+        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --package rne-cli"))
+            .quiet()
+            .run()?;
         Ok(machine::target_folder("target")?.join("release").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))
     }
 

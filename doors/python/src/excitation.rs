@@ -8,6 +8,7 @@ use pyo3::types::PyDict;
 use rne_identify::{AskedLimits, ExcitationOptions, MotionLimits, excite};
 
 use crate::arm::Arm;
+use crate::interruption::check_signals;
 use crate::log_errors::of_excitation;
 use crate::logs::{robot_of, rows};
 
@@ -92,9 +93,9 @@ pub(crate) fn exciting<'py>(py: Python<'py>, arm: PyRef<'_, Arm>, asked: Asked) 
     asked.check()?;
     let robot = robot_of(&arm)?;
     let mut limits = AskedLimits::default();
-    limits.range = asked.range.clone();
-    limits.velocity = asked.velocity.clone();
-    limits.acceleration = asked.acceleration.clone();
+    limits.range = asked.range;
+    limits.velocity = asked.velocity;
+    limits.acceleration = asked.acceleration;
     let limits = MotionLimits::of(&robot, &limits).map_err(|error| of_excitation(&error))?;
     let mut options = ExcitationOptions::default();
     options.period = asked.seconds / f64::from(asked.periods);
@@ -111,7 +112,7 @@ pub(crate) fn exciting<'py>(py: Python<'py>, arm: PyRef<'_, Arm>, asked: Asked) 
             }
             looked = Instant::now();
             // Ctrl-C ends the search, and the best motion so far is worth having
-            Python::attach(|py| py.check_signals()).is_ok()
+            check_signals().is_ok()
         })
     });
     let found = found.map_err(|error| of_excitation(&error))?;

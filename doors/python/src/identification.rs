@@ -248,14 +248,8 @@ fn picture(
     log.pass_with_progress(part, &mut take, look).map_err(of_pass)?;
     let notes: Vec<String> = judged.errors.iter().map(|error| format!("error {:.1} %", 100.0 * error.error)).collect();
     let about = format!("{about}; both torques low-passed at {:.1} Hz", log.cutoff());
-    let of = Comparison {
-        title,
-        about: &about,
-        time: &time,
-        measured: &measured,
-        predicted: &predicted,
-        notes: &notes,
-    };
+    let of =
+        Comparison { title, about: &about, time: &time, measured: &measured, predicted: &predicted, notes: &notes };
     Ok(comparison_svg(robot, &of))
 }
 
@@ -303,8 +297,7 @@ pub(crate) fn identified<'py>(
         let verdict = Verdict::of(&found, held_errors);
         let title = format!("{} identified from {}", one_line(&robot.name), log.summary());
         let about = if held.is_some() { "held-out part of the log" } else { "the data of the identification" };
-        let picture =
-            picture(&found.robot, &log, held.unwrap_or(Part::All), &judged, [title.as_str(), about], look)?;
+        let picture = picture(&found.robot, &log, held.unwrap_or(Part::All), &judged, [title.as_str(), about], look)?;
         Ok::<_, PyErr>(Found {
             identification: found,
             verdict,

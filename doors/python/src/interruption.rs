@@ -12,9 +12,18 @@ const MOMENT: Duration = Duration::from_millis(20);
 /// An exception of a signal's handler, on its way out of the work.
 struct Interrupted(PyErr);
 
+/// Runs the handlers of signals that have come, from work without the lock.
+#[allow(clippy::redundant_closure_for_method_calls)] // the method is of one lifetime
+pub(crate) fn check_signals() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
+}
+
 /// Does work without the lock. The work reports progress; a signal whose handler raises ends it there, by unwinding,
 /// for readers of logs cannot be told to stop.
-pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl Send + FnOnce(&mut dyn FnMut(f64)) -> T) -> PyResult<T> {
+pub(crate) fn interruptible<T: Send>(
+    py: Python<'_>,
+    work: impl Send + FnOnce(&mut dyn FnMut(f64)) -> T,
+) -> PyResult<T> {
     let done = py.detach(|| {
         let mut looked: Option<Instant> = None;
         let mut look = |_share: f64| {
@@ -22,7 +31,7 @@ pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl Send + FnOnce(&m
                 return;
             }
             looked = Some(Instant::now());
-            if let Err(error) = Python::attach(|py| py.check_signals()) {
+            if let Err(error) = check_signals() {
                 resume_unwind(Box::new(Interrupted(error)));
             }
         };

@@ -252,7 +252,7 @@ impl States {
 }
 
 /// An array of the shape (states, joints).
-pub(crate) fn rows<'py>(py: Python<'py>, numbers: Vec<f64>, joints: usize) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn rows(py: Python<'_>, numbers: Vec<f64>, joints: usize) -> PyResult<Bound<'_, PyAny>> {
     let states = numbers.len() / joints.max(1);
     numpy::PyArray1::from_vec(py, numbers).call_method1("reshape", ((states, joints),))
 }

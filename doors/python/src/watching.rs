@@ -149,7 +149,7 @@ enum Comparison {
     /// The robot file.
     File,
     Quiet(Vec<PathBuf>),
-    Known(Baseline, String),
+    Known(Box<Baseline>, String),
 }
 
 impl Comparison {
@@ -165,7 +165,7 @@ impl Comparison {
             Self::File => Ok(None),
             Self::Known(baseline, text) => {
                 let words = format!("a baseline of {:.1} s", baseline.duration);
-                Ok(Some(Known { baseline, words, text: Some(text) }))
+                Ok(Some(Known { baseline: *baseline, words, text: Some(text) }))
             }
             Self::Quiet(paths) => {
                 let log = open(&paths, robot, reading, None, look)?;
@@ -252,7 +252,7 @@ fn comparison(
         (Some(quiet), None) => Ok(Comparison::Quiet(quiet)),
         (None, Some((name, text))) => {
             let baseline = Baseline::from_yaml(&name, &text, robot).map_err(|report| of_report(py, &report))?;
-            Ok(Comparison::Known(baseline, text))
+            Ok(Comparison::Known(Box::new(baseline), text))
         }
         (None, None) => Ok(Comparison::File),
     }
@@ -281,8 +281,8 @@ pub(crate) fn watched<'py>(
         add(&mut remarks, &log);
         let words = log.summary();
         let known = known.map_or_else(|| of_file(&robot, &log, look), Ok)?;
-        let report = watch(&robot, &known.baseline, &log, &settings, true, look)
-            .map_err(|error| of_watch(&error, &words))?;
+        let report =
+            watch(&robot, &known.baseline, &log, &settings, true, look).map_err(|error| of_watch(&error, &words))?;
         let picture = svg(&robot, &report, &settings, &words);
         let judged = log.judged(look).map_err(|error| of_arm_log(&error))?;
         let errors = prediction_errors(&robot, &judged, look)?;
@@ -354,8 +354,8 @@ pub(crate) fn followed<'py>(
         for (name, paths) in &groups {
             let log = open(paths, &robot, &reading, Some(known.baseline.cutoff), look)?;
             add(&mut remarks, &log);
-            let found = changes(&structure, &known.baseline, &log, look)
-                .map_err(|error| of_watch(&error, &log.summary()))?;
+            let found =
+                changes(&structure, &known.baseline, &log, look).map_err(|error| of_watch(&error, &log.summary()))?;
             trend.push(name.clone(), &found);
             events.push(found.events);
         }

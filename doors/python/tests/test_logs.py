@@ -1,16 +1,19 @@
 """Logs, identification and watching: the numbers are those of the command line, whatever the source of the log."""
 
-import inspect
 import json
 import os
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rne
+
+# what is warned of has a test of its own
+pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 
 LOGS = Path(__file__).parents[3] / "rne-identify/tests/logs"
 ARMS = ["ur10", "panda"]
@@ -270,23 +273,45 @@ def test_a_signal_ends_reading(tmp_path):
     """Where a handler raises while Rust reads, the call ends there with what it raised."""
     table = table_of("ur10")
     # long enough that a timer rings before it is read
-    long = {name: np.tile(column, 100) for name, column in table.items()}
+    long = {name: np.tile(column, 200) for name, column in table.items()}
     long["time"] = 0.032 * np.arange(len(long["time"]))
     path = write(long, tmp_path / "long.csv")
     arm = rne.load(robot_of("ur10"))
-    places = []
+    ends = []
 
-    def interrupt(_signal, frame):
-        places.append(frame.f_code.co_filename)
+    def observe(_frame, event, function):
+        if getattr(function, "__name__", "") == "watched":
+            ends.append(event)
+
+    def interrupt(_signal, _frame):
         raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGALRM, interrupt)
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        sys.setprofile(observe)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
         with pytest.raises(KeyboardInterrupt):
             rne.watch(arm, path)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
+        sys.setprofile(None)
         signal.signal(signal.SIGALRM, before)
-    # raised from the one call into Rust
-    assert places == [inspect.getsourcefile(rne.watch)]
+    # the call into Rust did not return: it raised
+    assert ends == ["c_call", "c_exception"]
+
+
+def test_what_may_make_a_result_wrong_is_a_warning():
+    with pytest.warns(UserWarning, match="derive_velocities=True ignores them") as warned:
+        found = rne.identify(robot_of("panda"), log_of("panda"))
+    assert warned[0].filename == __file__ and str(warned[0].message) in found.notes
+    # a robot without friction and masses is none that explains a log
+    with pytest.warns(UserWarning, match="the model explains nothing of the torques of "):
+        rne.watch(robot_of("ur10"), log_of("ur10"))
+    still = {name: np.zeros(400) for name in table_of("ur10")} | {"time": 0.01 * np.arange(400)}
+    noise = np.random.default_rng(5)
+    still |= {f"tau{joint}": noise.normal(size=400) for joint in range(1, 7)}
+    with pytest.warns(UserWarning, match="nothing is excited"):
+        nothing = rne.identify(robot_of("ur10"), still, cutoff=4)
+    assert nothing.arm is None and nothing.robot_file is None
+    with pytest.raises(ValueError, match="there is no robot file"):
+        nothing.save("nothing.yaml")
