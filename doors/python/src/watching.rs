@@ -213,8 +213,8 @@ fn prediction_errors(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> 
     Ok(prediction.errors())
 }
 
-/// The joints whose torques are no better predicted than by their mean, but those of which the file says that nothing is
-/// known: a rule of `rne watch`.
+/// The joints whose torques are no better predicted than by their mean, but those of which the file says that nothing
+/// is known: a rule of `rne watch`.
 fn unexplained(robot: &Robot, errors: &[JointError]) -> String {
     let each = robot.joints.iter().zip(errors).zip(Identification::not_excited(robot));
     let found = each.filter(|((_, error), unknown)| {
