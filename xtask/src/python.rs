@@ -20,7 +20,7 @@ const TESTS: [&str; 1] = ["pytest>=8"];
 const PEERS: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
 
 /// Whose columns the wheel reads.
-const COLUMNS: [&str; 2] = ["polars>=1.8", "pyarrow>=17"];
+const COLUMNS: [&str; 3] = ["pandas>=2", "polars>=1.8", "pyarrow>=17"];
 
 /// Package that is timed beside the wheel, in the version of `benches/peers/run`.
 const TOOLBOX: &str = "roboticstoolbox-python==1.5.0";
@@ -36,7 +36,8 @@ const FIRST: &str = "import rne\n\
 /// Builds the Python wheel and tests it in a clean environment
 ///
 /// The wheel is built by maturin, installed with numpy into an empty virtual environment, and tested there: against
-/// numpy on random arms, and with --peers against Pinocchio on real ones; then the notebooks run. With --install it is
+/// numpy on random arms, against the command line on logs, and with --peers against Pinocchio on real arms; then the
+/// notebooks run. With --install it is
 /// tried once more in an environment that is made anew, where no compiler is on PATH.
 #[derive(Args)]
 #[command(after_help = "\
@@ -72,8 +73,9 @@ impl Python {
         let wheel = place.wheel(self.install)?;
         let python = place.user(&wheel, &packages, self.install)?;
         let shell = &place.shell;
-        let mut holds =
-            cmd!(shell, "{python} -m pytest -q -p no:cacheprovider doors/python/tests").quiet().run().is_ok();
+        let program = place.command_line()?;
+        let tests = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider doors/python/tests").env("RNE", program);
+        let mut holds = tests.quiet().run().is_ok();
         if self.notebooks {
             holds &= cmd!(shell, "{python} doors/python/notebooks/run.py").quiet().run().is_ok();
         }
@@ -154,6 +156,15 @@ impl Place {
         );
         machine::without_flags(build).quiet().run()?;
         only_file(&wheels)
+    }
+
+    /// The command line, built, with whose numbers those of logs are compared; optimised, for the tests call it often.
+    fn command_line(&self) -> Result<PathBuf> {
+        let shell = &self.shell;
+        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --package rne-cli"))
+            .quiet()
+            .run()?;
+        Ok(machine::target_folder("target")?.join("release").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))
     }
 
     /// The environment of the tests with the wheel and these packages, its Python.

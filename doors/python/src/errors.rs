@@ -31,6 +31,7 @@ pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
 }
 
 /// A remedy as keywords of `rne.load`.
+#[allow(clippy::unnecessary_wraps)] // what a report asks for
 fn in_keywords(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),

@@ -1,16 +1,24 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
 //! Thin: [`arm`] has the class, [`dynamics`] and [`insight`] its methods, [`arrays`] what numpy's arrays are to the
-//! machine, [`load`] how an arm is read, [`errors`] what goes wrong. The package around it is in `rne/`.
+//! machine, [`load`] how an arm is read, [`errors`] what goes wrong. [`logs`], [`identification`], [`watching`] and
+//! [`excitation`] are about logs of arms; [`log_errors`] words what goes wrong there, and [`interruption`] lets Ctrl-C
+//! end them. The package around it is in `rne/`.
 
 mod arm;
 mod arrays;
 mod dynamics;
 mod errors;
+mod excitation;
 mod functions;
+mod identification;
 mod insight;
+mod interruption;
 mod load;
+mod log_errors;
+mod logs;
 mod notebook;
+mod watching;
 
 use pyo3::prelude::*;
 
@@ -22,7 +30,15 @@ mod _rne {
     #[pymodule_export]
     use super::errors::{EvaluationError, RobotFileError};
     #[pymodule_export]
+    use super::excitation::exciting;
+    #[pymodule_export]
+    use super::identification::identified;
+    #[pymodule_export]
     use super::load::{builtin, load, names};
+    #[pymodule_export]
+    use super::logs::{log_content, log_motion};
+    #[pymodule_export]
+    use super::watching::{followed, watched};
 
     use pyo3::prelude::*;
 

@@ -53,3 +53,27 @@ def test_methods_of_a_copy_are_those_of_the_arm():
     arm = rne.robots.puma560
     for other in (copy.copy(arm), pickle.loads(pickle.dumps(arm))):
         assert np.array_equal(other.gravity_torques([0.1] * 6), arm.gravity_torques([0.1] * 6))
+
+
+def test_functions_of_logs_are_those_of_the_stubs():
+    stubs = {node.name: node for node in STUBS.body if isinstance(node, ast.FunctionDef)}
+    options = list(inspect.signature(rne.sources.reading).parameters)
+    for name in ("log", "identify", "watch", "excite"):
+        function, stub = getattr(rne, name), stubs[name]
+        parameters = inspect.signature(function).parameters.values()
+        positional = [one.name for one in parameters if one.kind is inspect.Parameter.POSITIONAL_OR_KEYWORD]
+        keywords = [one.name for one in parameters if one.kind is inspect.Parameter.KEYWORD_ONLY]
+        has_options = any(one.kind is inspect.Parameter.VAR_KEYWORD for one in parameters)
+        assert positional == [one.arg for one in stub.args.args], name
+        assert keywords + options * has_options == [one.arg for one in stub.args.kwonlyargs], name
+        assert inspect.getdoc(function).startswith(ast.get_docstring(stub)), name
+
+
+def test_results_of_logs_are_those_of_the_stubs():
+    for name in ("Log", "Verdict", "Identification", "Baseline", "Watch", "Excitation"):
+        stub = next(node for node in STUBS.body if isinstance(node, ast.ClassDef) and node.name == name)
+        assert inspect.getdoc(getattr(rne, name)).startswith(ast.get_docstring(stub).rstrip(".")), name
+        functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+        public = {one for one in vars(getattr(rne, name)) if not one.startswith("_")}
+        assert public <= functions, name
+        assert functions <= set(vars(getattr(rne, name))), name

@@ -7,6 +7,8 @@
 
 `rne.load` reads a robot file or a URDF, `rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one
 state or `(N, n)` for many; units are SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
+
+`rne.log`, `rne.identify`, `rne.watch` and `rne.excite` are about logs: docs/python.md.
 """
 
 from typing import Iterator
@@ -14,8 +16,31 @@ from typing import Iterator
 import numpy as _numpy
 
 from ._rne import Arm, EvaluationError, RobotFileError, __version__, builtin as _builtin, load, names as _names
+from .excitation import Excitation, excite
+from .identification import Identification, identify
+from .logs import Log, log
+from .verdicts import Verdict
+from .watching import Baseline, Watch, watch
 
-__all__ = ["Arm", "EvaluationError", "RobotFileError", "load", "payload", "robots", "__version__"]
+__all__ = [
+    "Arm",
+    "Baseline",
+    "EvaluationError",
+    "Excitation",
+    "Identification",
+    "Log",
+    "RobotFileError",
+    "Verdict",
+    "Watch",
+    "excite",
+    "identify",
+    "load",
+    "log",
+    "payload",
+    "robots",
+    "watch",
+    "__version__",
+]
 
 
 class _Robots:

@@ -232,3 +232,191 @@ def load(
 
 def payload(mass: float, com: ArrayLike = ..., inertia: ArrayLike | None = ...) -> Floats:
     """What `Arm.inverse_dynamics_with_payload` takes, shape (10,)."""
+
+Path = str | PathLike[str]
+Source = Any
+"""A path, a dict of columns, a DataFrame of pandas or Polars, a Table of PyArrow, or a list of these."""
+Table = list[dict[str, Any]]
+
+class Log:
+    """What a log has, and its motion behind a filter without delay."""
+
+    summary: dict[str, Any]
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def time(self) -> Floats: ...
+    @property
+    def run(self) -> NDArray[np.uint64]: ...
+    @property
+    def q(self) -> Floats: ...
+    @property
+    def qd(self) -> Floats: ...
+    @property
+    def qdd(self) -> Floats: ...
+    @property
+    def tau(self) -> Floats | None: ...
+    def columns(self) -> dict[str, NDArray[Any]]: ...
+    def to_pandas(self) -> Any: ...
+    def to_polars(self) -> Any: ...
+
+class Verdict:
+    """Which joints a model predicts, and what the logs do not determine."""
+
+    lines: list[str]
+    errors_on: Literal["fitted", "held_out"]
+    limit: float
+    predicted: list[str]
+    not_predicted: list[str]
+    base_parameters: int
+    excited_base_parameters: int
+    not_excited_base_parameters: list[str]
+    frictions: int
+    excited_frictions: int
+    not_excited_friction: list[str]
+
+class Identification:
+    """A model that was identified from logs."""
+
+    verdict: Verdict
+    joints: Table
+    parameters: Table
+    friction: Table
+    errors: Table
+    robot_file: str | None
+    arm: Arm | None
+    logs: list[str]
+    robot: str
+    delay: dict[str, Any] | None
+    cutoff: float
+    held_out: dict[str, Any] | None
+    states: int
+    duration: float
+    notes: list[str]
+    def save(self, path: Path) -> None: ...
+    def _repr_svg_(self) -> str: ...
+
+class Baseline:
+    """What quiet logs say of an arm, saved once and used for every later log."""
+
+    text: str
+    def __init__(self, text: str, name: str = ...) -> None: ...
+    @classmethod
+    def read(cls, path: Path) -> Baseline: ...
+    def save(self, path: Path) -> None: ...
+
+class Watch:
+    """What was found in logs."""
+
+    robot: str
+    compared_with: str
+    events: Table
+    parameters: Table
+    joints: Table
+    trend: Table | None
+    csv: str | None
+    baseline: Baseline | None
+    notes: list[str]
+    def _repr_svg_(self) -> str: ...
+
+class Excitation:
+    """A motion from rest to rest, sampled."""
+
+    time: Floats
+    q: Floats
+    qd: Floats
+    qdd: Floats
+    condition: float
+    first_condition: float
+    evaluations: int
+    joints: Table
+    parameters: Table
+    def columns(self) -> dict[str, NDArray[Any]]: ...
+    def to_pandas(self) -> Any: ...
+    def to_polars(self) -> Any: ...
+
+def log(
+    paths: Source,
+    robot: Arm | Path | None = ...,
+    *,
+    joints: Sequence[str] | None = ...,
+    topic: str | None = ...,
+    torque_constants: ArrayLike | None = ...,
+    angles: Literal["degrees", "radians"] | None = ...,
+    cutoff: float | None = ...,
+    gap: float = ...,
+    derive_velocities: bool = ...,
+    recorded: bool = ...,
+    time_unit: Literal["s", "ms", "us", "ns"] | None = ...,
+    rate: float | None = ...,
+    columns: Sequence[str] | None = ...,
+    map: Mapping[str, str] | None = ...,
+) -> Log:
+    """What a log of an arm has, and its filtered motion."""
+
+def identify(
+    robot: Arm | Path,
+    paths: Source,
+    *,
+    hold_out: float | None = ...,
+    rotors: bool = ...,
+    friction: bool = ...,
+    regularization: float = ...,
+    joints: Sequence[str] | None = ...,
+    topic: str | None = ...,
+    torque_constants: ArrayLike | None = ...,
+    angles: Literal["degrees", "radians"] | None = ...,
+    cutoff: float | None = ...,
+    gap: float = ...,
+    derive_velocities: bool = ...,
+    recorded: bool = ...,
+    time_unit: Literal["s", "ms", "us", "ns"] | None = ...,
+    rate: float | None = ...,
+    columns: Sequence[str] | None = ...,
+    map: Mapping[str, str] | None = ...,
+) -> Identification:
+    """Identify links and friction of an arm from its logs."""
+
+def watch(
+    robot: Arm | Path,
+    paths: Source,
+    quiet: Source | None = ...,
+    baseline: Baseline | Path | None = ...,
+    *,
+    by: Literal["log"] | None = ...,
+    gain: float = ...,
+    hold: float = ...,
+    false_alarms: float = ...,
+    joints: Sequence[str] | None = ...,
+    topic: str | None = ...,
+    torque_constants: ArrayLike | None = ...,
+    angles: Literal["degrees", "radians"] | None = ...,
+    cutoff: float | None = ...,
+    gap: float = ...,
+    derive_velocities: bool = ...,
+    recorded: bool = ...,
+    time_unit: Literal["s", "ms", "us", "ns"] | None = ...,
+    rate: float | None = ...,
+    columns: Sequence[str] | None = ...,
+    map: Mapping[str, str] | None = ...,
+) -> Watch:
+    """Find changes of an arm in its logs: friction, payload, contacts."""
+
+def excite(
+    robot: Arm | Path,
+    *,
+    seconds: float = ...,
+    periods: int = ...,
+    harmonics: int = ...,
+    range: ArrayLike | None = ...,
+    velocity: ArrayLike | None = ...,
+    acceleration: ArrayLike | None = ...,
+    friction: bool = ...,
+    rotors: bool = ...,
+    evaluations: int = ...,
+    seed: int = ...,
+    rate: float = ...,
+) -> Excitation:
+    """Find a motion that excites the parameters of an arm; Ctrl-C ends the search and keeps the best."""

@@ -1,0 +1,296 @@
+//! Logs of an arm: how they are read, what is in them, and their filtered motion.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rne_identify::{ArmLogOptions, ArmLogRemark, Purpose, check_units, joint_options};
+use rne_logs::{Angles, Cutoff, Log, LogError, Mapping, Motion, Options, Run, Survey, TimeUnit};
+use rne_model::Robot;
+
+use crate::arm::Arm;
+use crate::interruption::interruptible;
+use crate::log_errors::{log_remark, of_arm_log, of_log, remark};
+
+/// The keywords by which a log is read, from the dict that the package makes of them.
+#[derive(Clone, Debug, FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Reading {
+    joints: Option<Vec<String>>,
+    topic: Option<String>,
+    torque_constants: Vec<f64>,
+    angles: Option<String>,
+    pub(crate) cutoff: Option<f64>,
+    gap: f64,
+    derive_velocities: bool,
+    recorded: bool,
+    time_unit: Option<String>,
+    rate: Option<f64>,
+    columns: Vec<String>,
+    map: BTreeMap<String, String>,
+}
+
+impl Reading {
+    pub(crate) fn options(&self) -> PyResult<Options> {
+        let angles = match self.angles.as_deref() {
+            None => Angles::Unsaid,
+            Some("degrees") => Angles::Degrees,
+            Some("radians") => Angles::Radians,
+            Some(other) => {
+                return Err(PyValueError::new_err(format!("`angles` is \"degrees\" or \"radians\", not {other:?}")));
+            }
+        };
+        for (name, value) in [("cutoff", self.cutoff), ("rate", self.rate)] {
+            if value.is_some_and(|hertz| !(hertz.is_finite() && hertz > 0.0)) {
+                return Err(PyValueError::new_err(format!("`{name}` is a number of Hz above 0, such as 2")));
+            }
+        }
+        let units = [TimeUnit::Seconds, TimeUnit::Milliseconds, TimeUnit::Microseconds, TimeUnit::Nanoseconds];
+        let unit = |name: &String| {
+            units.into_iter().find(|unit| unit.name() == name).ok_or_else(|| {
+                PyValueError::new_err(format!("`time_unit` is \"s\", \"ms\", \"us\" or \"ns\", not {name:?}"))
+            })
+        };
+        let mapping = |(target, column): (&String, &String)| {
+            let target = target.parse().map_err(|error| PyValueError::new_err(format!("`map`: {error}")))?;
+            Ok::<_, PyErr>(Mapping { target, column: column.clone() })
+        };
+        Ok(Options {
+            joints: self.joints.clone(),
+            topic: self.topic.clone(),
+            torque_constants: self.torque_constants.clone(),
+            angles,
+            gap: self.gap,
+            cutoff: self.cutoff,
+            derive_velocities: self.derive_velocities,
+            recorded: self.recorded,
+            time_unit: self.time_unit.as_ref().map(unit).transpose()?,
+            rate: self.rate,
+            columns: self.columns.clone(),
+            map: self.map.iter().map(mapping).collect::<PyResult<_>>()?,
+            ..Options::default()
+        })
+    }
+
+    /// The options of logs of an arm that are read for a purpose.
+    pub(crate) fn of_arm(&self, purpose: Purpose) -> PyResult<ArmLogOptions> {
+        Ok(ArmLogOptions { log: self.options()?, purpose })
+    }
+}
+
+/// The robot of an arm: of one with free parameters nobody knows the torques.
+pub(crate) fn robot_of(arm: &Arm) -> PyResult<Robot> {
+    if arm.robot().run_time.is_empty() {
+        return Ok(arm.robot().clone());
+    }
+    Err(PyValueError::new_err("this arm has run-time parameters: read it without `run_time`, so that all have a value"))
+}
+
+/// A remark: whether it is a warning, and its words.
+pub(crate) type Said = (bool, String);
+
+pub(crate) fn said(remarks: &[ArmLogRemark]) -> Vec<Said> {
+    remarks.iter().map(|of| (of.is_warning(), remark(of))).collect()
+}
+
+pub(crate) fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
+}
+
+#[derive(IntoPyObject)]
+struct OfJoint {
+    name: String,
+    position: (f64, f64),
+    velocity: Option<(f64, f64)>,
+    effort: Option<(f64, f64)>,
+    velocity_disagreement: Option<f64>,
+    motion_ends: Option<f64>,
+}
+
+#[derive(IntoPyObject)]
+struct OfLeftOut {
+    why: String,
+    messages: u64,
+}
+
+#[derive(IntoPyObject)]
+struct OfRun {
+    begins: String,
+    start: f64,
+    duration: f64,
+    states: u64,
+    jitter: f64,
+    longest_interval: f64,
+}
+
+/// The content of a log, with the keys of `rne log --json`.
+#[derive(IntoPyObject)]
+pub(crate) struct Content {
+    format: String,
+    topic: Option<String>,
+    recorded_times: bool,
+    origin_ns: i64,
+    rate: f64,
+    velocities: bool,
+    efforts: bool,
+    joints: Vec<OfJoint>,
+    ignored_joints: Vec<String>,
+    messages: u64,
+    states: u64,
+    left_out: Vec<OfLeftOut>,
+    run_count: u64,
+    runs: Vec<OfRun>,
+    cutoff: Option<f64>,
+    cutoff_from: &'static str,
+    dropped_states: usize,
+    notes: Vec<String>,
+}
+
+impl Content {
+    fn of(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> Self {
+        let layout = log.layout();
+        let ends = match &survey.cutoff {
+            Cutoff::Spectrum { ends, .. } => Some(ends),
+            _ => None,
+        };
+        let joint = |(joint, name): (usize, &String)| OfJoint {
+            name: name.clone(),
+            position: survey.positions[joint],
+            velocity: survey.velocities.get(joint).copied(),
+            effort: survey.efforts.get(joint).copied(),
+            velocity_disagreement: survey.disagreement.get(joint).copied(),
+            motion_ends: ends.and_then(|ends| ends.get(joint)).copied(),
+        };
+        let run = |run: &Run| OfRun {
+            begins: run.begins.to_string(),
+            start: run.start,
+            duration: run.duration,
+            states: run.states,
+            jitter: run.jitter,
+            longest_interval: run.longest,
+        };
+        let left_out = log.left_out(survey);
+        let remarks = log.remarks(survey);
+        Self {
+            format: layout.format.to_string(),
+            topic: layout.topic.clone(),
+            recorded_times: layout.recorded,
+            origin_ns: layout.origin,
+            rate: 1.0 / layout.step,
+            velocities: layout.has_velocities,
+            efforts: layout.has_efforts,
+            joints: layout.joints.iter().enumerate().map(joint).collect(),
+            ignored_joints: layout.ignored.clone(),
+            messages: survey.counts.messages,
+            states: survey.counts.states,
+            left_out: left_out.iter().map(|of| OfLeftOut { why: of.reason.to_string(), messages: of.count }).collect(),
+            run_count: survey.run_count,
+            runs: survey.runs.iter().map(run).collect(),
+            cutoff: survey.cutoff.hertz(),
+            cutoff_from: match survey.cutoff {
+                Cutoff::Given { .. } => "given",
+                Cutoff::Spectrum { .. } => "spectrum",
+                Cutoff::Unknown => "unknown",
+            },
+            dropped_states: survey.dropped,
+            notes: matched.map(remark).into_iter().chain(remarks.iter().map(log_remark)).collect(),
+        }
+    }
+}
+
+/// A log that was opened, by the joints of an arm where one is given.
+fn open(paths: &[PathBuf], robot: Option<&Robot>, mut options: Options) -> PyResult<(Log, Option<ArmLogRemark>)> {
+    let mut matched = None;
+    if let Some(robot) = robot {
+        (options, matched) = joint_options(paths, robot, options).map_err(|error| of_arm_log(&error))?;
+    }
+    let log = Log::open(paths, options).map_err(|error| of_log(&error, &[]))?;
+    if let Some(robot) = robot {
+        check_units(robot, log.layout()).map_err(|error| of_arm_log(&error))?;
+    }
+    Ok((log, matched))
+}
+
+/// What a log has.
+#[pyfunction]
+pub(crate) fn log_content(
+    py: Python<'_>,
+    paths: Vec<PathBuf>,
+    arm: Option<PyRef<'_, Arm>>,
+    reading: Reading,
+) -> PyResult<Content> {
+    let robot = arm.map(|arm| robot_of(&arm)).transpose()?;
+    let options = reading.options()?;
+    interruptible(py, |look| {
+        let (log, matched) = open(&paths, robot.as_ref(), options)?;
+        let survey = log.survey(look).map_err(|error| of_log(&error, &[]))?;
+        Ok(Content::of(&log, &survey, matched.as_ref()))
+    })?
+}
+
+/// All filtered states of a log: of each quantity the numbers of one state after those of another.
+#[derive(Default)]
+struct States {
+    time: Vec<f64>,
+    run: Vec<u64>,
+    quantities: [Vec<f64>; 4],
+}
+
+impl States {
+    fn take(&mut self, run: u64, motion: &Motion) {
+        self.time.extend(&motion.time);
+        self.run.extend(std::iter::repeat_n(run + 1, motion.len()));
+        let lists = [&motion.q, &motion.qd, &motion.qdd, &motion.tau];
+        for (all, list) in self.quantities.iter_mut().zip(lists) {
+            for at in 0..motion.len() {
+                all.extend(list.iter().map(|joint| joint[at]));
+            }
+        }
+    }
+}
+
+/// An array of the shape (states, joints).
+pub(crate) fn rows(py: Python<'_>, numbers: Vec<f64>, joints: usize) -> PyResult<Bound<'_, PyAny>> {
+    let states = numbers.len() / joints.max(1);
+    numpy::PyArray1::from_vec(py, numbers).call_method1("reshape", ((states, joints),))
+}
+
+/// The filtered motion of a log: the columns of `rne log --out`.
+#[pyfunction]
+pub(crate) fn log_motion<'py>(
+    py: Python<'py>,
+    paths: Vec<PathBuf>,
+    arm: Option<PyRef<'_, Arm>>,
+    reading: Reading,
+) -> PyResult<Bound<'py, PyDict>> {
+    let robot = arm.map(|arm| robot_of(&arm)).transpose()?;
+    let options = reading.options()?;
+    let (states, joints, has_efforts) = interruptible(py, |look| {
+        let (log, _) = open(&paths, robot.as_ref(), options)?;
+        let of_error = |error: LogError| of_log(&error, &[]);
+        let survey = log.survey(&mut *look).map_err(of_error)?;
+        let mut motions = log.motions(&survey).map_err(of_error)?;
+        let mut states = States::default();
+        while let Some(piece) = motions.next() {
+            let piece = piece.map_err(of_error)?;
+            look(motions.progress());
+            states.take(piece.run, &piece.motion);
+        }
+        Ok::<_, PyErr>((states, log.layout().joints.len(), log.layout().has_efforts))
+    })??;
+    if states.time.is_empty() {
+        let first = paths.first().map(|path| path.display().to_string()).unwrap_or_default();
+        return Err(PyValueError::new_err(format!("{first}: no sample is left after the filter")));
+    }
+    let found = PyDict::new(py);
+    found.set_item("time", numpy::PyArray1::from_vec(py, states.time))?;
+    found.set_item("run", numpy::PyArray1::from_vec(py, states.run))?;
+    let [q, qd, qdd, tau] = states.quantities;
+    for (name, numbers) in [("q", q), ("qd", qd), ("qdd", qdd)] {
+        found.set_item(name, rows(py, numbers, joints)?)?;
+    }
+    found.set_item("tau", has_efforts.then(|| rows(py, tau, joints)).transpose()?)?;
+    Ok(found)
+}

@@ -1,0 +1,394 @@
+//! Watching an arm by its logs, with the keys of `rne watch --json`.
+
+use std::path::PathBuf;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rne_identify::{ArmLog, Identification, JointError, Part, Prediction, Purpose};
+use rne_model::{Robot, one_line};
+use rne_watch::{Baseline, Candidate, Cause, Event, Report, Settings, Statistic, Trend, changes, svg, unit, watch};
+
+use crate::arm::Arm;
+use crate::errors::of_report;
+use crate::interruption::interruptible;
+use crate::log_errors::{of_arm_log, of_pass, of_watch};
+use crate::logs::{Reading, Said, finite, robot_of, said};
+
+/// N m or N: what is left of an effort where nothing is.
+const NOTHING: f64 = 1e-9;
+
+#[derive(IntoPyObject)]
+struct OfEvent {
+    cause: &'static str,
+    joint: Option<usize>,
+    name: Option<String>,
+    parameter: &'static str,
+    value: f64,
+    file_value: f64,
+    baseline_value: f64,
+    deviation: Option<f64>,
+    half_interval: Option<f64>,
+    threshold: Option<f64>,
+    unit: &'static str,
+    run: u64,
+    since: f64,
+    until: f64,
+    whole: bool,
+    lasts: bool,
+    also: Vec<usize>,
+    rivals: Vec<&'static str>,
+}
+
+fn name(robot: &Robot, joint: Option<usize>) -> Option<String> {
+    joint.map(|joint| robot.joints[joint].name.clone())
+}
+
+impl OfEvent {
+    fn of(robot: &Robot, event: &Event) -> Self {
+        Self {
+            cause: event.cause.name(),
+            joint: event.joint.map(|joint| joint + 1),
+            name: name(robot, event.joint),
+            parameter: event.parameter,
+            value: event.value,
+            file_value: event.file_value,
+            baseline_value: event.baseline_value,
+            deviation: finite(event.deviation),
+            half_interval: finite(event.half_interval),
+            threshold: finite(event.threshold),
+            unit: event.unit,
+            run: event.run + 1,
+            since: event.since,
+            until: event.until,
+            whole: event.is_whole,
+            lasts: event.lasts,
+            also: event.others.iter().map(|joint| joint + 1).collect(),
+            rivals: if event.cause == Cause::Friction { vec!["temperature", "speed"] } else { Vec::new() },
+        }
+    }
+
+    fn all(robot: &Robot, events: &[Event]) -> Vec<Self> {
+        events.iter().map(|event| Self::of(robot, event)).collect()
+    }
+}
+
+#[derive(IntoPyObject)]
+struct OfParameter {
+    cause: &'static str,
+    joint: Option<usize>,
+    name: Option<String>,
+    parameter: &'static str,
+    change: f64,
+    deviation: f64,
+    threshold: f64,
+    ratio: f64,
+    unit: &'static str,
+    watched: bool,
+}
+
+impl OfParameter {
+    fn of(robot: &Robot, baseline: &Baseline, statistic: &Statistic) -> Self {
+        Self {
+            cause: Cause::of(statistic.candidate).name(),
+            joint: statistic.candidate.joint().map(|joint| joint + 1),
+            name: name(robot, statistic.candidate.joint()),
+            parameter: statistic.candidate.parameter(),
+            change: statistic.change,
+            deviation: statistic.deviation,
+            threshold: statistic.threshold,
+            ratio: statistic.ratio(),
+            unit: unit(robot, statistic.candidate),
+            watched: baseline.scale.is_watched(statistic),
+        }
+    }
+}
+
+#[derive(IntoPyObject)]
+struct OfJoint {
+    joint: usize,
+    name: String,
+    error: Option<f64>,
+    unfiltered: Option<f64>,
+    residual: f64,
+    residual_of_baseline: f64,
+    observer_deviation: f64,
+}
+
+#[derive(IntoPyObject)]
+struct OfFriction {
+    joint: usize,
+    name: String,
+    coulomb: Option<f64>,
+    coulomb_deviation: Option<f64>,
+    threshold: Option<f64>,
+    file_value: f64,
+    residual: f64,
+    unit: &'static str,
+}
+
+#[derive(IntoPyObject)]
+struct OfRow {
+    log: String,
+    events: Vec<OfEvent>,
+    payload: Option<f64>,
+    payload_deviation: Option<f64>,
+    joints: Vec<OfFriction>,
+}
+
+/// What later logs are compared with.
+struct Known {
+    baseline: Baseline,
+    words: String,
+    /// The text of its file; of a log that is its own baseline there is none.
+    text: Option<String>,
+}
+
+/// What logs are compared with, as it was given.
+enum Comparison {
+    /// The robot file.
+    File,
+    Quiet(Vec<PathBuf>),
+    Known(Box<Baseline>, String),
+}
+
+impl Comparison {
+    fn known(
+        self,
+        robot: &Robot,
+        reading: &Reading,
+        settings: &Settings,
+        remarks: &mut Vec<Said>,
+        look: &mut dyn FnMut(f64),
+    ) -> PyResult<Option<Known>> {
+        match self {
+            Self::File => Ok(None),
+            Self::Known(baseline, text) => {
+                let words = format!("a baseline of {:.1} s", baseline.duration);
+                Ok(Some(Known { baseline: *baseline, words, text: Some(text) }))
+            }
+            Self::Quiet(paths) => {
+                let log = open(&paths, robot, reading, None, look)?;
+                add(remarks, &log);
+                let words = log.summary();
+                let names = unexplained(robot, &prediction_errors(robot, &log, look)?);
+                if !names.is_empty() {
+                    let what = "in the quiet log: is it a log of this arm?";
+                    remarks.push((true, format!("the model explains nothing of the torques of {names} {what}")));
+                }
+                let baseline =
+                    Baseline::of_logs(robot, &log, settings, look).map_err(|error| of_watch(&error, &words))?;
+                let text = baseline.to_yaml(robot, &words);
+                Ok(Some(Known { baseline, words, text: Some(text) }))
+            }
+        }
+    }
+}
+
+fn open(
+    paths: &[PathBuf],
+    robot: &Robot,
+    reading: &Reading,
+    cutoff: Option<f64>,
+    look: &mut dyn FnMut(f64),
+) -> PyResult<ArmLog> {
+    let mut options = reading.of_arm(Purpose::Watch)?;
+    options.log.cutoff = cutoff.or(options.log.cutoff);
+    ArmLog::open_with_progress(paths, robot, &options, look).map_err(|error| of_arm_log(&error))
+}
+
+/// Remarks that nobody has made.
+fn add(remarks: &mut Vec<Said>, log: &ArmLog) {
+    for remark in said(log.remarks()) {
+        if !remarks.contains(&remark) {
+            remarks.push(remark);
+        }
+    }
+}
+
+/// How far the torques of a robot are from those of a log, by joint.
+fn prediction_errors(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Vec<JointError>> {
+    let mut prediction = Prediction::new(robot, Some(log.cutoff()));
+    log.pass_with_progress(Part::All, &mut |motion| prediction.absorb(motion), look).map_err(of_pass)?;
+    Ok(prediction.errors())
+}
+
+/// The joints whose torques are no better predicted than by their mean, but those of which the file says that nothing
+/// is known: a rule of `rne watch`.
+fn unexplained(robot: &Robot, errors: &[JointError]) -> String {
+    let each = robot.joints.iter().zip(errors).zip(Identification::not_excited(robot));
+    let found = each.filter(|((_, error), unknown)| {
+        // an effort that does not change, and is what the model says, is explained
+        let is_nothing = error.deviation == 0.0 && error.residual <= NOTHING;
+        !unknown && !is_nothing && (error.error >= 1.0 || error.error.is_nan())
+    });
+    found.map(|((joint, _), _)| one_line(&joint.name)).collect::<Vec<_>>().join(", ")
+}
+
+/// A log that is its own baseline, compared with the robot file.
+fn of_file(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Known> {
+    let baseline = Baseline::of_file(robot, log, look).map_err(|error| of_watch(&error, &log.summary()))?;
+    Ok(Known { baseline, words: "the robot file".to_owned(), text: None })
+}
+
+struct Watched {
+    known: Known,
+    report: Report,
+    errors: Vec<JointError>,
+    words: String,
+    read_to: f64,
+    picture: String,
+}
+
+/// The comparison, by the keywords: quiet logs, the text of a baseline, or neither.
+fn comparison(
+    py: Python<'_>,
+    robot: &Robot,
+    quiet: Option<Vec<PathBuf>>,
+    baseline: Option<(String, String)>,
+) -> PyResult<Comparison> {
+    match (quiet, baseline) {
+        (Some(_), Some(_)) => Err(PyValueError::new_err("give `quiet` or `baseline`, not both")),
+        (Some(quiet), None) => Ok(Comparison::Quiet(quiet)),
+        (None, Some((name, text))) => {
+            let baseline = Baseline::from_yaml(&name, &text, robot).map_err(|report| of_report(py, &report))?;
+            Ok(Comparison::Known(Box::new(baseline), text))
+        }
+        (None, None) => Ok(Comparison::File),
+    }
+}
+
+/// Events in logs: a dict with the keys of `rne watch --json`, and `picture`, `remarks`, `baseline_file`.
+///
+/// `settings`: gain, hold, false alarms.
+#[pyfunction]
+pub(crate) fn watched<'py>(
+    py: Python<'py>,
+    arm: PyRef<'_, Arm>,
+    paths: Vec<PathBuf>,
+    reading: Reading,
+    quiet: Option<Vec<PathBuf>>,
+    baseline: Option<(String, String)>,
+    settings: (f64, f64, f64),
+) -> PyResult<Bound<'py, PyDict>> {
+    let robot = robot_of(&arm)?;
+    let comparison = comparison(py, &robot, quiet, baseline)?;
+    let settings = Settings { gain: settings.0, hold: settings.1, false_alarms: settings.2 };
+    let mut remarks = Vec::new();
+    let found = interruptible(py, |look| {
+        let known = comparison.known(&robot, &reading, &settings, &mut remarks, look)?;
+        let log = open(&paths, &robot, &reading, known.as_ref().map(|known| known.baseline.cutoff), look)?;
+        add(&mut remarks, &log);
+        let words = log.summary();
+        let known = known.map_or_else(|| of_file(&robot, &log, look), Ok)?;
+        let report =
+            watch(&robot, &known.baseline, &log, &settings, true, look).map_err(|error| of_watch(&error, &words))?;
+        let picture = svg(&robot, &report, &settings, &words);
+        let judged = log.judged(look).map_err(|error| of_arm_log(&error))?;
+        let errors = prediction_errors(&robot, &judged, look)?;
+        let names = unexplained(&robot, &errors);
+        if !names.is_empty() {
+            let what = "does the robot file describe this arm, with its friction?";
+            remarks.push((true, format!("the model explains nothing of the torques of {names}: {what}")));
+        }
+        let read_to = log.read_to();
+        Ok::<_, PyErr>(Watched { known, report, errors, words, read_to, picture })
+    })??;
+    let Watched { known, report, errors, .. } = &found;
+    let of_joint = |(at, error): (usize, &JointError)| OfJoint {
+        joint: at + 1,
+        name: robot.joints[at].name.clone(),
+        error: finite(error.error),
+        unfiltered: finite(error.unfiltered),
+        residual: report.changes.residual[at],
+        residual_of_baseline: known.baseline.residual[at],
+        observer_deviation: report.contact.joints[at].deviation,
+    };
+    let statistics = report.changes.statistics.iter();
+    let reply = PyDict::new(py);
+    reply.set_item("robot", &robot.name)?;
+    reply.set_item("log", &found.words)?;
+    reply.set_item("baseline", &known.words)?;
+    reply.set_item("low_pass", known.baseline.cutoff)?;
+    reply.set_item("read_to", found.read_to)?;
+    reply.set_item("events", OfEvent::all(&robot, &report.events))?;
+    let parameters: Vec<OfParameter> = statistics.map(|of| OfParameter::of(&robot, &known.baseline, of)).collect();
+    reply.set_item("parameters", parameters)?;
+    reply.set_item("joints", errors.iter().enumerate().map(of_joint).collect::<Vec<_>>())?;
+    reply.set_item("picture", &found.picture)?;
+    reply.set_item("remarks", &remarks)?;
+    reply.set_item("baseline_file", &known.text)?;
+    Ok(reply)
+}
+
+struct Followed {
+    known: Known,
+    trend: Trend,
+    events: Vec<Vec<Event>>,
+}
+
+/// The trend over groups of logs: a dict with the keys of `rne watch --by log --json`, and `table`, `picture`,
+/// `remarks`, `baseline_file`.
+#[pyfunction]
+pub(crate) fn followed<'py>(
+    py: Python<'py>,
+    arm: PyRef<'_, Arm>,
+    groups: Vec<(String, Vec<PathBuf>)>,
+    reading: Reading,
+    quiet: Option<Vec<PathBuf>>,
+    baseline: Option<(String, String)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let robot = robot_of(&arm)?;
+    let comparison = comparison(py, &robot, quiet, baseline)?;
+    let Some((_, first)) = groups.first() else { return Err(PyValueError::new_err("there is no log")) };
+    let mut remarks = Vec::new();
+    let found = interruptible(py, |look| {
+        // the first log is what the others are compared with, if nothing else is known
+        let known = match comparison.known(&robot, &reading, &Settings::default(), &mut remarks, look)? {
+            Some(known) => known,
+            None => of_file(&robot, &open(first, &robot, &reading, None, look)?, look)?,
+        };
+        let structure = Baseline::structure(&robot, known.baseline.cutoff);
+        let mut trend = Trend::new(&structure, &known.baseline);
+        let mut events = Vec::new();
+        for (name, paths) in &groups {
+            let log = open(paths, &robot, &reading, Some(known.baseline.cutoff), look)?;
+            add(&mut remarks, &log);
+            let found =
+                changes(&structure, &known.baseline, &log, look).map_err(|error| of_watch(&error, &log.summary()))?;
+            trend.push(name.clone(), &found);
+            events.push(found.events);
+        }
+        Ok::<_, PyErr>(Followed { known, trend, events })
+    })??;
+    let Followed { known, trend, events } = &found;
+    let rows = trend.rows.iter().zip(events).map(|(row, events)| {
+        let joints = row.friction.iter().zip(&row.residual).enumerate().map(|(joint, (of, residual))| OfFriction {
+            joint: joint + 1,
+            name: robot.joints[joint].name.clone(),
+            coulomb: finite(of.value),
+            coulomb_deviation: finite(of.deviation),
+            threshold: finite(of.threshold),
+            file_value: trend.friction[joint][0],
+            residual: *residual,
+            unit: unit(&robot, Candidate::Coulomb(joint)),
+        });
+        OfRow {
+            log: row.name.clone(),
+            events: OfEvent::all(&robot, events),
+            payload: finite(row.payload.value),
+            payload_deviation: finite(row.payload.deviation),
+            joints: joints.collect(),
+        }
+    });
+    let about = format!("{} logs compared with {}", trend.rows.len(), known.words);
+    let reply = PyDict::new(py);
+    reply.set_item("robot", &robot.name)?;
+    reply.set_item("baseline", &known.words)?;
+    reply.set_item("logs", rows.collect::<Vec<_>>())?;
+    reply.set_item("table", trend.csv(&robot))?;
+    reply.set_item("picture", trend.svg(&robot, &about))?;
+    reply.set_item("remarks", &remarks)?;
+    reply.set_item("baseline_file", &known.text)?;
+    Ok(reply)
+}
