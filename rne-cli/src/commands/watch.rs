@@ -299,12 +299,11 @@ fn trend(
     mut remark: String,
 ) -> Result<Outcome, Failure> {
     let groups = groups(arguments, robot, known.as_ref(), by)?;
-    let mut known = match known {
-        Some(known) => known,
-        None => {
-            let first = groups.first().ok_or_else(|| Failure::input("the logs have no rows"))?;
-            of_first(arguments, robot, first)?
-        }
+    let mut known = if let Some(known) = known {
+        known
+    } else {
+        let first = groups.first().ok_or_else(|| Failure::input("the logs have no rows"))?;
+        of_first(arguments, robot, first)?
     };
     let structure = Baseline::structure(robot, known.baseline.cutoff);
     let mut trend = Trend::new(&structure, &known.baseline);
