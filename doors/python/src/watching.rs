@@ -225,6 +225,13 @@ fn unexplained(robot: &Robot, errors: &[JointError]) -> String {
     found.map(|((joint, _), _)| one_line(&joint.name)).collect::<Vec<_>>().join(", ")
 }
 
+/// The baseline of a first log, with which others are compared if nothing else is known.
+fn of_first(robot: &Robot, name: &str, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Known> {
+    let structure = Baseline::structure(robot, log.cutoff());
+    let baseline = Baseline::of_parameters(&structure, log, look).map_err(|error| of_watch(&error, &log.summary()))?;
+    Ok(Known { baseline, words: format!("the first, {name}"), text: None })
+}
+
 /// A log that is its own baseline, compared with the robot file.
 fn of_file(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Known> {
     let baseline = Baseline::of_file(robot, log, look).map_err(|error| of_watch(&error, &log.summary()))?;
@@ -340,13 +347,13 @@ pub(crate) fn followed<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let robot = robot_of(&arm)?;
     let comparison = comparison(py, &robot, quiet, baseline)?;
-    let Some((_, first)) = groups.first() else { return Err(PyValueError::new_err("there is no log")) };
+    let Some((name, first)) = groups.first() else { return Err(PyValueError::new_err("there is no log")) };
     let mut remarks = Vec::new();
     let found = interruptible(py, |look| {
         // the first log is what the others are compared with, if nothing else is known
         let known = match comparison.known(&robot, &reading, &Settings::default(), &mut remarks, look)? {
             Some(known) => known,
-            None => of_file(&robot, &open(first, &robot, &reading, None, look)?, look)?,
+            None => of_first(&robot, name, &open(first, &robot, &reading, None, look)?, look)?,
         };
         let structure = Baseline::structure(&robot, known.baseline.cutoff);
         let mut trend = Trend::new(&structure, &known.baseline);
