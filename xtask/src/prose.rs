@@ -54,6 +54,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/lecture/two-links.md",
     "docs/logs.md",
     "docs/performance.md",
+    "docs/python.md",
     "docs/reduced-form.md",
     "docs/robot-file.md",
     "docs/run-time.md",

@@ -1,14 +1,14 @@
 //! Errors of logs and remarks on them, with remedies as keywords of Python.
 
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rne_identify::{ArmLogError, ArmLogRemark, ExcitationError, Mismatch, PassError};
 use rne_logs::{LogError, Mapping, Remark, Remedy, Setting, suggested};
 use rne_watch::WatchError;
 
-/// An error of a log: OSError where a file is wrong, ValueError where other keywords help.
+/// An error of a log. Files that cannot be opened are OSErrors of the package, before.
 pub(crate) fn of_log(error: &LogError, joints: &[String]) -> PyErr {
-    raised(error.is_of_request(), sentence(error, joints))
+    PyValueError::new_err(sentence(error, joints))
 }
 
 /// An error of the logs of an arm.
@@ -26,7 +26,6 @@ pub(crate) fn of_arm_log(error: &ArmLogError) -> PyErr {
         ArmLogError::Cutoff { .. } => error.to_string().replacen("the cut-off can", "`cutoff` can", 1),
         other => other.to_string(),
     };
-    // a log without what is needed is no file that cannot be read
     PyValueError::new_err(text)
 }
 
@@ -78,10 +77,6 @@ pub(crate) fn log_remark(remark: &Remark) -> String {
         _ => "",
     };
     format!("{remark}{keywords}")
-}
-
-fn raised(is_of_request: bool, text: String) -> PyErr {
-    if is_of_request { PyValueError::new_err(text) } else { PyOSError::new_err(text) }
 }
 
 fn sentence(error: &LogError, joints: &[String]) -> String {

@@ -194,6 +194,21 @@ def test_trend_is_that_of_the_command_line(name, identified, command_line, tmp_p
     assert found.baseline is None
 
 
+def test_days_are_groups_of_logs(name, identified):
+    table = table_of(name)
+    start = np.datetime64("2026-11-23T23:00:00", "ns")
+
+    def at(hours):
+        dates = start + np.timedelta64(hours, "h") + (1e9 * table["time"]).astype("timedelta64[ns]")
+        return {**table, "time": dates}
+
+    found = rne.watch(identified.arm, [at(0), at(2), at(3)], by="day")
+    assert [row["log"] for row in found.trend] == ["2026-11-23", "2026-11-24"]
+    # two logs of a day tell more than one
+    first, second = (row["joints"][0]["coulomb_deviation"] for row in found.trend)
+    assert second < first
+
+
 def test_quiet_logs_have_no_events(name, identified):
     found = rne.watch(identified.arm, log_of(name))
     assert found.events == [] and str(found) == "no events"
@@ -221,7 +236,7 @@ def test_tables_are_logs():
 
 
 def test_errors_name_keywords(tmp_path):
-    with pytest.raises(OSError, match="no_such.csv"):
+    with pytest.raises(FileNotFoundError, match="no_such.csv"):
         rne.log(tmp_path / "no_such.csv")
     with pytest.raises(TypeError, match="topik"):
         rne.log(log_of("ur10"), topik="x")
@@ -247,7 +262,14 @@ def test_errors_name_keywords(tmp_path):
     with pytest.raises(ValueError, match="the log has no efforts"):
         rne.watch(robot_of("ur10"), without)
     with pytest.raises(ValueError, match="`quiet` or `baseline`"):
-        rne.watch(robot_of("ur10"), log_of("ur10"), quiet=log_of("ur10"), baseline=rne.Baseline(""))
+        rne.watch(robot_of("ur10"), table, quiet=log_of("ur10"), baseline=rne.Baseline(""))
+    with pytest.raises(ValueError, match="ur10.csv is also watched"):
+        rne.watch(robot_of("ur10"), log_of("ur10"), quiet=[log_of("ur10")])
+    with pytest.raises(ValueError, match="the times of table 1 are not dates"):
+        rne.watch(robot_of("ur10"), table, by="day")
+    (tmp_path / "words.csv").write_text("no log\nat all\n")
+    with pytest.raises(ValueError, match="words.csv"):
+        rne.log(tmp_path / "words.csv")
     with pytest.raises(rne.RobotFileError):
         rne.watch(robot_of("ur10"), log_of("ur10"), baseline=rne.Baseline("format: 1\n"))
 

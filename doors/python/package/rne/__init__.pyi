@@ -385,7 +385,7 @@ def watch(
     quiet: Source | None = ...,
     baseline: Baseline | Path | None = ...,
     *,
-    by: Literal["log"] | None = ...,
+    by: Literal["log", "day"] | None = ...,
     gain: float = ...,
     hold: float = ...,
     false_alarms: float = ...,

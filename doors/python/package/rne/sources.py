@@ -58,6 +58,8 @@ def files(source, options):
     sources = list(source) if _is_list(source) else [source]
     if not sources:
         raise ValueError("there is no log: give a path, a table, or a list of them")
+    for one in filter(_is_path, sources):
+        check(pathlib.Path(one))
     if all(_is_path(one) for one in sources):
         yield [pathlib.Path(one) for one in sources], options
         return
@@ -72,6 +74,12 @@ def files(source, options):
                 options = {**options, "time_unit": "ns"}
             paths.append(path)
         yield paths, options
+
+
+def check(path):
+    """Raises the OSError of a file that is not there or may not be read."""
+    if not path.is_dir():
+        path.open("rb").close()
 
 
 def label(source, number):

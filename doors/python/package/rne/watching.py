@@ -1,10 +1,11 @@
 """What has changed about an arm, by its logs: `rne.watch`."""
 
 import contextlib
+import datetime
 import os
 import pathlib
 
-from ._rne import followed, watched
+from ._rne import followed, log_content, watched
 from .logs import as_arm, warn
 from .sources import files, label, reading
 
@@ -91,8 +92,8 @@ def watch(
         Logs in which nothing happens, for comparison; without them and without `baseline` the robot file is compared.
     baseline : Baseline or path, optional
         The baseline of an earlier watch, or the file that it was saved to.
-    by : {"log"}, optional
-        Follow the parameters from log to log.
+    by : {"log", "day"}, optional
+        Follow the parameters from log to log, or from day to day (UTC).
     gain : float
         Gain of the momentum observer, Hz.
     hold : float
@@ -107,8 +108,8 @@ def watch(
     Watch
         With `events`, `parameters`, `trend`, `baseline`.
     """
-    if by not in (None, "log"):
-        raise ValueError(f"`by` is \"log\" or None, not {by!r}")
+    if by not in (None, "log", "day"):
+        raise ValueError(f"`by` is \"log\" or \"day\", not {by!r}")
     arm, given = as_arm(robot), reading(**options)
     with contextlib.ExitStack() as stack:
         quiet, quiet_given = (None, given) if quiet is None else stack.enter_context(files(quiet, given))
@@ -117,16 +118,43 @@ def watch(
         known = None if baseline is None else (baseline._name, baseline.text)
         if by is None:
             found, given = stack.enter_context(files(paths, given))
+            _check_apart(found, quiet)
             reply = watched(arm, found, _one(given, quiet_given), quiet, known, (gain, hold, false_alarms))
         else:
             sources = list(paths) if isinstance(paths, (list, tuple)) else [paths]
             groups = []
             for number, source in enumerate(sources, 1):
                 found, given = stack.enter_context(files(source, given))
-                groups.append((label(source, number), found))
+                name = label(source, number)
+                groups.append((name if by == "log" else _day(arm, name, found, given), found))
+            if by == "day":
+                days = dict.fromkeys(day for day, _ in groups)
+                groups = [(day, [path for of, found in groups if of == day for path in found]) for day in days]
+            _check_apart([path for _, found in groups for path in found], quiet)
             reply = followed(arm, groups, _one(given, quiet_given), quiet, known)
     warn(reply["remarks"])
     return Watch(reply)
+
+
+#: ns: earlier stamps are since the start of a machine.
+_LEAST_DATE = 315_360_000 * 10**9
+
+
+def _day(arm, name, paths, given):
+    """The day of the first state of a log, UTC."""
+    origin = log_content(paths, arm, given)["origin_ns"]
+    if origin <= _LEAST_DATE:
+        why = "so it belongs to no day; by=\"log\" compares the logs one by one"
+        raise ValueError(f"the times of {name} are not dates, {why}")
+    return datetime.datetime.fromtimestamp(origin // 10**9, datetime.timezone.utc).date().isoformat()
+
+
+def _check_apart(paths, quiet):
+    """Refuses a log that is quiet and watched."""
+    watched_too = {path.resolve() for path in paths} & {path.resolve() for path in quiet or []}
+    if watched_too:
+        named = min(watched_too).name
+        raise ValueError(f"{named} is also watched: `quiet` needs another log, without disturbances")
 
 
 def _one(given, other):
