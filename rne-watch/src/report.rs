@@ -139,7 +139,25 @@ pub fn watch(
     for (run, of_run) in found {
         events.extend(touches(robot, &contact, run, Contact::joined(of_run, JOINED)));
     }
-    Ok(Report { events, changes, contact, signals, explained, is_cut })
+    Ok(Report { events: one_cause(&events), changes, contact, signals, explained, is_cut })
+}
+
+/// Contacts of one joint that are more than a person or an obstacle makes.
+const MANY: usize = 6;
+
+/// One event for one cause: a contact makes the error of the model grow, and so many contacts are an error of the model.
+fn one_cause(events: &[Event]) -> Vec<Event> {
+    let is_of = |event: &Event, cause: Cause, joint: usize| {
+        event.cause == cause && (event.joint == Some(joint) || event.others.contains(&joint))
+    };
+    let contacts = |joint: usize| events.iter().filter(|event| is_of(event, Cause::Contact, joint)).count();
+    let has_grown = |joint: usize| events.iter().any(|event| is_of(event, Cause::Model, joint));
+    let is_kept = |event: &&Event| match (event.cause, event.joint) {
+        (Cause::Model, Some(joint)) => contacts(joint) == 0 || contacts(joint) >= MANY,
+        (Cause::Contact, Some(joint)) => contacts(joint) < MANY || !has_grown(joint),
+        _ => true,
+    };
+    events.iter().filter(is_kept).cloned().collect()
 }
 
 /// Compares the parameters of an arm in logs with a baseline, without a look for contacts.
@@ -251,4 +269,46 @@ fn touches(robot: &Robot, noise: &ContactNoise, run: u64, contacts: Vec<Contact>
         })
     };
     groups.into_iter().filter_map(event).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(cause: Cause, joint: usize) -> Event {
+        Event {
+            cause,
+            joint: Some(joint),
+            parameter: "external",
+            value: 1.0,
+            file_value: 0.0,
+            baseline_value: 0.0,
+            deviation: f64::NAN,
+            half_interval: f64::NAN,
+            threshold: f64::NAN,
+            unit: "N m",
+            run: 0,
+            since: 1.0,
+            until: 2.0,
+            is_whole: false,
+            lasts: false,
+            others: Vec::new(),
+        }
+    }
+
+    fn causes(events: &[Event]) -> Vec<(Cause, Option<usize>)> {
+        one_cause(events).into_iter().map(|event| (event.cause, event.joint)).collect()
+    }
+
+    #[test]
+    fn a_contact_and_the_error_that_it_makes_are_one_event() {
+        let (model, contact) = (event(Cause::Model, 1), event(Cause::Contact, 1));
+        let other = event(Cause::Contact, 0);
+        let few = vec![model.clone(), contact.clone(), other.clone()];
+        assert_eq!(causes(&few), [(Cause::Contact, Some(1)), (Cause::Contact, Some(0))]);
+        let mut many = vec![model.clone(), other];
+        many.extend(vec![contact; MANY]);
+        assert_eq!(causes(&many), [(Cause::Model, Some(1)), (Cause::Contact, Some(0))]);
+        assert_eq!(causes(&[model]), [(Cause::Model, Some(1))]);
+    }
 }
