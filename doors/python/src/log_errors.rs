@@ -121,6 +121,7 @@ fn given(setting: &Setting) -> String {
         Setting::TimeUnit => "time_unit=\"s\", \"ms\", \"us\" or \"ns\" says the unit".to_owned(),
         Setting::Rate => "rate=HZ says the sampling rate".to_owned(),
         Setting::Columns => "columns=[\"time\", \"q\", \"tau\"] says such an order".to_owned(),
+        Setting::Select { column, value } => format!("where={{{column:?}: {value:?}}} reads the rows of one"),
         Setting::Map(_) | Setting::TimeColumn(_) => "map={…} names a column".to_owned(),
     }
 }
@@ -135,6 +136,7 @@ fn keyword(setting: &Setting) -> &'static str {
         Setting::Cutoff => "cutoff",
         Setting::TimeUnit => "time_unit",
         Setting::Rate => "rate",
+        Setting::Select { .. } => "where",
         Setting::Map(_) | Setting::TimeColumn(_) => "map",
         Setting::Columns => "columns",
     }

@@ -30,6 +30,7 @@ pub(crate) struct Reading {
     rate: Option<f64>,
     columns: Vec<String>,
     map: BTreeMap<String, String>,
+    r#where: BTreeMap<String, String>,
 }
 
 impl Reading {
@@ -70,6 +71,7 @@ impl Reading {
             rate: self.rate,
             columns: self.columns.clone(),
             map: self.map.iter().map(mapping).collect::<PyResult<_>>()?,
+            select: self.r#where.clone().into_iter().collect(),
             ..Options::default()
         })
     }
@@ -185,7 +187,7 @@ impl Content {
             ignored_joints: layout.ignored.clone(),
             messages: survey.counts.messages,
             states: survey.counts.states,
-            left_out: left_out.iter().map(|of| OfLeftOut { why: of.reason.to_string(), messages: of.count }).collect(),
+            left_out: left_out.iter().map(|of| OfLeftOut { why: of.why(), messages: of.count }).collect(),
             run_count: survey.run_count,
             runs: survey.runs.iter().map(run).collect(),
             cutoff: survey.cutoff.hertz(),

@@ -337,3 +337,10 @@ def test_what_may_make_a_result_wrong_is_a_warning():
     assert nothing.arm is None and nothing.robot_file is None
     with pytest.raises(ValueError, match="there is no robot file"):
         nothing.save("nothing.yaml")
+
+
+def test_one_arm_of_a_table_with_two_is_read():
+    table = ROOT / "docs" / "two_arms_log.csv"
+    with pytest.raises(ValueError, match='where={"robot_id": "r1"}'):
+        rne.log(table)
+    assert rne.log(table, where={"robot_id": "r1"}).summary["states"] == 250

@@ -353,6 +353,7 @@ def log(
     rate: float | None = ...,
     columns: Sequence[str] | None = ...,
     map: Mapping[str, str] | None = ...,
+    where: Mapping[str, str] | None = ...,
 ) -> Log:
     """What a log of an arm has, and its filtered motion."""
 
@@ -376,6 +377,7 @@ def identify(
     rate: float | None = ...,
     columns: Sequence[str] | None = ...,
     map: Mapping[str, str] | None = ...,
+    where: Mapping[str, str] | None = ...,
 ) -> Identification:
     """Identify links and friction of an arm from its logs."""
 
@@ -401,6 +403,7 @@ def watch(
     rate: float | None = ...,
     columns: Sequence[str] | None = ...,
     map: Mapping[str, str] | None = ...,
+    where: Mapping[str, str] | None = ...,
 ) -> Watch:
     """Find changes of an arm in its logs: friction, payload, contacts."""
 

@@ -32,6 +32,7 @@ def reading(
     rate=None,
     columns=None,
     map=None,
+    where=None,
 ):
     """The keywords of logs as the reader takes them; `docs/python.md` says what each is for."""
     if isinstance(joints, str) or isinstance(columns, str):
@@ -49,6 +50,7 @@ def reading(
         "rate": rate,
         "columns": list(columns or []),
         "map": dict(map or {}),
+        "where": {str(column): str(text) for column, text in dict(where or {}).items()},
     }
 
 
