@@ -340,7 +340,7 @@ def test_what_may_make_a_result_wrong_is_a_warning():
 
 
 def test_one_arm_of_a_table_with_two_is_read():
-    table = ROOT / "docs" / "two_arms_log.csv"
+    table = Path(__file__).parents[3] / "docs/two_arms_log.csv"
     with pytest.raises(ValueError, match='where={"robot_id": "r1"}'):
         rne.log(table)
     assert rne.log(table, where={"robot_id": "r1"}).summary["states"] == 250
