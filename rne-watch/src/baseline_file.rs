@@ -15,6 +15,9 @@ const FORMAT: u32 = 1;
 
 const KIND: Kind = Kind { name: "a baseline file", format: FORMAT };
 
+/// No number of a baseline is larger.
+const LARGEST: f64 = 1e18;
+
 /// Two values of the robot file that differ by a smaller part of themselves are the same.
 const SAME: f64 = 1e-9;
 
@@ -118,7 +121,7 @@ impl Baseline {
         let model = FittedModel {
             solution,
             information: read.triangle("information", count)?,
-            noise: read.numbers("noise", dof)?,
+            noise: read.noise(dof)?,
             transitions,
             delay: read.number("delay")?,
         };
@@ -170,8 +173,7 @@ impl Reading<'_> {
 
     fn number_of(&self, node: &Node) -> Result<f64, Report> {
         let parsed = match &node.content {
-            Content::Scalar(scalar) if scalar.text == ".inf" => Some(f64::INFINITY),
-            Content::Scalar(scalar) => scalar.text.parse().ok().filter(|number: &f64| number.is_finite()),
+            Content::Scalar(scalar) => scalar.text.parse().ok().filter(|number: &f64| number.abs() <= LARGEST),
             _ => None,
         };
         parsed.ok_or_else(|| self.refuse_at(node, "a number is expected here"))
@@ -204,6 +206,20 @@ impl Reading<'_> {
             let message = format!("`{key}` has {} numbers, and {count} are expected for this robot", numbers.len());
             Err(self.refuse(key, &message))
         }
+    }
+
+    /// The noise of each joint: infinite for a joint without efforts.
+    fn noise(&self, dof: usize) -> Result<Vec<f64>, Report> {
+        let node = self.node("noise")?;
+        let Content::Sequence(items) = &node.content else { return self.numbers("noise", dof) };
+        if items.len() != dof {
+            return self.numbers("noise", dof);
+        }
+        let of = |item: &std::rc::Rc<Node>| match &item.content {
+            Content::Scalar(scalar) if scalar.text == ".inf" => Ok(f64::INFINITY),
+            _ => self.number_of(item).and_then(|noise| self.check("noise", noise, noise > 0.0)),
+        };
+        items.iter().map(of).collect()
     }
 
     fn triangle(&self, key: &str, count: usize) -> Result<DMatrix<f64>, Report> {

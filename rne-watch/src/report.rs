@@ -145,15 +145,26 @@ pub fn watch(
 /// Contacts of one joint that are more than a person or an obstacle makes.
 const MANY: usize = 6;
 
-/// One event for one cause: a contact makes the error of the model grow, and so many contacts are an error of the model.
+/// s: what is left of a change where it begins or ends within the log is no contact.
+const EDGE: f64 = 1.0;
+
+/// One event for one cause: a contact makes the error of the model grow, and so many contacts are an error of the model;
+/// a change that begins or ends within the log leaves something there.
 fn one_cause(events: &[Event]) -> Vec<Event> {
     let is_of = |event: &Event, cause: Cause, joint: usize| {
         event.cause == cause && (event.joint == Some(joint) || event.others.contains(&joint))
     };
     let contacts = |joint: usize| events.iter().filter(|event| is_of(event, Cause::Contact, joint)).count();
     let has_grown = |joint: usize| events.iter().any(|event| is_of(event, Cause::Model, joint));
+    let is_edge = |change: &Event, contact: &Event| {
+        let is_change = !matches!(change.cause, Cause::Contact | Cause::Model) && change.run == contact.run;
+        let is_near = |time: f64| contact.since < time + EDGE && contact.until > time - EDGE;
+        let is_short = contact.until - contact.since < 2.0 * EDGE;
+        is_change && !change.is_whole && is_short && (is_near(change.since) || (!change.lasts && is_near(change.until)))
+    };
     let is_kept = |event: &&Event| match (event.cause, event.joint) {
         (Cause::Model, Some(joint)) => contacts(joint) == 0 || contacts(joint) >= MANY,
+        (Cause::Contact, _) if events.iter().any(|change| is_edge(change, event)) => false,
         (Cause::Contact, Some(joint)) => contacts(joint) < MANY || !has_grown(joint),
         _ => true,
     };
@@ -310,5 +321,10 @@ mod tests {
         many.extend(vec![contact; MANY]);
         assert_eq!(causes(&many), [(Cause::Model, Some(1)), (Cause::Contact, Some(0))]);
         assert_eq!(causes(&[model]), [(Cause::Model, Some(1))]);
+        // friction from 5 s on: a contact where it begins is what it leaves, a later one is none
+        let friction = Event { since: 5.0, until: 20.0, lasts: true, ..event(Cause::Friction, 2) };
+        let at = |since: f64| Event { since, until: since + 0.2, ..event(Cause::Contact, 2) };
+        let of = causes(&[friction, at(4.9), at(9.0)]);
+        assert_eq!(of, [(Cause::Friction, Some(2)), (Cause::Contact, Some(2))]);
     }
 }

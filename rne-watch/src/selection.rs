@@ -30,8 +30,10 @@ const PAID_BY_PAYLOAD: f64 = 6.0;
 /// Changes of a log, at most.
 const MOST: usize = 4;
 
-/// A change that explains less than this part of the first one is an error in the model of the first.
+/// A change that explains less than this part of the first one is an error in the model of the first, unless it is
+/// this many thresholds large.
 const REST: f64 = 0.15;
+const LARGE: f64 = 4.0;
 
 /// s: times that are tried, at first; a log has at most `STEPS` of them.
 const STEP: f64 = 1.0;
@@ -144,8 +146,8 @@ impl<'a> Selection<'a> {
     fn select(&mut self) -> Option<Range<usize>> {
         let mut first = None;
         while self.given.len() < MOST {
-            let Some((change, drop)) = self.largest() else { break };
-            if first.is_some_and(|first| drop < REST * first) {
+            let Some((change, drop, ratio)) = self.largest() else { break };
+            if first.is_some_and(|first| drop < REST * first) && ratio < LARGE {
                 break;
             }
             let refined = self.refined(change.clone());
@@ -159,17 +161,18 @@ impl<'a> Selection<'a> {
         None
     }
 
-    /// The change that explains most, of those that would be events.
-    fn largest(&self) -> Option<(Change, f64)> {
-        let mut best: Option<(Change, f64)> = None;
+    /// The change that explains most, of those that would be events, with what it explains and its size in thresholds.
+    fn largest(&self) -> Option<(Change, f64, f64)> {
+        let mut best: Option<(Change, f64, f64)> = None;
         for window in self.windows() {
             let cost = if window.start > 0 { GAIN } else { 0.0 };
             for (candidate, estimate) in self.score.estimates(&window, &self.given).into_iter().enumerate() {
                 let Some(estimate) = estimate else { continue };
                 let change = Change { candidate, window: window.clone() };
                 let drop = estimate.drop - cost - self.paid(candidate);
-                if best.as_ref().is_none_or(|(_, most)| drop > *most) && self.is_event(&change, &estimate) {
-                    best = Some((change, drop));
+                if best.as_ref().is_none_or(|(_, most, _)| drop > *most) && self.is_event(&change, &estimate) {
+                    let ratio = self.statistic(&change, &estimate).ratio();
+                    best = Some((change, drop, ratio));
                 }
             }
         }

@@ -99,6 +99,20 @@ fn a_payload_is_weighed() {
     }
 }
 
+/// Two faults are two events, although the payload explains far more than the friction.
+#[test]
+fn a_second_fault_is_not_hidden_by_a_large_one() {
+    let arm = arm("ur10");
+    let [quiet, watched] = split(&arm.motion, 0.5, false);
+    let quiet = baseline(&arm.structure, &quiet);
+    let size = friction(&quiet, 3, 0.5);
+    let worn = with(&arm.robot, &watched, Fault::Coulomb(3, size), ALWAYS);
+    let found = events(&arm, &quiet, &worn, Fault::Payload(5.0), ALWAYS);
+    let causes: Vec<(Cause, Option<usize>)> = found.iter().map(|event| (event.cause, event.joint)).collect();
+    assert_eq!(causes, [(Cause::Payload, None), (Cause::Friction, Some(3))]);
+    assert!((found[0].change() - 5.0).abs() < 0.3 && (found[1].change() - size).abs() < found[1].half_interval);
+}
+
 /// The intervals hold: 200 logs with noise of half the residual of each joint, and a new baseline for every ten.
 #[test]
 fn intervals_hold_the_true_size() {

@@ -85,6 +85,9 @@ fn a_baseline_is_saved_and_used_again() {
         ("rows: ", "row: ", "`rows` is missing"),
         ("delay: ", "delay: x", "a number is expected"),
         ("format: 1", "format: 7", "format"),
+        ("solution: [", "solution: [.inf, ", "a number is expected"),
+        ("noise: [", "noise: [-", "above 0"),
+        ("duration: ", "duration: .inf #", "a number is expected"),
     ] {
         fs::write(&path, text.replacen(from, to, 1)).expect("a file");
         fails(1, &["watch", ARM, WORN, "--baseline", saved], &[said, "arm.baseline.yaml:"]);
