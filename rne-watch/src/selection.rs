@@ -33,7 +33,7 @@ const MOST: usize = 4;
 /// A change that explains less than this part of the first one is an error in the model of the first, unless it is
 /// this many thresholds large.
 const REST: f64 = 0.15;
-const LARGE: f64 = 4.0;
+const LARGE: f64 = 3.0;
 
 /// s: times that are tried, at first; a log has at most `STEPS` of them.
 const STEP: f64 = 1.0;
