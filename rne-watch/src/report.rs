@@ -148,8 +148,8 @@ const MANY: usize = 6;
 /// s: what is left of a change where it begins or ends within the log is no contact.
 const EDGE: f64 = 1.0;
 
-/// One event for one cause. A contact makes the error of the model grow. Six contacts are an error of the model. A change
-/// that begins or ends within the log leaves a short torque there.
+/// One event for one cause. A contact makes the error of the model grow. Six contacts are an error of the model.
+/// A change that begins or ends within the log leaves a short torque there.
 fn one_cause(events: &[Event]) -> Vec<Event> {
     let is_of = |event: &Event, cause: Cause, joint: usize| {
         event.cause == cause && (event.joint == Some(joint) || event.others.contains(&joint))
