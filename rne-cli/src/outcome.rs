@@ -61,6 +61,17 @@ impl Failure {
         Self { text: headed(message), status: INPUT }
     }
 
+    /// Whether something is wrong with a file or its contents, and not with the command line.
+    pub(crate) fn is_of_input(&self) -> bool {
+        self.status == INPUT
+    }
+
+    /// The message without its head and without styles.
+    pub(crate) fn sentence(&self) -> String {
+        let text = anstream::adapter::strip_str(&self.text).to_string();
+        text.strip_prefix("error: ").unwrap_or(&text).to_owned()
+    }
+
     /// Something is wrong with the command line.
     pub(crate) fn usage(message: impl std::fmt::Display) -> Self {
         Self { text: headed(message), status: USAGE }

@@ -23,6 +23,9 @@ const SIZES: [f64; 5] = [0.10, 0.15, 0.25, 0.50, 1.00];
 /// How much of a public log is quiet, from its beginning and from its end.
 const SPLITS: [f64; 2] = [0.5, 0.6];
 
+/// Motions that are not those of the quiet log: factors of the amplitude and of the frequencies.
+const MOTIONS: [[f64; 2]; 7] = [[0.1, 1.0], [0.3, 1.0], [1.0, 0.3], [1.0, 0.5], [0.5, 2.0], [1.0, 2.0], [2.0, 1.0]];
+
 /// Logs of one kind and size of change.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
@@ -40,6 +43,7 @@ impl Cell {
         let (is_named, size) = match fault {
             Fault::Coulomb(joint, size) => (event.cause == Cause::Friction && event.joint == Some(joint), size),
             Fault::Payload(mass) => (event.cause == Cause::Payload, mass),
+            Fault::Gain(joint, gain) => (event.parameter == "gain" && event.joint == Some(joint), gain - 1.0),
         };
         let is_inside = is_named && (event.change() - size).abs() < event.half_interval;
         self.detected += 1;
@@ -156,5 +160,13 @@ fn main() {
     println!();
     unchanged.print("unchanged parts of the public logs");
     quiet_logs.print("simulated quiet logs");
+    for [amplitude, frequency] in MOTIONS {
+        let mut other = Quiet::default();
+        for seed in 0..arms {
+            let arm = Simulated::moved(seed, amplitude, frequency);
+            other.take(&arm.structure, &baseline(&arm.structure, &arm.quiet), &arm.watched);
+        }
+        other.print(&format!("simulated quiet logs, {amplitude} of the amplitude, {frequency} of the frequency"));
+    }
     println!("more than one event for one cause: {} of {} logs", several.several, several.logs);
 }

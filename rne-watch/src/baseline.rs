@@ -6,7 +6,7 @@ use rne_logs::Motion;
 use rne_model::Robot;
 
 use crate::WatchError;
-use crate::candidate::Scale;
+use crate::candidate::{Candidate, Scale};
 use crate::contact::ContactNoise;
 use crate::score::{Estimate, Score};
 
@@ -137,7 +137,7 @@ impl Baseline {
 fn inflation(structure: &Structure, model: &FittedModel, stretches: &Stretches, parts: usize) -> Vec<f64> {
     let dof = structure.dof();
     let list = stretches.list();
-    let mut sums = vec![0.0; 3 * dof + 1];
+    let mut sums = vec![0.0; Candidate::all(dof).len()];
     let mut tried = 0.0;
     for part in 0..parts {
         let range = part * list.len() / parts..(part + 1) * list.len() / parts;

@@ -8,10 +8,10 @@ use rne_model::document::{self, Content, Kind, Node};
 use rne_model::{Report, Robot, one_line};
 
 use crate::contact::{ContactNoise, JointNoise};
-use crate::{Baseline, Scale};
+use crate::{Baseline, Candidate, Scale};
 
 /// The format of baseline files.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 const KIND: Kind = Kind { name: "a baseline file", format: FORMAT };
 
@@ -136,7 +136,7 @@ impl Baseline {
                 effort: read.numbers("effort", dof)?,
                 mass: read.number("mass")?,
             },
-            inflation: read.numbers("inflation", 3 * dof + 1)?,
+            inflation: read.numbers("inflation", Candidate::all(dof).len())?,
             freedom: read.number("freedom")?,
             residual: read.numbers("residual", dof)?,
             rows,

@@ -1,4 +1,4 @@
-//! The parameters that may have changed: friction and offset of each joint, and a payload at the tip.
+//! The parameters that may have changed: friction, offset and gain of each joint, and a payload at the tip.
 
 use nalgebra::DMatrix;
 use rne_identify::{FittedModel, FrictionParameter, Structure};
@@ -14,6 +14,8 @@ pub enum Candidate {
     Offset(usize),
     /// The mass that the last link carries in addition, kg.
     Payload,
+    /// The gain of a joint's effort: 1 where the log has the torque of the baseline, 0 where it has nothing of it.
+    Gain(usize),
 }
 
 impl Candidate {
@@ -21,14 +23,14 @@ impl Candidate {
     #[must_use]
     pub fn all(dof: usize) -> Vec<Self> {
         let each = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
-        each.flat_map(|of| (0..dof).map(of)).chain([Self::Payload]).collect()
+        each.flat_map(|of| (0..dof).map(of)).chain([Self::Payload]).chain((0..dof).map(Self::Gain)).collect()
     }
 
     /// The joint, counted from 0; a payload has none.
     #[must_use]
     pub fn joint(self) -> Option<usize> {
         match self {
-            Self::Coulomb(joint) | Self::Viscous(joint) | Self::Offset(joint) => Some(joint),
+            Self::Coulomb(joint) | Self::Viscous(joint) | Self::Offset(joint) | Self::Gain(joint) => Some(joint),
             Self::Payload => None,
         }
     }
@@ -41,27 +43,31 @@ impl Candidate {
             Self::Viscous(_) => "viscous",
             Self::Offset(_) => "offset",
             Self::Payload => "mass",
+            Self::Gain(_) => "gain",
         }
     }
 
-    /// The changes of all unknowns for a change of one of this candidate's numbers: a column for each number. Friction
-    /// has one number; a payload has its mass and its three first moments, kg m.
+    /// The changes of all unknowns, and of the gain of each joint, for a change of one of this candidate's numbers: a
+    /// column for each number. A payload has four, its mass and its three first moments, kg m; the others have one.
     pub(crate) fn columns(self, structure: &Structure) -> DMatrix<f64> {
-        let unit = |joint: usize, parameter: FrictionParameter| {
-            let mut column = DMatrix::zeros(structure.count(), 1);
-            if let Some(at) = FittedModel::place(structure, joint, parameter) {
+        let count = structure.count() + structure.dof();
+        let unit = |at: Option<usize>| {
+            let mut column = DMatrix::zeros(count, 1);
+            if let Some(at) = at {
                 column[(at, 0)] = 1.0;
             }
             column
         };
+        let place = |joint, parameter| unit(FittedModel::place(structure, joint, parameter));
         match self {
-            Self::Coulomb(joint) => unit(joint, FrictionParameter::Coulomb),
-            Self::Viscous(joint) => unit(joint, FrictionParameter::Viscous),
-            Self::Offset(joint) => unit(joint, FrictionParameter::Offset),
+            Self::Coulomb(joint) => place(joint, FrictionParameter::Coulomb),
+            Self::Viscous(joint) => place(joint, FrictionParameter::Viscous),
+            Self::Offset(joint) => place(joint, FrictionParameter::Offset),
+            Self::Gain(joint) => unit(Some(structure.count() + joint)),
             Self::Payload => {
                 let regrouping = &structure.parameters().regrouping;
                 let tip = PER_LINK * (structure.dof() - 1);
-                let mut columns = DMatrix::zeros(structure.count(), MOMENTS);
+                let mut columns = DMatrix::zeros(count, MOMENTS);
                 columns.view_mut((0, 0), (regrouping.nrows(), MOMENTS)).copy_from(&regrouping.columns(tip, MOMENTS));
                 columns
             }
@@ -91,24 +97,17 @@ pub struct Scale {
 impl Scale {
     /// The scale of a baseline: the model that was fitted, and the products of all rows of each joint.
     pub(crate) fn of(structure: &Structure, model: &FittedModel, totals: &[DMatrix<f64>]) -> Self {
-        let square = |joint: usize, at: Option<usize>| {
-            let total = &totals[joint];
-            let place = |parameter| FittedModel::place(structure, joint, parameter);
-            let ones = place(FrictionParameter::Offset).map_or(0.0, |one| total[(one, one)]);
-            let at = at.unwrap_or(structure.count());
-            if ones > 0.0 { (total[(at, at)] / ones).sqrt() } else { 0.0 }
-        };
         let joints = 0..structure.dof();
-        let effort: Vec<f64> = joints.clone().map(|joint| square(joint, None)).collect();
+        let effort: Vec<f64> =
+            joints.clone().map(|joint| mean_square(structure, joint, &totals[joint], None).sqrt()).collect();
         let friction = |joint: usize| {
             let coulomb = FittedModel::place(structure, joint, FrictionParameter::Coulomb);
             let coulomb = coulomb.map_or(0.0, |at| model.solution[at].abs());
             coulomb.max(LEAST_FRICTION * effort[joint])
         };
-        let speed = |joint: usize| square(joint, FittedModel::place(structure, joint, FrictionParameter::Viscous));
         Self {
-            friction: joints.clone().map(friction).collect(),
-            speed: joints.map(speed).collect(),
+            friction: joints.map(friction).collect(),
+            speed: speeds(structure, totals),
             mass: structure.robot().joints.iter().map(|joint| joint.row.link.mass).sum(),
             effort,
         }
@@ -122,6 +121,7 @@ impl Scale {
             Candidate::Viscous(joint) => 0.25 * self.friction[joint] / self.speed[joint].max(SLOWEST),
             Candidate::Offset(joint) => self.friction[joint].max(0.05 * self.effort[joint]),
             Candidate::Payload => self.payload(0.1),
+            Candidate::Gain(_) => 0.15,
         }
     }
 
@@ -134,6 +134,7 @@ impl Scale {
             Candidate::Viscous(joint) => 0.06 * self.friction[joint] / self.speed[joint].max(SLOWEST),
             Candidate::Offset(joint) => 0.10 * self.friction[joint],
             Candidate::Payload => self.payload(0.05),
+            Candidate::Gain(_) => 0.05,
         }
     }
 
@@ -143,11 +144,27 @@ impl Scale {
     }
 }
 
+/// Root mean square of each joint's speed, rad/s or m/s, by the products of all rows of each joint.
+pub(crate) fn speeds(structure: &Structure, totals: &[DMatrix<f64>]) -> Vec<f64> {
+    let of = |(joint, total): (usize, &DMatrix<f64>)| {
+        let at = FittedModel::place(structure, joint, FrictionParameter::Viscous);
+        mean_square(structure, joint, total, at).sqrt()
+    };
+    totals.iter().enumerate().map(of).collect()
+}
+
+/// The mean square of a column of a joint's rows; without a column that of its efforts.
+fn mean_square(structure: &Structure, joint: usize, total: &DMatrix<f64>, column: Option<usize>) -> f64 {
+    let ones = FittedModel::place(structure, joint, FrictionParameter::Offset).map_or(0.0, |one| total[(one, one)]);
+    let at = column.unwrap_or(structure.count());
+    if ones > 0.0 { total[(at, at)] / ones } else { 0.0 }
+}
+
 /// The least friction of a joint, as a part of its effort.
 const LEAST_FRICTION: f64 = 0.02;
 
 /// rad/s or m/s: a joint that is slower tells nothing about viscous friction.
-const SLOWEST: f64 = 1e-3;
+pub(crate) const SLOWEST: f64 = 1e-3;
 
 /// kg: for a lighter arm the smallest payload is in proportion to the mass of the arm.
 const LIGHT: f64 = 4.0;

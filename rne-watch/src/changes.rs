@@ -18,7 +18,7 @@ const GROWN: f64 = 3.0;
 /// A time in a log: the number of the run, and s.
 type Instant = (u64, f64);
 
-/// A change of all unknowns from one time to another one.
+/// A change of all unknowns and gains from one time to another one.
 #[derive(Clone, Debug, PartialEq)]
 struct Window {
     ends: [Instant; 2],
@@ -47,7 +47,7 @@ impl Changes {
         let findings = selection.findings();
         let mut events: Vec<Event> =
             findings.iter().map(|found| event(structure, baseline, &selection, found)).collect();
-        let residual = residual(structure, baseline, &selection);
+        let residual = residual(baseline, &selection);
         // the errors of a file are those of another motion
         let has_quiet_log = baseline.doubt == 1.0;
         for (joint, (now, before)) in residual.iter().zip(&baseline.residual).enumerate() {
@@ -84,11 +84,19 @@ impl Changes {
         motion: &Motion,
     ) -> Result<Vec<Vec<f64>>, MotionError> {
         let mut sum = vec![vec![0.0; motion.len()]; structure.dof()];
+        let count = structure.count();
         for Window { ends: [first, last], change } in &self.windows {
             if run < first.0 || run > last.0 {
                 continue;
             }
-            let added = baseline.model.torques(structure, motion, change)?;
+            let gains = change.rows_range(count..);
+            let mut added = baseline.model.torques(structure, motion, &change.rows(0, count).clone_owned())?;
+            if gains.iter().any(|gain| *gain != 0.0) {
+                let own = baseline.model.torques(structure, motion, &baseline.model.solution)?;
+                for ((added, own), gain) in added.iter_mut().zip(own).zip(gains.iter()) {
+                    added.iter_mut().zip(own).for_each(|(added, own)| *added += gain * own);
+                }
+            }
             let is_active = |time: f64| (run > first.0 || time >= first.1) && (run < last.0 || time <= last.1);
             for (sum, added) in sum.iter_mut().zip(added) {
                 for ((sum, added), time) in sum.iter_mut().zip(added).zip(&motion.time) {
@@ -114,6 +122,7 @@ pub(crate) fn values(structure: &Structure, baseline: &Baseline, candidate: Cand
         Candidate::Viscous(joint) => place(joint, FrictionParameter::Viscous),
         Candidate::Offset(joint) => place(joint, FrictionParameter::Offset),
         Candidate::Payload => None,
+        Candidate::Gain(_) => return [1.0; 2],
     };
     let file = FittedModel::of_file(structure, &baseline.model.transitions);
     at.map_or([0.0; 2], |at| [file.solution[at], baseline.model.solution[at]])
@@ -173,13 +182,13 @@ fn grown(structure: &Structure, selection: &Selection<'_>, joint: usize, [value,
 
 /// The root mean square of what the model leaves of each joint, with all changes that were found, N m or N; over
 /// the stretches in which nobody touches the arm.
-fn residual(structure: &Structure, baseline: &Baseline, selection: &Selection<'_>) -> Vec<f64> {
+fn residual(baseline: &Baseline, selection: &Selection<'_>) -> Vec<f64> {
     let unknowns = selection.unknowns();
     let of_joint = |joint: usize| {
         let stretches = selection.stretches.iter().zip(&unknowns);
-        let each = stretches.map(|(stretch, unknowns)| Residual::of(structure, joint, stretch, unknowns));
+        let each = stretches.map(|(stretch, unknowns)| selection.residual(joint, stretch, unknowns));
         let sum = each.fold(Residual::default(), Residual::plus);
         sum.root_mean_square().unwrap_or(baseline.residual[joint])
     };
-    (0..structure.dof()).map(of_joint).collect()
+    (0..baseline.residual.len()).map(of_joint).collect()
 }

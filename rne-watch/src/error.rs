@@ -26,6 +26,15 @@ pub enum WatchError {
         /// The least number of samples.
         needed: usize,
     },
+    /// A log is too short to be compared with the baseline.
+    ShortLog {
+        /// s: the duration of its motions.
+        duration: f64,
+        /// s: more than this is needed.
+        needed: f64,
+        /// Hz: the low-pass.
+        cutoff: f64,
+    },
     /// The logs of the baseline are too short to determine the parameters of the arm.
     ShortBaseline {
         /// s: the duration of the motions.
@@ -56,6 +65,11 @@ impl fmt::Display for WatchError {
                 index + 1
             ),
             Self::TooFew { found, needed } => write!(f, "{found} samples, and at least {needed} are needed"),
+            Self::ShortLog { duration, needed, cutoff } => write!(
+                f,
+                "{duration:.1} s are too short to watch after a low-pass of {cutoff:.1} Hz: more than {needed:.1} s of \
+                 motion are needed"
+            ),
             Self::ShortBaseline { duration, needed, cutoff } => write!(
                 f,
                 "{duration:.1} s are too short for a baseline of this arm after a low-pass of {cutoff:.1} Hz: at least \

@@ -13,7 +13,7 @@ pub enum Cause {
     Payload,
     /// Something touched the arm for a time: a collision, a hand.
     Contact,
-    /// The effort of a joint has an offset: a sensor, a spring, a brake.
+    /// The effort of a joint has an offset or another gain: a sensor, a spring, a brake.
     Sensor,
     /// The error of the model has grown, and no single parameter explains it.
     Model,
@@ -37,7 +37,7 @@ impl Cause {
     pub const fn of(candidate: Candidate) -> Self {
         match candidate {
             Candidate::Coulomb(_) | Candidate::Viscous(_) => Self::Friction,
-            Candidate::Offset(_) => Self::Sensor,
+            Candidate::Offset(_) | Candidate::Gain(_) => Self::Sensor,
             Candidate::Payload => Self::Payload,
         }
     }
@@ -57,8 +57,8 @@ pub struct Event {
     pub cause: Cause,
     /// The joint, counted from 0; a payload has none.
     pub joint: Option<usize>,
-    /// The parameter: `coulomb`, `viscous`, `offset`, `mass`, `external` (the largest torque of the environment) or
-    /// `residual` (the root mean square of what the model leaves).
+    /// The parameter: `coulomb`, `viscous`, `offset`, `gain`, `mass`, `external` (the largest torque of the
+    /// environment) or `residual` (the root mean square of what the model leaves).
     pub parameter: &'static str,
     /// The value in the log, in `unit`.
     pub value: f64,
@@ -102,6 +102,7 @@ pub fn unit(robot: &Robot, candidate: Candidate) -> &'static str {
     let kind = candidate.joint().and_then(|joint| robot.joints.get(joint)).map(|joint| joint.row.kind);
     match (candidate, kind) {
         (Candidate::Payload, _) => "kg",
+        (Candidate::Gain(_), _) => "1",
         (Candidate::Viscous(_), Some(JointKind::Prismatic)) => "N s/m",
         (Candidate::Viscous(_), _) => "N m s/rad",
         (_, Some(kind)) => kind.effort_unit(),

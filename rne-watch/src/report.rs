@@ -11,6 +11,9 @@ use crate::{Baseline, Candidate, Changes, Settings, Signals, WatchError};
 /// s: contacts that are closer are one, such as those on both sides of the border of two pieces.
 const JOINED: f64 = 0.25;
 
+/// Rows of each joint, without which a log cannot be compared.
+const FEWEST: u64 = 2;
+
 /// States of a picture.
 const DRAWN: u64 = 20_000;
 
@@ -190,8 +193,15 @@ pub fn changes(
             progress,
         )
         .map_err(WatchError::from)?;
-    let (found, needed) = (usize::try_from(stretches.rows()).unwrap_or(usize::MAX), 2);
-    Changes::of(structure, baseline, &stretches).filter(|_| found >= needed).ok_or(WatchError::TooFew { found, needed })
+    if stretches.rows() >= FEWEST
+        && let Some(found) = Changes::of(structure, baseline, &stretches)
+    {
+        return Ok(found);
+    }
+    let duration: f64 = log.survey().runs.iter().map(|run| run.duration).sum();
+    #[allow(clippy::cast_precision_loss)] // two at most
+    let more = FEWEST.saturating_sub(stretches.rows()).max(1) as f64 * baseline.row();
+    Err(WatchError::ShortLog { duration, needed: duration + more, cutoff: baseline.cutoff })
 }
 
 /// Torques of a run's motion that are explained already, joint by joint, N m or N; without any joint, none is.

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Friction, offsets and a payload are parameters of the model already. So F is X times some directions, over a window
-//! of time, and the products of short stretches are all that is needed.
+//! of time, and the products of short stretches are all that is needed. For the gain of a joint's effort X has one more
+//! column, the torques X θ of this joint, whose number is 0 in the baseline and no common parameter.
 //!
 //! G. C. Chow, Tests of equality between sets of coefficients in two linear regressions, Econometrica 28 (1960),
 //! 591-605. Woodbury's formula for L.
@@ -83,17 +84,20 @@ impl Score {
         model: &FittedModel,
         stretches: impl IntoIterator<Item = &'a Stretch>,
     ) -> Option<Self> {
-        let count = structure.count();
-        let mut total = DMatrix::zeros(count + 1, count + 1);
-        let (mut products, mut left) = (vec![DMatrix::zeros(count, count)], vec![DVector::zeros(count)]);
+        let (count, dof) = (structure.count(), structure.dof());
+        let size = count + dof;
+        let (mut of_columns, mut rest) = (DMatrix::zeros(size, size), DVector::zeros(size));
+        let (mut products, mut left) = (vec![of_columns.clone()], vec![rest.clone()]);
         for stretch in stretches {
-            stretch.add_to(structure, &mut total);
-            let of_columns = total.view((0, 0), (count, count)).clone_owned();
-            let of_torques = total.view((0, count), (count, 1)).column(0).clone_owned();
-            left.push(of_torques - &of_columns * &model.solution);
-            products.push(of_columns);
+            for joint in 0..dof {
+                add(structure, model, stretch, joint, &mut of_columns, &mut rest);
+            }
+            products.push(of_columns.clone());
+            left.push(rest.clone());
         }
-        let covariance = inverse_of_information(&(&model.information + products.last()?))?;
+        let common = &model.information + of_columns.view((0, 0), (count, count));
+        let mut covariance = DMatrix::zeros(size, size);
+        covariance.view_mut((0, 0), (count, count)).copy_from(&inverse_of_information(&common)?);
         let shift = &covariance * left.last()?;
         let candidates = Candidate::all(structure.dof()).into_iter();
         let candidates: Vec<(Candidate, DMatrix<f64>)> =
@@ -113,7 +117,7 @@ impl Score {
     }
 
     /// The change of the parameters that both logs have in common, beside changes of other parameters: these, each with
-    /// its window, as changes of all unknowns.
+    /// its window, as changes of all unknowns and gains.
     pub(crate) fn common(&self, changes: &[(Range<usize>, DVector<f64>)]) -> DVector<f64> {
         let mut shift = self.shift.clone();
         for (window, change) in changes {
@@ -256,6 +260,32 @@ impl Score {
         let deviations = covariance.diagonal().iter().map(|variance| variance.max(0.0).sqrt()).collect();
         Some(Fitted { values: values.iter().copied().collect(), deviations, drop })
     }
+}
+
+/// Adds the products of a joint's rows, with those of the torques that the model gives to the joint.
+fn add(
+    structure: &Structure,
+    model: &FittedModel,
+    stretch: &Stretch,
+    joint: usize,
+    products: &mut DMatrix<f64>,
+    left: &mut DVector<f64>,
+) {
+    let count = structure.count();
+    let mut total = DMatrix::zeros(count + 1, count + 1);
+    stretch.add_joint(structure, joint, &mut total);
+    let of_columns = total.view((0, 0), (count, count));
+    let with_torques = of_columns * &model.solution;
+    let rest = total.view((0, count), (count, 1)).column(0) - &with_torques;
+    let gain = count + joint;
+    products.view_mut((0, 0), (count, count)).zip_apply(&of_columns, |sum, product| *sum += product);
+    for (at, product) in with_torques.iter().enumerate() {
+        products[(at, gain)] += product;
+        products[(gain, at)] += product;
+    }
+    products[(gain, gain)] += model.solution.dot(&with_torques);
+    left.rows_mut(0, count).zip_apply(&rest, |sum, rest| *sum += rest);
+    left[gain] += model.solution.dot(&rest);
 }
 
 /// Information of numbers about which no row says anything.

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use nalgebra::DVector;
-use rne_identify::{Stretch, Structure};
+use nalgebra::{DMatrix, DVector};
+use rne_identify::{FittedModel, Stretch, Structure};
 
 use rne_logs::median;
 
 use crate::Baseline;
 use crate::baseline::Residual;
-use crate::candidate::{Candidate, Scale};
+use crate::candidate::{Candidate, SLOWEST, Scale, speeds};
 use crate::score::{Change, Estimate, Projected, Score};
 
 /// A change is an event from this many deviations on.
@@ -26,6 +26,17 @@ const GAIN: f64 = 10.0;
 
 /// A payload has three more numbers than friction, which would explain this much without being there.
 const PAID_BY_PAYLOAD: f64 = 6.0;
+
+/// The gain of an effort is a change of everything at once: it must explain more than a part of the torque does, by this
+/// part of itself.
+const PAID_BY_GAIN: f64 = 0.2;
+
+/// The error of a gain, as a part of what the model leaves of the effort.
+const UNEXPLAINED: f64 = 0.5;
+
+/// A joint that is slower or faster than in the quiet logs by more than this factor has another friction than a model of
+/// three numbers foretells.
+const LIKE: f64 = 3.0;
 
 /// Changes of a log, at most.
 const MOST: usize = 4;
@@ -83,6 +94,13 @@ pub(crate) struct Finding {
     pub(crate) window: Range<usize>,
 }
 
+/// The change that explains most: by how much the sum of squares falls, and its size in thresholds.
+struct Largest {
+    change: Change,
+    drop: f64,
+    ratio: f64,
+}
+
 /// The changes between a baseline and a log.
 pub(crate) struct Selection<'a> {
     structure: &'a Structure,
@@ -91,6 +109,8 @@ pub(crate) struct Selection<'a> {
     pub(crate) stretches: Vec<&'a Stretch>,
     score: Score,
     given: Vec<Projected>,
+    /// The factor by which the error of each joint's friction is larger than in a motion like that of the quiet logs.
+    unlike: Vec<f64>,
 }
 
 impl<'a> Selection<'a> {
@@ -126,9 +146,8 @@ impl<'a> Selection<'a> {
         let mut found = Vec::new();
         for joint in 0..self.structure.dof() {
             let stretches = self.stretches.iter().zip(&unknowns);
-            let each: Vec<f64> = stretches
-                .map(|(stretch, unknowns)| Residual::of(self.structure, joint, stretch, unknowns).mean_square())
-                .collect();
+            let each: Vec<f64> =
+                stretches.map(|(stretch, unknowns)| self.residual(joint, stretch, unknowns).mean_square()).collect();
             let usual = median(each.clone());
             found.extend(each.iter().enumerate().filter(|(_, square)| **square > OUTLIER * usual).map(|(at, _)| at));
         }
@@ -139,16 +158,21 @@ impl<'a> Selection<'a> {
 
     fn empty(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
         let score = Score::new(structure, &baseline.model, stretches.iter().copied())?;
-        Some(Self { structure, baseline, stretches, score, given: Vec::new() })
+        let unlike = unlike(structure, baseline, &stretches);
+        Some(Self { structure, baseline, stretches, score, given: Vec::new(), unlike })
     }
 
     /// Selects changes, until no further one is an event; or returns the moment that explains the last one.
     fn select(&mut self) -> Option<Range<usize>> {
         let mut first = None;
         while self.given.len() < MOST {
-            let Some((change, drop, ratio)) = self.largest() else { break };
+            let Some(Largest { change, drop, ratio }) = self.largest() else { break };
             if first.is_some_and(|first| drop < REST * first) && ratio < LARGE {
                 break;
+            }
+            if let Some(payload) = self.small_payload(drop) {
+                self.given.push(self.score.projected(payload));
+                continue;
             }
             let refined = self.refined(change.clone());
             let change = if self.would_be_event(&refined) { refined } else { change };
@@ -161,26 +185,57 @@ impl<'a> Selection<'a> {
         None
     }
 
-    /// The change that explains most, of those that would be events, with what it explains and its size in thresholds.
-    fn largest(&self) -> Option<(Change, f64, f64)> {
-        let mut best: Option<(Change, f64, f64)> = None;
+    /// The change that explains most, of those that would be events.
+    fn largest(&self) -> Option<Largest> {
+        let mut best: Option<Largest> = None;
         for window in self.windows() {
             let cost = if window.start > 0 { GAIN } else { 0.0 };
             for (candidate, estimate) in self.score.estimates(&window, &self.given).into_iter().enumerate() {
                 let Some(estimate) = estimate else { continue };
                 let change = Change { candidate, window: window.clone() };
-                let drop = estimate.drop - cost - self.paid(candidate);
-                if best.as_ref().is_none_or(|(_, most, _)| drop > *most) && self.is_event(&change, &estimate) {
+                let drop = estimate.drop - cost - self.paid(candidate, estimate.drop);
+                if best.as_ref().is_none_or(|best| drop > best.drop) && self.is_event(&change, &estimate) {
                     let ratio = self.statistic(&change, &estimate).ratio();
-                    best = Some((change, drop, ratio));
+                    best = Some(Largest { change, drop, ratio });
                 }
             }
         }
-        best
+        best.map(|best| self.gain_in_place_of_offset(best))
     }
 
-    fn paid(&self, candidate: usize) -> f64 {
-        if self.candidate(candidate) == Candidate::Payload { PAID_BY_PAYLOAD } else { 0.0 }
+    /// The gain of an effort where it explains more than the offset of this effort: most of a torque that is missing
+    /// can be its mean.
+    fn gain_in_place_of_offset(&self, best: Largest) -> Largest {
+        let Candidate::Offset(joint) = self.candidate(best.change.candidate) else { return best };
+        let candidates = self.score.candidates();
+        let Some(candidate) = candidates.iter().position(|(of, _)| *of == Candidate::Gain(joint)) else { return best };
+        let change = Change { candidate, ..best.change.clone() };
+        match self.score.estimate(change.clone(), &self.given) {
+            Some(estimate) if estimate.drop > best.drop && self.is_event(&change, &estimate) => {
+                let ratio = self.statistic(&change, &estimate).ratio();
+                Largest { change, drop: estimate.drop, ratio }
+            }
+            _ => best,
+        }
+    }
+
+    /// A payload that is too small for an event, but explains more than this: without it the event would be another
+    /// name for it.
+    fn small_payload(&self, drop: f64) -> Option<Change> {
+        let candidate = self.score.candidates().iter().position(|(of, _)| *of == Candidate::Payload)?;
+        let change = Change { candidate, window: 0..self.score.len() };
+        let estimate = self.score.estimate(change.clone(), &self.given)?;
+        let is_given = self.given.iter().any(|given| given.change.candidate == candidate);
+        let is_sure = estimate.value().abs() > DEVIATIONS * self.baseline.inflation[candidate] * estimate.deviation;
+        (!is_given && is_sure && estimate.drop - PAID_BY_PAYLOAD > drop).then_some(change)
+    }
+
+    fn paid(&self, candidate: usize, drop: f64) -> f64 {
+        match self.candidate(candidate) {
+            Candidate::Payload => PAID_BY_PAYLOAD,
+            Candidate::Gain(_) => PAID_BY_GAIN * drop,
+            _ => 0.0,
+        }
     }
 
     fn candidate(&self, at: usize) -> Candidate {
@@ -193,7 +248,14 @@ impl<'a> Selection<'a> {
     }
 
     fn is_event(&self, change: &Change, estimate: &Estimate) -> bool {
-        let is_given = self.given.iter().any(|given| given.change.candidate == change.candidate);
+        let of = |change: &Change| self.candidate(change.candidate);
+        let is_gain = |candidate: Candidate| matches!(candidate, Candidate::Gain(_));
+        // the effort of a joint whose gain has changed tells nothing else
+        let excludes = |given: &Projected| {
+            let (one, other) = (of(&given.change), of(change));
+            one == other || (one.joint().is_some() && one.joint() == other.joint() && (is_gain(one) || is_gain(other)))
+        };
+        let is_given = self.given.iter().any(excludes);
         let statistic = self.statistic(change, estimate);
         let scale = &self.baseline.scale;
         // what is hardly known is no change, however large it seems
@@ -204,14 +266,23 @@ impl<'a> Selection<'a> {
     /// The estimate of a change with its deviation, which is larger where only a part of the log tells it.
     fn statistic(&self, change: &Change, estimate: &Estimate) -> Statistic {
         let candidate = self.candidate(change.candidate);
-        let Baseline { scale, inflation, doubt, .. } = self.baseline;
+        let Baseline { scale, inflation, doubt, residual, .. } = self.baseline;
         let is_part = change.window.start > 0 || change.window.end < self.score.len();
         let [deviations, size, alike] = if is_part {
             [DEVIATIONS_OF_PART, SIZE_OF_PART, (ALIKE / self.duration(&change.window)).max(1.0)]
         } else {
             [DEVIATIONS, 1.0, 1.0]
         };
-        let model = alike * doubt * scale.model_error(candidate);
+        let unlike = match candidate {
+            Candidate::Coulomb(joint) | Candidate::Viscous(joint) => self.unlike[joint],
+            _ => 1.0,
+        };
+        // a gain is known no better than the model explains the effort
+        let unexplained = match candidate {
+            Candidate::Gain(joint) if scale.effort[joint] > 0.0 => UNEXPLAINED * residual[joint] / scale.effort[joint],
+            _ => 0.0,
+        };
+        let model = unlike * alike * doubt * scale.model_error(candidate).max(unexplained);
         let deviation = (inflation[change.candidate] * estimate.deviation).hypot(model);
         let threshold = (deviations * deviation).max(size * scale.least(candidate));
         Statistic { candidate, change: estimate.value(), deviation, threshold }
@@ -305,33 +376,45 @@ impl<'a> Selection<'a> {
         (is_told && rest.value() / all.value() < 0.5).then_some(moment)
     }
 
-    /// The changes that were found, each estimated beside all others.
+    /// The changes that were found, each estimated beside all others: those that are events still.
     pub(crate) fn findings(&self) -> Vec<Finding> {
-        let one = |at: usize| {
+        self.estimated().filter(|found| found.statistic.ratio() > 1.0).collect()
+    }
+
+    fn estimated(&self) -> impl Iterator<Item = Finding> {
+        (0..self.given.len()).filter_map(|at| {
             let mut others = self.given.clone();
             let change = others.remove(at).change;
             let estimate = self.score.estimate(change.clone(), &others)?;
             Some(Finding { statistic: self.statistic(&change, &estimate), window: change.window })
-        };
-        (0..self.given.len()).filter_map(one).collect()
+        })
     }
 
-    /// The statistics of all candidates over the whole log: of those that were not found beside those that were.
+    /// The statistics of all candidates that are no events, beside the changes that were found: over the whole log,
+    /// but for a change that was found over a part of it.
     pub(crate) fn statistics(&self) -> Vec<Statistic> {
         let whole = 0..self.score.len();
         let estimates = self.score.estimates(&whole, &self.given).into_iter().enumerate();
-        let is_found = |candidate: &usize| self.given.iter().any(|given| given.change.candidate == *candidate);
-        let each = estimates.filter(|(candidate, _)| !is_found(candidate)).filter_map(|(candidate, estimate)| {
+        let is_given = |candidate: &usize| self.given.iter().any(|given| given.change.candidate == *candidate);
+        let each = estimates.filter(|(candidate, _)| !is_given(candidate)).filter_map(|(candidate, estimate)| {
             let change = Change { candidate, window: whole.clone() };
             Some(self.statistic(&change, &estimate?))
         });
-        each.collect()
+        let small = self.estimated().map(|found| found.statistic).filter(|statistic| statistic.ratio() <= 1.0);
+        each.chain(small).collect()
     }
 
-    /// The unknowns of the model at each stretch, with all changes that were found.
+    /// The residual of the torques of a joint in a stretch, with these unknowns and gains.
+    pub(crate) fn residual(&self, joint: usize, stretch: &Stretch, unknowns: &DVector<f64>) -> Residual {
+        let of_joint = of_joint(self.structure, &self.baseline.model, joint, unknowns);
+        Residual::of(self.structure, joint, stretch, &of_joint)
+    }
+
+    /// The unknowns of the model and the gains at each stretch, with all changes that were found.
     pub(crate) fn unknowns(&self) -> Vec<DVector<f64>> {
         let changes = self.score.changes(&self.given).unwrap_or_default();
-        let common = self.score.common(&changes) + &self.baseline.model.solution;
+        let mut common = self.score.common(&changes);
+        common.rows_mut(0, self.structure.count()).zip_apply(&self.baseline.model.solution, |sum, own| *sum += own);
         let at = |at: usize| {
             let active = changes.iter().filter(|(window, _)| window.contains(&at));
             active.fold(common.clone(), |sum, (_, change)| sum + change)
@@ -343,6 +426,34 @@ impl<'a> Selection<'a> {
     pub(crate) fn changes(&self) -> Vec<(Range<usize>, DVector<f64>)> {
         self.score.changes(&self.given).unwrap_or_default()
     }
+}
+
+/// The unknowns of one joint's torque, of all unknowns and gains: a gain changes the whole torque of the baseline.
+pub(crate) fn of_joint(
+    structure: &Structure,
+    baseline: &FittedModel,
+    joint: usize,
+    unknowns: &DVector<f64>,
+) -> DVector<f64> {
+    unknowns.rows(0, structure.count()) + &baseline.solution * unknowns[structure.count() + joint]
+}
+
+/// The factor by which the error of each joint's friction is larger than in a motion like that of the quiet logs.
+fn unlike(structure: &Structure, baseline: &Baseline, stretches: &[&Stretch]) -> Vec<f64> {
+    let count = structure.count();
+    let total = |joint: usize| {
+        let mut total = DMatrix::zeros(count + 1, count + 1);
+        for stretch in stretches {
+            stretch.add_joint(structure, joint, &mut total);
+        }
+        total
+    };
+    let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
+    let ratios = speeds(structure, &totals).into_iter().zip(&baseline.scale.speed);
+    ratios
+        .map(|(now, before)| now.max(SLOWEST) / before.max(SLOWEST))
+        .map(|of| (of.max(1.0 / of) / LIKE).max(1.0))
+        .collect()
 }
 
 impl Scale {

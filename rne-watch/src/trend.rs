@@ -48,6 +48,8 @@ pub struct Trend {
     pub friction: Vec<[f64; 2]>,
     /// A row for each log.
     pub rows: Vec<TrendRow>,
+    /// The names of the logs that cannot be compared, each with the reason.
+    pub left_out: Vec<(String, String)>,
 }
 
 impl Trend {
@@ -58,6 +60,7 @@ impl Trend {
         Self {
             friction: joints.clone().map(|joint| values(structure, baseline, Candidate::Coulomb(joint))).collect(),
             rows: Vec::new(),
+            left_out: Vec::new(),
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::simulated::Simulated;
 use common::{Fault, PUBLIC, baseline, changes, noisy, public, split, with};
 use fastrand::Rng;
 use rne_identify::Structure;
@@ -146,13 +147,57 @@ fn intervals_hold_the_true_size() {
     }
 }
 
+/// A channel that is dead, has the opposite sign or another gain is one event of its own: no payload, no friction.
+#[test]
+fn the_gain_of_a_channel_is_named() {
+    let arms = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 40 } else { 4 };
+    for (seed, gain) in (0..arms).flat_map(|seed| [0.0, -1.0, 0.8].map(|gain| (seed, gain))) {
+        let arm = Simulated::new(seed);
+        let joint = usize::try_from(seed).expect("small") % arm.friction.len();
+        let quiet = baseline(&arm.structure, &arm.quiet);
+        let found = changes(&arm.structure, &quiet, &arm.with(Fault::Gain(joint, gain))).events;
+        assert_eq!(found.len(), 1, "{seed} {gain}: {found:?}");
+        let event = &found[0];
+        assert_eq!((event.cause, event.joint, event.parameter), (Cause::Sensor, Some(joint), "gain"), "{seed} {gain}");
+        assert!((event.value - gain).abs() < event.half_interval, "{seed} {gain}: {event:?}");
+    }
+}
+
+/// A payload below the smallest one is no friction either.
+#[test]
+fn a_small_payload_has_no_other_name() {
+    let arm = arm("panda");
+    for (fraction, is_reversed) in [(0.5, false), (0.5, true), (0.6, false), (0.6, true)] {
+        let [quiet, watched] = split(&arm.motion, fraction, is_reversed);
+        let quiet = baseline(&arm.structure, &quiet);
+        for mass in [0.06, 0.09, 0.12, 0.14] {
+            let found = events(&arm, &quiet, &watched, Fault::Payload(mass), ALWAYS);
+            assert!(found.iter().all(|event| event.cause == Cause::Payload), "{fraction} {mass}: {found:?}");
+        }
+    }
+}
+
+/// Quiet logs of a much smaller or slower motion: three numbers of friction do not foretell it, and say so by their
+/// deviations.
+#[test]
+fn a_quiet_log_of_another_motion_has_no_event() {
+    let all: Vec<u64> = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { (0..40).collect() } else { vec![8, 29, 34] };
+    for (seed, [amplitude, frequency]) in
+        all.iter().flat_map(|seed| [[0.1, 1.0], [0.05, 1.0], [1.0, 0.2], [1.0, 2.0]].map(|scale| (*seed, scale)))
+    {
+        let arm = Simulated::moved(seed, amplitude, frequency);
+        let quiet = baseline(&arm.structure, &arm.quiet);
+        assert_eq!(changes(&arm.structure, &quiet, &arm.watched).events, [], "{seed} {amplitude} {frequency}");
+    }
+}
+
 /// Quiet logs of simulated arms: with the noise, the steps and the delay of real ones.
 #[test]
 fn simulated_quiet_logs_have_no_event() {
     let arms = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 100 } else { 12 };
     let mut found = Vec::new();
     for seed in 0..arms {
-        let simulated = common::simulated::Simulated::new(seed);
+        let simulated = Simulated::new(seed);
         let quiet = baseline(&simulated.structure, &simulated.quiet);
         found.extend(changes(&simulated.structure, &quiet, &simulated.watched).events);
     }

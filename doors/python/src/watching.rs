@@ -1,5 +1,6 @@
 //! Watching an arm by its logs, with the keys of `rne watch --json`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use pyo3::exceptions::PyValueError;
@@ -7,7 +8,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne_identify::{ArmLog, Identification, JointError, Part, Prediction, Purpose};
 use rne_model::{Robot, one_line};
-use rne_watch::{Baseline, Candidate, Cause, Event, Report, Settings, Statistic, Trend, changes, svg, unit, watch};
+use rne_watch::{
+    Baseline, Candidate, Cause, Changes, Event, Report, Settings, Statistic, Trend, changes, svg, unit, watch,
+};
 
 use crate::arm::Arm;
 use crate::errors::of_report;
@@ -358,13 +361,30 @@ pub(crate) fn followed<'py>(
         let structure = Baseline::structure(&robot, known.baseline.cutoff);
         let mut trend = Trend::new(&structure, &known.baseline);
         let mut events = Vec::new();
+        let mut first_failure = None;
         for (name, paths) in &groups {
-            let log = open(paths, &robot, &reading, Some(known.baseline.cutoff), look)?;
-            add(&mut remarks, &log);
-            let found =
-                changes(&structure, &known.baseline, &log, look).map_err(|error| of_watch(&error, &log.summary()))?;
-            trend.push(name.clone(), &found);
-            events.push(found.events);
+            let mut one = || -> PyResult<Changes> {
+                let log = open(paths, &robot, &reading, Some(known.baseline.cutoff), look)?;
+                add(&mut remarks, &log);
+                changes(&structure, &known.baseline, &log, look).map_err(|error| of_watch(&error, &log.summary()))
+            };
+            match one() {
+                Ok(found) => {
+                    trend.push(name.clone(), &found);
+                    events.push(found.events);
+                }
+                // one log of many, such as that of a morning on which the arm stood still
+                Err(error) if Python::attach(|py| error.is_instance_of::<PyValueError>(py)) => {
+                    let reason = Python::attach(|py| error.value(py).to_string());
+                    remarks.push((true, format!("{name} is not compared: {reason}")));
+                    trend.left_out.push((name.clone(), reason));
+                    first_failure.get_or_insert(error);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        if let Some(error) = first_failure.filter(|_| trend.rows.is_empty()) {
+            return Err(error);
         }
         Ok::<_, PyErr>(Followed { known, trend, events })
     })??;
@@ -393,6 +413,7 @@ pub(crate) fn followed<'py>(
     reply.set_item("robot", &robot.name)?;
     reply.set_item("baseline", &known.words)?;
     reply.set_item("logs", rows.collect::<Vec<_>>())?;
+    reply.set_item("left_out", trend.left_out.iter().cloned().collect::<BTreeMap<String, String>>())?;
     reply.set_item("table", trend.csv(&robot))?;
     reply.set_item("picture", trend.svg(&robot, &about))?;
     reply.set_item("remarks", &remarks)?;

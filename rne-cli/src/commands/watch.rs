@@ -7,7 +7,7 @@ use clap::Args;
 use rne_identify::{ArmLogRemark, Identification, Part, Purpose};
 use rne_logs::{LabelValue, Log};
 use rne_model::{Robot, one_line};
-use rne_watch::{Baseline, Report, Settings, Trend, changes, svg, watch};
+use rne_watch::{Baseline, Changes, Report, Settings, Trend, changes, svg, watch};
 
 use crate::commands::prediction_errors::{errors_table, prediction};
 use crate::files::file_name::Format;
@@ -154,14 +154,14 @@ fn warn(remark: &mut String, what: &str) {
 
 /// Opens logs with the low-pass of a baseline.
 fn open(arguments: &Arguments, group: &Group, robot: &Robot, known: Option<&Known>) -> Result<MotionLog, Failure> {
-    let mut reading = match known {
-        Some(known) => arguments.reading.with_cutoff(known.baseline.cutoff),
-        None => arguments.reading.clone(),
-    };
+    let mut reading = arguments.reading.clone();
     if let Some((column, text)) = &group.rows {
         reading = reading.with_rows(column, text);
     }
-    MotionLog::open(&group.paths, robot, &reading, Purpose::Watch)
+    match known {
+        Some(known) => MotionLog::open_beside(&group.paths, robot, &reading, known.baseline.cutoff),
+        None => MotionLog::open(&group.paths, robot, &reading, Purpose::Watch),
+    }
 }
 
 /// The baseline that is known, or that of the log itself against the robot file.
@@ -197,7 +197,13 @@ fn events(
     }
     let judged = log.judged()?;
     let errors = prediction(robot, &judged, Part::All)?;
-    let names = unexplained(robot, &errors);
+    let mut names = unexplained(robot, &errors);
+    // an event has said it already
+    let has_gain = |name: &str| {
+        let mut gains = report.events.iter().filter(|event| event.parameter == "gain").filter_map(|event| event.joint);
+        gains.any(|joint| one_line(&robot.joints[joint].name) == name)
+    };
+    names.retain(|name| !has_gain(name));
     if !names.is_empty() {
         let names = names.join(", ");
         let what = "does FILE describe this arm, with its friction?";
@@ -308,17 +314,36 @@ fn trend(
     let structure = Baseline::structure(robot, known.baseline.cutoff);
     let mut trend = Trend::new(&structure, &known.baseline);
     let mut events = Vec::new();
+    let mut first_failure = None;
     for group in groups {
-        let log = open(arguments, &group, robot, Some(&known))?;
-        remark += &log.remark_beside(&known.remarks, PAGE);
-        known.remarks.extend(log.log().remarks().iter().cloned());
-        let bar = reading::bar("read", false);
-        let found = changes(&structure, &known.baseline, log.log(), &mut |share| reading::show(&bar, share))
-            .map_err(|error| watch_failure(&error, &log.words()))?;
-        trend.push(group.name, &found);
-        events.push(found.events);
+        let mut one = || -> Result<Changes, Failure> {
+            let log = open(arguments, &group, robot, Some(&known))?;
+            remark += &log.remark_beside(&known.remarks, PAGE);
+            known.remarks.extend(log.log().remarks().iter().cloned());
+            let bar = reading::bar("read", false);
+            changes(&structure, &known.baseline, log.log(), &mut |share| reading::show(&bar, share))
+                .map_err(|error| watch_failure(&error, &log.words()))
+        };
+        match one() {
+            Ok(found) => {
+                trend.push(group.name, &found);
+                events.push(found.events);
+            }
+            // one log of many, such as that of a morning on which the arm stood still
+            Err(failure) if failure.is_of_input() => {
+                trend.left_out.push((group.name, failure.sentence()));
+                first_failure.get_or_insert(failure);
+            }
+            Err(failure) => return Err(failure),
+        }
     }
-    let at_fault = events.iter().any(|events| !events.is_empty());
+    if let Some(failure) = first_failure.filter(|_| trend.rows.is_empty()) {
+        return Err(failure);
+    }
+    for (name, reason) in &trend.left_out {
+        warn(&mut remark, &format!("{name} is not compared: {reason}"));
+    }
+    let at_fault = events.iter().any(|events| !events.is_empty()) || !trend.left_out.is_empty();
     let what = if ["log", "day"].contains(&by) { by } else { "group" };
     let plural = if trend.rows.len() == 1 { "" } else { "s" };
     let about = format!("{} {what}{plural} compared with {}", trend.rows.len(), known.words);

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write as _};
 use std::path::PathBuf;
 
-use rne_identify::{ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, Part, PassError, Purpose};
+use rne_identify::{ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, Options, Part, PassError, Purpose};
 use rne_logs::Motion;
 use rne_model::{Robot, one_line};
 
@@ -35,6 +35,11 @@ fn date(days: i64) -> String {
     format!("{:04}-{:02}-{day:02}", 100 * (n - 49) + i + l, j + 2 - 12 * l)
 }
 
+fn names(paths: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| one_line(&path.file_name().unwrap_or_default().to_string_lossy());
+    paths.iter().map(name).collect::<Vec<_>>().join(", ")
+}
+
 /// Logs of an arm.
 pub(crate) struct MotionLog(ArmLog);
 
@@ -46,10 +51,36 @@ impl MotionLog {
         arguments: &LogArguments,
         purpose: Purpose,
     ) -> Result<Self, Failure> {
+        Self::opened(paths, robot, arguments, purpose).map_err(|error| failure(&error))
+    }
+
+    /// Opens logs of a robot to compare them with a baseline, whose low-pass, Hz, they take.
+    pub(crate) fn open_beside(
+        paths: &[PathBuf],
+        robot: &Robot,
+        arguments: &LogArguments,
+        cutoff: f64,
+    ) -> Result<Self, Failure> {
+        Self::opened(paths, robot, &arguments.with_cutoff(cutoff), Purpose::Watch).map_err(|error| match error {
+            // another low-pass is no remedy
+            ArmLogError::Cutoff { longest, possible: Some(_), .. } => Failure::input(format_args!(
+                "{}: {}",
+                names(paths),
+                WatchError::ShortLog { duration: longest, needed: 2.0 * Options::filter_reach(cutoff), cutoff }
+            )),
+            error => failure(&error),
+        })
+    }
+
+    fn opened(
+        paths: &[PathBuf],
+        robot: &Robot,
+        arguments: &LogArguments,
+        purpose: Purpose,
+    ) -> Result<Self, ArmLogError> {
         let options = ArmLogOptions { log: arguments.options(), purpose };
         let bar = reading::bar("read", false);
-        let log = ArmLog::open_with_progress(paths, robot, &options, &mut |share| reading::show(&bar, share));
-        log.map(Self).map_err(|error| failure(&error))
+        ArmLog::open_with_progress(paths, robot, &options, &mut |share| reading::show(&bar, share)).map(Self)
     }
 
     /// The logs themselves.

@@ -29,15 +29,9 @@ impl Group {
 
     /// The failure of this group, with its text.
     pub(crate) fn failure(&self, column: &str, error: &Failure) -> Failure {
-        let what = format!("{} {}: {}", one_line(column), self.shown(), message(error));
+        let what = format!("{} {}: {}", one_line(column), self.shown(), error.sentence());
         Failure { status: error.status, ..Failure::input(what) }
     }
-}
-
-/// The message of a failure without the word before it.
-fn message(failure: &Failure) -> String {
-    let text = anstream::adapter::strip_str(&failure.text).to_string();
-    text.strip_prefix("error: ").unwrap_or(&text).to_owned()
 }
 
 /// The groups of a column as JSON has them.
@@ -61,7 +55,7 @@ impl Reply {
             value: group.value.clone(),
             rows: group.rows,
             log: group.described.as_ref().ok().map(log_report::Reply::of),
-            error: group.described.as_ref().err().map(message),
+            error: group.described.as_ref().err().map(Failure::sentence),
         };
         Self { by: column.to_owned(), values: groups.iter().map(group).collect() }
     }
@@ -100,7 +94,7 @@ pub(crate) fn text(files: &[PathBuf], column: &str, groups: &[Group]) -> String 
             }
             Err(error) => {
                 line.extend(["0", "0", "", "", ""].map(str::to_owned));
-                remark("error", message(error), group);
+                remark("error", error.sentence(), group);
             }
         }
         lines.push(line);

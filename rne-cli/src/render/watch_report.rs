@@ -26,7 +26,13 @@ fn parameter(robot: &Robot, candidate: Candidate) -> String {
         Candidate::Viscous(joint) => format!("{}: viscous friction", name(joint)),
         Candidate::Offset(joint) => format!("{}: offset of the effort", name(joint)),
         Candidate::Payload => "payload".to_owned(),
+        Candidate::Gain(joint) => format!("{}: gain of the effort", name(joint)),
     }
+}
+
+/// A number with its unit; a ratio has none.
+fn with_unit(number: &str, unit: &str) -> String {
+    if unit == "1" { number.to_owned() } else { format!("{number} {unit}") }
 }
 
 /// Events, and how near the other parameters are to their thresholds.
@@ -80,10 +86,9 @@ fn unknown(robot: &Robot, baseline: &Baseline, changes: &Changes) -> Vec<String>
 /// A change with its share of the threshold.
 fn margin(robot: &Robot, statistic: &Statistic) -> String {
     format!(
-        "{}, {} {}, {} of its threshold",
+        "{}, {}, {} of its threshold",
         parameter(robot, statistic.candidate),
-        signed(statistic.change),
-        unit(robot, statistic.candidate),
+        with_unit(&signed(statistic.change), unit(robot, statistic.candidate)),
         rounded(statistic.ratio(), 2)
     )
 }
@@ -97,7 +102,7 @@ fn signed(value: f64) -> String {
 pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
     let unit = event.unit;
     let joint = event.joint.map_or(String::new(), |joint| one_line(&robot.joints[joint].name));
-    let value = format!("{} {unit}", with_deviation(event.value, event.deviation));
+    let value = with_unit(&with_deviation(event.value, event.deviation), unit);
     let percent = |base: f64| {
         let part = 100.0 * event.change() / base.abs();
         if part.is_finite() && part.abs() < 1000.0 { format!(", {part:+.0} %") } else { String::new() }
@@ -113,6 +118,9 @@ pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
         }
         Cause::Payload if event.value < 0.0 => format!("payload: {value}: the tip has lost mass"),
         Cause::Payload => format!("payload: {value} at the tip"),
+        Cause::Sensor if event.parameter == "gain" => {
+            format!("sensor of {joint}: the effort is {value} of the torque{}", gain(event))
+        }
         Cause::Sensor => format!(
             "sensor of {joint}: the effort has an offset of {value}, before {}",
             rounded(event.baseline_value, 3)
@@ -129,6 +137,17 @@ pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
         ),
     };
     format!("{what}; {}", times(event, has_runs))
+}
+
+/// The reason for which an effort can have another gain.
+fn gain(event: &Event) -> &'static str {
+    if event.value.abs() < event.threshold {
+        ": it does not follow the motion, so the channel can be dead"
+    } else if event.value < 0.0 {
+        ": it has the opposite sign"
+    } else {
+        ": another unit, another torque constant, or a fault of the sensor"
+    }
 }
 
 fn times(event: &Event, has_runs: bool) -> String {
@@ -154,7 +173,7 @@ pub(crate) fn parameters(robot: &Robot, baseline: &Baseline, changes: &Changes) 
             "±".to_owned(),
             rounded(statistic.deviation, 2),
             rounded(statistic.threshold, 3),
-            unit(robot, statistic.candidate).to_owned(),
+            with_unit("", unit(robot, statistic.candidate)).trim().to_owned(),
             part,
         ]);
     }
@@ -367,6 +386,14 @@ pub(crate) struct TrendReply {
     robot: String,
     baseline: String,
     logs: Vec<OfRow>,
+    left_out: Vec<OfLeftOut>,
+}
+
+/// A log that cannot be compared.
+#[derive(Serialize)]
+struct OfLeftOut {
+    log: String,
+    reason: String,
 }
 
 #[derive(Serialize)]
@@ -412,6 +439,12 @@ impl TrendReply {
                 joints: joints.collect(),
             }
         });
-        Self { robot: robot.name.clone(), baseline: words.to_owned(), logs: rows.collect() }
+        let left_out = trend.left_out.iter();
+        Self {
+            robot: robot.name.clone(),
+            baseline: words.to_owned(),
+            logs: rows.collect(),
+            left_out: left_out.map(|(log, reason)| OfLeftOut { log: log.clone(), reason: reason.clone() }).collect(),
+        }
     }
 }

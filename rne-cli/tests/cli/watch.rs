@@ -55,7 +55,7 @@ fn wear_is_named() {
     assert_eq!((&event["lasts"], &event["unit"]), (&true.into(), &"N m".into()));
     // every other parameter has its margin
     let parameters = reply["parameters"].as_array().expect("a list");
-    assert_eq!(parameters.len(), 9, "{reply}");
+    assert_eq!(parameters.len(), 12, "{reply}");
     for parameter in parameters {
         let ratio = number(parameter, "change").abs() / number(parameter, "threshold");
         assert!((ratio - number(parameter, "ratio")).abs() < 1e-12 && ratio < 1.0, "{parameter}");
@@ -84,7 +84,7 @@ fn a_baseline_is_saved_and_used_again() {
         ("noise: [", "noise: [1.0, ", "`noise` has 4 numbers, and 3 are expected"),
         ("rows: ", "row: ", "`rows` is missing"),
         ("delay: ", "delay: x", "a number is expected"),
-        ("format: 1", "format: 7", "format"),
+        ("format: 2", "format: 1", "format"),
         ("solution: [", "solution: [.inf, ", "a number is expected"),
         ("noise: [", "noise: [-", "above 0"),
         ("duration: ", "duration: .inf #", "a number is expected"),
@@ -118,6 +118,31 @@ fn a_trend_has_a_row_for_each_log() {
     }
     fails(2, &["watch", ARM, KNOCK, "--quiet", QUIET, "--by", "day"], &["not dates", "--by log"]);
     fails(2, &["watch", ARM, KNOCK, "--quiet", QUIET, "--csv", "t.csv"], &["--by"]);
+}
+
+/// A log that is too short is left out of a trend, with the reason, and the others are compared.
+#[test]
+fn a_log_that_cannot_be_compared_does_not_end_a_trend() {
+    let folder = folder("watch_short");
+    let short: String =
+        fs::read_to_string(format!("{ROOT}/{QUIET}")).expect("a log").split_inclusive('\n').take(45).collect();
+    let path = folder.join("short.csv");
+    fs::write(&path, short).expect("a file");
+    let path = path.to_str().expect("UTF-8");
+    let logs = ["watch", ARM, KNOCK, path, "--quiet", QUIET, "--by", "log"];
+    let called = rne(&logs);
+    assert_eq!(called.status, 1, "{}", called.err);
+    let said = called.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("warning: short.csv is not compared:") && said.contains(" s "), "{said}");
+    assert!(called.out.contains("desk_arm_knock.csv") && !called.out.contains("  short.csv"), "{}", called.out);
+    let reply: serde_json::Value = serde_json::from_str(&rne(&[&logs[..], &["--json"]].concat()).out).expect("JSON");
+    assert_eq!((reply["logs"].as_array().map(Vec::len), &reply["left_out"][0]["log"]), (Some(1), &"short.csv".into()));
+    // the low-pass is that of the baseline, so another one is no remedy
+    fs::write(path, fs::read_to_string(path).expect("it").split_inclusive('\n').take(12).collect::<String>())
+        .expect("a file");
+    fails(1, &["watch", ARM, path, "--quiet", QUIET], &["short.csv: 0.4 s are too short to watch", "more than"]);
+    // nothing is left to compare
+    fails(1, &["watch", ARM, path, "--quiet", QUIET, "--by", "log"], &["short.csv", " s "]);
 }
 
 /// Rows with one text in a column are one group.

@@ -67,6 +67,8 @@ pub(crate) enum Fault {
     Coulomb(usize, f64),
     /// A payload, kg, with its centre of mass 7 cm from the last frame.
     Payload(f64),
+    /// A channel of efforts that shows so many times the torque of its joint: 0 if it is dead.
+    Gain(usize, f64),
 }
 
 /// The torques that a fault adds, by the engine that the watch does not use.
@@ -78,6 +80,9 @@ pub(crate) fn torques(robot: &Robot, motion: &Motion, fault: Fault) -> Vec<Vec<f
             for (at, torque) in torques[joint].iter_mut().enumerate() {
                 *torque = size * sign.next(motion.q[joint][at], motion.qd[joint][at]);
             }
+        }
+        Fault::Gain(joint, gain) => {
+            torques[joint] = motion.tau[joint].iter().map(|torque| (gain - 1.0) * torque).collect();
         }
         Fault::Payload(mass) => {
             let mut bare = robot.clone();

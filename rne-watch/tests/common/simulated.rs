@@ -32,6 +32,12 @@ pub(crate) struct Simulated {
 impl Simulated {
     /// The arm of a seed.
     pub(crate) fn new(seed: u64) -> Self {
+        Self::moved(seed, 1.0, 1.0)
+    }
+
+    /// The arm of a seed, whose second log has another motion: so many times the amplitude, and so many times the
+    /// frequencies, of the quiet one.
+    pub(crate) fn moved(seed: u64, amplitude: f64, frequency: f64) -> Self {
         let mut rng = Rng::with_seed(1000 + seed);
         let mut range = |low: f64, high: f64| low + (high - low) * rng.f64();
         let is_large = range(0.0, 1.0) < 0.5;
@@ -56,8 +62,9 @@ impl Simulated {
         let rate = if range(0.0, 1.0) < 0.5 { 30.0 } else { 50.0 };
         let durations = [range(12.0, 30.0), range(8.0, 20.0)];
         let offsets: Vec<f64> = efforts.iter().map(|effort| 0.01 * effort * range(-1.7, 1.7)).collect();
-        let [quiet, watched] = durations.map(|duration| {
-            let mut motion = fourier(&loaded, rate, duration, &mut rng);
+        let motions = [(durations[0], [1.0; 2]), (durations[1], [amplitude, frequency])];
+        let [quiet, watched] = motions.map(|(duration, scale)| {
+            let mut motion = fourier(&loaded, rate, duration, scale, &mut rng);
             for joint in 0..dof {
                 let mut sign = TransitionSign::new(FrictionTransition::Displacement(way));
                 let effort = efforts[joint];
@@ -104,8 +111,8 @@ fn late(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
     time.iter().map(|time| at(time - delay)).collect()
 }
 
-/// A motion of five harmonics, with the torques of the links.
-fn fourier(robot: &Robot, rate: f64, duration: f64, rng: &mut Rng) -> Motion {
+/// A motion of five harmonics, with the torques of the links; amplitudes and frequencies are scaled.
+fn fourier(robot: &Robot, rate: f64, duration: f64, [amplitude, frequency]: [f64; 2], rng: &mut Rng) -> Motion {
     let arm = DynArm::from_robot(robot);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let count = (duration * rate) as usize;
@@ -116,8 +123,8 @@ fn fourier(robot: &Robot, rate: f64, duration: f64, rng: &mut Rng) -> Motion {
         let centre = 2.0 * rng.f64() - 1.0;
         let waves: Vec<[f64; 3]> = (1..6)
             .map(|k| {
-                let speed = std::f64::consts::TAU * 0.1 * f64::from(k) * (0.9 + 0.2 * rng.f64());
-                [0.5 * normal(rng) / f64::from(k), speed, std::f64::consts::TAU * rng.f64()]
+                let speed = frequency * std::f64::consts::TAU * 0.1 * f64::from(k) * (0.9 + 0.2 * rng.f64());
+                [amplitude * 0.5 * normal(rng) / f64::from(k), speed, std::f64::consts::TAU * rng.f64()]
             })
             .collect();
         let sum = |each: &dyn Fn(&[f64; 3], f64) -> f64| -> Vec<f64> {

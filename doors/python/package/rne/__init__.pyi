@@ -317,6 +317,7 @@ class Watch:
     joints: Table
     trend: Table | None
     csv: str | None
+    left_out: dict[str, str]
     baseline: Baseline | None
     notes: list[str]
     def _repr_svg_(self) -> str: ...

@@ -32,14 +32,16 @@ class Watch:
     `events` is a list of dicts with the keys of `rne watch --json`: cause (friction, payload, contact, sensor or model),
     joint (from 1), name, parameter, value ± deviation in `unit`, file_value, baseline_value, threshold, since and until
     (s). `parameters` has all other parameters with their thresholds, `joints` the errors of the model. With `by`,
-    `trend` has a dict for each log (log, events, payload, payload_deviation, joints), `csv` its table, and `events` those
-    of all logs, each with the key `log`; `parameters` and `joints` are empty then. `baseline` is that of the quiet logs,
+    `trend` has a dict for each log (log, events, payload, payload_deviation, joints), `csv` its table, `left_out` the
+    logs that cannot be compared, each with the reason, and `events` those of all logs, each with the key `log`;
+    `parameters` and `joints` are empty then. `baseline` is that of the quiet logs,
     or None without any. `compared_with` says what the logs are compared with, and `notes` has the remarks on them.
     """
 
     def __init__(self, reply):
         self.robot, self.compared_with = reply["robot"], reply["baseline"]
         self.trend, self.csv = reply.get("logs"), reply.get("table")
+        self.left_out = reply.get("left_out", {})
         self.parameters, self.joints = reply.get("parameters", []), reply.get("joints", [])
         if self.trend is None:
             self.events = reply["events"]
