@@ -27,15 +27,15 @@ const GAIN: f64 = 10.0;
 /// A payload has three more numbers than friction, which would explain this much without being there.
 const PAID_BY_PAYLOAD: f64 = 6.0;
 
-/// The gain of an effort is a change of everything at once: it must explain more than a part of the torque does, by this
-/// part of itself.
+/// The gain of an effort changes everything at once: it must explain more than a part of the torque does, by this part
+/// of itself.
 const PAID_BY_GAIN: f64 = 0.2;
 
 /// The error of a gain, as a part of what the model leaves of the effort.
 const UNEXPLAINED: f64 = 0.5;
 
-/// A joint that is slower or faster than in the quiet logs by more than this factor has another friction than a model of
-/// three numbers foretells.
+/// A joint that is slower or faster than in the quiet logs by more than this factor has another friction than a model
+/// of three numbers foretells.
 const LIKE: f64 = 3.0;
 
 /// Changes of a log, at most.

@@ -197,13 +197,7 @@ fn events(
     }
     let judged = log.judged()?;
     let errors = prediction(robot, &judged, Part::All)?;
-    let mut names = unexplained(robot, &errors);
-    // an event has said it already
-    let has_gain = |name: &str| {
-        let mut gains = report.events.iter().filter(|event| event.parameter == "gain").filter_map(|event| event.joint);
-        gains.any(|joint| one_line(&robot.joints[joint].name) == name)
-    };
-    names.retain(|name| !has_gain(name));
+    let names = unexplained(robot, &errors);
     if !names.is_empty() {
         let names = names.join(", ");
         let what = "does FILE describe this arm, with its friction?";
