@@ -22,7 +22,7 @@ pub(crate) const MOST_FILLED: u64 = 20;
 pub(crate) const FEW_ROWS: u64 = 100_000;
 
 /// Why a message or a row has too many joints, if it has.
-#[cfg(any(feature = "bags", feature = "parquet"))]
+#[cfg(feature = "bags")]
 pub(crate) fn check_names<'a>(mut names: impl ExactSizeIterator<Item = &'a str>) -> Result<(), String> {
     if names.len() > MOST_JOINTS {
         return Err(format!("it names {} joints; at most {MOST_JOINTS} are read", names.len()));

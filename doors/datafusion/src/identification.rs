@@ -2,11 +2,8 @@
 
 use std::sync::Arc;
 
-use datafusion::arrow::array::{
-    Array, ArrayRef, AsArray, BooleanArray, Float64Array, Int64Array, ListArray, StringArray, StructArray,
-};
-use datafusion::arrow::buffer::OffsetBuffer;
-use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields, Float64Type};
+use datafusion::arrow::array::{Array, ArrayRef};
+use datafusion::arrow::datatypes::{DataType, FieldRef};
 use datafusion::common::{Result, ScalarValue, exec_err, plan_err};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
 use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, DocSection, Documentation, Signature, Volatility};
@@ -15,7 +12,9 @@ use rne_identify::{Fit, Information, Structure};
 use rne_logs::Motion;
 
 use crate::argument::{self, Argument};
+use crate::found::{self, Found};
 use crate::function::{About, coerced, key};
+use crate::numbers;
 use crate::robots::{Held, Robots, external};
 
 const NAME: &str = "identification";
@@ -24,7 +23,7 @@ const NAME: &str = "identification";
 const ARGUMENTS: [&str; 4] = ["q", "qd", "qdd", "tau"];
 
 /// How strongly links are pulled to those of the file, as `rne identify` does unasked.
-const REGULARIZATION: f64 = 1.0;
+pub(crate) const REGULARIZATION: f64 = 1.0;
 
 const SUMMARY: &str = "Links and friction from states with measured torques, by least squares row by row.";
 
@@ -62,11 +61,11 @@ impl AggregateUDFImpl for IdentificationFunction {
     }
 
     fn return_type(&self, _: &[DataType]) -> Result<DataType> {
-        Ok(DataType::Struct(result_fields()))
+        Ok(found::data_type())
     }
 
     fn state_fields(&self, given: StateFieldsArgs<'_>) -> Result<Vec<FieldRef>> {
-        Ok(vec![Arc::new(Field::new(format!("{}[rows]", given.name), DataType::List(item(DataType::Float64)), true))])
+        Ok(vec![numbers::field(given.name)])
     }
 
     fn accumulator(&self, given: AccumulatorArgs<'_>) -> Result<Box<dyn Accumulator>> {
@@ -155,126 +154,26 @@ impl Accumulator for Gathered {
     }
 
     fn state(&mut self) -> Result<Vec<ScalarValue>> {
-        let numbers = self.information.to_numbers();
-        let offsets = OffsetBuffer::from_lengths([numbers.len()]);
-        let list = ListArray::try_new(item(DataType::Float64), offsets, Arc::new(Float64Array::from(numbers)), None)?;
-        Ok(vec![ScalarValue::List(Arc::new(list))])
+        Ok(vec![numbers::scalar(self.information.to_numbers())?])
     }
 
     fn merge_batch(&mut self, states: &[ArrayRef]) -> Result<()> {
-        let Some(lists) = states.first().and_then(|states| states.as_list_opt::<i32>()) else {
-            return exec_err!("{NAME}: what other processes gathered is no list: they are of another version");
-        };
-        for list in lists.iter().flatten() {
-            let Some(numbers) = list.as_primitive_opt::<Float64Type>() else {
-                return exec_err!("{NAME}: what other processes gathered are no numbers: they are of another version");
-            };
-            let part = Information::from_numbers(&self.structure, numbers.values()).map_err(external)?;
+        numbers::each(NAME, states, |numbers| {
+            let part = Information::from_numbers(&self.structure, numbers).map_err(external)?;
             self.information.merge(part);
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     fn evaluate(&mut self) -> Result<ScalarValue> {
         if self.information.states() == 0 {
-            return ScalarValue::try_from(&DataType::Struct(result_fields()));
+            return ScalarValue::try_from(&found::data_type());
         }
-        let found = Fit::new(&self.structure, &self.information, REGULARIZATION);
-        Ok(ScalarValue::Struct(Arc::new(result(&self.structure, &self.information, &found)?)))
+        let fit = Fit::new(&self.structure, &self.information, REGULARIZATION);
+        Found::of_fit(&self.structure, &fit, self.information.states()).scalar()
     }
 
     fn size(&self) -> usize {
         size_of_val(self) + self.information.size() * size_of::<f64>()
     }
-}
-
-/// What was found of one unknown.
-struct Unknown {
-    name: String,
-    value: f64,
-    deviation: f64,
-    unit: String,
-    is_excited: bool,
-}
-
-/// Base parameters, base to tip, then the friction of each joint.
-fn unknowns(structure: &Structure, found: &Fit) -> Vec<Unknown> {
-    let bases = structure.parameters().bases.iter().zip(&found.bases).map(|(base, report)| Unknown {
-        name: report.name.clone(),
-        value: report.value,
-        deviation: report.deviation,
-        unit: structure.unit(base.kept).to_owned(),
-        is_excited: report.is_excited(),
-    });
-    let joints = structure.robot().joints.iter().zip(&found.friction).enumerate();
-    let friction = joints.flat_map(|(at, (joint, friction))| {
-        let kind = joint.row.kind;
-        let viscous = if kind == rne::model::JointKind::Revolute { "N m s/rad" } else { "N s/m" };
-        let coulomb = kind.effort_unit();
-        let names = [("viscous", viscous), ("coulomb_forward", coulomb), ("coulomb_backward", coulomb)];
-        let is_excited = found.is_friction_excited(at);
-        names.into_iter().zip(friction).map(move |((name, unit), &(value, deviation))| Unknown {
-            name: format!("{name}{}", at + 1),
-            value,
-            deviation,
-            unit: unit.to_owned(),
-            is_excited,
-        })
-    });
-    bases.chain(friction).collect()
-}
-
-/// A row of the result.
-fn result(structure: &Structure, information: &Information, found: &Fit) -> Result<StructArray> {
-    let unknowns = unknowns(structure, found);
-    let texts =
-        |of: fn(&Unknown) -> &str| -> ArrayRef { Arc::new(unknowns.iter().map(of).map(Some).collect::<StringArray>()) };
-    let numbers = |of: fn(&Unknown) -> f64| -> ArrayRef {
-        Arc::new(unknowns.iter().map(of).collect::<Vec<_>>().into_iter().map(Some).collect::<Float64Array>())
-    };
-    let excited: BooleanArray = unknowns.iter().map(|unknown| Some(unknown.is_excited)).collect();
-    let columns = vec![
-        texts(|unknown| &unknown.name),
-        numbers(|unknown| unknown.value),
-        numbers(|unknown| unknown.deviation),
-        texts(|unknown| &unknown.unit),
-        Arc::new(excited),
-    ];
-    let unknowns = StructArray::try_new(unknown_fields(), columns, None)?;
-    let one = |values: ArrayRef| -> Result<ArrayRef> {
-        let (of, offsets) = (item(values.data_type().clone()), OffsetBuffer::from_lengths([values.len()]));
-        Ok(Arc::new(ListArray::try_new(of, offsets, values, None)?))
-    };
-    let states = i64::try_from(information.states()).unwrap_or(i64::MAX);
-    let robot = found.robot_file(&format!("{states} states of a table"));
-    let columns: Vec<ArrayRef> = vec![
-        Arc::new(Int64Array::from(vec![states])),
-        one(Arc::new(unknowns))?,
-        one(Arc::new(Float64Array::from(found.least_squares.noise.clone())))?,
-        Arc::new(StringArray::from(vec![robot])),
-    ];
-    Ok(StructArray::try_new(result_fields(), columns, None)?)
-}
-
-fn unknown_fields() -> Fields {
-    Fields::from(vec![
-        Field::new("parameter", DataType::Utf8, true),
-        Field::new("value", DataType::Float64, true),
-        Field::new("deviation", DataType::Float64, true),
-        Field::new("unit", DataType::Utf8, true),
-        Field::new("excited", DataType::Boolean, true),
-    ])
-}
-
-fn result_fields() -> Fields {
-    Fields::from(vec![
-        Field::new("states", DataType::Int64, true),
-        Field::new("parameters", DataType::List(item(DataType::Struct(unknown_fields()))), true),
-        Field::new("noise", DataType::List(item(DataType::Float64)), true),
-        Field::new("robot", DataType::Utf8, true),
-    ])
-}
-
-fn item(of: DataType) -> FieldRef {
-    Arc::new(Field::new_list_field(of, true))
 }

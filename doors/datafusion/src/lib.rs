@@ -18,20 +18,28 @@
 //! ```
 //!
 //! Each argument is a list per state, or a column per joint: columns are read as they are. What is null in
-//! an argument makes the result of that state null; the aggregate `identification` leaves such a state out. Units,
+//! an argument makes the result of that state null; the aggregates `identification` and `identify` leave such a state
+//! out. Units,
 //! signs and frames are those of [`rne`](https://docs.rs/rne).
 
 mod argument;
+mod found;
 mod function;
 mod identification;
+mod log_identification;
+mod momentum_residual;
+mod numbers;
 mod result;
 mod robots;
+mod time;
 
-use datafusion::logical_expr::{AggregateUDF, ScalarUDF};
+use datafusion::logical_expr::{AggregateUDF, ScalarUDF, WindowUDF};
 use datafusion::prelude::SessionContext;
 
 use crate::function::{Computation, DynamicsFunction};
 use crate::identification::IdentificationFunction;
+use crate::log_identification::LogIdentification;
+use crate::momentum_residual::MomentumResidual;
 pub use crate::robots::Robots;
 
 /// Every scalar function, for those robots.
@@ -49,10 +57,22 @@ pub fn register(context: &SessionContext, robots: &Robots) {
     for function in aggregates(robots) {
         context.register_udaf(function);
     }
+    for function in windows(robots) {
+        context.register_udwf(function);
+    }
 }
 
 /// Every aggregate, for those robots.
 #[must_use]
 pub fn aggregates(robots: &Robots) -> Vec<AggregateUDF> {
-    vec![AggregateUDF::new_from_impl(IdentificationFunction::new(robots.clone()))]
+    vec![
+        AggregateUDF::new_from_impl(IdentificationFunction::new(robots.clone())),
+        AggregateUDF::new_from_impl(LogIdentification::new(robots.clone())),
+    ]
+}
+
+/// Every window function, for those robots.
+#[must_use]
+pub fn windows(robots: &Robots) -> Vec<WindowUDF> {
+    vec![WindowUDF::new_from_impl(MomentumResidual::new(robots.clone()))]
 }

@@ -11,7 +11,7 @@ use ballista_core::utils::default_session_builder;
 use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
 use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::prelude::SessionConfig;
-use rne_datafusion::{Robots, aggregates, functions};
+use rne_datafusion::{Robots, aggregates, functions, windows};
 
 /// Seconds for which an executor waits for its scheduler.
 const PATIENCE: u16 = 60;
@@ -37,6 +37,9 @@ pub async fn executor(
     }
     for function in aggregates(robots) {
         registry.aggregate_functions.insert(function.name().to_owned(), Arc::new(function));
+    }
+    for function in windows(robots) {
+        registry.window_functions.insert(function.name().to_owned(), Arc::new(function));
     }
     let config = ExecutorProcessConfig {
         bind_host: listen.ip().to_string(),

@@ -11,7 +11,7 @@ use ballista_scheduler::config::SchedulerConfig;
 use ballista_scheduler::scheduler_process::start_server;
 use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::execution::FunctionRegistry as _;
-use rne_datafusion::{Robots, aggregates, functions};
+use rne_datafusion::{Robots, aggregates, functions, windows};
 
 /// Gives work to executors until it is stopped; one without a sign of life for so long is lost. Executors have the same
 /// policy; busy ones give a sign of life every five seconds when they pull.
@@ -40,6 +40,9 @@ pub async fn scheduler(
             }
             for function in aggregates(&robots) {
                 state.register_udaf(Arc::new(function))?;
+            }
+            for function in windows(&robots) {
+                state.register_udwf(Arc::new(function))?;
             }
             Ok(state)
         })),

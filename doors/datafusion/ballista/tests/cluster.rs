@@ -180,6 +180,22 @@ fn identification() -> String {
     )
 }
 
+/// The same of a log with times, a second for every forty states, and its residual without accelerations.
+fn of_logs() -> [String; 2] {
+    let lists = |name: &str| {
+        format!("make_array({})", (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>().join(", "))
+    };
+    let torques = format!("(SELECT *, {} AS tau FROM log WHERE i % 40 < 2)", call());
+    let arguments = format!("{{puma560}}, i / 40.0, {}, {}, tau", lists("q"), lists("qd"));
+    [
+        format!("SELECT i % 3 AS part, identify({arguments}) AS found FROM {torques} GROUP BY i % 3 ORDER BY part"),
+        format!(
+            "SELECT i, momentum_residual({arguments}) OVER (PARTITION BY i % 3 ORDER BY i) AS residual FROM {torques} \
+             ORDER BY i"
+        ),
+    ]
+}
+
 /// As many states, and values and deviations to 1e-10.
 fn same_identification(found: &RecordBatch, expected: &RecordBatch) {
     assert_eq!((found.num_rows(), found.column(0)), (3, expected.column(0)));
@@ -230,6 +246,10 @@ async fn two_executors_give_what_one_process_gives() -> Result<()> {
     assert_eq!(found, expected);
     same_sums(&all(&there, &sums()).await?, &all(&here, &sums()).await?);
     same_identification(&all(&there, &identification()).await?, &all(&here, &identification()).await?);
+    for of_log in of_logs() {
+        let (found, expected) = (all(&there, &of_log).await?, all(&here, &of_log).await?);
+        assert!(expected.num_rows() > 0 && found == expected, "{of_log}");
+    }
     // a robot that the executors do not hold is refused, and said to the client
     let said = all(&there, "SELECT gravity_torques('puma560@0000000000000000', q1, q2, q3, q4, q5, q6) FROM log").await;
     assert!(said.expect_err("it is refused").to_string().contains("is not the puma560"));

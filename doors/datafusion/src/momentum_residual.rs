@@ -1,0 +1,182 @@
+//! The residual without accelerations, as a window function: `momentum_residual('puma560@…', time, q, qd, tau) OVER
+//! (PARTITION BY robot, run ORDER BY time)`.
+//!
+//! It is the negative of the external torque that the momentum observer sees, as `rne watch` uses it: the function
+//! `residual` behind a low-pass of the first order.
+
+use std::sync::Arc;
+
+use datafusion::arrow::array::{ArrayRef, Float64Builder, ListBuilder};
+use datafusion::arrow::datatypes::{DataType, Field, FieldRef};
+use datafusion::common::{Result, exec_err};
+use datafusion::logical_expr::function::{ExpressionArgs, PartitionEvaluatorArgs, WindowUDFFieldArgs};
+use datafusion::logical_expr::{DocSection, Documentation, PartitionEvaluator, Signature, Volatility, WindowUDFImpl};
+use datafusion::physical_expr::PhysicalExpr;
+use datafusion::physical_expr::expressions::Literal;
+use rne::model::{Friction, Robot};
+use rne::{DynArm, DynObserverState};
+use rne_logs::median;
+
+use crate::argument::{self, Argument};
+use crate::function::{About, key};
+use crate::numbers::item;
+use crate::robots::{Robots, external};
+use crate::time::{self, Instant};
+
+const NAME: &str = "momentum_residual";
+
+/// The arguments after the robot and the time.
+const ARGUMENTS: [&str; 3] = ["q", "qd", "tau"];
+
+/// Hz: the observer's gain, as `rne watch` has it unasked.
+const GAIN: f64 = 20.0;
+
+/// A step that is this many times as long as the usual one is a gap, after which the observer begins anew.
+const GAP: f64 = 2.5;
+
+const SUMMARY: &str = "Measured torques minus those of the model, without accelerations, by the momentum observer.";
+
+/// The window function, with the robots that it may be asked for.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MomentumResidual {
+    robots: Robots,
+    signature: Signature,
+    documentation: About,
+}
+
+impl MomentumResidual {
+    pub(crate) fn new(robots: Robots) -> Self {
+        let section = DocSection { include: true, label: "Robot dynamics", description: None };
+        let syntax = format!("{NAME}(robot, time, {}) OVER (PARTITION BY … ORDER BY time)", ARGUMENTS.join(", "));
+        Self {
+            robots,
+            signature: Signature::user_defined(Volatility::Immutable),
+            documentation: About(Documentation::builder(section, SUMMARY, syntax).build()),
+        }
+    }
+}
+
+impl WindowUDFImpl for MomentumResidual {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
+        time::coerced(NAME, given)
+    }
+
+    fn expressions(&self, given: ExpressionArgs<'_>) -> Vec<Arc<dyn PhysicalExpr>> {
+        given.input_exprs().to_vec()
+    }
+
+    fn field(&self, given: WindowUDFFieldArgs<'_>) -> Result<FieldRef> {
+        Ok(Arc::new(Field::new(given.name(), DataType::List(item(DataType::Float64)), true)))
+    }
+
+    fn partition_evaluator(&self, given: PartitionEvaluatorArgs<'_>) -> Result<Box<dyn PartitionEvaluator>> {
+        let robot = given.input_exprs().first().and_then(|robot| robot.downcast_ref::<Literal>());
+        let held = self.robots.get(key(NAME, robot.map(Literal::value))?)?;
+        let columns = argument::columns(given.input_fields().get(1..).unwrap_or_default());
+        let robot = held.arm.robot();
+        argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
+        let columns = columns.iter().map(|column| column.name.to_owned()).collect();
+        Ok(Box::new(Partition { robot: robot.clone(), columns }))
+    }
+
+    fn documentation(&self) -> Option<&Documentation> {
+        Some(&self.documentation.0)
+    }
+}
+
+/// The rows of one partition, in order of time.
+#[derive(Debug)]
+struct Partition {
+    robot: Robot,
+    /// The names of the columns after the time.
+    columns: Vec<String>,
+}
+
+impl PartitionEvaluator for Partition {
+    fn evaluate_all(&mut self, values: &[ArrayRef], rows: usize) -> Result<ArrayRef> {
+        let [_, instants, arrays @ ..] = values else { return exec_err!("{NAME}: `time` is missing") };
+        let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
+        let joints = self.robot.dof();
+        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot.name, joints)?;
+        let instants = (0..rows).map(|row| time::at(NAME, instants, row)).collect::<Result<Vec<_>>>()?;
+        let is_null = |row: usize| nulls.as_ref().is_some_and(|nulls| nulls.is_null(row));
+        let instants: Vec<Option<Instant>> = instants
+            .into_iter()
+            .enumerate()
+            .map(|(row, instant)| instant.filter(|_| !is_null(row) && is_finite(&arguments, row, joints)))
+            .collect();
+        let period = period(&instants);
+        let arm = DynArm::from_robot(&self.robot.clone().with_rotors());
+        let mut result = ListBuilder::new(Float64Builder::new());
+        let mut observed: Option<(Instant, Observed)> = None;
+        for (row, instant) in instants.into_iter().enumerate() {
+            let Some(instant) = instant else {
+                observed = None;
+                result.append_null();
+                continue;
+            };
+            let goes_on = observed.take().filter(|(before, _)| {
+                let step = instant.since(*before);
+                0.0 < step && step <= GAP * period
+            });
+            let is_first = goes_on.is_none();
+            let mut state = goes_on.map_or_else(|| Observed::new(&self.robot, period), |(_, state)| state);
+            let residual = state.next(&arm, &arguments, row, joints)?;
+            observed = Some((instant, state));
+            if is_first {
+                result.append_null();
+            } else {
+                result.values().append_slice(&residual);
+                result.append(true);
+            }
+        }
+        Ok(Arc::new(result.finish()))
+    }
+}
+
+/// Whether all numbers of a row are finite: another one would stay in the observer.
+fn is_finite(arguments: &[Argument<'_>], row: usize, joints: usize) -> bool {
+    arguments.iter().all(|argument| (0..joints).all(|joint| argument.at(row, joint, joints).is_finite()))
+}
+
+/// The usual step, s.
+fn period(instants: &[Option<Instant>]) -> f64 {
+    let known: Vec<Instant> = instants.iter().copied().flatten().collect();
+    let steps = known.windows(2).map(|pair| pair[1].since(pair[0])).filter(|step| *step > 0.0);
+    let steps: Vec<f64> = steps.collect();
+    if steps.is_empty() { 1.0 } else { median(steps) }
+}
+
+/// The observer along a run.
+struct Observed {
+    observer: DynObserverState<f64>,
+    friction: Vec<Friction>,
+}
+
+impl Observed {
+    fn new(robot: &Robot, period: f64) -> Self {
+        Self {
+            observer: DynObserverState::new(robot.dof(), GAIN, period),
+            friction: robot.joints.iter().map(Friction::of).collect(),
+        }
+    }
+
+    /// The residual at a row.
+    fn next(&mut self, arm: &DynArm, arguments: &[Argument<'_>], row: usize, joints: usize) -> Result<Vec<f64>> {
+        let of = |at: usize| -> Vec<f64> { (0..joints).map(|joint| arguments[at].at(row, joint, joints)).collect() };
+        let [q, qd, mut tau] = [of(0), of(1), of(2)];
+        for (joint, friction) in self.friction.iter_mut().enumerate() {
+            tau[joint] -= friction.next(q[joint], qd[joint]);
+        }
+        let torques = self.observer.update(arm, &q, &qd, &tau).map_err(external)?;
+        Ok(torques.into_iter().map(|torque| -torque).collect())
+    }
+}
