@@ -26,6 +26,12 @@ const SPLITS: [f64; 2] = [0.5, 0.6];
 /// Motions that are not those of the quiet log: factors of the amplitude and of the frequencies.
 const MOTIONS: [[f64; 2]; 7] = [[0.1, 1.0], [0.3, 1.0], [1.0, 0.3], [1.0, 0.5], [0.5, 2.0], [1.0, 2.0], [2.0, 1.0]];
 
+/// Gains of a channel of efforts: dead, of the opposite sign, of another unit or torque constant.
+const GAINS: [f64; 4] = [0.0, -1.0, 0.5, 0.8];
+
+/// Delays of all efforts, s.
+const DELAYS: [f64; 2] = [0.01, 0.03];
+
 /// Logs of one kind and size of change.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
@@ -43,6 +49,7 @@ impl Cell {
         let (is_named, size) = match fault {
             Fault::Coulomb(joint, size) => (event.cause == Cause::Friction && event.joint == Some(joint), size),
             Fault::Payload(mass) => (event.cause == Cause::Payload, mass),
+            Fault::Delay(delay) => (event.parameter == "delay", delay),
             Fault::Gain(joint, gain) => (event.parameter == "gain" && event.joint == Some(joint), gain - 1.0),
         };
         let is_inside = is_named && (event.change() - size).abs() < event.half_interval;
@@ -142,6 +149,9 @@ fn main() {
         ("Coulomb friction".to_owned(), Default::default()),
         ("payload, of 5 or 2 kg".to_owned(), Default::default()),
     ];
+    let mut delays = [Cell::default(); DELAYS.len()];
+    let mut gains = [Cell::default(); GAINS.len()];
+    let mut others: [Quiet; MOTIONS.len()] = Default::default();
     for seed in 0..arms {
         let arm = Simulated::new(seed);
         let quiet = baseline(&arm.structure, &arm.quiet);
@@ -153,20 +163,34 @@ fn main() {
                 row.1[at].take(&changes(&arm.structure, &quiet, &arm.with(fault)), fault);
             }
         }
+        for (cell, gain) in gains.iter_mut().zip(GAINS) {
+            let fault = Fault::Gain(usize::try_from(seed).unwrap_or_default() % arm.friction.len(), gain);
+            cell.take(&changes(&arm.structure, &quiet, &arm.with(fault)), fault);
+        }
+        for (cell, delay) in delays.iter_mut().zip(DELAYS) {
+            let fault = Fault::Delay(delay);
+            cell.take(&changes(&arm.structure, &quiet, &arm.with(fault)), fault);
+        }
+        for ([amplitude, frequency], other) in MOTIONS.into_iter().zip(&mut others) {
+            other.take(&arm.structure, &quiet, &Simulated::moved(seed, amplitude, frequency).watched);
+        }
     }
     println!("\nsimulated arms: {arms} logs for each number");
     print(&rows);
+    for (gain, cell) in GAINS.into_iter().zip(&gains) {
+        println!("gain of a channel {gain:<10}{} / {} / {}", cell.detected, cell.named, cell.inside);
+        several.add(*cell);
+    }
+    for (delay, cell) in DELAYS.into_iter().zip(&delays) {
+        println!("delay of {:<3} ms {:<13}{} / {} / {}", 1e3 * delay, "", cell.detected, cell.named, cell.inside);
+        several.add(*cell);
+    }
     rows.iter().flat_map(|(_, cells)| cells).for_each(|cell| several.add(*cell));
     println!();
     unchanged.print("unchanged parts of the public logs");
     quiet_logs.print("simulated quiet logs");
-    for [amplitude, frequency] in MOTIONS {
-        let mut other = Quiet::default();
-        for seed in 0..arms {
-            let arm = Simulated::moved(seed, amplitude, frequency);
-            other.take(&arm.structure, &baseline(&arm.structure, &arm.quiet), &arm.watched);
-        }
-        other.print(&format!("simulated quiet logs, {amplitude} of the amplitude, {frequency} of the frequency"));
+    for ([amplitude, frequency], quiet) in MOTIONS.into_iter().zip(others) {
+        quiet.print(&format!("quiet, amplitude times {amplitude}, frequency times {frequency}"));
     }
     println!("more than one event for one cause: {} of {} logs", several.several, several.logs);
 }

@@ -1,4 +1,4 @@
-//! The parameters that may have changed: friction, offset and gain of each joint, and a payload at the tip.
+//! The parameters that may have changed: friction, offset and gain of each joint, a payload at the tip, and the delay.
 
 use nalgebra::DMatrix;
 use rne_identify::{FittedModel, FrictionParameter, Structure};
@@ -14,6 +14,8 @@ pub enum Candidate {
     Offset(usize),
     /// The mass that the last link carries in addition, kg.
     Payload,
+    /// The delay of the efforts against the positions, s.
+    Delay,
     /// The gain of a joint's effort: 1 where the log has the torque of the baseline, 0 where it has nothing of it.
     Gain(usize),
 }
@@ -23,15 +25,18 @@ impl Candidate {
     #[must_use]
     pub fn all(dof: usize) -> Vec<Self> {
         let each = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
-        each.flat_map(|of| (0..dof).map(of)).chain([Self::Payload]).chain((0..dof).map(Self::Gain)).collect()
+        each.flat_map(|of| (0..dof).map(of))
+            .chain([Self::Payload, Self::Delay])
+            .chain((0..dof).map(Self::Gain))
+            .collect()
     }
 
-    /// The joint, counted from 0; a payload has none.
+    /// The joint, counted from 0; a payload and the delay have none.
     #[must_use]
     pub fn joint(self) -> Option<usize> {
         match self {
             Self::Coulomb(joint) | Self::Viscous(joint) | Self::Offset(joint) | Self::Gain(joint) => Some(joint),
-            Self::Payload => None,
+            Self::Payload | Self::Delay => None,
         }
     }
 
@@ -43,6 +48,7 @@ impl Candidate {
             Self::Viscous(_) => "viscous",
             Self::Offset(_) => "offset",
             Self::Payload => "mass",
+            Self::Delay => "delay",
             Self::Gain(_) => "gain",
         }
     }
@@ -63,6 +69,8 @@ impl Candidate {
             Self::Coulomb(joint) => place(joint, FrictionParameter::Coulomb),
             Self::Viscous(joint) => place(joint, FrictionParameter::Viscous),
             Self::Offset(joint) => place(joint, FrictionParameter::Offset),
+            // the delay is the last of the unknowns
+            Self::Delay => unit(structure.options().delay.then(|| structure.count() - 1)),
             Self::Gain(joint) => unit(Some(structure.count() + joint)),
             Self::Payload => {
                 let regrouping = &structure.parameters().regrouping;
@@ -121,6 +129,7 @@ impl Scale {
             Candidate::Viscous(joint) => 0.25 * self.friction[joint] / self.speed[joint].max(SLOWEST),
             Candidate::Offset(joint) => self.friction[joint].max(0.05 * self.effort[joint]),
             Candidate::Payload => self.payload(0.1),
+            Candidate::Delay => 0.004,
             Candidate::Gain(_) => 0.15,
         }
     }
@@ -134,6 +143,7 @@ impl Scale {
             Candidate::Viscous(joint) => 0.06 * self.friction[joint] / self.speed[joint].max(SLOWEST),
             Candidate::Offset(joint) => 0.10 * self.friction[joint],
             Candidate::Payload => self.payload(0.05),
+            Candidate::Delay => 0.002,
             Candidate::Gain(_) => 0.05,
         }
     }

@@ -123,6 +123,8 @@ pub(crate) fn values(structure: &Structure, baseline: &Baseline, candidate: Cand
         Candidate::Offset(joint) => place(joint, FrictionParameter::Offset),
         Candidate::Payload => None,
         Candidate::Gain(_) => return [1.0; 2],
+        // a file has no delay
+        Candidate::Delay => return [0.0, baseline.model.delay],
     };
     let file = FittedModel::of_file(structure, &baseline.model.transitions);
     at.map_or([0.0; 2], |at| [file.solution[at], baseline.model.solution[at]])

@@ -13,7 +13,8 @@ pub enum Cause {
     Payload,
     /// Something touched the arm for a time: a collision, a hand.
     Contact,
-    /// The effort of a joint has an offset or another gain: a sensor, a spring, a brake.
+    /// The effort of a joint has an offset or another gain, or all efforts have another delay: a sensor, a spring, a
+    /// brake, another recorder.
     Sensor,
     /// The error of the model has grown, and no single parameter explains it.
     Model,
@@ -37,7 +38,7 @@ impl Cause {
     pub const fn of(candidate: Candidate) -> Self {
         match candidate {
             Candidate::Coulomb(_) | Candidate::Viscous(_) => Self::Friction,
-            Candidate::Offset(_) | Candidate::Gain(_) => Self::Sensor,
+            Candidate::Offset(_) | Candidate::Gain(_) | Candidate::Delay => Self::Sensor,
             Candidate::Payload => Self::Payload,
         }
     }
@@ -55,9 +56,9 @@ impl std::fmt::Display for Cause {
 pub struct Event {
     /// The cause that explains most.
     pub cause: Cause,
-    /// The joint, counted from 0; a payload has none.
+    /// The joint, counted from 0; a payload and the delay have none.
     pub joint: Option<usize>,
-    /// The parameter: `coulomb`, `viscous`, `offset`, `gain`, `mass`, `external` (the largest torque of the
+    /// The parameter: `coulomb`, `viscous`, `offset`, `gain`, `delay`, `mass`, `external` (the largest torque of the
     /// environment) or `residual` (the root mean square of what the model leaves).
     pub parameter: &'static str,
     /// The value in the log, in `unit`.
@@ -103,6 +104,7 @@ pub fn unit(robot: &Robot, candidate: Candidate) -> &'static str {
     match (candidate, kind) {
         (Candidate::Payload, _) => "kg",
         (Candidate::Gain(_), _) => "1",
+        (Candidate::Delay, _) => "s",
         (Candidate::Viscous(_), Some(JointKind::Prismatic)) => "N s/m",
         (Candidate::Viscous(_), _) => "N m s/rad",
         (_, Some(kind)) => kind.effort_unit(),

@@ -193,6 +193,9 @@ impl<'a> Selection<'a> {
             for (candidate, estimate) in self.score.estimates(&window, &self.given).into_iter().enumerate() {
                 let Some(estimate) = estimate else { continue };
                 let change = Change { candidate, window: window.clone() };
+                if !self.may_begin(&change) {
+                    continue;
+                }
                 let drop = estimate.drop - cost - self.paid(candidate, estimate.drop);
                 if best.as_ref().is_none_or(|best| drop > best.drop) && self.is_event(&change, &estimate) {
                     let ratio = self.statistic(&change, &estimate).ratio();
@@ -201,6 +204,11 @@ impl<'a> Selection<'a> {
             }
         }
         best.map(|best| self.gain_in_place_of_offset(best))
+    }
+
+    /// Whether a change may have this window: a recorder has one delay throughout a log.
+    fn may_begin(&self, change: &Change) -> bool {
+        self.candidate(change.candidate) != Candidate::Delay || change.window == (0..self.score.len())
     }
 
     /// The gain of an effort where it explains more than the offset of this effort: most of a torque that is missing
@@ -323,7 +331,7 @@ impl<'a> Selection<'a> {
         }
         let is_long = |change: &Change| self.duration(&change.window) >= SHORTEST;
         let to = |end: usize| Change { window: change.window.start..end, ..change.clone() };
-        let ends = (change.window.start + 1..count).map(to).filter(is_long);
+        let ends = (change.window.start + 1..count).map(to).filter(is_long).filter(|change| self.may_begin(change));
         let best = ends.map(|change| (drop(&change), change)).max_by(|a, b| a.0.total_cmp(&b.0));
         match best {
             Some((most, earlier)) if most > drop(&change) + GAIN && self.would_be_event(&earlier) => earlier,

@@ -163,6 +163,27 @@ fn the_gain_of_a_channel_is_named() {
     }
 }
 
+/// Efforts of another recorder come later: one event, which is no friction.
+#[test]
+fn another_delay_is_named() {
+    for (name, _) in PUBLIC {
+        let arm = arm(name);
+        let [quiet, watched] = split(&arm.motion, 0.5, false);
+        let quiet = baseline(&arm.structure, &quiet);
+        let found = events(&arm, &quiet, &watched, Fault::Delay(0.05), ALWAYS);
+        assert_eq!(found.len(), 1, "{name}: {found:?}");
+        assert_eq!((found[0].cause, found[0].parameter, found[0].joint), (Cause::Sensor, "delay", None));
+        assert!((found[0].change() - 0.05).abs() < 0.02, "{found:?}");
+    }
+    for seed in [0, 1, 3] {
+        let arm = Simulated::new(seed);
+        let quiet = baseline(&arm.structure, &arm.quiet);
+        let found = changes(&arm.structure, &quiet, &arm.with(Fault::Delay(0.02))).events;
+        assert_eq!((found.len(), found[0].parameter), (1, "delay"), "{seed}: {found:?}");
+        assert!((found[0].change() - 0.02).abs() < found[0].half_interval, "{found:?}");
+    }
+}
+
 /// A payload below the smallest one is no friction either.
 #[test]
 fn a_small_payload_has_no_other_name() {

@@ -26,7 +26,7 @@ const COLUMNS: [&str; 3] = ["pandas>=2", "polars>=1.8", "pyarrow>=17"];
 const TOOLBOX: &str = "roboticstoolbox-python==1.5.0";
 
 /// Packages that run the notebooks.
-const NOTEBOOKS: [&str; 3] = ["nbclient>=0.10", "ipykernel>=6", "matplotlib>=3"];
+const NOTEBOOKS: [&str; 4] = ["nbclient>=0.10", "ipykernel>=6", "matplotlib>=3", "rosbags>=0.10"];
 
 /// The first lines that a user types.
 const FIRST: &str = "import rne\n\
@@ -161,7 +161,7 @@ impl Place {
     /// The command line, built, with whose numbers those of logs are compared; optimised, for the tests call it often.
     fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
-        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --package rne-cli"))
+        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --package rne-cli --features full"))
             .quiet()
             .run()?;
         Ok(machine::target_folder("target")?.join("release").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))

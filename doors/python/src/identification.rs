@@ -22,11 +22,11 @@ const DRAWN: u64 = 4000;
 
 /// A part of the logs.
 #[derive(Clone, Copy, Default, IntoPyObject)]
-struct Extent {
+pub(crate) struct Extent {
     from: Option<f64>,
     until: Option<f64>,
-    states: u64,
-    duration: f64,
+    pub(crate) states: u64,
+    pub(crate) duration: f64,
 }
 
 #[derive(IntoPyObject)]
@@ -201,13 +201,13 @@ fn friction(found: &Identification) -> Vec<OfFriction> {
 }
 
 /// Errors of a robot on a part of a log.
-struct Judged {
-    errors: Vec<JointError>,
-    extent: Extent,
+pub(crate) struct Judged {
+    pub(crate) errors: Vec<JointError>,
+    pub(crate) extent: Extent,
 }
 
 impl Judged {
-    fn of(robot: &Robot, log: &ArmLog, part: Part, look: &mut dyn FnMut(f64)) -> PyResult<Self> {
+    pub(crate) fn of(robot: &Robot, log: &ArmLog, part: Part, look: &mut dyn FnMut(f64)) -> PyResult<Self> {
         let mut prediction = Prediction::new(robot, Some(log.cutoff()));
         let mut extent = Extent::default();
         let mut take = |motion: &Motion| {

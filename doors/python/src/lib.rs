@@ -18,6 +18,7 @@ mod load;
 mod log_errors;
 mod logs;
 mod notebook;
+mod payload;
 mod watching;
 
 use pyo3::prelude::*;
@@ -37,6 +38,8 @@ mod _rne {
     use super::load::{builtin, load, names};
     #[pymodule_export]
     use super::logs::{log_content, log_motion};
+    #[pymodule_export]
+    use super::payload::payload_identified;
     #[pymodule_export]
     use super::watching::{followed, watched};
 

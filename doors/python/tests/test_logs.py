@@ -124,6 +124,47 @@ def test_identification_is_that_of_the_command_line(name, identified, command_li
     assert identified.robot_file == path.read_text()
 
 
+def test_a_written_table_is_read_everywhere(program, tmp_path):
+    pandas, polars, pyarrow = (pytest.importorskip(name) for name in ("pandas", "polars", "pyarrow.parquet"))
+    path = tmp_path / "motion.parquet"
+    subprocess.run([program, "log", log_of("panda"), "-o", path], check=True, capture_output=True, timeout=60)
+    log = rne.log(log_of("panda"))
+    table = pyarrow.read_table(path)
+    frames = [pandas.read_parquet(path), polars.read_parquet(path), {name: table[name] for name in table.column_names}]
+    for frame in frames:
+        for name in ("q", "qd", "qdd", "tau"):
+            column = frame[name]
+            rows = np.array(column.to_pylist() if hasattr(column, "to_pylist") else [list(row) for row in column])
+            np.testing.assert_allclose(rows, getattr(log, name), rtol=1e-12, atol=0)
+        np.testing.assert_allclose(np.asarray(frame["time"], dtype=float), log.time, rtol=1e-12, atol=0)
+    assert rne.log(path).q.shape[1] == 7
+
+
+def test_bags_are_logs():
+    log = rne.log(Path(__file__).parents[3] / "rne-logs/tests/data/ur10.db3")
+    assert len(log.joints) == 6 and log.q.shape == log.tau.shape == (len(log.time), 6)
+
+
+DOCS = Path(__file__).parents[3] / "docs"
+
+
+def test_a_payload_is_that_of_the_command_line(command_line, tmp_path):
+    path = tmp_path / "loaded.yaml"
+    robot, log = DOCS / "desk_arm_identified.yaml", DOCS / "desk_arm_loaded.csv"
+    expected = command_line("identify", robot, log, "--payload", "-o", path)
+    found = rne.identify_payload(robot, log)
+    assert found.found and found.robot_file == path.read_text()
+    for key in ("mass", "com", "inertia"):
+        assert_same(getattr(found, key), expected["payload"][key], key)
+    assert_same(found.joints, expected["joints"], "joints")
+    assert_same(found.delay, expected["delay"], "delay")
+    # the log of the arm alone shows none; an arm without masses cannot tell
+    quiet = rne.identify_payload(robot, DOCS / "desk_arm_log.csv")
+    assert not quiet.found and str(quiet).startswith("no payload")
+    with pytest.raises(ValueError, match="rne.identify"):
+        rne.identify_payload(robot_of("ur10"), log_of("ur10"))
+
+
 def test_the_identified_arm_predicts_the_log(identified, name):
     log = rne.log(log_of(name), robot_of(name), cutoff=identified.cutoff)
     arm = identified.arm

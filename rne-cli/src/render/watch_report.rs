@@ -26,6 +26,7 @@ fn parameter(robot: &Robot, candidate: Candidate) -> String {
         Candidate::Viscous(joint) => format!("{}: viscous friction", name(joint)),
         Candidate::Offset(joint) => format!("{}: offset of the effort", name(joint)),
         Candidate::Payload => "payload".to_owned(),
+        Candidate::Delay => "delay of the efforts".to_owned(),
         Candidate::Gain(joint) => format!("{}: gain of the effort", name(joint)),
     }
 }
@@ -118,6 +119,10 @@ pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
         }
         Cause::Payload if event.value < 0.0 => format!("payload: {value}: the tip has lost mass"),
         Cause::Payload => format!("payload: {value} at the tip"),
+        Cause::Sensor if event.parameter == "delay" => format!(
+            "sensors: the efforts are {value} behind the positions, before {}",
+            rounded(event.baseline_value, 2)
+        ),
         Cause::Sensor if event.parameter == "gain" => {
             format!("sensor of {joint}: the effort is {value} of the torque{}", gain(event))
         }

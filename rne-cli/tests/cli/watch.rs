@@ -55,7 +55,7 @@ fn wear_is_named() {
     assert_eq!((&event["lasts"], &event["unit"]), (&true.into(), &"N m".into()));
     // every other parameter has its margin
     let parameters = reply["parameters"].as_array().expect("a list");
-    assert_eq!(parameters.len(), 12, "{reply}");
+    assert_eq!(parameters.len(), 13, "{reply}");
     for parameter in parameters {
         let ratio = number(parameter, "change").abs() / number(parameter, "threshold");
         assert!((ratio - number(parameter, "ratio")).abs() < 1e-12 && ratio < 1.0, "{parameter}");

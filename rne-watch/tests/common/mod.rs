@@ -69,6 +69,8 @@ pub(crate) enum Fault {
     Payload(f64),
     /// A channel of efforts that shows so many times the torque of its joint: 0 if it is dead.
     Gain(usize, f64),
+    /// Efforts that are later by a time, s.
+    Delay(f64),
 }
 
 /// The torques that a fault adds, by the engine that the watch does not use.
@@ -83,6 +85,12 @@ pub(crate) fn torques(robot: &Robot, motion: &Motion, fault: Fault) -> Vec<Vec<f
         }
         Fault::Gain(joint, gain) => {
             torques[joint] = motion.tau[joint].iter().map(|torque| (gain - 1.0) * torque).collect();
+        }
+        Fault::Delay(delay) => {
+            for (torque, tau) in torques.iter_mut().zip(&motion.tau) {
+                let late = simulated::late(&motion.time, tau, delay);
+                *torque = late.into_iter().zip(tau).map(|(late, tau)| late - tau).collect();
+            }
         }
         Fault::Payload(mass) => {
             let mut bare = robot.clone();

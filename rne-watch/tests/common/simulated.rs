@@ -102,7 +102,7 @@ impl Simulated {
 }
 
 /// Values at times that are earlier by a delay, s.
-fn late(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
+pub(crate) fn late(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
     let at = |instant: f64| {
         let next = time.partition_point(|time| *time < instant).clamp(1, time.len() - 1);
         let part = ((instant - time[next - 1]) / (time[next] - time[next - 1])).clamp(0.0, 1.0);

@@ -8,7 +8,7 @@
 `rne.load` reads a robot file or a URDF, `rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one
 state or `(N, n)` for many; units are SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
 
-`rne.log`, `rne.identify`, `rne.watch` and `rne.excite` are about logs: docs/python.md.
+`rne.log`, `rne.identify`, `rne.identify_payload`, `rne.watch` and `rne.excite` are about logs: docs/python.md.
 """
 
 from typing import Iterator
@@ -19,6 +19,7 @@ from ._rne import Arm, EvaluationError, RobotFileError, __version__, builtin as 
 from .excitation import Excitation, excite
 from .identification import Identification, identify
 from .logs import Log, log
+from .payloads import IdentifiedPayload, identify_payload
 from .verdicts import Verdict
 from .watching import Baseline, Watch, watch
 
@@ -28,12 +29,14 @@ __all__ = [
     "EvaluationError",
     "Excitation",
     "Identification",
+    "IdentifiedPayload",
     "Log",
     "RobotFileError",
     "Verdict",
     "Watch",
     "excite",
     "identify",
+    "identify_payload",
     "load",
     "log",
     "payload",

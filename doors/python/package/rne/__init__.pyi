@@ -298,6 +298,25 @@ class Identification:
     def save(self, path: Path) -> None: ...
     def _repr_svg_(self) -> str: ...
 
+class IdentifiedPayload:
+    """The rigid body that the last link carries beyond what the robot file has."""
+
+    found: bool
+    mass: dict[str, Any]
+    com: list[dict[str, Any]]
+    inertia: list[dict[str, Any]]
+    joints: Table
+    robot_file: str | None
+    arm: Arm | None
+    delay: float
+    cutoff: float
+    states: int
+    duration: float
+    logs: list[str]
+    robot: str
+    notes: list[str]
+    def save(self, path: Path) -> None: ...
+
 class Baseline:
     """What quiet logs say of an arm, saved once and used for every later log."""
 
@@ -381,6 +400,26 @@ def identify(
     where: Mapping[str, str] | None = ...,
 ) -> Identification:
     """Identify links and friction of an arm from its logs."""
+
+def identify_payload(
+    robot: Arm | Path,
+    paths: Source,
+    *,
+    joints: Sequence[str] | None = ...,
+    topic: str | None = ...,
+    torque_constants: ArrayLike | None = ...,
+    angles: Literal["degrees", "radians"] | None = ...,
+    cutoff: float | None = ...,
+    gap: float = ...,
+    derive_velocities: bool = ...,
+    recorded: bool = ...,
+    time_unit: Literal["s", "ms", "us", "ns"] | None = ...,
+    rate: float | None = ...,
+    columns: Sequence[str] | None = ...,
+    map: Mapping[str, str] | None = ...,
+    where: Mapping[str, str] | None = ...,
+) -> IdentifiedPayload:
+    """Identify what the last link carries in addition, such as a tool or a load."""
 
 def watch(
     robot: Arm | Path,
