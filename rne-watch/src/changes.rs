@@ -91,10 +91,13 @@ impl Changes {
             }
             let gains = change.rows_range(count..);
             let mut added = baseline.model.torques(structure, motion, &change.rows(0, count).clone_owned())?;
-            if gains.iter().any(|gain| *gain != 0.0) {
+            let delay = if structure.options().delay { change[count - 1] } else { 0.0 };
+            if delay != 0.0 || gains.iter().any(|gain| *gain != 0.0) {
                 let own = baseline.model.torques(structure, motion, &baseline.model.solution)?;
                 for ((added, own), gain) in added.iter_mut().zip(own).zip(gains.iter()) {
-                    added.iter_mut().zip(own).for_each(|(added, own)| *added += gain * own);
+                    let late = late(&motion.time, &own, delay);
+                    let torques = added.iter_mut().zip(own.iter().zip(late));
+                    torques.for_each(|(added, (own, late))| *added += gain * own + late - own);
                 }
             }
             let is_active = |time: f64| (run > first.0 || time >= first.1) && (run < last.0 || time <= last.1);
@@ -112,6 +115,26 @@ impl Changes {
     pub fn nearest(&self) -> Option<&Statistic> {
         self.statistics.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
     }
+}
+
+/// Values that come later by a delay, s.
+fn late(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
+    let mut next = 0;
+    let at = |instant: f64| {
+        while next < time.len() && time[next] < instant {
+            next += 1;
+        }
+        let before = next.saturating_sub(1);
+        match (time.get(before).zip(time.get(next)), next) {
+            (None, _) => values.last().copied().unwrap_or_default(),
+            (Some(_), 0) => values[0],
+            (Some((start, end)), _) => {
+                let part = (instant - start) / (end - start);
+                (1.0 - part) * values[before] + part * values[next]
+            }
+        }
+    };
+    time.iter().map(|time| time - delay).map(at).collect()
 }
 
 /// The values of a candidate in the robot file and in the baseline.

@@ -120,8 +120,9 @@ pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
         Cause::Payload if event.value < 0.0 => format!("payload: {value}: the tip has lost mass"),
         Cause::Payload => format!("payload: {value} at the tip"),
         Cause::Sensor if event.parameter == "delay" => format!(
-            "sensors: the efforts are {value} behind the positions, before {}",
-            rounded(event.baseline_value, 2)
+            "sensors: the efforts are {value} behind the positions, before {:.3}",
+            // no minus before zero
+            (1e3 * event.baseline_value).round() / 1e3 + 0.0
         ),
         Cause::Sensor if event.parameter == "gain" => {
             format!("sensor of {joint}: the effort is {value} of the torque{}", gain(event))

@@ -120,6 +120,23 @@ fn a_trend_has_a_row_for_each_log() {
     fails(2, &["watch", ARM, KNOCK, "--quiet", QUIET, "--csv", "t.csv"], &["--by"]);
 }
 
+/// Efforts that come a sample later than in the quiet log are one event: no friction, and no contact in what is left.
+#[test]
+fn another_delay_is_one_event() {
+    let folder = folder("watch_delay");
+    let text = fs::read_to_string(format!("{ROOT}/{QUIET}")).expect("a log");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let late = (2..rows.len()).map(|at| [&rows[at][..7], &rows[at - 1][7..]].concat().join(","));
+    let lines: Vec<String> = std::iter::once(rows[0].join(",")).chain(late).collect();
+    let path = folder.join("late.csv");
+    fs::write(&path, lines.join("\n")).expect("a file");
+    let reply = json(&[path.to_str().expect("UTF-8"), "--quiet", QUIET], 1);
+    let events = reply["events"].as_array().expect("a list");
+    assert_eq!(events.len(), 1, "{reply}");
+    assert_eq!((&events[0]["parameter"], &events[0]["unit"]), (&"delay".into(), &"s".into()));
+    assert!((number(&events[0], "value") - 0.04).abs() < number(&events[0], "half_interval"), "{reply}");
+}
+
 /// A log that is too short is left out of a trend, with the reason, and the others are compared.
 #[test]
 fn a_log_that_cannot_be_compared_does_not_end_a_trend() {
