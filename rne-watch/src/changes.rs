@@ -8,7 +8,7 @@ use rne_logs::Motion;
 
 use crate::Baseline;
 use crate::baseline::Residual;
-use crate::candidate::Candidate;
+use crate::candidate::{Candidate, Scale};
 use crate::event::{Cause, Event, unit};
 use crate::selection::{Finding, Selection, Statistic};
 
@@ -54,7 +54,9 @@ impl Changes {
             // a change that was found has a shape of its own, which the model need not have
             let is_explained =
                 findings.iter().any(|found| found.statistic.candidate.joint().is_none_or(|of| of == joint));
-            if *now > GROWN * before && !is_explained && has_quiet_log {
+            // friction at rest has any value between both directions
+            let at_rest = if selection.is_slow(joint) { baseline.scale.friction[joint] } else { 0.0 };
+            if *now > GROWN * before + at_rest && !is_explained && has_quiet_log {
                 events.push(grown(structure, &selection, joint, [*now, *before]));
             }
         }
@@ -110,10 +112,11 @@ impl Changes {
         Ok(sum)
     }
 
-    /// The statistic that is nearest to its threshold.
+    /// The statistic that is nearest to its threshold, of those that the logs determine.
     #[must_use]
-    pub fn nearest(&self) -> Option<&Statistic> {
-        self.statistics.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
+    pub fn nearest(&self, scale: &Scale) -> Option<&Statistic> {
+        let watched = self.statistics.iter().filter(|statistic| scale.is_watched(statistic));
+        watched.max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
     }
 }
 

@@ -109,8 +109,8 @@ pub(crate) struct Selection<'a> {
     pub(crate) stretches: Vec<&'a Stretch>,
     score: Score,
     given: Vec<Projected>,
-    /// The factor by which the error of each joint's friction is larger than in a motion like that of the quiet logs.
-    unlike: Vec<f64>,
+    /// The ratio of each joint's speed to that in the quiet logs.
+    speed_ratios: Vec<f64>,
 }
 
 impl<'a> Selection<'a> {
@@ -158,8 +158,8 @@ impl<'a> Selection<'a> {
 
     fn empty(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
         let score = Score::new(structure, &baseline.model, stretches.iter().copied())?;
-        let unlike = unlike(structure, baseline, &stretches);
-        Some(Self { structure, baseline, stretches, score, given: Vec::new(), unlike })
+        let ratios = speed_ratios(structure, baseline, &stretches);
+        Some(Self { structure, baseline, stretches, score, given: Vec::new(), speed_ratios: ratios })
     }
 
     /// Selects changes, until no further one is an event; or returns the moment that explains the last one.
@@ -282,7 +282,10 @@ impl<'a> Selection<'a> {
             [DEVIATIONS, 1.0, 1.0]
         };
         let unlike = match candidate {
-            Candidate::Coulomb(joint) | Candidate::Viscous(joint) => self.unlike[joint],
+            Candidate::Coulomb(joint) | Candidate::Viscous(joint) => {
+                let ratio = self.speed_ratios[joint];
+                (ratio.max(1.0 / ratio) / LIKE).max(1.0)
+            }
             _ => 1.0,
         };
         // a gain is known no better than the model explains the effort
@@ -412,6 +415,11 @@ impl<'a> Selection<'a> {
         each.chain(small).collect()
     }
 
+    /// Whether a joint moves far less than in the quiet logs, or hardly at all.
+    pub(crate) fn is_slow(&self, joint: usize) -> bool {
+        self.speed_ratios[joint] * LIKE < 1.0
+    }
+
     /// The residual of the torques of a joint in a stretch, with these unknowns and gains.
     pub(crate) fn residual(&self, joint: usize, stretch: &Stretch, unknowns: &DVector<f64>) -> Residual {
         let of_joint = of_joint(self.structure, &self.baseline.model, joint, unknowns);
@@ -446,8 +454,8 @@ pub(crate) fn of_joint(
     unknowns.rows(0, structure.count()) + &baseline.solution * unknowns[structure.count() + joint]
 }
 
-/// The factor by which the error of each joint's friction is larger than in a motion like that of the quiet logs.
-fn unlike(structure: &Structure, baseline: &Baseline, stretches: &[&Stretch]) -> Vec<f64> {
+/// The ratio of each joint's speed to that in the quiet logs.
+fn speed_ratios(structure: &Structure, baseline: &Baseline, stretches: &[&Stretch]) -> Vec<f64> {
     let count = structure.count();
     let total = |joint: usize| {
         let mut total = DMatrix::zeros(count + 1, count + 1);
@@ -457,11 +465,8 @@ fn unlike(structure: &Structure, baseline: &Baseline, stretches: &[&Stretch]) ->
         total
     };
     let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
-    let ratios = speeds(structure, &totals).into_iter().zip(&baseline.scale.speed);
-    ratios
-        .map(|(now, before)| now.max(SLOWEST) / before.max(SLOWEST))
-        .map(|of| (of.max(1.0 / of) / LIKE).max(1.0))
-        .collect()
+    let speeds = speeds(structure, &totals).into_iter().zip(&baseline.scale.speed);
+    speeds.map(|(now, before)| now.max(SLOWEST) / before.max(SLOWEST)).collect()
 }
 
 impl Scale {

@@ -188,10 +188,10 @@ async fn a_group_that_cannot_be_identified_has_an_error() -> Result<()> {
     let path = folder.path().join("motion.parquet");
     write(&path, &[("r1", log)]);
     context.register_parquet("motion", path.to_str().expect("UTF-8"), ParquetReadOptions::default()).await?;
-    let sql = "SELECT robot_id, found['states'] AS states, found['error'] AS error, found['delay'] AS delay FROM (SELECT \
-               robot_id, identify({desk_arm}, time, q, qd, tau) AS found FROM (SELECT * FROM motion UNION ALL (SELECT \
-               time, name, q, qd, qdd, tau, run, 'r2' AS robot_id FROM motion ORDER BY time LIMIT 5)) GROUP BY robot_id) \
-               ORDER BY robot_id";
+    let sql = "SELECT robot_id, found['states'] AS states, found['error'] AS error, found['delay'] AS delay FROM \
+               (SELECT robot_id, identify({desk_arm}, time, q, qd, tau) AS found FROM (SELECT * FROM motion UNION \
+               ALL (SELECT time, name, q, qd, qdd, tau, run, 'r2' AS robot_id FROM motion ORDER BY time LIMIT 5)) \
+               GROUP BY robot_id) ORDER BY robot_id";
     let found = one(&context, &robots, sql).await?;
     assert_eq!(texts(&found, "robot_id"), ["r1", "r2"]);
     let errors = found.column_by_name("error").expect("a column").as_string::<i32>();
@@ -273,8 +273,8 @@ async fn the_residual_needs_no_accelerations() -> Result<()> {
     let mut shuffled = rows.iter().map(|row| Row { time: row.time, lists: row.lists.clone() }).collect::<Vec<_>>();
     fastrand::Rng::with_seed(3).shuffle(&mut shuffled);
     context.register_batch("motion", table(&shuffled))?;
-    let sql = "SELECT time, momentum_residual({desk_arm}, time, q, qd, tau) OVER (PARTITION BY log ORDER BY time) AS residual FROM \
-               motion ORDER BY time";
+    let sql = "SELECT time, momentum_residual({desk_arm}, time, q, qd, tau) OVER (PARTITION BY log ORDER BY time) \
+               AS residual FROM motion ORDER BY time";
     let found = residuals(&one(&context, &robots, sql).await?);
     assert!(found[0].is_none() && found[1..].iter().all(Option::is_some));
     let at = |row: usize, joint: usize| found[row].as_ref().expect("a residual")[joint];
@@ -309,8 +309,9 @@ async fn an_observer_begins_anew_behind_a_gap_and_a_null() -> Result<()> {
     rows.truncate(400);
     let (context, robots) = context(2);
     context.register_batch("motion", table(&rows))?;
-    let sql = "SELECT momentum_residual({desk_arm}, CASE WHEN time = 0.15 THEN 0.149 ELSE time END, q, CASE WHEN time = 0.1 THEN NULL WHEN \
-               time = 0.05 THEN [0.0, 0.0, arrow_cast('NaN', 'Float64')] ELSE qd END, tau) OVER (ORDER BY time) AS residual FROM motion WHERE time < 0.2 OR time > 0.3 ORDER BY time";
+    let sql = "SELECT momentum_residual({desk_arm}, CASE WHEN time = 0.15 THEN 0.149 ELSE time END, q, CASE WHEN \
+               time = 0.1 THEN NULL WHEN time = 0.05 THEN [0.0, 0.0, arrow_cast('NaN', 'Float64')] ELSE qd END, \
+               tau) OVER (ORDER BY time) AS residual FROM motion WHERE time < 0.2 OR time > 0.3 ORDER BY time";
     let found = residuals(&one(&context, &robots, sql).await?);
     let nulls: Vec<usize> = found.iter().enumerate().filter(|(_, of)| of.is_none()).map(|(at, _)| at).collect();
     // the first row, a number that is none, the null, two rows of one time, and the row behind the gap

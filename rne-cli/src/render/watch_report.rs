@@ -54,7 +54,7 @@ pub(crate) fn events(robot: &Robot, baseline: &Baseline, report: &Report, has_ru
     if events.iter().any(|event| event.cause == Cause::Friction) {
         let _ = writeln!(text, "  {QUIET}{}{QUIET:#}", wrap(RIVALS, PAGE - 2, "  "));
     }
-    if let Some(nearest) = report.changes.nearest() {
+    if let Some(nearest) = report.changes.nearest(&baseline.scale) {
         let others = if events.is_empty() { "largest change" } else { "largest change of the others" };
         let said = format!("{others}: {}", margin(robot, nearest));
         let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&said, PAGE, "  "));
@@ -62,8 +62,8 @@ pub(crate) fn events(robot: &Robot, baseline: &Baseline, report: &Report, has_ru
     let unknown: Vec<String> = unknown(robot, baseline, &report.changes);
     if !unknown.is_empty() {
         let said = format!(
-            "not watched: friction of {}, which the quiet log does not determine; `rne excite` designs a motion that \
-             does",
+            "not watched: friction of {}: a joint must move in the quiet log and in this log, as in a motion that \
+             `rne excite` designs",
             unknown.join(", ")
         );
         let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&said, PAGE, "  "));

@@ -137,6 +137,24 @@ fn another_delay_is_one_event() {
     assert!((number(&events[0], "value") - 0.04).abs() < number(&events[0], "half_interval"), "{reply}");
 }
 
+/// An arm that stands still in a posture of the quiet log holds itself by friction, which is no event.
+#[test]
+fn an_arm_at_rest_has_no_event() {
+    let folder = folder("watch_rest");
+    let text = fs::read_to_string(format!("{ROOT}/{QUIET}")).expect("a log");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let mut lines = vec![rows[0].join(",")];
+    for row in &rows[1..] {
+        lines.push([&row[..1], &rows[50][1..4], &["0", "0", "0"], &rows[50][7..]].concat().join(","));
+    }
+    let path = folder.join("rest.csv");
+    fs::write(&path, lines.join("\n")).expect("a file");
+    let called = rne(&["watch", ARM, path.to_str().expect("UTF-8"), "--quiet", QUIET]);
+    assert!(called.out.contains("no events"), "{}", called.out);
+    let words = called.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("not watched: friction of waist, shoulder, elbow: a joint must move"), "{words}");
+}
+
 /// A log that is too short is left out of a trend, with the reason, and the others are compared.
 #[test]
 fn a_log_that_cannot_be_compared_does_not_end_a_trend() {
