@@ -6,11 +6,12 @@ use datafusion::arrow::array::ArrayRef;
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef};
 use datafusion::common::{Result, ScalarValue, exec_err, internal_err, plan_err};
 use datafusion::logical_expr::{
-    ColumnarValue, Documentation, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility,
+    ColumnarValue, Documentation, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature,
 };
 use rne::compiled::{Argument as Input, Arguments, Destination, Function, Layout};
 
 use crate::argument::{self, Argument};
+use crate::call::{Call, key};
 use crate::result;
 use crate::robots::{Held, Robots, external};
 
@@ -107,55 +108,23 @@ impl Computation {
     }
 }
 
-/// A [`Computation`] with the robots that it may be asked for.
+/// A [`Computation`] with what every function of the engine has.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DynamicsFunction {
     computation: Computation,
-    robots: Robots,
-    signature: Signature,
-    documentation: About,
-}
-
-/// What the engine tells of a function; not part of what it is.
-#[derive(Debug)]
-pub(crate) struct About(pub(crate) Documentation);
-
-impl PartialEq for About {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-impl Eq for About {}
-impl std::hash::Hash for About {
-    fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
+    call: Call,
 }
 
 impl DynamicsFunction {
     pub(crate) fn new(computation: Computation, robots: Robots) -> Self {
-        let section =
-            datafusion::logical_expr::DocSection { include: true, label: "Robot dynamics", description: None };
         let syntax = format!("{}(robot, {})", computation.name(), computation.arguments().join(", "));
-        let documentation = Documentation::builder(section, computation.summary(), syntax).build();
-        Self {
-            computation,
-            robots,
-            signature: Signature::user_defined(Volatility::Immutable),
-            documentation: About(documentation),
-        }
+        Self { computation, call: Call::new(robots, &syntax, computation.summary()) }
     }
 
     /// The robot of the first argument, which is a literal.
     fn held(&self, robot: Option<&ScalarValue>) -> Result<&Held> {
-        self.robots.get(key(self.computation.name(), robot)?)
+        self.call.robots.get(key(self.computation.name(), robot)?)
     }
-}
-
-/// The key of a robot out of the first argument.
-pub(crate) fn key<'a>(function: &str, robot: Option<&'a ScalarValue>) -> Result<&'a str> {
-    let Some(key) = robot.and_then(|robot| robot.try_as_str().flatten()) else {
-        return plan_err!("{function}: the first argument is the robot, a literal such as 'puma560@0123456789abcdef'");
-    };
-    Ok(key)
 }
 
 /// The types of all arguments: a robot's name, and numbers.
@@ -175,7 +144,7 @@ impl ScalarUDFImpl for DynamicsFunction {
     }
 
     fn signature(&self) -> &Signature {
-        &self.signature
+        &self.call.signature
     }
 
     fn return_type(&self, _: &[DataType]) -> Result<DataType> {
@@ -218,6 +187,6 @@ impl ScalarUDFImpl for DynamicsFunction {
     }
 
     fn documentation(&self) -> Option<&Documentation> {
-        Some(&self.documentation.0)
+        Some(self.call.documentation())
     }
 }

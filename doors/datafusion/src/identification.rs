@@ -6,14 +6,15 @@ use datafusion::arrow::array::{Array, ArrayRef};
 use datafusion::arrow::datatypes::{DataType, FieldRef};
 use datafusion::common::{Result, ScalarValue, exec_err, plan_err};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
-use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, DocSection, Documentation, Signature, Volatility};
+use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, Documentation, Signature};
 use datafusion::physical_expr::expressions::Literal;
 use rne_identify::{Fit, Information, Structure};
 use rne_logs::Motion;
 
 use crate::argument::{self, Argument};
+use crate::call::{Call, key};
 use crate::found::{self, Found};
-use crate::function::{About, coerced, key};
+use crate::function::coerced;
 use crate::numbers;
 use crate::robots::{Held, Robots, external};
 
@@ -29,21 +30,12 @@ const SUMMARY: &str = "Links and friction from states with measured torques, by 
 
 /// The aggregate, with the robots that it may be asked for.
 #[derive(Debug, PartialEq, Eq, Hash)]
-pub(crate) struct IdentificationFunction {
-    robots: Robots,
-    signature: Signature,
-    documentation: About,
-}
+pub(crate) struct IdentificationFunction(Call);
 
 impl IdentificationFunction {
     pub(crate) fn new(robots: Robots) -> Self {
-        let section = DocSection { include: true, label: "Robot dynamics", description: None };
         let syntax = format!("{NAME}(robot, {})", ARGUMENTS.join(", "));
-        Self {
-            robots,
-            signature: Signature::user_defined(Volatility::Immutable),
-            documentation: About(Documentation::builder(section, SUMMARY, syntax).build()),
-        }
+        Self(Call::new(robots, &syntax, SUMMARY))
     }
 }
 
@@ -53,7 +45,7 @@ impl AggregateUDFImpl for IdentificationFunction {
     }
 
     fn signature(&self) -> &Signature {
-        &self.signature
+        &self.0.signature
     }
 
     fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
@@ -73,7 +65,7 @@ impl AggregateUDFImpl for IdentificationFunction {
             return plan_err!("{NAME}: DISTINCT is not for rows of states; select the distinct rows before");
         }
         let robot = given.exprs.first().and_then(|robot| robot.downcast_ref::<Literal>());
-        let held = self.robots.get(key(NAME, robot.map(Literal::value))?)?;
+        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
         let columns = argument::columns(given.expr_fields);
         let robot = held.arm.robot();
         argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
@@ -82,7 +74,7 @@ impl AggregateUDFImpl for IdentificationFunction {
     }
 
     fn documentation(&self) -> Option<&Documentation> {
-        Some(&self.documentation.0)
+        Some(self.0.documentation())
     }
 }
 

@@ -23,6 +23,7 @@
 //! signs and frames are those of [`rne`](https://docs.rs/rne).
 
 mod argument;
+mod call;
 mod found;
 mod function;
 mod identification;

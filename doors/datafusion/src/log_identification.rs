@@ -7,7 +7,7 @@ use datafusion::arrow::array::{Array, ArrayRef};
 use datafusion::arrow::datatypes::{DataType, FieldRef};
 use datafusion::common::{Result, ScalarValue, exec_err, plan_err};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
-use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, DocSection, Documentation, Signature, Volatility};
+use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, Documentation, Signature};
 use datafusion::physical_expr::expressions::Literal;
 use rne::model::Robot;
 use rne_identify::{
@@ -16,8 +16,8 @@ use rne_identify::{
 use rne_logs::{Angles, Npy, TimeUnit};
 
 use crate::argument;
+use crate::call::{Call, key};
 use crate::found::{self, Found};
-use crate::function::{About, key};
 use crate::identification::REGULARIZATION;
 use crate::numbers;
 use crate::robots::{Robots, external};
@@ -35,21 +35,12 @@ const SUMMARY: &str = "Links and friction from a log with measured torques, as `
 
 /// The aggregate, with the robots that it may be asked for.
 #[derive(Debug, PartialEq, Eq, Hash)]
-pub(crate) struct LogIdentification {
-    robots: Robots,
-    signature: Signature,
-    documentation: About,
-}
+pub(crate) struct LogIdentification(Call);
 
 impl LogIdentification {
     pub(crate) fn new(robots: Robots) -> Self {
-        let section = DocSection { include: true, label: "Robot dynamics", description: None };
         let syntax = format!("{NAME}(robot, time, {})", ARGUMENTS.join(", "));
-        Self {
-            robots,
-            signature: Signature::user_defined(Volatility::Immutable),
-            documentation: About(Documentation::builder(section, SUMMARY, syntax).build()),
-        }
+        Self(Call::new(robots, &syntax, SUMMARY))
     }
 }
 
@@ -59,7 +50,7 @@ impl AggregateUDFImpl for LogIdentification {
     }
 
     fn signature(&self) -> &Signature {
-        &self.signature
+        &self.0.signature
     }
 
     fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
@@ -79,7 +70,7 @@ impl AggregateUDFImpl for LogIdentification {
             return plan_err!("{NAME}: DISTINCT is not for rows of states; select the distinct rows before");
         }
         let robot = given.exprs.first().and_then(|robot| robot.downcast_ref::<Literal>());
-        let held = self.robots.get(key(NAME, robot.map(Literal::value))?)?;
+        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
         let columns = argument::columns(given.expr_fields.get(1..).unwrap_or_default());
         let robot = held.arm.robot();
         argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
@@ -88,7 +79,7 @@ impl AggregateUDFImpl for LogIdentification {
     }
 
     fn documentation(&self) -> Option<&Documentation> {
-        Some(&self.documentation.0)
+        Some(self.0.documentation())
     }
 }
 

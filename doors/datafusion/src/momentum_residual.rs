@@ -10,7 +10,7 @@ use datafusion::arrow::array::{ArrayRef, Float64Builder, ListBuilder};
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef};
 use datafusion::common::{Result, exec_err};
 use datafusion::logical_expr::function::{ExpressionArgs, PartitionEvaluatorArgs, WindowUDFFieldArgs};
-use datafusion::logical_expr::{DocSection, Documentation, PartitionEvaluator, Signature, Volatility, WindowUDFImpl};
+use datafusion::logical_expr::{Documentation, PartitionEvaluator, Signature, WindowUDFImpl};
 use datafusion::physical_expr::PhysicalExpr;
 use datafusion::physical_expr::expressions::Literal;
 use rne::model::{Friction, Robot};
@@ -18,7 +18,7 @@ use rne::{DynArm, DynObserverState};
 use rne_logs::median;
 
 use crate::argument::{self, Argument};
-use crate::function::{About, key};
+use crate::call::{Call, key};
 use crate::numbers::item;
 use crate::robots::{Robots, external};
 use crate::time::{self, Instant};
@@ -38,21 +38,12 @@ const SUMMARY: &str = "Measured torques minus those of the model, without accele
 
 /// The window function, with the robots that it may be asked for.
 #[derive(Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MomentumResidual {
-    robots: Robots,
-    signature: Signature,
-    documentation: About,
-}
+pub(crate) struct MomentumResidual(Call);
 
 impl MomentumResidual {
     pub(crate) fn new(robots: Robots) -> Self {
-        let section = DocSection { include: true, label: "Robot dynamics", description: None };
         let syntax = format!("{NAME}(robot, time, {}) OVER (PARTITION BY … ORDER BY time)", ARGUMENTS.join(", "));
-        Self {
-            robots,
-            signature: Signature::user_defined(Volatility::Immutable),
-            documentation: About(Documentation::builder(section, SUMMARY, syntax).build()),
-        }
+        Self(Call::new(robots, &syntax, SUMMARY))
     }
 }
 
@@ -62,7 +53,7 @@ impl WindowUDFImpl for MomentumResidual {
     }
 
     fn signature(&self) -> &Signature {
-        &self.signature
+        &self.0.signature
     }
 
     fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
@@ -79,7 +70,7 @@ impl WindowUDFImpl for MomentumResidual {
 
     fn partition_evaluator(&self, given: PartitionEvaluatorArgs<'_>) -> Result<Box<dyn PartitionEvaluator>> {
         let robot = given.input_exprs().first().and_then(|robot| robot.downcast_ref::<Literal>());
-        let held = self.robots.get(key(NAME, robot.map(Literal::value))?)?;
+        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
         let columns = argument::columns(given.input_fields().get(1..).unwrap_or_default());
         let robot = held.arm.robot();
         argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
@@ -88,7 +79,7 @@ impl WindowUDFImpl for MomentumResidual {
     }
 
     fn documentation(&self) -> Option<&Documentation> {
-        Some(&self.documentation.0)
+        Some(self.0.documentation())
     }
 }
 
