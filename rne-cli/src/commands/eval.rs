@@ -1,5 +1,6 @@
 //! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -43,10 +44,10 @@ pub(crate) struct Arguments {
     /// Joint positions, base to tip, rad or m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     q: Option<List>,
-    /// Joint velocities, rad/s or m/s
+    /// Joint velocities, rad/s or m/s [default: 0]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     qd: Option<List>,
-    /// Joint accelerations, rad/s² or m/s²
+    /// Joint accelerations, rad/s² or m/s² [default: 0]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     qdd: Option<List>,
     /// Joint torques for forward_dynamics, N m or N
@@ -169,14 +170,20 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
             with.join(", ")
         )));
     }
-    let state = State::new(function, arguments.given(), &robot)?;
+    let zeros = List(vec![0.0; robot.dof()]);
+    let (given, assumed) = arguments.given().at_rest(function, &zeros);
+    let state = State::new(function, given, &robot)?;
     let arm = DynArm::from_robot(&robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
     let numbers = state.numbers(&arm).map_err(Failure::usage)?;
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(&robot, function, index)));
     }
-    let remark = limits::remark(&robot, &state.q);
+    let mut remark = limits::remark(&robot, &state.q);
+    if !assumed.is_empty() {
+        let (names, verb) = (assumed.join(" and "), if assumed.len() == 1 { "is" } else { "are" });
+        let _ = writeln!(remark, "note: {names} {verb} not given, so these numbers are 0");
+    }
     let result = || grouped(&function.layout(robot.dof()), &numbers);
     if !arguments.trace {
         if arguments.json {

@@ -22,6 +22,22 @@ pub(crate) struct Given<'a> {
     pub(crate) gravity: Option<&'a List>,
 }
 
+impl<'a> Given<'a> {
+    /// The lists with zeros for velocities and accelerations that a function takes and that are not given; with their
+    /// options.
+    pub(crate) fn at_rest(mut self, function: Function, zeros: &'a List) -> (Self, Vec<&'static str>) {
+        let mut assumed = Vec::new();
+        let lists = [("--qd", &mut self.qd, Argument::Rates), ("--qdd", &mut self.qdd, Argument::Accelerations)];
+        for (name, list, kind) in lists {
+            if list.is_none() && function.takes(kind) {
+                *list = Some(zeros);
+                assumed.push(name);
+            }
+        }
+        (self, assumed)
+    }
+}
+
 /// The arguments of a function. What it does not take is empty, zero, or at rest, or is not asked for.
 #[derive(Clone)]
 pub(crate) struct State {

@@ -111,6 +111,20 @@ fn a_prismatic_joint_in_the_worksheet() {
     insta::assert_snapshot!(fine(&arguments));
 }
 
+/// Velocities and accelerations that are not given are 0, and it is said.
+#[test]
+fn an_arm_at_rest_needs_positions_alone() {
+    let [rest, given] = [&["--q", "0.6,0.2"][..], &["--q", "0.6,0.2", "--qd", "0,0", "--qdd", "0,0"]]
+        .map(|state| rne(&[&["eval", "robots/planar2.yaml"], state].concat()));
+    assert_eq!((rest.status, &rest.out), (0, &given.out), "{}", rest.err);
+    assert_eq!(
+        (rest.err.as_str(), given.err.as_str()),
+        ("note: --qd and --qdd are not given, so these numbers are 0\n", "")
+    );
+    let call = rne(&["eval", "robots/planar2.yaml", "--function", "bias_torques", "--q", "0.6,0.2"]);
+    assert_eq!(call.err, "note: --qd is not given, so these numbers are 0\n");
+}
+
 #[test]
 fn arguments_that_do_not_fit() {
     let robot = "robots/cylindrical_rpp.yaml";
@@ -119,7 +133,7 @@ fn arguments_that_do_not_fit() {
         let arguments: Vec<&str> = ["eval", robot].iter().chain(more).copied().collect();
         fails(status, &arguments, parts);
     };
-    call(2, &["--q", three, "--qd", three], &["needs --qdd", "waist, lift, reach"]);
+    call(2, &["--qd", three], &["needs --q,", "waist, lift, reach"]);
     call(2, &["--qd", three, "--qdd", three], &["needs --q,"]);
     call(2, &["--q", "1,2", "--qd", three, "--qdd", three], &["--q needs 3 numbers, not 2", "waist, lift, reach"]);
     call(2, &["--function", "gravity_torques", "--q", three, "--qd", three], &["gravity_torques takes no --qd"]);
