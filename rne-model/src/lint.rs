@@ -11,7 +11,7 @@ use crate::decode::Context;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
 use crate::expression::Names as _;
-use crate::inertia::TOLERANCE;
+use crate::inertia::{TOLERANCE, principal_moments};
 use crate::resistance::{self, Unresisted};
 use crate::source::{is_invisible, quoted, six_digits};
 use crate::{Angle, Convention, Joint, JointKind, Limits, QuarterTurns, Transform};
@@ -227,6 +227,46 @@ pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints
             None if turns => mass_without_inertia(cx, item, index, joint),
             None => {}
         }
+    }
+}
+
+/// Links at least, and a part of those with mass, that are alike where an exporter wrote placeholders.
+const ALIKE: usize = 3;
+const PART_ALIKE: usize = 2;
+
+/// Masses and moments that differ by a smaller part of themselves are the same.
+const SAME: f64 = 1e-6;
+
+/// Links with the same mass and the same ball for an inertia: what exporters write where CAD knows no material.
+pub(crate) fn placeholders(cx: &Context, root: &Node, joints: &[Joint]) {
+    let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
+    let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+    let ball = |joint: &Joint| {
+        let [least, _, most] = principal_moments(&joint.row.link.inertia)?;
+        (joint.row.link.mass > 0.0 && most > 0.0 && is_same(least, most)).then_some((joint.row.link.mass, most))
+    };
+    let balls: Vec<Option<(f64, f64)>> = joints.iter().map(ball).collect();
+    let with_mass = joints.iter().filter(|joint| joint.row.link.mass > 0.0).count();
+    cx.count(joints.len() * joints.len());
+    for (first, of) in balls.iter().enumerate() {
+        let Some((mass, moment)) = *of else { continue };
+        let is_like =
+            |other: &&Option<(f64, f64)>| other.is_some_and(|of| is_same(of.0, mass) && is_same(of.1, moment));
+        let alike = balls.iter().filter(is_like).count();
+        if alike < ALIKE || PART_ALIKE * alike < with_mass {
+            continue;
+        }
+        let place = items.get(first).and_then(|item| item.get("link")).unwrap_or(root).head();
+        let message = format!(
+            "{alike} of {with_mass} links with mass have {} kg and {} kg m² about every axis",
+            six_digits(mass),
+            six_digits(moment)
+        );
+        cx.report(Diagnostic::lint(place, message).label("placeholders of an exporter?").help(
+            "real links differ: torques of placeholders are not those of the arm; take masses, centres of mass and \
+             inertias from the manufacturer, or identify them from a log",
+        ));
+        return;
     }
 }
 

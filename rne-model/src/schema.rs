@@ -50,6 +50,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     if !cx.has_errors() {
         without_effect(cx);
         lint::inertias(cx, node, convention, &joints);
+        lint::placeholders(cx, node, &joints);
     }
     let run_time = cx.run_time.take();
     Some(Robot {

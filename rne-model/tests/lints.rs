@@ -19,6 +19,36 @@ fn a_centre_of_mass_has_a_mass() {
     assert!(said.diagnostics.iter().all(|diagnostic| !diagnostic.message.contains("no mass")), "{said}");
 }
 
+/// Three or more links that are the same ball are an exporter's; two, or links that differ, are not.
+#[test]
+fn placeholders_are_told() {
+    let arm = |links: &[(f64, f64)]| {
+        let joints = links.iter().map(|(mass, moment)| {
+            format!(
+                "  - type: revolute\n    dh: {{theta: 0, d: 0.1, a: 0.3, alpha: 0}}\n    link: {{mass: {mass}, com: [-0.1, 0, \
+                 0], inertia: {{xx: {moment}, yy: {moment}, zz: {moment}}}}}\n"
+            )
+        });
+        let head = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+        found(&(head.to_owned() + &joints.collect::<String>()))
+    };
+    let said = arm(&[(3.0, 0.02), (2.0, 0.01), (2.0, 0.01), (2.0, 0.01)]);
+    assert_eq!(said.diagnostics.len(), 1, "{said}");
+    let diagnostic = &said.diagnostics[0];
+    assert_eq!(diagnostic.message, "3 of 4 links with mass have 2 kg and 0.01 kg m² about every axis");
+    assert_eq!(diagnostic.severity, Severity::Warning);
+    assert!(said.to_string().contains("x.yaml:12:"), "{said}");
+    for links in [
+        &[(3.0, 0.02), (3.0, 0.02), (2.0, 0.01), (2.0, 0.01)][..],
+        &[(2.0, 0.01), (2.0, 0.011), (2.0, 0.012), (2.0, 0.013)],
+        &[(1.0, 0.01), (2.0, 0.01), (3.0, 0.01)],
+        &[(1.0, 0.1), (4.0, 0.2), (5.0, 0.3), (6.0, 0.4), (2.0, 0.01), (2.0, 0.01), (2.0, 0.01)],
+    ] {
+        let said = arm(links);
+        assert!(said.diagnostics.is_empty(), "{links:?}: {said}");
+    }
+}
+
 /// Its size is told where its squares overflow or vanish.
 #[test]
 fn gravity_of_any_size_is_told() {
