@@ -93,7 +93,8 @@ pub(crate) fn extract(
         Some(name) => link(urdf, name, "base")?,
         None => urdf.root,
     };
-    let path = path(urdf, base, tip(urdf, base, selection)?)?;
+    let End { link: end, others } = tip(urdf, base, selection)?;
+    let path = path(urdf, base, end)?;
     let tip = path.last().map_or(base, |&joint| urdf.joints[joint].child);
     let locks = locks(urdf, selection)?;
     let moves = |&joint: &usize| urdf.joints[joint].kind.has_one_freedom() && !locks.contains_key(&joint);
@@ -139,6 +140,10 @@ pub(crate) fn extract(
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
     walk.told.snapped = walk.snapping.found;
+    if !others.is_empty() {
+        let others = names(others.iter().map(|&link| &urdf.links[link].name));
+        walk.told.remarks.push(format!("the tip is {}; behind the same joints are also: {others}", walk.told.tip));
+    }
     Ok((chain, walk.told))
 }
 
@@ -207,18 +212,52 @@ fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
     listed.take(LISTED).collect::<Vec<_>>().join("\n") + &more
 }
 
+/// The name that the tip of an arm has by convention: ROS REP 199, and ROS-Industrial before it.
+const TIP: &str = "tool0";
+
+/// The end of a chain.
+struct End {
+    link: usize,
+    /// Leaves behind the same movable joints, if the end was chosen among them.
+    others: Vec<usize>,
+}
+
 /// The link where the chain ends.
-fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<usize, Report> {
+fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End, Report> {
+    let alone = |link| End { link, others: Vec::new() };
     if let Some(name) = &selection.tip {
-        return link(urdf, name, "tip");
+        return link(urdf, name, "tip").map(alone);
     }
     let leaves = leaves(urdf, base);
     if let [(leaf, _)] = leaves[..] {
-        return Ok(leaf);
+        return Ok(alone(leaf));
+    }
+    // leaves without a movable joint are sensors on the base, or marks on it
+    let moved: Vec<usize> = leaves.iter().filter(|(_, joints)| *joints > 0).map(|(leaf, _)| *leaf).collect();
+    let last_joint = |leaf: &usize| last_movable(urdf, base, *leaf);
+    if let Some(first) = moved.first()
+        && moved.iter().all(|leaf| last_joint(leaf) == last_joint(first))
+    {
+        let named = moved.iter().position(|&leaf| urdf.links[leaf].name == TIP);
+        let mut others = moved.clone();
+        let link = others.remove(named.unwrap_or(moved.len() - 1));
+        return Ok(End { link, others });
     }
     let message = format!("{} has {} leaves, so the tip must be named", quoted(&urdf.links[base].name), leaves.len());
     let help = format!("the tip is one of these links, or a link before it:\n{}", listed(urdf, &leaves));
     Err(urdf.source.error_with(&urdf.links[base].span, message, help, &Remedy::NameTip))
+}
+
+/// The last movable joint before a link.
+fn last_movable(urdf: &Urdf, base: usize, mut link: usize) -> Option<usize> {
+    while link != base {
+        let joint = urdf.links[link].parent?;
+        if urdf.joints[joint].kind.has_one_freedom() {
+            return Some(joint);
+        }
+        link = urdf.joints[joint].parent;
+    }
+    None
 }
 
 /// The links behind `base` that carry no other, with the number of movable joints in between.
