@@ -282,10 +282,12 @@ impl<'a> Selection<'a> {
             [DEVIATIONS, 1.0, 1.0]
         };
         let unlike = match candidate {
-            Candidate::Coulomb(joint) | Candidate::Viscous(joint) => {
+            Candidate::Coulomb(joint) | Candidate::Viscous(joint) | Candidate::Gain(joint) => {
                 let ratio = self.speed_ratios[joint];
                 (ratio.max(1.0 / ratio) / LIKE).max(1.0)
             }
+            // friction that gives way over some travel comes later, the slower a joint is
+            Candidate::Delay => self.speed_ratios.iter().map(|ratio| 1.0 / ratio).fold(1.0, f64::max),
             _ => 1.0,
         };
         // a gain is known no better than the model explains the effort

@@ -202,7 +202,8 @@ fn a_small_payload_has_no_other_name() {
 /// deviations.
 #[test]
 fn a_quiet_log_of_another_motion_has_no_event() {
-    let all: Vec<u64> = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { (0..40).collect() } else { vec![8, 29, 34] };
+    let all: Vec<u64> =
+        if std::env::var_os("RNE_EXHAUSTIVE").is_some() { (0..40).collect() } else { vec![3, 7, 8, 29, 34] };
     for (seed, [amplitude, frequency]) in all
         .iter()
         .flat_map(|seed| [[0.1, 1.0], [0.05, 1.0], [1.0, 0.2], [1.0, 2.0], [0.0, 1.0]].map(|scale| (*seed, scale)))
