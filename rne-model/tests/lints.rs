@@ -25,8 +25,8 @@ fn placeholders_are_told() {
     let arm = |links: &[(f64, f64)]| {
         let joints = links.iter().map(|(mass, moment)| {
             format!(
-                "  - type: revolute\n    dh: {{theta: 0, d: 0.1, a: 0.3, alpha: 0}}\n    link: {{mass: {mass}, com: [-0.1, 0, \
-                 0], inertia: {{xx: {moment}, yy: {moment}, zz: {moment}}}}}\n"
+                "  - type: revolute\n    dh: {{theta: 0, d: 0.1, a: 0.3, alpha: 0}}\n    link: {{mass: {mass}, \
+                 com: [-0.1, 0, 0], inertia: {{xx: {moment}, yy: {moment}, zz: {moment}}}}}\n"
             )
         });
         let head = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";

@@ -287,7 +287,7 @@ impl<'a> Selection<'a> {
                 (ratio.max(1.0 / ratio) / LIKE).max(1.0)
             }
             // friction that gives way over some travel comes later, the slower a joint is
-            Candidate::Delay => self.speed_ratios.iter().map(|ratio| 1.0 / ratio).fold(1.0, f64::max),
+            Candidate::Delay => median(self.speed_ratios.iter().map(|ratio| 1.0 / ratio).collect()).max(1.0),
             _ => 1.0,
         };
         // a gain is known no better than the model explains the effort
