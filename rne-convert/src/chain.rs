@@ -142,7 +142,9 @@ pub(crate) fn extract(
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
         let others = names(others.iter().map(|&link| &urdf.links[link].name));
-        walk.told.remarks.push(format!("the tip is {}; behind the same joints are also: {others}", walk.told.tip));
+        walk.told
+            .remarks
+            .push(format!("the tip is {}; behind the same joints are also: {others}", quoted(&walk.told.tip)));
     }
     Ok((chain, walk.told))
 }

@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     /// Fixed link at the base [default: the root]
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
-    /// Link at the end of the arm; required if there are several
+    /// Link at the end of the arm [default: the end behind all joints]
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
     /// Convention of the table, standard or modified

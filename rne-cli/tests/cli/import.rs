@@ -24,6 +24,37 @@ const URDF: &str = r#"<robot name="Two Links">
 </robot>
 "#;
 
+/// Several ends behind the same joints are one arm: `tool0`, else the last one. Leaves on the base do not count.
+#[test]
+fn the_tip_of_one_arm_is_chosen() {
+    let folder = folder("import_tip");
+    let one_arm = URDF.replace("<joint name=\"grip\" type=\"prismatic\">", "<joint name=\"grip\" type=\"fixed\">");
+    let with = |more: &str| one_arm.replace("</robot>", &format!("{more}</robot>"));
+    let leaf = |name: &str, parent: &str| {
+        format!(
+            "<link name=\"{name}\"/><joint name=\"to_{name}\" type=\"fixed\"><parent link=\"{parent}\"/><child \
+             link=\"{name}\"/><origin xyz=\"0.1 0 0\"/></joint>"
+        )
+    };
+    let path = folder.join("one_arm.urdf");
+    let urdf = path.to_str().expect("UTF-8");
+    for (more, tip, others) in [
+        (String::new(), "tip", "`finger`"),
+        (leaf("tool0", "lower") + &leaf("ee_link", "lower"), "tool0", "`finger`, `tip`, `ee_link`"),
+        (leaf("camera", "base"), "tip", "`finger`"),
+    ] {
+        fs::write(&path, with(&more)).expect("written");
+        let chosen = rne(&["import", urdf]);
+        assert_eq!(chosen.status, 0, "{tip}: {chosen:?}");
+        let note = format!("the tip is `{tip}`; behind the same joints are also: {others}");
+        let words = chosen.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&format!("note: {note}")), "{note}: {words}");
+        // the file says it, too, and is otherwise that of the tip by name
+        let noted = format!("  - {note}\n");
+        assert_eq!(chosen.out.replacen(&noted, "", 1), rne(&["import", urdf, "--tip", tip]).out, "{tip}");
+    }
+}
+
 #[test]
 fn an_import_prints_the_robot_file_and_tells_what_it_did() {
     let folder = folder("import");
