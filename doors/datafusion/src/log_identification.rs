@@ -75,7 +75,9 @@ impl AggregateUDFImpl for LogIdentification {
         let robot = held.arm.robot();
         argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
         let columns = columns.iter().map(|column| column.name.to_owned()).collect();
-        Ok(Box::new(Gathered { robot: robot.clone(), columns, numbers: Vec::new() }))
+        let is_stamped =
+            given.expr_fields.get(1).is_some_and(|time| matches!(time.data_type(), DataType::Timestamp(..)));
+        Ok(Box::new(Gathered { robot: robot.clone(), columns, is_stamped, numbers: Vec::new() }))
     }
 
     fn documentation(&self) -> Option<&Documentation> {
@@ -89,6 +91,8 @@ struct Gathered {
     robot: Robot,
     /// The names of the columns after the time.
     columns: Vec<String>,
+    /// Whether times are stamps; a number may be of another unit than seconds, which the reader of logs notices.
+    is_stamped: bool,
     /// Row by row the time, then q, qd and tau of all joints.
     numbers: Vec<f64>,
 }
@@ -124,13 +128,14 @@ impl Gathered {
         self.write(&path).map_err(Refusal::of_machine)?;
         let mut options = ArmLogOptions::default();
         options.log.angles = Angles::Radians;
-        options.log.time_unit = Some(TimeUnit::Seconds);
-        let log = ArmLog::open(&[path], &self.robot, &options).map_err(|error| Refusal::of_log(&error))?;
+        options.log.time_unit = self.is_stamped.then_some(TimeUnit::Seconds);
+        let name = format!("{}: ", path.display());
+        let log = ArmLog::open(&[path], &self.robot, &options).map_err(|error| Refusal::of_log(&error, &name))?;
         let mut options = Options::default();
         options.cutoff = Some(log.cutoff());
         let pass = |take: &mut dyn FnMut(&rne_logs::Motion) -> Result<(), MotionError>| log.pass(Part::All, take);
         identify::<PassError<MotionError>>(&self.robot, options, REGULARIZATION, pass).map_err(|error| match error {
-            PassError::Log(error) => Refusal::of_log(&error),
+            PassError::Log(error) => Refusal::of_log(&error, &name),
             PassError::Motion(error) => Refusal::Rows(error.to_string()),
         })
     }
@@ -149,8 +154,9 @@ impl Refusal {
         Self::Machine(error)
     }
 
-    fn of_log(error: &ArmLogError) -> Self {
-        Self::Rows(error.to_string())
+    /// The error of a log without the name of its file, which nobody knows.
+    fn of_log(error: &ArmLogError, file: &str) -> Self {
+        Self::Rows(error.to_string().replace(file, ""))
     }
 }
 
