@@ -282,7 +282,7 @@ impl<'a> Selection<'a> {
             [DEVIATIONS, 1.0, 1.0]
         };
         let unlike = match candidate {
-            Candidate::Coulomb(joint) | Candidate::Viscous(joint) | Candidate::Gain(joint) => {
+            Candidate::Coulomb(joint) | Candidate::Viscous(joint) => {
                 let ratio = self.speed_ratios[joint];
                 (ratio.max(1.0 / ratio) / LIKE).max(1.0)
             }
