@@ -159,8 +159,10 @@ fn headline() -> String {
          | ns, best peer, native build | {} |\n\
          | ns, Pinocchio | {} |\n\
          | instructions on a Cortex-M4F, `f32`, current version | {} |\n\n\
-         The times are older than the last pass of the form, which rewrites the graph, so the operations above\n\
-         exclude it too. With it they are {rewritten_puma} and {rewritten_panda}; the instructions include it.\n",
+         The times were measured before rne had its last optimization, which rewrites the finished program with\n\
+         rules of algebra. The operations in the table also exclude this optimization; with it they are\n\
+         {rewritten_puma} for the PUMA 560 and {rewritten_panda} for the Franka Panda. The instruction counts\n\
+         include this optimization.\n",
         of(&operations, "rne, planned"),
         best(&operations).join(" | "),
         of(&times, "rne_reduced_native"),
