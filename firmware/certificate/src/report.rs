@@ -81,7 +81,7 @@ impl Report {
         let _ = match self.wasm {
             Some(numbers) => writeln!(
                 text,
-                "{WASM}: in Node.js, {numbers} torques (all robots and forms, `f32`, `f64`) have the same bits as on a PC."
+                "{WASM}: in Node, {numbers} torques (all robots and forms, `f32`, `f64`) have the same bits as on a PC."
             ),
             None => writeln!(text, "{WITHOUT_NODE}"),
         };
