@@ -215,9 +215,10 @@ def functions(times):
     return [
         "### Other functions, beside Pinocchio's, independent calls: median ns (minimum ns)",
         function_times(times),
-        "Deviation: the largest of 1024 states of each robot from the results of Pinocchio's Python package (forward "
-        "dynamics: from the accelerations of the states), over the robot's largest value. Of the derivatives both "
-        "matrices are compared, with torques and mass matrix all four.",
+        "The column `deviation` shows the largest deviation from the results of Pinocchio's Python package, divided by "
+        "the largest value of the robot, at 1024 states of each robot. For forward dynamics it is the deviation from "
+        "the accelerations of the states. For `rne_derivatives` both matrices are compared, and for "
+        "`rne_derivatives_tau_m` also the torques and the mass matrix.",
         "### Other functions: how many times faster than Pinocchio's, and what is required",
         function_ratios(times),
     ]
@@ -247,8 +248,8 @@ def losses(times):
                 [f"{what}, {robot}", ahead, f"{min(others)[1]} ({nanoseconds(min(others)[0])})", str(before_all)]
             )
     if not rows:
-        return "Nowhere in this run: no other inverse dynamics is faster than the slowest of our rows of its kind."
-    return markdown(["calls", "our rows that are beaten (ns)", "by (ns)", "others ahead of all our rows"], rows)
+        return "In this run, no row of another system is faster than our slowest row with the same kind of call."
+    return markdown(["calls, robot", "our slower rows (ns)", "fastest row of another system (ns)", "rows that beat all our rows"], rows)
 
 
 def correctness(times):
@@ -260,20 +261,22 @@ def correctness(times):
     others = max((e for (_, p), e in torques.items() if not is_ours(p)), default=math.nan)
     own = max((e for (_, p), e in torques.items() if is_ours(p)), default=math.nan)
     return (
-        "Every inverse dynamics agrees with the reference torques, 1024 states of each robot. Largest deviation over "
-        f"the largest torque: {own:.1e} of our rows, {others:.1e} of the others (accepted: {TOLERANCE:g})."
+        "The torques of every row agree with the reference torques at 1024 states of each robot. The largest deviation, "
+        f"divided by the largest torque, is {own:.1e} for our rows and {others:.1e} for the other rows. The limit is "
+        f"{TOLERANCE:g}."
     )
 
 
 def spread(times):
     """How much the rounds differ."""
     if times.rounds < 2:
-        return "One round: how much rounds differ is unknown."
+        return "There was one round, so it is unknown how much rounds differ."
     ratios = sorted((max(row["rounds"]) / min(row["rounds"]), *key) for key, row in times.rows.items())
     worst, robot, peer = ratios[-1]
     return (
-        f"The slowest of {times.rounds} rounds is {100 * (ratios[len(ratios) // 2][0] - 1):.0f} % over the fastest in "
-        f"the median row (independent calls and batch), at worst {100 * (worst - 1):.0f} % ({peer} on {robot})."
+        f"The {times.rounds} rounds of a row differ. For the median row of independent calls and batches, the slowest "
+        f"round takes {100 * (ratios[len(ratios) // 2][0] - 1):.0f} % more time than the fastest round. For the worst "
+        f"row ({peer} on {robot}) it takes {100 * (worst - 1):.0f} % more time."
     )
 
 
@@ -281,7 +284,7 @@ OTHER_FUNCTIONS = "gravity_torques", "bias_torques", "mass_matrix", "forward_dyn
 
 
 def operations(casadi, ours):
-    """Of CasADi's functions (a CSV file) and ours (the JSON of `rne ops`)."""
+    """Operations of CasADi's functions (a CSV file) and of ours (the JSON of `rne ops`)."""
     counts = {}  # (function, robot): cell
 
     def count(function, robot, mul, add, angles):
@@ -318,7 +321,7 @@ def report(work):
         time_table(times, batch, "independent"),
         "### Ratios of medians: how many times faster our rows are",
         ratios(times),
-        "The best CasADi row is the fastest `casadi_*` or `pin_casadi*` row of one state per call, for each robot.",
+        "The best CasADi row of a robot is its fastest row `casadi_*` or `pin_casadi*` with one state per call.",
         "### What is required",
         required(times),
         "### Where our code loses",
