@@ -249,7 +249,8 @@ def losses(times):
             )
     if not rows:
         return "In this run, no row of another system is faster than our slowest row with the same kind of call."
-    return markdown(["calls, robot", "our slower rows (ns)", "fastest row of another system (ns)", "rows that beat all our rows"], rows)
+    fastest, number = "fastest row of another system (ns)", "number of rows faster than all our rows"
+    return markdown(["calls, robot", "our slower rows (ns)", fastest, number], rows)
 
 
 def correctness(times):
@@ -261,9 +262,9 @@ def correctness(times):
     others = max((e for (_, p), e in torques.items() if not is_ours(p)), default=math.nan)
     own = max((e for (_, p), e in torques.items() if is_ours(p)), default=math.nan)
     return (
-        "The torques of every row agree with the reference torques at 1024 states of each robot. The largest deviation, "
-        f"divided by the largest torque, is {own:.1e} for our rows and {others:.1e} for the other rows. The limit is "
-        f"{TOLERANCE:g}."
+        "The torques of every row agree with the reference torques at 1024 states of each robot. The largest "
+        f"deviation, divided by the largest torque, is {own:.1e} for our rows and {others:.1e} for the other rows. "
+        f"The limit is {TOLERANCE:g}."
     )
 
 

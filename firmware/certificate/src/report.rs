@@ -133,7 +133,7 @@ algorithm. The form `reduced` computes the same result with about half the opera
 The generated code of a function has only one execution path. So a call takes the same number of instructions for every
 input, also for NaN, infinities and subnormal numbers. This number is therefore also the worst case.
 
-The instruction counts of this page are not valid in the following cases:
+The instruction counts of this page have these limits:
 
 - The counts are not times. QEMU counts instructions and does not measure their duration. Without a cache, the processor
   waits for code and constants from flash. The M7 executes two instructions at once where it can. On the Cortex-M4,
