@@ -642,7 +642,7 @@ fn no_source_lists_the_robots() {
 #[test]
 fn the_readme_is_short() {
     let lines = read(&root().join("README.md")).lines().count();
-    assert!(lines <= 200, "README.md has {lines} lines: long tables stand in docs/");
+    assert!(lines <= 220, "README.md has {lines} lines: long tables stand in docs/");
 }
 
 #[test]
