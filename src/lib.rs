@@ -123,7 +123,8 @@
 #[doc(inline)]
 pub use rne_macro::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Regressor,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
+    Regressor,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -131,8 +132,8 @@ pub use rne_model as model;
 pub use rne_runtime::{
     Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, Pose,
-    Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload,
+    PayloadDynamics, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

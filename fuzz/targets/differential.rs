@@ -226,6 +226,20 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau)?.concat(),
         Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base)?,
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
+        Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, &Payload::from_array(*payload))?,
+        Function::BiasTorquesWithPayload => arm.bias_torques_with_payload(q, qd, &Payload::from_array(*payload))?,
+        Function::MassMatrixWithPayload => arm.mass_matrix_with_payload(q, &Payload::from_array(*payload))?.concat(),
+        Function::ForwardDynamicsWithPayload => {
+            arm.forward_dynamics_with_payload(q, qd, tau, &Payload::from_array(*payload))?
+        }
+        Function::InverseDynamicsDerivativesWithPayload => {
+            let payload = Payload::from_array(*payload);
+            let derivatives = arm.inverse_dynamics_derivatives_with_payload(q, qd, qdd, &payload)?;
+            [derivatives.dq.concat(), derivatives.dqd.concat()].concat()
+        }
+        Function::MomentumAndRateWithPayload => {
+            arm.momentum_and_rate_with_payload(q, qd, tau, &Payload::from_array(*payload))?.concat()
+        }
     })
 }
 

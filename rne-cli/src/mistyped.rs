@@ -138,7 +138,7 @@ mod tests {
         let joint = said("show puma560 --joint -1").expect("refused");
         assert!(joint.starts_with("error: `-1` is not a value of --joint <") && !joint.contains("-- -1"), "{joint}");
         let set = said("eval planar2 --set -m --q 1,1").expect("refused");
-        assert!(set.contains("`-m` is not a value of --set <NAME=VALUE>: Replace a parameter's value"), "{set}");
+        assert!(set.contains("`-m` is not a value of --set <NAME=VALUE>: Replace the value of a parameter"), "{set}");
     }
 
     #[test]

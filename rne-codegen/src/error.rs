@@ -130,9 +130,8 @@ impl fmt::Display for Extreme {
         let (size, beyond) = if value.abs() > 1.0 { ("large", "overflow") } else { ("small", "vanish") };
         write!(
             f,
-            "{what} {value:e} of link {link} is too {size} for it: products of such numbers {beyond} in double \
-            precision. \
-             Other units help, `form = \"seven_steps\"` multiplies less"
+            "{what} {value:e} of link {link} is too {size} for this form: products of such numbers {beyond} in double \
+             precision. Use other units, or `form = \"seven_steps\"`, which multiplies less"
         )
     }
 }
@@ -192,9 +191,14 @@ impl fmt::Display for CompileError {
                 let what = if function.returns_torques() { "the torque of joint" } else { "of its result, number" };
                 write!(
                     f,
-                    "this form of `{function}` is not the seven steps: {what} {output} differs. No code is written. "
+                    "this form of `{function}` does not compute the same as the seven steps: {what} {output} differs. \
+                     No code is written. "
                 )?;
-                suspect.advise(f, "A graph in a plan file that has been edited does that", "Please report this robot")
+                suspect.advise(
+                    f,
+                    "The cause may be a plan file whose graph somebody has edited",
+                    "Please report this robot",
+                )
             }
             Self::Imprecise { function, rounding, suspect } => {
                 let what = match function {
@@ -204,15 +208,15 @@ impl fmt::Display for CompileError {
                 };
                 write!(
                     f,
-                    "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
-                    {what}. "
+                    "this form of `{function}` rounds too much: it differs from the seven steps by {rounding:.1e} of \
+                     the largest {what}. "
                 )?;
-                suspect.advise(f, "`form = \"seven_steps\"` needs no plan", "`form = \"seven_steps\"` does not")
+                suspect.advise(f, "Use `form = \"seven_steps\"`, which needs no plan", "Use `form = \"seven_steps\"`")
             }
             Self::TwoOfOneName { function, name } => write!(
                 f,
-                "the code of `{function}` has two variables called `{name}`: the second would stand where the first is \
-                 meant. No code is written. Please report this robot"
+                "the code of `{function}` has two variables called `{name}`: the second would replace the first. No \
+                 code is written. Please report this robot"
             ),
             Self::TooLarge { function, dof, most } => write!(
                 f,
@@ -221,7 +225,7 @@ impl fmt::Display for CompileError {
                  reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
             ),
             Self::PlanDoesNotFit { robot } => {
-                write!(f, "the plan does not fit `{robot}`: one of its choices is not offered by this robot")
+                write!(f, "the plan does not fit `{robot}`: one of its choices is not possible for this robot")
             }
             Self::Graph { robot, function, word, message } => {
                 write!(f, "word {word} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}")

@@ -52,7 +52,7 @@ pub struct UnknownName {
 impl fmt::Display for UnknownName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let allowed: Vec<String> = self.allowed.iter().map(|name| format!("`{name}`")).collect();
-        write!(f, "`{}` is no {}; there are {}", self.found, self.what, allowed.join(", "))
+        write!(f, "`{}` is not a valid {}; the valid words are {}", self.found, self.what, allowed.join(", "))
     }
 }
 

@@ -106,7 +106,7 @@ impl fmt::Display for Reason {
             ),
             Self::Error(CompileError::NotIdentical { function, output, .. }) => {
                 let what = if function.returns_torques() { "the torque of joint" } else { "returned number" };
-                write!(f, "the proof fails, for {what} {output} is not that of the seven steps")
+                write!(f, "the proof fails, because {what} {output} differs from that of the seven steps")
             }
             Self::Error(CompileError::Imprecise { function, rounding, .. }) => {
                 let most = largest_rounding(*function);

@@ -15,7 +15,7 @@ fn names_are_read_back_and_no_two_are_the_same() {
         assert_eq!(format!("{capability:?}"), capability.name());
     }
     let message = "fast".parse::<Form>().expect_err("no form").to_string();
-    assert!(message.starts_with("`fast` is no form; there are `seven_steps`, "), "{message}");
+    assert!(message.starts_with("`fast` is not a valid form; the valid words are `seven_steps`, "), "{message}");
 }
 
 #[test]

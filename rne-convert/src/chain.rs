@@ -119,12 +119,12 @@ pub(crate) fn extract(
     if !walk.loose.is_empty() {
         let joints = names(walk.loose.iter().map(|&joint| &urdf.joints[joint].name));
         let message = format!(
-            "movable joints off the chain from {} to {}: {joints}",
+            "movable joints that are not on the chain from {} to {}: {joints}",
             quoted(&walk.told.base),
             quoted(&walk.told.tip)
         );
         let span = &urdf.joints[walk.loose[0]].span;
-        let help = "a chain holds them still, each at a position of its own or all at zero".to_owned();
+        let help = "hold these joints still, each at a position of its own or all at zero".to_owned();
         return Err(urdf.source.error_with(span, message, help, &Remedy::LockOthers));
     }
     if let Some(&(first, _)) = walk.followers.first() {
@@ -133,18 +133,19 @@ pub(crate) fn extract(
             .followers
             .iter()
             .map(|&(joint, leader)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader))));
-        let message = format!("joints off the chain follow joints of the chain that move: {}", some(each));
-        let help = "what they carry has mass, and no row of a table can say that it moves along; where that mass may \
-                    stand still, hold each of them by its name"
-            .to_owned();
+        let message = format!("joints outside the chain follow moving joints of the chain: {}", some(each));
+        let help =
+            "these joints carry mass, and no row of the table can describe that this mass moves along; if the mass may \
+             stand still, hold each of these joints by its name".to_owned();
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
         let others = names(others.iter().map(|&link| &urdf.links[link].name));
-        walk.told
-            .remarks
-            .push(format!("the tip is {}; behind the same joints are also: {others}", quoted(&walk.told.tip)));
+        walk.told.remarks.push(format!(
+            "the tip is {}; these links are also after the same joints: {others}",
+            quoted(&walk.told.tip)
+        ));
     }
     Ok((chain, walk.told))
 }
@@ -172,7 +173,7 @@ fn link(urdf: &Urdf, name: &str, what: &str) -> Result<usize, Report> {
         let message = format!("there is no link {} that could be the {what}", quoted(name));
         let known = if what == "tip" {
             let leaves = leaves(urdf, urdf.root);
-            format!("a chain may end at any link; those that carry no other:\n{}", listed(urdf, &leaves))
+            format!("the tip can be any link; these links carry no other link:\n{}", listed(urdf, &leaves))
         } else {
             format!("the links are {}", names(urdf.links.iter().map(|link| &link.name)))
         };
@@ -245,7 +246,8 @@ fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End, Report> {
         let link = others.remove(named.unwrap_or(moved.len() - 1));
         return Ok(End { link, others });
     }
-    let message = format!("{} has {} leaves, so the tip must be named", quoted(&urdf.links[base].name), leaves.len());
+    let message =
+        format!("{} has {} end links, so you must name the tip", quoted(&urdf.links[base].name), leaves.len());
     let help = format!("the tip is one of these links, or a link before it:\n{}", listed(urdf, &leaves));
     Err(urdf.source.error_with(&urdf.links[base].span, message, help, &Remedy::NameTip))
 }
@@ -287,12 +289,12 @@ fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, Report> {
     while link != base {
         let Some(joint) = urdf.links[link].parent else {
             let message = format!(
-                "the link {} does not lead to {}: it hangs on {}",
+                "the link {} does not lead to {}: it is attached to {}",
                 quoted(&urdf.links[base].name),
                 quoted(&urdf.links[tip].name),
                 quoted(&urdf.links[link].name)
             );
-            let help = "the base must stand between the root and the tip".to_owned();
+            let help = "the base must be between the root and the tip".to_owned();
             return Err(urdf.source.error(&urdf.links[tip].span, message, help));
         };
         path.push(joint);
@@ -440,12 +442,12 @@ impl Walk<'_> {
         while let Some(mimic) = joints[leader].mimic.as_ref().filter(|_| !self.locks.contains_key(&leader)) {
             let joint = &joints[leader];
             let error = |message: String| {
-                let help = "correct its `mimic`, or hold it still".to_owned();
+                let help = "correct the `mimic` of this joint, or hold the joint still".to_owned();
                 self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name))
             };
             leader = mimic.leader.ok_or_else(|| {
                 let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
-                error(format!("the joint {follower} follows {leader}, and there is no such joint in the file"))
+                error(format!("the joint {follower} follows {leader}, but the file has no such joint"))
             })?;
             mimics.push(mimic);
             if mimics.len() > joints.len() {
@@ -571,19 +573,22 @@ impl Walk<'_> {
         let name = quoted(&joint.name);
         if !joint.kind.has_one_freedom() {
             let message = format!("the joint {name} on the chain is {}", joint.kind.name());
-            let help = "a row of a table is one revolute or prismatic joint; choose base and tip around this one";
+            let help = "a row of the table is one revolute or prismatic joint; choose base and tip so that this joint \
+                        is not between them";
             return error(message, help.to_owned());
         }
         if let Some(mimic) = &joint.mimic {
             let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
-            let help =
-                "its torque belongs to that joint, which no row of a table can say; end the chain before it, or \
-                        hold it still"
-                    .to_owned();
+            let help = "its torque acts on the joint that it follows, and no row of the table can describe this; end \
+                        the chain before this joint, or hold this joint still"
+                .to_owned();
             return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
         }
         if joint.axis == [0.0; 3] {
-            return error(format!("the axis of the joint {name} has no direction"), "write such as 0 0 1".to_owned());
+            return error(
+                format!("the axis of the joint {name} has no direction"),
+                "write a direction, such as 0 0 1".to_owned(),
+            );
         }
         Ok(())
     }
@@ -594,7 +599,7 @@ impl Walk<'_> {
         let joint = &self.urdf.joints[index];
         let name = one_line(&joint.name);
         if !joint.has_axis {
-            self.told.remarks.push(format!("the joint {name} has no element `axis`; its axis is then 1 0 0"));
+            self.told.remarks.push(format!("the joint {name} has no element `axis`, so its axis is 1 0 0"));
         }
         if let Some((lower, upper)) = joint.crossed {
             self.told.remarks.push(format!(

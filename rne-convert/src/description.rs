@@ -244,7 +244,7 @@ mod tests {
         assert!(in_folder("one").ends_with("one.yaml?"), "{}", in_folder("one"));
         let unknown = shipped("puma").expect_err("no such robot");
         assert!(
-            unknown.starts_with("there is no shipped robot `puma`; did you mean `puma560`? there are "),
+            unknown.starts_with("there is no shipped robot `puma`; did you mean `puma560`? the shipped robots are "),
             "{unknown}"
         );
     }

@@ -48,14 +48,14 @@ impl fmt::Display for NoUrdf {
         match self {
             Self::NoMass { link, joint } => write!(
                 f,
-                "link {link}, which the joint {} moves, has a first moment and no mass: a URDF gives links a mass and \
-                 its centre, and cannot say it; give the link its `mass`",
+                "link {link}, which the joint {} moves, has a first moment but no mass, and a URDF cannot store this, \
+                 because it stores the mass of a link and its centre; give the link its `mass`",
                 one_line(joint)
             ),
             Self::TooLarge { what, number } => write!(
                 f,
-                "{what} would be {number:e}, and an import refuses numbers of a URDF above {LARGEST:e}; \
-                 check the units of the robot file: lengths are metres and masses kilograms"
+                "{what} would be {number:e}, but an import refuses numbers of a URDF above {LARGEST:e}; check the \
+                 units of the robot file: lengths are metres and masses kilograms"
             ),
         }
     }
@@ -85,8 +85,8 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     if x != 0.0 || y != 0.0 || (z + 9.81).abs() > 1e-14 {
         let [x, y, z] = gravity.map(exact_digits);
         remarks.push(format!(
-            "gravity is [{x}, {y}, {z}] m/s² in the axes of `world`; where that is not the default, set it: \
-             model.gravity.linear = np.array([{x}, {y}, {z}])"
+            "gravity is [{x}, {y}, {z}] m/s² in the axes of `world`; if your program has another default, set this \
+             gravity: model.gravity.linear = np.array([{x}, {y}, {z}])"
         ));
     }
     remarks.extend(of_motors(robot));
@@ -151,7 +151,8 @@ fn of_motors(robot: &Robot) -> Vec<String> {
     };
     if let Some(names) = named(|motor| motor.coulomb[0] != -motor.coulomb[1]) {
         remarks.push(format!(
-            "Coulomb friction that differs with the direction is written as its mean, for a URDF has one: {names}"
+            "Coulomb friction that differs with the direction is written as its mean, because a URDF has only one \
+             value: {names}"
         ));
     }
     let has_transition = |joint: &&Joint| joint.coulomb_width.is_some() || joint.coulomb_displacement.is_some();
@@ -159,8 +160,8 @@ fn of_motors(robot: &Robot) -> Vec<String> {
         robot.joints.iter().filter(has_transition).map(|joint| one_line(&joint.name)).collect();
     if !transitions.is_empty() {
         remarks.push(format!(
-            "how Coulomb friction changes its sign, `coulomb_width` and `coulomb_displacement`, is left out, for in a \
-             URDF it jumps: {}",
+            "how Coulomb friction changes its sign, `coulomb_width` and `coulomb_displacement`, is left out, because \
+             in a URDF the friction jumps: {}",
             transitions.join(", ")
         ));
     }

@@ -269,7 +269,7 @@ impl Urdf {
             return Vec::new();
         }
         let kinds = some(kinds.into_iter().map(|kind| self.unknown[kind].clone()));
-        vec![format!("the import ignores what it does not know: {kinds}")]
+        vec![format!("the import ignores these parts, which it does not know: {kinds}")]
     }
 
     /// Origins that were probably meant in other units.

@@ -156,7 +156,7 @@ fn passed_over(list: &[(&str, &'static [&'static str])], name: &str) -> &'static
 pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
     let bytes = source.text.len();
     if bytes > MAX_BYTES {
-        let message = format!("a URDF of {bytes} bytes; at most {MAX_BYTES} are read");
+        let message = format!("the URDF has {bytes} bytes; rne reads at most {MAX_BYTES}");
         return Err(Source { file: source.file.clone(), text: String::new() }.error(&(0..0), message, None));
     }
     let mut scanner =
@@ -176,14 +176,14 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
                 scanner.open.pop();
             }
             Ok(Event::DocType(_)) => {
-                let message = "a document type; its entities are not read";
-                let help = "delete the line: a URDF needs none".to_owned();
+                let message = "the file has a document type; rne does not read its entities";
+                let help = "delete the line: a URDF needs no document type".to_owned();
                 return Err(source.error(&place, message, help));
             }
             Ok(Event::Text(words))
                 if scanner.has_robot && scanner.open.is_empty() && !words.trim_ascii().is_empty() =>
             {
-                let message = "text behind the element `robot`; a URDF ends with </robot>";
+                let message = "text after the element `robot`; a URDF ends with </robot>";
                 return Err(source.error(&place, message, None));
             }
             Ok(Event::Eof) => break,
@@ -226,7 +226,7 @@ impl Scanner<'_> {
         let name = tag.name();
         let name = String::from_utf8_lossy(name.as_ref()).into_owned();
         if self.open.len() >= MAX_DEPTH {
-            let message = format!("elements more than {MAX_DEPTH} deep; a URDF needs six");
+            let message = format!("the elements are nested more than {MAX_DEPTH} levels deep; a URDF needs six levels");
             return Err(self.source.error(&place, message, None));
         }
         let element = self.element(&name, &place)?;
@@ -262,7 +262,7 @@ impl Scanner<'_> {
         if parent.is_none() {
             if element.is_none() || self.has_robot {
                 let message = if self.has_robot {
-                    "a second element behind `robot`; a URDF is one robot".to_owned()
+                    "there is a second element after `robot`, but a URDF has only one robot".to_owned()
                 } else {
                     format!("the element {} where `robot` is needed: this is no URDF", quoted(name))
                 };
@@ -272,7 +272,7 @@ impl Scanner<'_> {
             self.has_robot = true;
         }
         if name.starts_with("xacro:") {
-            let message = format!("the macro {}; it is not expanded yet", quoted(name));
+            let message = format!("the file has the macro {}, which is not expanded yet", quoted(name));
             let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
             return Err(self.source.error(place, message, help));
         }
@@ -352,7 +352,7 @@ impl Scanner<'_> {
             let key = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
             if key == "quat_xyzw" {
                 let help = "write the rotation as rpy, in the axes of the parent".to_owned();
-                return Err(self.source.error(place, "a rotation as `quat_xyzw` is not read", help));
+                return Err(self.source.error(place, "rne does not read a rotation as `quat_xyzw`", help));
             }
             let Some(index) = element.attributes.iter().position(|known| known.name == key) else {
                 if !key.starts_with("xmlns:") {
@@ -379,7 +379,7 @@ impl Scanner<'_> {
                 return Err(self.source.error(&self.within(place, &raw), message, None));
             }
             if values[index].replace(value).is_some() {
-                let message = format!("this is not XML: the attribute `{key}` stands there twice");
+                let message = format!("this is not XML: the attribute `{key}` occurs twice");
                 return Err(self.source.error(place, message, None));
             }
         }

@@ -161,7 +161,7 @@ impl Urdf {
             let span = &seen.span;
             let name = seen.text("link", "name").unwrap_or_default();
             if let Some(first) = known.insert(name, span) {
-                let message = format!("the link {} is there already, in line {}", quoted(name), self.line(first));
+                let message = format!("the link {} is already defined in line {}", quoted(name), self.line(first));
                 return Err(self.source.error(span, message, "names of links must differ".to_owned()));
             }
             let is_there = |part: &str| !seen.elements.contains("inertial") || seen.elements.contains(part);
@@ -206,13 +206,17 @@ impl Urdf {
             let span = &seen.span;
             let name = seen.text("joint", "name").unwrap_or_default();
             if let Some(first) = known.insert(name, span) {
-                let message = format!("the joint {} is there already, in line {}", quoted(name), self.line(first));
+                let message = format!("the joint {} is already defined in line {}", quoted(name), self.line(first));
                 return Err(self.source.error(span, message, "names of joints must differ".to_owned()));
             }
             let link = |end: &'static str| {
                 let Some(link) = seen.text(end, "link") else {
                     let message = format!("the joint {} has no element `{end}`", quoted(name));
-                    return Err(self.source.error(span, message, format!("write <{end} link=\"NAME\"/> into it")));
+                    return Err(self.source.error(
+                        span,
+                        message,
+                        format!("write <{end} link=\"NAME\"/> into the joint"),
+                    ));
                 };
                 links.get(link).copied().ok_or_else(|| {
                     let message = format!("the joint {} names the link {}", quoted(name), quoted(link));
@@ -245,18 +249,26 @@ impl Urdf {
     fn find_root(&mut self) -> Result<(), Report> {
         let roots: Vec<usize> = (0..self.links.len()).filter(|&link| self.links[link].parent.is_none()).collect();
         let [root] = roots[..] else {
-            let (place, message) = match roots.get(1) {
+            const CONNECT: &str = "connect all links with joints to one tree";
+            let (place, message, help) = match roots.get(1) {
                 Some(&second) => {
                     let roots = names(roots.iter().map(|&root| &self.links[root].name));
                     (
                         self.links[second].span.clone(),
-                        format!("no joint moves the links {roots}; one of them is the root"),
+                        format!("the URDF has several root links, because no joint moves the links {roots}"),
+                        CONNECT,
                     )
                 }
-                None if self.links.is_empty() => (0..0, "there is no link".to_owned()),
-                None => (self.joints[0].span.clone(), "the joints form a circle: no link is the root".to_owned()),
+                None if self.links.is_empty() => {
+                    let help = "add an element <link> for each body, and an element <joint> between two links";
+                    (0..0, "the robot has no link".to_owned(), help)
+                }
+                None => {
+                    let message = "the joints form a circle, so no link is the root".to_owned();
+                    (self.joints[0].span.clone(), message, CONNECT)
+                }
             };
-            return Err(self.source.error(&place, message, "join all links to one tree".to_owned()));
+            return Err(self.source.error(&place, message, help.to_owned()));
         };
         let mut reached = vec![false; self.links.len()];
         let mut open = vec![root];
@@ -265,8 +277,12 @@ impl Urdf {
             open.extend(self.links[link].children.iter().map(|&joint| self.joints[joint].child));
         }
         if let Some(lost) = reached.iter().position(|reached| !reached) {
-            let message = format!("the link {} hangs in a circle of joints", quoted(&self.links[lost].name));
-            return Err(self.source.error(&self.links[lost].span, message, "join all links to one tree".to_owned()));
+            let message = format!("the link {} is part of a circle of joints", quoted(&self.links[lost].name));
+            return Err(self.source.error(
+                &self.links[lost].span,
+                message,
+                "connect all links with joints to one tree".to_owned(),
+            ));
         }
         self.root = root;
         Ok(())

@@ -34,18 +34,18 @@ fn every_mistake_has_its_message_and_its_place() {
         ("0 0 1", "0 zero 0 1", 4, "`xyz` of `origin` is `0 zero 0 1`; it must be three numbers"),
         ("0 0 1", "0 0 inf", 4, "it must be three numbers"),
         ("parent link=\"a\"", "parent link=\"x\"", 4, "the joint `j` names the link `x`"),
-        ("child link=\"b\"", "child link=\"a\"", 2, "the link `a` hangs in a circle of joints"),
-        ("<link name=\"a\"/>", "<link name=\"b\"/>", 3, "the link `b` is there already, in line 2"),
+        ("child link=\"b\"", "child link=\"a\"", 2, "the link `a` is part of a circle of joints"),
+        ("<link name=\"a\"/>", "<link name=\"b\"/>", 3, "the link `b` is already defined in line 2"),
         ("<link name=\"a\"/>", "<link name=\"a\"/><link name=\"c\"/>", 2, "no joint moves the links `a`, `c`"),
         ("type=\"revolute\"", "", 4, "`joint` lacks the attribute `type`"),
         ("<origin xyz=\"0 0 1\"/>", "<origin/><origin/>", 4, "a second `origin` in one `joint`"),
-        ("xyz=\"0 0 1\"", "quat_xyzw=\"0 0 0 1\"", 4, "a rotation as `quat_xyzw` is not read"),
+        ("xyz=\"0 0 1\"", "quat_xyzw=\"0 0 0 1\"", 4, "rne does not read a rotation as `quat_xyzw`"),
         ("<robot name=\"r\">", "<!DOCTYPE r [<!ENTITY e \"x\">]><robot name=\"r\">", 1, "a document type"),
         ("name=\"j\"", "name=\"&e;\"", 4, "`name` cannot be read"),
         ("</robot>", "", 4, "the text ends within an element"),
-        ("</robot>", "</robot><robot/>", 5, "a second element behind `robot`"),
+        ("</robot>", "</robot><robot/>", 5, "a second element after `robot`"),
         ("<robot name=\"r\">", "<sdf><robot name=\"r\">", 1, "SDF is another format"),
-        ("<link name=\"a\"/>", "<link name=\"a\"/><xacro:include/>", 2, "it is not expanded yet"),
+        ("<link name=\"a\"/>", "<link name=\"a\"/><xacro:include/>", 2, "which is not expanded yet"),
         ("</link>\n<joint", "</lin>\n<joint", 3, "this is not XML"),
         ("name=\"j\"", "name=\"${prefix}j\"", 4, "`name` of `joint` is `${prefix}j`, an expression of xacro"),
         ("0 0 1", "0 0 $(arg height)", 4, "an expression of xacro"),
@@ -112,16 +112,16 @@ fn what_is_not_known_is_noted() {
         .replace("<link name=\"b\">", "<link name=\"b\" type=\"x\"><verbose value=\"1\"/>")
         .replace("<limit ", "<drake:effort_limit/><limit acceleration=\"2\" ")
         .replace("</robot>", "<loop/></robot>");
-    let ignored = "the import ignores what it does not know: attribute `type` of `link`, element `verbose` in `link`, \
-                   element `drake:effort_limit` in `joint`, attribute `acceleration` of `limit`, element `loop` in \
-                   `robot`";
+    let ignored = "the import ignores these parts, which it does not know: attribute `type` of `link`, element \
+                   `verbose` in `link`, element `drake:effort_limit` in `joint`, attribute `acceleration` of `limit`, \
+                   element `loop` in `robot`";
     assert_eq!(remarks(&other), [ignored]);
     // the link that stands still is no part of the arm
     let still = known.replace("<link name=\"a\"/>", "<link name=\"a\" type=\"x\"><verbose/></link>");
     assert_eq!(remarks(&still), Vec::<String>::new());
 
     let no_axis = remarks(&with("type=\"revolute\"", "type=\"prismatic\""));
-    assert_eq!(no_axis, ["the joint j has no element `axis`; its axis is then 1 0 0"]);
+    assert_eq!(no_axis, ["the joint j has no element `axis`, so its axis is 1 0 0"]);
     let crossed = remarks(&axis(with("effort=", "lower=\"2\" upper=\"-1\" effort=")));
     assert_eq!(crossed, ["the joint j has a lower limit, 2, that is above its upper one, -1; both are left out"]);
     let negative = remarks(&axis(with("effort=\"1\"", "effort=\"-1\"")));
@@ -146,7 +146,7 @@ fn circles_are_found() {
              <joint name=\"k\" type=\"fixed\"><parent link=\"c\"/><child link=\"d\"/></joint>\
              <joint name=\"l\" type=\"fixed\"><parent link=\"d\"/><child link=\"c\"/></joint></robot>";
     let message = error(&text);
-    assert!(message.contains("the link `c` hangs in a circle of joints"), "{message}");
+    assert!(message.contains("the link `c` is part of a circle of joints"), "{message}");
     let circle = with("<link name=\"a\"/>", "").replace("link=\"a\"", "link=\"b\"");
     assert!(error(&circle).contains("no link is the root"), "{}", error(&circle));
     let twice =
@@ -157,9 +157,9 @@ fn circles_are_found() {
 #[test]
 fn depth_length_and_number_are_bounded() {
     let deep = format!("<robot>{}", "<a>".repeat(1_000_000));
-    assert!(error(&deep).contains("elements more than 64 deep"), "{}", error(&deep));
+    assert!(error(&deep).contains("elements are nested more than 64 levels deep"), "{}", error(&deep));
     let long = format!("<robot>{}</robot>", " ".repeat(17 << 20));
-    assert!(error(&long).contains("at most 16777216 are read"), "{}", error(&long));
+    assert!(error(&long).contains("rne reads at most 16777216"), "{}", error(&long));
     let mut many = String::from("<robot>");
     for i in 0..20_001 {
         let _ = write!(many, "<link name=\"l{i}\"/>");

@@ -203,7 +203,7 @@ fn first_moments_turn_with_their_frames() {
                 let refused = export(&robot).unwrap_err();
                 let said = format!("link {}, which the joint ", index + 1);
                 assert!(refused.to_string().starts_with(&said), "{refused}");
-                assert!(refused.to_string().contains("has a first moment and no mass: a URDF"), "{refused}");
+                assert!(refused.to_string().contains("has a first moment but no mass, and a URDF"), "{refused}");
             }
         }
     }

@@ -7,7 +7,7 @@ mod remark;
 
 use std::path::PathBuf;
 
-use rne_logs::{Log, Motion, Motions, Options, Survey};
+use rne_logs::{Log, Motion, Motions, Options, Survey, UtcTime};
 use rne_model::{Robot, one_line};
 
 pub use self::error::{ArmLogError, Mismatch, PassError};
@@ -188,6 +188,20 @@ impl ArmLog {
     #[must_use]
     pub fn survey(&self) -> &Survey {
         &self.survey
+    }
+
+    /// The beginning and the end of the logs. `None` where their times do not count from 1970, and where they have more
+    /// runs than a survey lists.
+    #[must_use]
+    pub fn span(&self) -> Option<[UtcTime; 2]> {
+        let Survey { runs, run_count, .. } = &self.survey;
+        if runs.is_empty() || u64::try_from(runs.len()) != Ok(*run_count) {
+            return None;
+        }
+        let start = runs.iter().fold(f64::INFINITY, |least, run| least.min(run.start));
+        let end = runs.iter().fold(f64::NEG_INFINITY, |most, run| most.max(run.start + run.duration));
+        let layout = self.log.layout();
+        Some([layout.utc(start)?, layout.utc(end)?])
     }
 
     /// The names of the files, the number of states and their rate, in words.

@@ -61,12 +61,16 @@ impl ExcitationError {
 impl fmt::Display for ExcitationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Period => f.write_str("a period is a number of seconds above 0"),
-            Self::Harmonics => f.write_str("a motion from rest to rest takes 2 harmonics or more"),
+            Self::Period => f.write_str("the period must be a number of seconds above 0"),
+            Self::Harmonics => f.write_str("a motion from rest to rest needs 2 harmonics or more"),
             Self::Length { what, found, joints } => {
-                write!(f, "{what} has {found} numbers, and the robot {joints} joints; one number is for all of them")
+                write!(
+                    f,
+                    "{what} has {found} numbers, but the robot has {joints} joints; give one number for all joints, or \
+                     one for each"
+                )
             }
-            Self::NotPositive(what) => write!(f, "{what} takes finite numbers above 0"),
+            Self::NotPositive(what) => write!(f, "{what} needs finite numbers above 0"),
             Self::NoPosition { joint } => write!(
                 f,
                 "{joint} slides and has no position limits; write `limits: {{position: [LOWER, UPPER]}}` (m) in the \
@@ -79,8 +83,8 @@ impl fmt::Display for ExcitationError {
                  or smaller motion needs less"
             ),
             Self::Indistinct => f.write_str(
-                "no motion was found that tells the base parameters from each other: the limits are too narrow, or \
-                 numbers of the robot file too large or too small",
+                "no motion was found that distinguishes the base parameters from each other: the limits are too \
+                 narrow, or numbers of the robot file are too large or too small",
             ),
             Self::Evaluation(error) => error.fmt(f),
         }

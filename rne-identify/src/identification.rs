@@ -7,6 +7,7 @@ use rne_logs::Motion;
 use rne_model::{FrictionTransition, Inertia, InertiaReference, Joint, Link, Motor, Robot};
 
 use crate::feasible::Feasible;
+use crate::friction::{FrictionExcitation, HeldFriction};
 use crate::information::{Information, MotionError, Rejected, Weighting};
 use crate::least_squares::LeastSquares;
 use crate::parameters::{PER_LINK, Parameters};
@@ -108,9 +109,11 @@ pub struct JointReport {
     pub error: JointError,
     /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at the joint.
     pub friction: Option<[(f64, f64); FRICTION]>,
-    /// The lesser deviation of the two of Coulomb friction over the joint's effort, root mean square: below 0.5
-    /// friction counts as excited; else the robot has that of the file. Infinite without friction.
+    /// The deviation of Coulomb friction, half the sum of both directions, over the joint's effort, root mean square:
+    /// below 0.5 friction counts as excited. Infinite without friction.
     pub friction_uncertainty: f64,
+    /// The part of its friction that the logs determine; the rest is that of the file.
+    pub friction_excitation: FrictionExcitation,
     /// Transition of Coulomb friction between its two signs.
     pub transition: Option<FrictionTransition>,
     /// An offset that least squares find to be larger than Coulomb friction, and the latter, N m or N: a spring, a
@@ -142,7 +145,14 @@ impl JointReport {
     /// Whether the logs tell its friction.
     #[must_use]
     pub fn is_friction_excited(&self) -> bool {
-        self.friction_uncertainty < UNKNOWN
+        self.friction_excitation != FrictionExcitation::None
+    }
+
+    /// Whether the logs tell its friction, but not how much the two directions differ: that half of their difference
+    /// is an offset, which gravity hides if the joint moves little.
+    #[must_use]
+    pub fn is_offset_unknown(&self) -> bool {
+        self.friction_excitation == FrictionExcitation::WithoutOffset
     }
 }
 
@@ -175,7 +185,7 @@ pub fn identify<E: From<MotionError>>(
 ) -> Result<Identification, E> {
     let structure = Structure::new(robot, options);
     let OverLogs { information, scales, least_squares } = over_logs(&structure, false, &mut pass)?;
-    let one = Fit::of_least_squares(&structure, least_squares, &scales, regularization);
+    let one = Fit::of_least_squares(&structure, &information, least_squares, &scales, regularization);
     if let Some(joint) = not_finite(&one.robot) {
         return Err(MotionError::NotANumber(joint).into());
     }
@@ -249,24 +259,31 @@ pub struct Fit {
     pub robot: Robot,
     /// The least-squares estimate, whether or not bodies can be so.
     pub least_squares: LeastSquares,
-    /// The estimate whose links are bodies.
+    /// The estimate whose links are bodies, and whose friction is that of the file where the rows do not tell it.
     pub feasible: Feasible,
     /// Every base parameter, base to tip.
     pub bases: Vec<BaseReport>,
     /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at each joint; without
-    /// friction none.
+    /// friction none. Where the rows do not tell the offset, the deviations are for the offset of the file.
     pub friction: Vec<[(f64, f64); FRICTION]>,
+    /// The part of the friction of each joint that the rows determine.
+    pub friction_excitation: Vec<FrictionExcitation>,
+    /// The deviation of the Coulomb friction of each joint over its effort.
+    friction_uncertainties: Vec<f64>,
     /// The root mean square of each joint's efforts, N m or N.
     pub efforts: Vec<f64>,
 }
 
 impl Fit {
-    /// Whether the rows tell the friction of a joint: of the two deviations of its Coulomb friction the lesser one is
-    /// below half of its efforts, root mean square. Viscous friction is told by the same rows: in its own unit it has
-    /// no effort to be held against.
+    /// Whether the rows tell the friction of a joint, with its offset or without. Viscous friction is told by the same
+    /// rows: in its own unit it has no effort to be held against.
     #[must_use]
     pub fn is_friction_excited(&self, joint: usize) -> bool {
-        joint < self.friction.len() && self.friction_uncertainty(joint) < UNKNOWN
+        self.excitation(joint) != FrictionExcitation::None
+    }
+
+    fn excitation(&self, joint: usize) -> FrictionExcitation {
+        self.friction_excitation.get(joint).copied().unwrap_or(FrictionExcitation::None)
     }
 
     /// Fits what was gathered. `regularization` is γ of [`Feasible`].
@@ -274,30 +291,35 @@ impl Fit {
     pub fn new(structure: &Structure, information: &Information, regularization: f64) -> Self {
         let scales = information.scales(structure);
         let least_squares = LeastSquares::of(structure, information, &scales);
-        Self::of_least_squares(structure, least_squares, &scales, regularization)
+        Self::of_least_squares(structure, information, least_squares, &scales, regularization)
     }
 
-    fn of_least_squares(structure: &Structure, fit: LeastSquares, scales: &Scales, regularization: f64) -> Self {
-        let feasible = Feasible::of(structure, &fit, scales, regularization);
-        let joints = if structure.options.friction { structure.dof() } else { 0 };
-        let friction = (0..joints).map(|joint| friction(structure, &fit, &feasible, joint)).collect();
+    fn of_least_squares(
+        structure: &Structure,
+        information: &Information,
+        fit: LeastSquares,
+        scales: &Scales,
+        regularization: f64,
+    ) -> Self {
+        let held = HeldFriction::of(structure, information, &fit, scales);
+        let mut feasible = Feasible::of(structure, held.fit(&fit), scales, regularization);
+        held.tie(&mut feasible.friction);
+        let friction = (0..held.holds.len()).map(|joint| held.friction(structure, &fit, &feasible, joint)).collect();
+        let uncertainties = (0..held.holds.len()).map(|joint| held.uncertainty(structure, &fit, scales, joint));
         let mut one = Self {
             robot: structure.robot.clone(),
             bases: Vec::new(),
             friction,
+            friction_uncertainties: uncertainties.collect(),
+            friction_excitation: held.holds.iter().map(|hold| hold.excitation).collect(),
             efforts: scales.friction.clone(),
+            // deviations without any hold: what is held has none
             least_squares: fit,
             feasible,
         };
         one.robot = robot_of(structure, &one);
         one.bases = bases(structure, &one.least_squares, scales, &one.robot);
         one
-    }
-
-    /// The lesser deviation of a joint's Coulomb friction over the joint's effort; infinite where it is not a number.
-    fn friction_uncertainty(&self, joint: usize) -> f64 {
-        let deviations = self.friction.get(joint).into_iter().flat_map(|[_, coulomb @ ..]| coulomb);
-        deviations.fold(f64::INFINITY, |least, (_, deviation)| least.min(*deviation)) / self.efforts[joint]
     }
 }
 
@@ -316,16 +338,6 @@ fn bases(structure: &Structure, fit: &LeastSquares, scales: &Scales, robot: &Rob
     each.collect()
 }
 
-fn friction(structure: &Structure, fit: &LeastSquares, feasible: &Feasible, joint: usize) -> [(f64, f64); FRICTION] {
-    let at = structure.parameters.rank() + FRICTION * joint;
-    let [viscous, forward, backward] = feasible.friction[joint];
-    [
-        (viscous, fit.deviation(at)),
-        (forward, fit.coulomb_deviation(at, 1.0)),
-        (backward, fit.coulomb_deviation(at, -1.0)),
-    ]
-}
-
 fn joints(structure: &Structure, one: &Fit, errors: &[JointError], rejected: &[Option<Rejected>]) -> Vec<JointReport> {
     let each = errors.iter().zip(rejected).enumerate().map(|(joint, (error, rejected))| JointReport {
         noise: one.least_squares.noise[joint],
@@ -333,7 +345,8 @@ fn joints(structure: &Structure, one: &Fit, errors: &[JointError], rejected: &[O
         rejected: *rejected,
         error: *error,
         friction: one.friction.get(joint).copied(),
-        friction_uncertainty: one.friction_uncertainty(joint),
+        friction_uncertainty: one.friction_uncertainties.get(joint).copied().unwrap_or(f64::INFINITY),
+        friction_excitation: one.excitation(joint),
         transition: structure.options.friction.then(|| structure.transitions[one.least_squares.transitions[joint]]),
         offset: one.least_squares.loose_offset(structure, joint, one.efforts[joint]),
         rotor: structure.options.rotors.then(|| one.feasible.rotors[joint]),

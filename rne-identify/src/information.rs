@@ -97,23 +97,28 @@ impl fmt::Display for MotionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Joints { expected, found } => {
-                write!(f, "the log has {found} joints and the robot {expected}; name those that belong to the robot")
+                write!(
+                    f,
+                    "the log has {found} joints, but the robot has {expected}; name the joints of the log that belong \
+                     to the robot"
+                )
             }
-            Self::Lengths => f.write_str("positions, rates, accelerations and torques are not as many as times"),
+            Self::Lengths => f.write_str("there must be as many positions, rates, accelerations and torques as times"),
             Self::NotFinite(state) => write!(f, "state {state} has a number that is not finite"),
             Self::Evaluation(error) => error.fmt(f),
             Self::TooFew { rows, needed, duration } => write!(
                 f,
-                "logs of {duration:.2} s behind the filter make {rows} rows of each joint, and {needed} are needed to \
-                 tell how far off they are: more of the log, a longer one, or a higher cut-off"
+                "{duration:.2} s of logs after the filter give {rows} rows for each joint, but {needed} are needed to \
+                 estimate the deviations: use more of the log, a longer log, or a higher cut-off"
             ),
             Self::NoEfforts => f.write_str(
-                "the efforts of all joints are zero throughout, or less than any sensor measures: they are no torques",
+                "the efforts of all joints are zero throughout, or less than any sensor measures: they are not torques",
             ),
             Self::NotANumber(joint) => write!(
                 f,
-                "no finite link, friction or rotor of joint {} explains the log: are its efforts torques in N m, its \
-                 positions radians, and are links of the robot file as large as those of an arm?",
+                "no finite values of the link, friction and rotor of joint {} explain the log: check that its efforts \
+                 are torques in N m and its positions radians, and that the links of the robot file are as large as \
+                 those of an arm",
                 joint + 1
             ),
         }

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::friction::{FrictionExcitation, Hold};
 use crate::information::{Information, Segment, Weighting};
 use crate::prior::Scales;
 use crate::r_factor::RFactor;
@@ -59,7 +60,8 @@ impl LeastSquares {
         let total = information.total(structure);
         let dof = structure.dof();
         let middle = structure.options.widths.len() / 2;
-        let mut state = State { structure, scales, noise: vec![1.0; dof], transitions: vec![middle; dof] };
+        let (noise, transitions) = (vec![1.0; dof], vec![middle; dof]);
+        let mut state = State { structure, scales, noise, transitions, holds: Vec::new() };
         let largest = information.largest.iter().copied().fold(0.0, f64::max);
         for ((noise, factor), most) in state.noise.iter_mut().zip(&total).zip(&information.largest) {
             // the torque itself, to begin with
@@ -72,27 +74,28 @@ impl LeastSquares {
             }
             state.settle_noise(&total);
         }
-        let triangle = state.stacked(&total);
-        let solution = solved(&triangle, state.count());
-        let (mut covariance, freedom) = if information.is_unordered() {
-            let left = information.rows().saturating_sub(solution.len() as u64);
-            (state.independent(&triangle), usize::try_from(left).unwrap_or(usize::MAX))
-        } else {
-            let segments = &information.segments;
-            (state.covariance(segments, &triangle, &solution), segments.len().saturating_sub(1))
-        };
-        let measured = state.noise.iter().filter(|noise| noise.is_finite()).count();
-        let equations = usize::try_from(information.rows()).unwrap_or(usize::MAX).saturating_mul(measured);
-        // what is left of so few is their number and no noise, and numbers overflow
-        if equations < ENOUGH * solution.len() || solution.iter().any(|value| !value.is_finite()) {
-            covariance.fill(f64::NAN);
-        }
-        let condition = condition(&triangle, state.count(), &state.ridge());
-        let State { noise, transitions, .. } = state;
-        let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
-        let delay = information.shift + left;
-        let segments = information.segments.len();
-        Self { solution, covariance, noise, delay, transitions, condition, segments, triangle, freedom }
+        state.estimate(information, &total)
+    }
+
+    /// The estimate from the same rows with the same noise and transitions, with friction of some joints held; also the
+    /// root mean square of what is left of each joint's rows, N m or N.
+    pub(crate) fn with_holds(
+        &self,
+        structure: &Structure,
+        information: &Information,
+        scales: &Scales,
+        holds: Vec<Hold>,
+    ) -> (Self, Vec<f64>) {
+        let total = information.total(structure);
+        let (noise, transitions) = (self.noise.clone(), self.transitions.clone());
+        let state = State { structure, scales, noise, transitions, holds };
+        let one = state.estimate(information, &total);
+        let left = total.iter().enumerate().map(|(joint, factor)| {
+            let squares = state.residual(joint, factor, &one.solution);
+            if squares > 0.0 { (squares / factor.weight().max(1.0)).sqrt() * state.noise[joint] } else { 0.0 }
+        });
+        let left = left.collect();
+        (one, left)
     }
 
     /// The weighting of rows in the next pass.
@@ -173,9 +176,37 @@ struct State<'a> {
     scales: &'a Scales,
     noise: Vec<f64>,
     transitions: Vec<usize>,
+    /// One entry for each joint, or none at all.
+    holds: Vec<Hold>,
 }
 
 impl State<'_> {
+    /// The unknowns and their deviations, with noise and transitions as they are.
+    fn estimate(&self, information: &Information, total: &Segment) -> LeastSquares {
+        let structure = self.structure;
+        let triangle = self.stacked(total);
+        let solution = solved(&triangle, self.count());
+        let (mut covariance, freedom) = if information.is_unordered() {
+            let left = information.rows().saturating_sub(solution.len() as u64);
+            (self.independent(&triangle), usize::try_from(left).unwrap_or(usize::MAX))
+        } else {
+            let segments = &information.segments;
+            (self.covariance(segments, &triangle, &solution), segments.len().saturating_sub(1))
+        };
+        let measured = self.noise.iter().filter(|noise| noise.is_finite()).count();
+        let equations = usize::try_from(information.rows()).unwrap_or(usize::MAX).saturating_mul(measured);
+        // what is left of so few is their number and no noise, and numbers overflow
+        if equations < ENOUGH * solution.len() || solution.iter().any(|value| !value.is_finite()) {
+            covariance.fill(f64::NAN);
+        }
+        let condition = condition(&triangle, self.count(), &self.scales.ridge(structure));
+        let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
+        let delay = information.shift + left;
+        let segments = information.segments.len();
+        let (noise, transitions) = (self.noise.clone(), self.transitions.clone());
+        LeastSquares { solution, covariance, noise, delay, transitions, condition, segments, triangle, freedom }
+    }
+
     fn count(&self) -> usize {
         self.structure.count()
     }
@@ -193,19 +224,38 @@ impl State<'_> {
     }
 
     /// The ridge keeps unknowns finite that no log excites: a row for each, far weaker than anything that was measured.
-    fn ridge(&self) -> DVector<f64> {
-        self.scales.ridge(self.structure)
+    /// The rows of friction that is held are far stronger.
+    fn ridge(&self) -> DMatrix<f64> {
+        let count = self.count();
+        let mut rows = DMatrix::zeros(count, count + 1);
+        rows.view_mut((0, 0), (count, count)).set_diagonal(&self.scales.ridge(self.structure));
+        for (joint, hold) in self.holds.iter().enumerate() {
+            let Some(at) = self.structure.friction_at(joint) else { continue };
+            let weight = Hold::weight(self.scales.friction[joint]);
+            match hold.excitation {
+                FrictionExcitation::Full => {}
+                FrictionExcitation::WithoutOffset => {
+                    rows[(at + 2, at + 2)] = weight;
+                    rows[(at + 2, at + 1)] = -weight * hold.asymmetry();
+                }
+                FrictionExcitation::None => {
+                    for (k, value) in hold.of_file.iter().enumerate() {
+                        rows[(at + k, at + k)] = weight;
+                        rows[(at + k, count)] = weight * value;
+                    }
+                }
+            }
+        }
+        rows
     }
 
     fn stacked(&self, segment: &Segment) -> RFactor {
         let mut all = RFactor::new(self.count() + 1);
-        let mut ridge = DMatrix::zeros(self.count(), self.count() + 1);
-        ridge.view_mut((0, 0), (self.count(), self.count())).set_diagonal(&self.ridge());
         let mut add = |rows| {
             // of as many columns
             let _ = all.absorb_weighted(rows, 0.0);
         };
-        add(ridge);
+        add(self.ridge());
         for (joint, factor) in segment.iter().enumerate() {
             add(self.rows(joint, self.transitions[joint], factor));
         }
@@ -222,12 +272,17 @@ impl State<'_> {
                 continue;
             }
             let rows = self.rows(joint, self.transitions[joint], factor);
-            let (design, target) = (rows.columns(0, self.count()), rows.column(self.count()));
-            let residual = (target - design * &solution).norm_squared() * self.noise[joint].powi(2);
-            let taken = (design * &inverse).norm_squared();
+            let residual = self.residual(joint, factor, &solution) * self.noise[joint].powi(2);
+            let taken = (rows.columns(0, self.count()) * &inverse).norm_squared();
             let left = (factor.weight() - taken).max(1.0);
             self.noise[joint] = (residual / left).sqrt().max(1e-9 * effort(factor)).max(LEAST_NOISE);
         }
+    }
+
+    /// The sum of squares that a solution leaves of a joint's rows, in units of its noise.
+    fn residual(&self, joint: usize, factor: &RFactor, solution: &DVector<f64>) -> f64 {
+        let rows = self.rows(joint, self.transitions[joint], factor);
+        (rows.column(self.count()) - rows.columns(0, self.count()) * solution).norm_squared()
     }
 
     /// Joint by joint the transition that leaves the least.
@@ -306,10 +361,7 @@ impl State<'_> {
     /// Of what the rows tell it is nothing beside their own covariance; what they do not tell is as unknown as before,
     /// although it is zero whatever segment is left out.
     fn of_ridge(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut drawn = inverse * inverse.transpose();
-        for (mut column, ridge) in drawn.column_iter_mut().zip(self.ridge().iter()) {
-            column *= *ridge;
-        }
+        let drawn = inverse * inverse.transpose() * self.ridge().columns(0, self.count()).transpose();
         &drawn * drawn.transpose()
     }
 }

@@ -53,6 +53,20 @@ pub struct JointError {
     pub states: u64,
 }
 
+impl JointError {
+    /// The error at speeds above the first of [`SPEEDS`], over the same standard deviation; `None` if the joint never
+    /// moved.
+    #[must_use]
+    pub fn in_motion(&self) -> Option<f64> {
+        let Self { error, residual, by_speed: [at_rest, ..], part_at_rest, .. } = *self;
+        let squared = residual * residual;
+        // part of the states at which the joint was at rest
+        let rest = if at_rest > 0.0 { part_at_rest * squared / (at_rest * at_rest) } else { 0.0 };
+        let in_motion = (1.0 - part_at_rest) / (1.0 - rest);
+        (rest < 1.0 && in_motion.is_finite() && in_motion >= 0.0).then(|| error * in_motion.sqrt())
+    }
+}
+
 /// An interval of time in which a joint stood still.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

@@ -168,7 +168,7 @@ impl std::fmt::Display for WrongColumns {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "rows of {} columns, not {}: they are of another robot or another choice of friction",
+            "rows of {} columns, not {}: the rows come from another robot or another choice of friction",
             self.found, self.expected
         )
     }

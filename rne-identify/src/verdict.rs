@@ -106,6 +106,9 @@ pub struct Excited {
     pub frictions: usize,
     /// The joints whose friction is not excited, from 0.
     pub unknown_friction: Vec<usize>,
+    /// The joints whose friction is excited, but whose offset is not: half the difference of Coulomb friction in both
+    /// directions, from 0.
+    pub unknown_offsets: Vec<usize>,
 }
 
 impl Verdict {
@@ -221,6 +224,7 @@ impl Excited {
                 .filter(|(_, joint)| !joint.is_friction_excited())
                 .map(|(at, _)| at)
                 .collect(),
+            unknown_offsets: with_friction().filter(|(_, joint)| joint.is_offset_unknown()).map(|(at, _)| at).collect(),
         }
     }
 

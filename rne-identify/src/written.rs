@@ -128,8 +128,9 @@ fn of_motor(report: &JointReport, kind: JointKind) -> Option<String> {
         return Some("friction not excited".to_owned());
     }
     let unit = kind.effort_unit();
+    let offset = if report.is_offset_unknown() { "; the log cannot tell an offset from gravity" } else { "" };
     Some(format!(
-        "deviations at the joint: viscous {}, Coulomb {} and {} {unit}",
+        "deviations at the joint: viscous {}, Coulomb {} and {} {unit}{offset}",
         short(viscous.1),
         short(forward.1),
         short(backward.1)

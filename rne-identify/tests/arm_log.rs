@@ -122,7 +122,7 @@ fn joints_of_other_names_are_matched_by_their_order_or_refused() {
     }
     let (names, remark) = matched(&robot, &ArmLogOptions::default()).unwrap();
     assert_eq!(names, own);
-    assert!(matches!(&remark, ArmLogRemark::MatchedByOrder { logged } if logged == &own), "{remark:?}");
+    assert!(matches!(&remark, ArmLogRemark::MatchedByOrder { logged, .. } if logged == &own), "{remark:?}");
     // names that are given are not matched, in whatever order
     let (names, remark) = matched(&robot, &joints(&["elbow", "waist", "shoulder"])).unwrap();
     assert_eq!(names, ["elbow", "waist", "shoulder"]);

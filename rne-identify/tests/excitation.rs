@@ -325,7 +325,7 @@ fn what_makes_no_motion_is_refused() {
     for period in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let mut options = options(10);
         options.period = period;
-        assert_eq!(refused(&limits, &options), (true, "a period is a number of seconds above 0".to_owned()));
+        assert_eq!(refused(&limits, &options), (true, "the period must be a number of seconds above 0".to_owned()));
     }
     let mut one = options(10);
     one.harmonics = 1;

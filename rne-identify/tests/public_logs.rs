@@ -21,8 +21,12 @@ fn file(name: &str) -> PathBuf {
 
 /// A log of one run, filtered, to its ends.
 fn motion(name: &str) -> Motion {
+    motion_of(&file(name))
+}
+
+fn motion_of(log: &Path) -> Motion {
     let options = rne_logs::Options { cutoff: Some(WIDER * CUTOFF), ..rne_logs::Options::default() };
-    let log = Log::open(&[file(name)], options).unwrap();
+    let log = Log::open(&[log.to_path_buf()], options).unwrap();
     let survey = log.survey(|_| ()).unwrap();
     let mut pieces = log.motions(&survey).unwrap().with_length(1 << 20).with_ends();
     let motion = pieces.next().unwrap().unwrap().motion;
@@ -45,9 +49,14 @@ fn part(motion: &Motion, range: std::ops::Range<usize>) -> Motion {
 
 /// What is identified from the first part of a log, and its errors on the part that was held back.
 fn held_out(arm: &str) -> (Identification, Vec<JointError>) {
+    held_out_of(arm, &file(&format!("{arm}.csv")))
+}
+
+/// The same of a log that is a part of it.
+fn held_out_of(arm: &str, log: &Path) -> (Identification, Vec<JointError>) {
     let robot = std::fs::read_to_string(file(&format!("{arm}_log.yaml"))).unwrap();
     let robot = Robot::from_yaml(&robot).unwrap_or_else(|report| panic!("{report}"));
-    let motion = motion(&format!("{arm}.csv"));
+    let motion = motion_of(log);
     let whole = motion.len();
     let until = motion.time.partition_point(|time| *time < PART * motion.time[whole - 1]);
     let mut options = Options::default();
@@ -80,6 +89,34 @@ fn public_logs_are_predicted_better_than_by_a_textbook() {
         assert!(median(filtered) < 0.75 * median(baseline.to_vec()));
         assert!(median(unfiltered) < median(baseline.to_vec()));
     }
+}
+
+/// In the first ten seconds the shoulder lifts so little that gravity hides an offset, but not Coulomb friction: it
+/// stays, the same in both directions.
+#[test]
+fn coulomb_friction_of_a_short_log_is_kept_without_its_offset() {
+    let text = std::fs::read_to_string(file("ur10.csv")).unwrap();
+    let first: Vec<&str> = text.lines().take(1 + 330).collect();
+    let folder = std::env::temp_dir().join(format!("rne_short_log_{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let log = folder.join("ur10.csv");
+    std::fs::write(&log, first.join("\n") + "\n").unwrap();
+    let (found, errors) = held_out_of("ur10", &log);
+    std::fs::remove_dir_all(&folder).unwrap();
+    let verdict = Verdict::of(&found, Some(&errors));
+    let shoulder = &verdict.joints[1];
+    assert!(shoulder.is_predicted && shoulder.doubts.is_empty(), "{shoulder:?}");
+    assert!(errors[1].error < 0.1 && found.joints[1].error.error < 0.05, "{errors:?} {:?}", found.joints[1]);
+    assert!(found.joints[1].is_friction_excited() && found.joints[1].is_offset_unknown());
+    let [_, forward, backward] = found.joints[1].friction.unwrap();
+    assert!(
+        forward.0 == backward.0 && (14.0..=23.0).contains(&forward.0) && forward.1 < 5.0,
+        "{forward:?} {backward:?}"
+    );
+    let excited = verdict.excited.unwrap();
+    assert_eq!((excited.unknown_friction, excited.unknown_offsets), (vec![], vec![1]));
+    let text = found.robot_file("a log");
+    assert_eq!(text.matches("the log cannot tell an offset from gravity").count(), 1, "{text}");
 }
 
 /// The longest time after `after`, s, in which the log's own velocities of a joint (from 0) are at most 0.02 rad/s.

@@ -1,8 +1,9 @@
 //! Logs of robot arms as runs of joint states.
 //!
 //! A [`Log`] is one or more files: bags of ROS 2 in SQLite and MCAP, tables in Parquet and CSV, arrays of numpy.
-//! [`Log::survey`] says what is in them, [`Log::motions`] hands out runs, filtered, with accelerations. Both read in
-//! memory that does not grow with the files.
+//! [`Log::survey`] says what is in them, [`Log::motions`] hands out runs, filtered, with accelerations, and
+//! [`Log::recorded`] hands out states as they were recorded. All of these read in memory that does not grow with the
+//! files.
 //!
 //! ```no_run
 //! use rne_logs::{Log, Options};
@@ -29,7 +30,9 @@ mod options;
 mod remedy;
 mod signal;
 mod spelling;
+mod utc;
 
+pub use crate::columns::heading::Heading;
 pub use crate::columns::mapping::{Mapping, Target, suggested};
 pub use crate::columns::quantity::Quantity;
 pub use crate::columns::time_unit::TimeUnit;
@@ -43,6 +46,7 @@ pub use crate::formats::npy::Npy;
 pub use crate::log::motion::Motion;
 pub use crate::log::motions::{Motions, Piece};
 pub use crate::log::pass::{Counts, Interruption, InvalidSample};
+pub use crate::log::recorded::{Recorded, RecordedState};
 pub use crate::log::remark::{LeftOut, Reason, Remark};
 pub use crate::log::survey::{Cutoff, Run, Survey};
 pub use crate::log::values::LabelValue;
@@ -51,3 +55,4 @@ pub use crate::options::{Angles, Options};
 pub use crate::remedy::{Remedy, Setting};
 pub use crate::signal::median::median;
 pub use crate::signal::spikes::Spike;
+pub use crate::utc::UtcTime;

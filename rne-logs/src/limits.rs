@@ -25,12 +25,13 @@ pub(crate) const FEW_ROWS: u64 = 100_000;
 #[cfg(feature = "bags")]
 pub(crate) fn check_names<'a>(mut names: impl ExactSizeIterator<Item = &'a str>) -> Result<(), String> {
     if names.len() > MOST_JOINTS {
-        return Err(format!("it names {} joints; at most {MOST_JOINTS} are read", names.len()));
+        return Err(format!("it names {} joints; rne reads at most {MOST_JOINTS}", names.len()));
     }
     match names.find(|name| name.len() > LONGEST_NAME) {
-        Some(name) => {
-            Err(format!("the name of a joint has {} bytes; names of at most {LONGEST_NAME} are read", name.len()))
-        }
+        Some(name) => Err(format!(
+            "the name of a joint has {} bytes; rne reads names of at most {LONGEST_NAME} bytes",
+            name.len()
+        )),
         None => Ok(()),
     }
 }

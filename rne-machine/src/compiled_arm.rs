@@ -51,7 +51,7 @@ struct Compiled {
     file: Option<PlanFile>,
     /// Plans of the plan file, or plans that are chosen at the first use.
     plans: OnceLock<PlanSet>,
-    functions: [OnceLock<Result<CompiledFunction, CompileError>>; Function::ALL.len()],
+    functions: Box<[OnceLock<Result<CompiledFunction, CompileError>>]>,
 }
 
 /// Arms that were read before, the latest last, by what was read: the same text gives the same arm, compiled.
@@ -171,7 +171,7 @@ impl CompiledArm {
     /// `plans` are those that were chosen before, where no file has them.
     fn new(robot: Robot, form: Form, file: Option<PlanFile>, plans: Option<PlanSet>) -> Self {
         let plans = file.clone().map(PlanSet::from).or(plans).map_or_else(OnceLock::new, OnceLock::from);
-        let functions = [const { OnceLock::new() }; Function::ALL.len()];
+        let functions = Function::ALL.iter().map(|_| OnceLock::new()).collect();
         Self(Arc::new(Compiled { robot, form, file, plans, functions }))
     }
 

@@ -95,17 +95,25 @@ impl fmt::Display for EvaluationError {
             Self::Compile(error) => error.fmt(f),
             Self::Missing { function, argument } => write!(f, "`{function}` needs the argument `{argument}`"),
             Self::Argument { argument, elements, states: 1 } => {
-                write!(f, "`{argument}` has {elements} elements for this arm; another number was given")
+                write!(
+                    f,
+                    "`{argument}` must have {elements} elements for this arm, but another number of elements was given"
+                )
             }
             Self::Argument { argument, elements, states } => {
-                write!(f, "`{argument}` has {elements} elements for each of {states} states; another number was given")
+                write!(
+                    f,
+                    "`{argument}` must have {elements} elements for each of {states} states, but another number of \
+                     elements was given"
+                )
             }
             Self::NegativeMass { mass, states: 1, .. } => mass.fmt(f),
             Self::NegativeMass { mass, state, states } => write!(f, "state {state} of {states}: {mass}"),
             Self::Room { outputs, states } => {
                 write!(
                     f,
-                    "the result has {outputs} numbers for each of {states} states; there is room for another number"
+                    "the result has {outputs} numbers for each of {states} states, but the memory that you gave holds \
+                     another number"
                 )
             }
         }

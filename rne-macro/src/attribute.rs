@@ -79,12 +79,12 @@ impl Attribute {
             // Something else is wrong with the attribute, perhaps just this.
             (None, Some(_)) if errors.len() > before => {}
             (None, Some(place)) => {
-                errors.at(&place, "which robot? `path = \"…\"`, `yaml = \"…\"` or `builtin = \"…\"` is missing here");
+                errors.at(&place, "the robot is missing: write `path = \"…\"`, `yaml = \"…\"` or `builtin = \"…\"`");
             }
             (None, None) => errors.at(
                 &item.ident,
-                "which robot? the attribute `#[robot(path = \"…\")]` is missing: it names the robot file, relative to \
-                 this source file",
+                "the robot is missing: write the attribute `#[robot(path = \"…\")]` with the path of the robot file, \
+                 relative to this source file",
             ),
         }
         Self {
@@ -134,7 +134,7 @@ impl Entries {
 
     fn entry(&mut self, input: ParseStream<'_>) -> syn::Result<()> {
         if !input.peek(Ident::peek_any) {
-            return Err(input.error(format!("a key is missing here; there are {KEYS}")));
+            return Err(input.error(format!("a key is missing here; the keys are {KEYS}")));
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();
@@ -152,7 +152,10 @@ impl Entries {
                 | "allow_lints"
                 | "crate"
         ) {
-            return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
+            return Err(syn::Error::new(
+                key.span(),
+                format!("`{name}` is not a key of `#[robot(…)]`; the keys are {KEYS}"),
+            ));
         }
         if self.seen.contains(&name) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
@@ -165,7 +168,7 @@ impl Entries {
                 _ => {}
             }
             let has_value = input.peek(Token![=]);
-            let message = format!("`{name}` has no value: it is there, or it is not");
+            let message = format!("`{name}` takes no value: write `{name}` alone to switch it on, or leave it out");
             return if has_value { Err(syn::Error::new(key.span(), message)) } else { Ok(()) };
         }
         if !input.peek(Token![=]) {
@@ -186,7 +189,8 @@ impl Entries {
                 if self.source.is_some() {
                     return Err(syn::Error::new(
                         key.span(),
-                        "`path`, `yaml` and `builtin` exclude each other: the robot is in a file, here, or shipped",
+                        "give only one of `path` (a robot file), `yaml` (the text of a robot file) and `builtin` (a \
+                         shipped robot)",
                     ));
                 }
                 self.source = Some(match name.as_str() {
@@ -220,12 +224,13 @@ fn string(input: ParseStream<'_>, key: &str) -> syn::Result<LitStr> {
     input.parse().map_err(|error: syn::Error| {
         let is_macro = start.parse::<Path>().is_ok() && start.peek(Token![!]);
         let hint = if is_macro { "; macros are not expanded here" } else { "" };
-        syn::Error::new(error.span(), format!("the value of `{key}` is a string literal{hint}"))
+        syn::Error::new(error.span(), format!("the value of `{key}` must be a string literal{hint}"))
     })
 }
 
 fn limit(input: ParseStream<'_>) -> syn::Result<Limit> {
-    let explain = |span| syn::Error::new(span, "the value of `max_ops` is a whole number of operations, such as 500");
+    let explain =
+        |span| syn::Error::new(span, "the value of `max_ops` must be a whole number of operations, such as 500");
     let number: LitInt = input.parse().map_err(|error| explain(error.span()))?;
     let operations = number.base10_parse().map_err(|_| explain(number.span()))?;
     Ok(Limit { operations, span: number.span() })
@@ -233,7 +238,8 @@ fn limit(input: ParseStream<'_>) -> syn::Result<Limit> {
 
 /// A path, bare or in quotes.
 fn path(input: ParseStream<'_>) -> syn::Result<Path> {
-    let explain = |span| syn::Error::new(span, "the value of `crate` is a path, such as `::rne` or `crate::dynamics`");
+    let explain =
+        |span| syn::Error::new(span, "the value of `crate` must be a path, such as `::rne` or `crate::dynamics`");
     if input.peek(LitStr) {
         let text: LitStr = input.parse()?;
         return text.parse_with(Path::parse_mod_style).map_err(|_| explain(text.span()));

@@ -28,7 +28,9 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut said)).unwrap_or_default();
     let mut refused = Errors::default();
     if let Some(name) = parameters.names().first() {
-        let message = format!("batches are of a robot whose numbers are all known; `{name}` is a run-time parameter");
+        let message = format!(
+            "a batch needs a robot whose numbers are all known at compile time, but `{name}` is a run-time parameter"
+        );
         refused.at(&item.ident, message);
     }
     let refused = refused.into_tokens();

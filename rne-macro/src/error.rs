@@ -42,7 +42,7 @@ impl Errors {
 /// Why a function cannot be compiled, with the command that helps.
 pub(crate) fn not_compiled(robot: &str, error: &CompileError) -> String {
     let remedy = match error.remedy() {
-        Some(Remedy::RewriteAfresh) => "; `rne search ROBOT.yaml --rewrite --fresh` writes the plan anew",
+        Some(Remedy::RewriteAfresh) => "; `rne search ROBOT.yaml --rewrite --fresh` writes a new plan",
         Some(_) => "; `rne search ROBOT.yaml --fresh` finds another plan",
         None => "",
     };
@@ -63,17 +63,17 @@ pub(crate) fn describe(mut report: Report) -> String {
     let report = report.worded(|remedy| match remedy {
         rne_model::Remedy::ImportUrdf { file } => {
             let file = file.as_deref().unwrap_or("FILE");
-            Some(format!("`rne import {file} -o robot.yaml` makes a robot file of a URDF"))
+            Some(format!("`rne import {file} -o robot.yaml` converts a URDF to a robot file"))
         }
         _ => None,
     });
     let report = match (what, robot_of(Path::new(&report.name))) {
         ("plan of this robot", Some(robot)) => report.with_help(&format!(
-            "`rne search {} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a build \
-             chooses by itself",
+            "`rne search {} --fresh` ignores the wrong parts of the plan and searches again; if you delete the plan \
+             file, the build chooses by itself",
             robot.display()
         )),
         _ => report,
     };
-    format!("`{}` is no valid {what}\n\n{}\n", report.name, report.render(false))
+    format!("`{}` is not a valid {what}\n\n{}\n", report.name, report.render(false))
 }

@@ -53,7 +53,7 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
             if let Some(span) = attribute.inspect
                 && let Err(error) = inspection::write(robot, capability, attribute.form, programs)
             {
-                errors.at_span(span, format!("the code for reading cannot be written: {error}"));
+                errors.at_span(span, format!("the readable code for `inspect` cannot be written: {error}"));
             }
             let code = target.robot(robot, capability, programs, &parameters);
             let names = own_tests::of_capability(capability);
@@ -228,7 +228,7 @@ pub(crate) fn compiler<'r>(
         (Form::SevenSteps, _) | (Form::Reduced, None) => Some(compiler),
         (Form::Reduced, Some(file)) => {
             let Ok(text) = std::str::from_utf8(&file.bytes) else {
-                errors.at_span(span, format!("`{}` is no text in UTF-8", file.shown));
+                errors.at_span(span, format!("`{}` is not text in UTF-8", file.shown));
                 return None;
             };
             let plan = PlanFile::read(&file.shown, text, robot);

@@ -167,6 +167,21 @@ pub fn derive_moving_base(input: TokenStream) -> TokenStream {
     expand::capability(Capability::MovingBase, input.into()).into()
 }
 
+/// Implements the trait `PayloadDynamics` for a struct: gravity, bias, mass matrix, accelerations, derivatives and
+/// momenta
+/// of the arm with a payload at its tip.
+///
+/// The payload (mass, centre of mass, inertia) is an argument.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `GRAVITY_TORQUES_WITH_PAYLOAD_OPERATIONS` and so on; `DOF`,
+/// names
+/// and limits come with `InverseDynamics`.
+#[proc_macro_derive(PayloadDynamics, attributes(robot))]
+pub fn derive_payload_dynamics(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::PayloadDynamics, input.into()).into()
+}
+
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.
 ///
 /// The robot file needs a `motor` at one joint at least.

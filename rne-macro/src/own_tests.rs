@@ -35,6 +35,7 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         Capability::MomentumObserver => &["momenta_are_those_of_the_runtime", "momentum_is_that_of_the_mass_matrix"],
         Capability::MovingBase => &["torques_on_a_moving_base_are_those_of_the_runtime"],
         Capability::Actuation => &["actuator_torques_are_those_of_the_runtime"],
+        Capability::PayloadDynamics => &["payload_dynamics_are_those_of_the_runtime"],
     }
 }
 
@@ -48,8 +49,8 @@ pub(crate) fn check(item: &DeriveInput, attribute: &Attribute, parameters: &Para
         errors.at_span(
             span,
             format!(
-                "`tests` are of a robot whose numbers are all known; `{name}` is a run-time parameter. Without \
-                 `tests`, compare with `rne::Arm` at the values that you use"
+                "`tests` needs a robot whose numbers are all known at compile time, but `{name}` is a run-time \
+                 parameter. Without `tests`, compare with `rne::Arm` at the values that you use"
             ),
         );
     } else if !is_made_of_nothing(item) {

@@ -30,9 +30,8 @@ impl Parameters {
             let Some(ident) = &field.ident else {
                 errors.at(
                     field,
-                    "a field without a name can be no parameter of the robot file. A field is a parameter that stays \
-                    free \
-                     until run time, by its name; a field for other purposes says `#[robot(skip)]`",
+                    "a field without a name cannot be a parameter of the robot file: rne finds the parameter by the \
+                     name of the field. Name the field, or write `#[robot(skip)]` before it if it has another purpose",
                 );
                 continue;
             };
@@ -63,8 +62,8 @@ impl Parameters {
             errors.at(
                 ident,
                 format!(
-                    "`{name}` is no parameter of the robot file: {there}. A field is a parameter that stays free until \
-                     run time; a field for other purposes says `#[robot(skip)]`"
+                    "`{name}` is not a parameter of the robot file: {there}. A field is a parameter whose value is \
+                     given at run time; for any other field, write `#[robot(skip)]` before it"
                 ),
             );
         }
@@ -98,7 +97,10 @@ fn is_skipped(field: &syn::Field, errors: &mut Errors) -> bool {
                 skipped = true;
                 Ok(())
             } else {
-                Err(meta.error("a field may say `#[robot(skip)]`: it is no parameter of the robot file"))
+                Err(meta.error(
+                    "the only attribute of a field is `#[robot(skip)]`: it excludes the field from the run-time \
+                     parameters",
+                ))
             }
         });
         if let Err(error) = parsed {

@@ -279,15 +279,15 @@ impl<'d> Fields<'d> {
 fn how_to_write(key: &str) -> Option<&'static str> {
     Some(match key {
         "format" => "begin the file with `format: 1`",
-        "source" => "say where the numbers come from, such as `source: \"own measurement\"`",
+        "source" => "write where the numbers come from, such as `source: \"own measurement\"`",
         "convention" => {
-            "write `convention: standard` (Rz(theta) Tz(d) Tx(a) Rx(alpha)) or `convention: modified` \
-             (Rx(alpha) Tx(a) Rz(theta) Tz(d)); it is never guessed"
+            "write `convention: standard` (Rz(theta) Tz(d) Tx(a) Rx(alpha)) or `convention: modified` (Rx(alpha) Tx(a) \
+             Rz(theta) Tz(d)); rne never guesses the convention"
         }
-        "gravity" => "the acceleration of gravity in frame 0, m/s², such as `gravity: [0, 0, -9.81]`",
+        "gravity" => "write the acceleration of gravity in frame 0 in m/s², such as `gravity: [0, 0, -9.81]`",
         "type" => "write `type: revolute` or `type: prismatic`",
         "dh" | "theta" | "d" | "a" | "alpha" => {
-            "all four are required, such as `dh: {theta: 0, d: 0.4, a: 0, alpha: pi/2}`"
+            "all four numbers of `dh` are required, such as `dh: {theta: 0, d: 0.4, a: 0, alpha: pi/2}`"
         }
         _ => return None,
     })
@@ -313,7 +313,7 @@ fn decimals(cx: &Context, before: &Entry, entry: &Entry) -> Option<Diagnostic> {
     // A blank after the comma separates on purpose.
     let is_tight = cx.text.get(before.value.span.start..entry.key_span.end) == Some(joined.as_str());
     (is_comma && is_tight).then(|| {
-        let message = format!("`{joined}` is two values here; the decimal sign is a point");
+        let message = format!("`{joined}` is read as two values, because the decimal sign is a point");
         let help = format!("write `{}: {}.{}`", one_line(&before.key), whole.text, entry.key);
         Diagnostic::error(before.value.span.start..entry.key_span.end, message).label("a decimal comma?").help(help)
     })
@@ -332,7 +332,8 @@ fn one_position(cx: &Context, limits: &Node, entry: &Entry) -> Diagnostic {
 fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
     if allowed.contains(&"dh") && !key.is_empty() && key.chars().all(|c| c.is_ascii_digit()) {
         return Some(format!(
-            "joints have no numbers, their order counts: delete `{key}:`, so that the joint begins with `- type: …`"
+            "joints are not numbered, because their order counts: delete `{key}:`, so that the joint begins with `- \
+             type: …`"
         ));
     }
     let place = match key {
@@ -342,7 +343,7 @@ fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
         "gear_ratio" | "viscous" | "coulomb" | "coulomb_width" | "coulomb_displacement" => "motor",
         "xyz" | "rpy" => "base` or `tool",
         "<<" => return Some("YAML merge keys are not part of the format; write the keys out".to_owned()),
-        "offset" => return Some("a joint offset is the constant in `theta` or `d`".to_owned()),
+        "offset" => return Some("write the offset of the joint as the constant in `theta` or `d`".to_owned()),
         _ => return None,
     };
     Some(format!("`{key}` belongs under `{place}`"))
@@ -457,13 +458,12 @@ fn no_joint(what: &str, word: &str) -> Option<String> {
     (what == "joint type").then_some(())?;
     Some(match word.to_lowercase().as_str() {
         "fixed" => {
-            "a fixed joint has no row: count its link into the link before it (mass, com, inertia); behind the last \
-             joint, its offset is `tool`"
+            "a fixed joint has no row: add the mass, com and inertia of its link to the link before it; after the last \
+             joint, write its offset as `tool`"
                 .to_owned()
         }
         "floating" | "planar" | "spherical" | "ball" | "universal" | "cylindrical" | "screw" => {
-            "a joint with several degrees of freedom is a row for each: massless links between revolute and prismatic \
-             joints"
+            "write one revolute or prismatic joint for each degree of freedom, with massless links between these joints"
                 .to_owned()
         }
         _ => return None,

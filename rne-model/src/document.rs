@@ -172,8 +172,8 @@ fn has_few_commas(text: &str, kind: Kind) -> Result<(), Diagnostic> {
         let here = line.matches(',').count();
         if commas + here > MAX_NODES {
             let at = start + line.match_indices(',').nth(MAX_NODES - commas).map_or(0, |(at, _)| at);
-            let message = format!("more than {MAX_NODES} commas in one value; {} has fewer", kind.name);
-            return Err(Diagnostic::error(at..at + 1, message).help("write each joint out once"));
+            let message = format!("one value has more than {MAX_NODES} commas; {} must have fewer", kind.name);
+            return Err(Diagnostic::error(at..at + 1, message).help("write each joint only once"));
         }
         commas += here;
         start += line.len();
@@ -236,7 +236,8 @@ impl<'t> Builder<'t> {
                 Event::DocumentStart(_) => {
                     documents += 1;
                     if documents > 1 {
-                        let message = format!("a second document begins; {} has exactly one", self.kind.name);
+                        let message =
+                            format!("a second YAML document begins here; {} must have exactly one", self.kind.name);
                         let help = "write one file per robot, without a second `---`";
                         return Err(Diagnostic::error(span, message).help(help));
                     }
@@ -270,7 +271,7 @@ impl<'t> Builder<'t> {
     fn open_bracket(&self) -> Option<String> {
         let start = self.stack.last()?.start;
         let bracket = self.text.get(start..)?.chars().next().filter(|c| matches!(c, '[' | '{'))?;
-        Some(format!("is the `{bracket}` in line {} closed?", line(&self.breaks, start)))
+        Some(format!("check that the `{bracket}` in line {} is closed", line(&self.breaks, start)))
     }
 
     /// Recognises the lines at a syntax error: a list that begins as a mapping, or a key without its blank.
@@ -279,19 +280,19 @@ impl<'t> Builder<'t> {
         let start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let here = self.text.get(start..)?.lines().next()?;
         if here.trim_start().starts_with("- ") {
-            let help =
-                "a dash begins an item of a list, and what stands above it here is none: begin that with `- ` too";
+            let help = "this line begins a list item with `- `, but the lines above it at this indentation do not: put \
+                        `- ` before the first of those lines, too";
             return Some(help.to_owned());
         }
         let above = before.get(..start)?.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or_default();
-        [here, above].into_iter().find_map(|line| {
+        [(here, ""), (above, " in the line above")].into_iter().find_map(|(line, place)| {
             let line = line.trim().trim_start_matches("- ");
             let (key, value) = line.split_once(':')?;
             let is_key = !key.is_empty() && key.chars().all(|c| c.is_ascii_lowercase() || c == '_');
             let is_tight =
                 value.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '+' | '.' | '[' | '{'));
             (is_key && is_tight && line.len() < 80).then(|| {
-                format!("a blank is missing after the colon: write `{key}: {}`", crate::source::one_line(value))
+                format!("a space is missing after the colon{place}: write `{key}: {}`", crate::source::one_line(value))
             })
         })
     }
@@ -304,8 +305,9 @@ impl<'t> Builder<'t> {
     fn without_properties(&self, span: Range<usize>, tagged: bool) -> Result<Range<usize>, Diagnostic> {
         let raw = self.text.get(span.clone()).unwrap_or_default();
         if tagged {
-            return Err(Diagnostic::error(span, format!("YAML tag in {}; tags are not allowed", quoted(raw)))
-                .help(format!("delete the tag: each key of {} knows what it holds", self.kind.name)));
+            return Err(Diagnostic::error(span, format!("YAML tag in {}; tags are not allowed", quoted(raw))).help(
+                format!("delete the tag: rne knows the type of every value of {} from its key", self.kind.name),
+            ));
         }
         let value = match raw.strip_prefix('&') {
             Some(anchor) => anchor.trim_start_matches(|c: char| !c.is_whitespace()).trim_start(),
@@ -382,7 +384,7 @@ impl<'t> Builder<'t> {
         }
         let Some(target) = self.anchors.get(&anchor).cloned() else {
             let raw = self.text.get(span.clone()).unwrap_or_default();
-            let message = format!("the alias {} does not stand for a complete value before it", quoted(raw));
+            let message = format!("the alias {} does not name a complete value above it", quoted(raw));
             return Err(Diagnostic::error(span, message).help("write the value out"));
         };
         if self.stack.len() + target.height > MAX_DEPTH {
@@ -417,9 +419,11 @@ impl<'t> Builder<'t> {
             let message = format!("more than {MAX_JOINTS} joints; 1 to {MAX_JOINTS} joints are allowed");
             return Err(Diagnostic::error(place.clone(), message).help("one file describes one robot"));
         }
-        let message =
-            format!("more than {MAX_NODES} values, aliases (`*name`) written out; {} has fewer", self.kind.name);
-        Err(Diagnostic::error(span.clone(), message).help("write each joint out once"))
+        let message = format!(
+            "more than {MAX_NODES} values when aliases (`*name`) are written out; {} must have fewer",
+            self.kind.name
+        );
+        Err(Diagnostic::error(span.clone(), message).help("write each joint only once"))
     }
 
     fn attach(&mut self, node: Rc<Node>) {
@@ -435,7 +439,13 @@ impl<'t> Builder<'t> {
     }
 
     fn too_deep(&self, span: Range<usize>) -> Diagnostic {
-        Diagnostic::error(span, format!("nested more than {MAX_DEPTH} levels deep; {} has fewer", self.kind.name))
+        Diagnostic::error(
+            span,
+            format!(
+                "the values are nested more than {MAX_DEPTH} levels deep; {} must have fewer levels",
+                self.kind.name
+            ),
+        )
     }
 
     fn syntax_error(&self, at: usize, info: &str) -> Diagnostic {
@@ -444,7 +454,7 @@ impl<'t> Builder<'t> {
             return self.too_deep(at..at + 1);
         }
         let help = if info.contains(" tab") {
-            Some("indent with spaces; YAML does not allow tabs there")
+            Some("indent with spaces; YAML does not allow tabs in the indentation")
         } else if info.contains("':'") || info.contains("mapping values") {
             Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")
         } else if info.contains("unknown anchor") {

@@ -204,7 +204,7 @@ impl Expression {
         if text.len() > Self::MAX_BYTES {
             let (bytes, most) = (text.len(), Self::MAX_BYTES);
             let message = format!("the expression is too long: {bytes} bytes, at most {most} are allowed");
-            return Err(Mistake::new(0..text.len(), message).help("name parts of it under `parameters`"));
+            return Err(Mistake::new(0..text.len(), message).help("define parts of the expression under `parameters`"));
         }
         let mut parser = Parser { text, at: 0, depth: 0, parts: 0 };
         let expression = parser.operand_and_operators(0)?;
@@ -239,7 +239,7 @@ impl Expression {
                 let message = format!("the parameter {} has no value yet", quoted(name));
                 Err(Some(
                     Mistake::new(self.range.clone(), message)
-                        .help("a parameter may use only those that stand above it under `parameters`"),
+                        .help("a parameter may use only parameters that are defined above it under `parameters`"),
                 ))
             }
             Meaning::Unknown => Err(Some(unknown_name(name, self.range.clone(), names))),
@@ -297,7 +297,7 @@ impl Expression {
         let part = quoted(text.get(self.range.clone()).unwrap_or_default());
         Mistake::new(
             self.range.clone(),
-            format!("{part} is too small for a 64-bit float; numbers but 0 are above 4.9e-324"),
+            format!("{part} is too small for a 64-bit float; numbers other than 0 must be above 4.9e-324"),
         )
         .help("check the exponents and the factors, or write 0")
     }
@@ -306,7 +306,7 @@ impl Expression {
     fn finite(&self, quantity: Quantity, divides_by_zero: bool, text: &str) -> Result<Quantity, Mistake> {
         if quantity.varying().is_some_and(|formula| formula.parts() > MAX_RUN_TIME_PARTS) {
             let message = format!(
-                "with the parameters it uses written out the expression has more than {MAX_RUN_TIME_PARTS} numbers, \
+                "when its parameters are written out, the expression has more than {MAX_RUN_TIME_PARTS} numbers, \
                  run-time parameters and operators"
             );
             let help = "shorten it, or let fewer parameters vary at run time";
@@ -337,8 +337,8 @@ impl Expression {
     fn only_in_the_file(&self, text: &str, parameter: Option<usize>, names: &impl Names) -> Mistake {
         let name = parameter.map(|index| names.run_time_parameter(index)).unwrap_or_default();
         let message = format!(
-            "{} depends on the run-time parameter {}; at run time there are + - * / and whole powers up to \
-             {LARGEST_POWER}",
+            "{} depends on the run-time parameter {}; with run-time parameters, only + - * / and whole powers are \
+             allowed, up to {LARGEST_POWER}",
             quoted(text.get(self.range.clone()).unwrap_or_default()),
             quoted(&name)
         );
@@ -377,7 +377,7 @@ pub fn number(text: &str) -> Result<f64, Diagnostic> {
         Ok(quantity) => Ok(quantity.without_negative_zero().value),
         Err(mistake) => {
             let Mistake { range, message, help } =
-                mistake.unwrap_or_else(|| Mistake::new(0..text.len(), "this is no number"));
+                mistake.unwrap_or_else(|| Mistake::new(0..text.len(), "this is not a number"));
             let column = text.get(..range.start).map_or(0, |before| before.chars().count()) + 1;
             // What a file allows is more than what is allowed here.
             let help = (!help.contains(ALLOWED)).then_some(help);
@@ -397,8 +397,10 @@ fn unknown_name(name: &str, range: Range<usize>, names: &impl Names) -> Mistake 
         return no_digits(name, range);
     }
     if is_joint_variable(name) && names.similar(name).is_none() {
-        return Mistake::new(range, format!("unknown name {}", quoted(name)))
-            .help("if this is the joint variable: it is added by itself; write the constant part alone, such as 0");
+        return Mistake::new(range, format!("unknown name {}", quoted(name))).help(
+            "if this is the joint variable, delete it: rne adds the joint variable; write only the constant part, such \
+             as 0",
+        );
     }
     let known = did_you_mean(name, ["pi"].into_iter().chain(Function::NAMES)).map(str::to_owned);
     let mistake = Mistake::new(range, format!("unknown name {}", quoted(name)));
@@ -454,7 +456,7 @@ impl<'t> Parser<'t> {
         self.parts += 1;
         if self.parts > MAX_PARTS {
             let message = format!("the expression has more than {MAX_PARTS} numbers, names and operators");
-            return Err(Mistake::new(self.here(), message).help("name parts of it under `parameters`"));
+            return Err(Mistake::new(self.here(), message).help("define parts of the expression under `parameters`"));
         }
         Ok(())
     }
@@ -464,7 +466,7 @@ impl<'t> Parser<'t> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
             let message = format!("the expression is nested more than {MAX_DEPTH} levels deep");
-            return Err(Mistake::new(self.here(), message).help("name parts of it under `parameters`"));
+            return Err(Mistake::new(self.here(), message).help("define parts of the expression under `parameters`"));
         }
         let mut left = self.operand()?;
         while let Some(operator) = self.peek().and_then(Operator::of) {
@@ -477,7 +479,7 @@ impl<'t> Parser<'t> {
             self.at = symbol.end;
             if operator == Operator::Multiply && self.rest().starts_with('*') {
                 let range = symbol.start..symbol.end + 1;
-                return Err(Mistake::new(range, "`**` is not an operator here").help("a power is written `^`"));
+                return Err(Mistake::new(range, "`**` is not an operator here").help("write a power with `^`"));
             }
             let right = self.operand_and_operators(binds_right)?;
             let range = left.range.start..right.range.end;
@@ -571,7 +573,7 @@ impl<'t> Parser<'t> {
             return Err(no_digits(self.text.get(range.clone()).unwrap_or_default(), range));
         }
         if tail.starts_with('_') {
-            return Err(wrong("no digits are grouped", "delete the `_`"));
+            return Err(wrong("digits must not be grouped", "delete the `_`"));
         }
         if whole == "0" && tail.starts_with(['x', 'X', 'o', 'O', 'b', 'B']) {
             return Err(wrong("numbers are decimal", "convert it"));
@@ -580,13 +582,16 @@ impl<'t> Parser<'t> {
             if let Some(mistake) = self.with_unit(digits_end) {
                 return Err(mistake);
             }
-            return Err(wrong("an operator is missing or it is cut short", "write a product with `*`, no unit"));
+            return Err(wrong(
+                "an operator is missing, or the number is cut short",
+                "write a product with `*`, and write no unit",
+            ));
         }
         if !tail.is_empty() {
             return Err(wrong("it has two decimal points", "delete one"));
         }
         if whole.len() > 1 && whole.starts_with('0') {
-            return Err(wrong("with a leading zero it could be octal", "delete the leading zeros"));
+            return Err(wrong("a number with a leading zero could be octal", "delete the leading zeros"));
         }
         let value: f64 = literal.parse().map_err(|_| wrong("it cannot be read", "check the digits"))?;
         if value.is_infinite() {
@@ -602,7 +607,9 @@ impl<'t> Parser<'t> {
     fn end(&mut self) -> Result<(), Mistake> {
         match self.peek() {
             None => Ok(()),
-            Some(')') => Err(Mistake::new(self.here(), "this `)` closes nothing").help("delete it or add a `(`")),
+            Some(')') => {
+                Err(Mistake::new(self.here(), "this `)` has no matching `(`").help("delete the `)` or add a `(`"))
+            }
             Some(_) => Err(self.no_operator()),
         }
     }
@@ -639,7 +646,8 @@ impl<'t> Parser<'t> {
         let (before, written) = (before.trim(), after.trim());
         let help = unit::instead(before, written)?;
         let start = at + (after.len() - after.trim_start().len());
-        let message = format!("the number {} has the unit {}; numbers have none here", quoted(before), quoted(written));
+        let message =
+            format!("the number {} has the unit {}; write numbers without a unit", quoted(before), quoted(written));
         Some(Mistake::new(start..start + written.len(), message).help(help))
     }
 
@@ -659,7 +667,7 @@ impl<'t> Parser<'t> {
 /// `.nan`, `NaN`, `.inf`: what other readers take for a number.
 fn no_digits(found: &str, range: Range<usize>) -> Mistake {
     Mistake::new(range, format!("{} is not a number here: numbers are finite and written in digits", quoted(found)))
-        .help(format!("a limit that is unknown is left out; {ALLOWED}"))
+        .help(format!("leave out a limit that is unknown; {ALLOWED}"))
 }
 
 /// Characters that come with numbers copied from papers and other formats.

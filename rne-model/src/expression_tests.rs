@@ -118,19 +118,19 @@ fn functions() {
 #[test]
 fn what_is_no_number_says_why_and_where() {
     for (text, from, to, message, help) in [
-        ("1_000", 1, 5, "`1_000` is not a number here: no digits are grouped", "delete the `_`"),
+        ("1_000", 1, 5, "`1_000` is not a number here: digits must not be grouped", "delete the `_`"),
         ("012", 1, 3, "leading zero", "delete the leading zeros"),
         ("-00.5", 2, 5, "leading zero", "delete the leading zeros"),
         ("0x1F", 1, 4, "numbers are decimal", "convert it"),
         ("0o17", 1, 4, "numbers are decimal", "convert it"),
         ("0b11", 1, 4, "numbers are decimal", "convert it"),
-        (".inf", 1, 4, "`.inf` is not a number here: numbers are finite", "left out"),
-        ("-.INF", 2, 5, "numbers are finite", "left out"),
-        (".nan", 1, 4, "numbers are finite", "left out"),
-        ("inf", 1, 3, "`inf` is not a number here: numbers are finite", "left out"),
-        ("NaN", 1, 3, "`NaN` is not a number here: numbers are finite", "left out"),
-        ("q1", 1, 2, "unknown name `q1`", "added by itself"),
-        ("pi/2 + theta_2", 8, 14, "unknown name `theta_2`", "added by itself"),
+        (".inf", 1, 4, "`.inf` is not a number here: numbers are finite", "leave out"),
+        ("-.INF", 2, 5, "numbers are finite", "leave out"),
+        (".nan", 1, 4, "numbers are finite", "leave out"),
+        ("inf", 1, 3, "`inf` is not a number here: numbers are finite", "leave out"),
+        ("NaN", 1, 3, "`NaN` is not a number here: numbers are finite", "leave out"),
+        ("q1", 1, 2, "unknown name `q1`", "rne adds the joint variable"),
+        ("pi/2 + theta_2", 8, 14, "unknown name `theta_2`", "rne adds the joint variable"),
         ("true", 1, 4, "unknown name `true`", "a finite decimal"),
         ("", 1, 0, "a number is missing", "a finite decimal"),
         ("  ", 1, 2, "a number is missing", "a finite decimal"),
@@ -152,7 +152,7 @@ fn what_is_no_number_says_why_and_where() {
         ("1,98", 2, 2, "`,` is not part of a number", "write `1.98`"),
         ("1e", 1, 2, "cut short", "`*`"),
         ("1.2.3", 1, 5, "two decimal points", "delete one"),
-        (".", 1, 1, "written in digits", "left out"),
+        (".", 1, 1, "written in digits", "leave out"),
         ("0,5", 2, 2, "`,` is not part of a number", "point"),
         ("1 2", 3, 3, "`2` stands where an operator is needed", "a finite decimal"),
     ] {
@@ -174,7 +174,7 @@ fn mistakes_in_expressions_point_at_their_column() {
         ("1 +", 3, 3, "the expression ends where", ""),
         ("(1 + 2", 1, 1, "this `(` is never closed", "add a `)`"),
         ("2*(1 + 2", 3, 3, "this `(` is never closed", "add a `)`"),
-        ("1 + 2)", 6, 6, "this `)` closes nothing", "delete it"),
+        ("1 + 2)", 6, 6, "this `)` has no matching `(`", "delete the `)`"),
         ("()", 2, 2, "`)` stands where", ""),
         ("sin pi", 1, 3, "`sin` needs an argument in parentheses", "`sin(…)`"),
         ("sin(1, 2)", 6, 6, "`,` is not part", ""),
@@ -257,14 +257,19 @@ fn what_folds_to_a_number_varies_no_more() {
 #[test]
 fn what_cannot_vary_at_run_time() {
     for (text, from, to, message) in [
-        ("1 + sqrt(p)", 5, 11, "`sqrt(p)` depends on the run-time parameter `p`; at run time there are + - * /"),
+        (
+            "1 + sqrt(p)",
+            5,
+            11,
+            "`sqrt(p)` depends on the run-time parameter `p`; with run-time parameters, only + - * /",
+        ),
         ("sin(2*p)", 1, 8, "`sin(2*p)` depends on"),
         ("cos(p)", 1, 6, "`cos(p)` depends on"),
         ("tan(p)", 1, 6, "`tan(p)` depends on"),
         ("deg(p)", 1, 6, "`deg(p)` depends on"),
-        ("p^0.5", 1, 5, "whole powers up to 16"),
-        ("p^17", 1, 4, "whole powers up to 16"),
-        ("p^-1e300", 1, 8, "whole powers up to 16"),
+        ("p^0.5", 1, 5, "whole powers are allowed, up to 16"),
+        ("p^17", 1, 4, "whole powers are allowed, up to 16"),
+        ("p^-1e300", 1, 8, "whole powers are allowed, up to 16"),
         ("3*2^p", 3, 5, "`2^p` depends on"),
         ("p^p", 1, 3, "`p^p` depends on"),
         ("0/(p - 0.7)", 1, 11, "`0/(p - 0.7)` is not a real number"),
@@ -275,7 +280,7 @@ fn what_cannot_vary_at_run_time() {
         assert_eq!((found.0, found.1), (from, to), "{text}: {}", found.2);
         assert!(found.2.contains(message), "{text}: {}", found.2);
     }
-    assert_eq!(mistake("sqrt(p)").3, "leave `p` out of the run-time parameters: it then has its value in the file");
+    assert_eq!(mistake("sqrt(p)").3, "remove `p` from the run-time parameters: rne then uses its value in the file");
 }
 
 #[test]

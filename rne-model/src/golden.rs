@@ -22,7 +22,7 @@ const TOLERANCE_KEY: &str = "tolerance:";
 /// assert_eq!((golden.states[0].line, golden.states[0].tau[0], golden.tolerance), (3, 4.9, 1e-9));
 ///
 /// let report = rne_model::GoldenFile::read("rod.golden.csv", b"q1,qd1,qdd1,tau1\n0,0,O,4.9\n", 1).unwrap_err();
-/// assert_eq!(report.short(), "rod.golden.csv:2:5: error: `O` of qdd1 is no number");
+/// assert_eq!(report.short(), "rod.golden.csv:2:5: error: `O` of qdd1 is not a number");
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoldenFile {
@@ -134,15 +134,15 @@ fn is_header(cells: &[(&str, Range<usize>)], names: &[String], problems: &Proble
     for (index, (cell, place)) in cells.iter().enumerate() {
         let message = match names.get(index) {
             Some(name) if cell == name => continue,
-            Some(name) => format!("column {} is {}, and is to be `{name}`", index + 1, quoted(cell)),
-            None => format!("{} columns are too many; {} joints have {}", cells.len(), names.len() / 4, names.len()),
+            Some(name) => format!("column {} is {}, but must be `{name}`", index + 1, quoted(cell)),
+            None => format!("{} columns are too many; {} joints need {}", cells.len(), names.len() / 4, names.len()),
         };
         problems.push(Diagnostic::error(place.clone(), message).help(help));
         return false;
     }
     if cells.len() < names.len() {
         let end = cells.last().map_or(0..0, |(_, place)| place.clone());
-        let message = format!("{} columns are too few; {} joints have {}", cells.len(), names.len() / 4, names.len());
+        let message = format!("{} columns are too few; {} joints need {}", cells.len(), names.len() / 4, names.len());
         problems.push(Diagnostic::error(end, message).help(help));
     }
     cells.len() == names.len()
@@ -153,8 +153,10 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
         // the first that is too many, or the last that is there
         let place = cells.get(names.len()).or(cells.last()).map_or(0..0, |(_, place)| place.clone());
         let columns = if cells.len() == 1 { "column" } else { "columns" };
-        let message = format!("{} {columns}, and the header has {}", cells.len(), names.len());
-        problems.push(Diagnostic::error(place, message).help("one number per column, with commas between them"));
+        let message = format!("{} {columns}, but the header has {}", cells.len(), names.len());
+        problems.push(
+            Diagnostic::error(place, message).help("write one number per column, with commas between the numbers"),
+        );
         return None;
     }
     let number = |((cell, place), name): (&(&str, Range<usize>), &String)| {
@@ -163,9 +165,11 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
             let message = if cell.is_empty() {
                 format!("the number of {name} is missing")
             } else {
-                format!("{} of {name} is no number", quoted(cell))
+                format!("{} of {name} is not a number", quoted(cell))
             };
-            problems.push(Diagnostic::error(place.clone(), message).help("a finite decimal, such as -1.5 or 2e-3"));
+            problems.push(
+                Diagnostic::error(place.clone(), message).help("write a finite decimal number, such as -1.5 or 2e-3"),
+            );
         }
         value
     };
@@ -187,8 +191,8 @@ fn tolerance_of(value: &str, at: usize, problems: &Problems) -> Option<f64> {
     let from = at + value.len() - value.trim_start().len();
     let tolerance = trimmed.parse::<f64>().ok().filter(|tolerance| tolerance.is_finite() && *tolerance > 0.0);
     if tolerance.is_none() {
-        let message = format!("{} is no tolerance", quoted(trimmed));
-        let help = "parts of the largest torque, above 0: `# tolerance: 1e-6`";
+        let message = format!("{} is not a tolerance", quoted(trimmed));
+        let help = "write a fraction of the largest torque, above 0: `# tolerance: 1e-6`";
         problems.push(Diagnostic::error(from..from + trimmed.len(), message).help(help));
     }
     tolerance
@@ -225,20 +229,20 @@ mod tests {
         for (found, expected) in [
             (said(&format!("# tolerence: 1e-1\n{HEADER}")), "1:3: error: `tolerence: 1e-1` sets no tolerance"),
             (said(&format!("# Tolerance = 1e-1\n{HEADER}")), "1:3: error: `Tolerance = 1e-1` sets no tolerance"),
-            (state("1;2;3;4;5;6;7;8"), "3:1: error: 1 column, and the header has 8"),
-            (state("1,2,3,4,5,6,7"), "3:13: error: 7 columns, and the header has 8"),
-            (state("1,2,3,4,5,6,7,8, 9"), "3:18: error: 9 columns, and the header has 8"),
-            (state("1,2,3,4,5,6,7,8x"), "3:15: error: `8x` of tau2 is no number"),
+            (state("1;2;3;4;5;6;7;8"), "3:1: error: 1 column, but the header has 8"),
+            (state("1,2,3,4,5,6,7"), "3:13: error: 7 columns, but the header has 8"),
+            (state("1,2,3,4,5,6,7,8, 9"), "3:18: error: 9 columns, but the header has 8"),
+            (state("1,2,3,4,5,6,7,8x"), "3:15: error: `8x` of tau2 is not a number"),
             (state("1,,3,4,5,6,7,8"), "3:3: error: the number of q2 is missing"),
-            (state("1,2,3,4,inf,6,7,8"), "3:9: error: `inf` of qdd1 is no number"),
+            (state("1,2,3,4,inf,6,7,8"), "3:9: error: `inf` of qdd1 is not a number"),
             (state("# none"), "4:1: error: there is no state below the header"),
             (said(""), "1:1: error: there is no header"),
-            (said("1,2,3,4,5,6,7,8\n"), "1:1: error: column 1 is `1`, and is to be `q1`"),
-            (said("q1,q2,qd1,qd2\n"), "1:11: error: 4 columns are too few; 2 joints have 8"),
-            (said(&HEADER.replace('\n', ",q3\n")), "1:35: error: 9 columns are too many; 2 joints have 8"),
-            (said(&HEADER.replace("tau1", "t1")), "1:25: error: column 7 is `t1`, and is to be `tau1`"),
-            (said(&format!("#  tolerance: none\n{HEADER}")), "1:15: error: `none` is no tolerance"),
-            (said(&format!("{HEADER}# tolerance: 0\n")), "2:14: error: `0` is no tolerance"),
+            (said("1,2,3,4,5,6,7,8\n"), "1:1: error: column 1 is `1`, but must be `q1`"),
+            (said("q1,q2,qd1,qd2\n"), "1:11: error: 4 columns are too few; 2 joints need 8"),
+            (said(&HEADER.replace('\n', ",q3\n")), "1:35: error: 9 columns are too many; 2 joints need 8"),
+            (said(&HEADER.replace("tau1", "t1")), "1:25: error: column 7 is `t1`, but must be `tau1`"),
+            (said(&format!("#  tolerance: none\n{HEADER}")), "1:15: error: `none` is not a tolerance"),
+            (said(&format!("{HEADER}# tolerance: 0\n")), "2:14: error: `0` is not a tolerance"),
         ] {
             assert_eq!(found, format!("arm.golden.csv:{expected}"));
         }

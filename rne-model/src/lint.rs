@@ -51,7 +51,8 @@ pub(crate) fn angle(cx: &Context, node: &Node, value: f64) {
         let message =
             format!("the angle {shown} is {} rad off the right angle `{spelling}`", six_digits((value - right).abs()));
         cx.report(Diagnostic::lint(node.span.clone(), message).label("rounded?").help(format!(
-            "write `{spelling}` if that is meant: its sine and cosine are exactly 0 and ±1, and the code gets shorter"
+            "write `{spelling}` if you mean this angle: its sine and cosine are exactly 0 and ±1, and the code gets \
+             shorter"
         )));
     }
 }
@@ -84,7 +85,7 @@ pub(crate) fn invisible(cx: &Context, node: &Node, text: &str) {
     cx.report(
         Diagnostic::lint(span, format!("the invisible character U+{code:04X} stands in {}", quoted(&near)))
             .label("here, unseen")
-            .help("delete it: type the word anew instead of pasting it"),
+            .help("delete this character: type the word again instead of pasting it"),
     );
 }
 
@@ -116,8 +117,8 @@ pub(crate) fn gravity_upwards(cx: &Context, node: &Node, [x, y, z]: [f64; 3], ba
     if x == 0.0 && y == 0.0 && z > 0.0 && up > 0.0 {
         let message = format!("gravity {} points along the positive z axis of frame 0", quoted(cx.raw(node)));
         cx.report(Diagnostic::lint(node.span.clone(), message).label("upwards?").help(format!(
-            "the acceleration of gravity points down: is `[0, 0, {}]` meant? where z of frame 0 points down, as in an \
-             arm that hangs from the ceiling, say so with `base: {{rpy: [pi, 0, 0]}}`",
+            "the acceleration of gravity points down: do you mean `[0, 0, {}]`? If z of frame 0 points down, as in an \
+             arm that hangs from the ceiling, write `base: {{rpy: [pi, 0, 0]}}`",
             six_digits(-z)
         )));
     }
@@ -154,14 +155,14 @@ pub(crate) fn mass(cx: &Context, node: &Node, value: f64) {
 pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: [f64; 3]) {
     if c - (a + b) > TOLERANCE * c {
         let message = format!(
-            "no body has this inertia: of its principal moments {}, {} and {} kg m² the largest exceeds the sum of the \
-             other two",
+            "no body can have this inertia: of the principal moments {}, {} and {} kg m², the largest is more than the \
+             sum of the two others",
             six_digits(a),
             six_digits(b),
             six_digits(c)
         );
         cx.report(Diagnostic::note(place, message).label("violates the triangle inequality").help(
-            "published tables do have such tensors, and dynamics works with them; if the numbers are your own, \
+            "some published tables contain such tensors, and rne computes with them; if the numbers are your own, \
              check them",
         ));
     }
@@ -169,24 +170,24 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: 
 
 /// A first moment without mass in a file that knows it.
 pub(crate) fn first_moment_without_mass(cx: &Context, moment: &Node) {
-    let message =
-        "a first moment without mass, as `physical: false` says: no body has one, a set of base parameters has";
+    let message = "the link has a first moment but no mass, as `physical: false` allows: no real body is like this, \
+                   but a set of base parameters can be";
     cx.report(Diagnostic::note(moment.head(), message).label("the mass is 0").help(
-        "every function works with it; of an arm that was regrouped the torques and the mass matrix are right, the \
-         forces between links and the centre of mass are not those of the arm",
+        "every function accepts this link; if mass was moved between links (regrouping), the torques and the mass \
+         matrix are right, but the forces between links and the centre of mass are not those of the arm",
     ));
 }
 
 /// A negative principal moment in a file that knows it.
 pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, ..]: [f64; 3]) {
     let message = format!(
-        "the inertia is not positive semidefinite, as `physical: false` says: its smallest eigenvalue about the centre \
-         of mass is {} kg m²",
+        "the inertia is not positive semidefinite, as `physical: false` allows: its smallest eigenvalue about the \
+         centre of mass is {} kg m²",
         six_digits(smallest)
     );
     cx.report(Diagnostic::lint(place, message).label("not the inertia of a body").help(
-        "inverse dynamics works with it; the mass matrix may not be positive definite, and then there is no forward \
-         dynamics",
+        "inverse dynamics accepts this inertia; if the mass matrix is not positive definite, forward dynamics cannot \
+         be computed",
     ));
 }
 
@@ -199,8 +200,8 @@ pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [
     if radius > WIDEST_GYRATION {
         let (mass, shown) = (six_digits(mass), six_digits(radius));
         let message = format!(
-            "the inertia has a radius of gyration of {shown} m: as if the {mass} kg of the link lay that far from its \
-             centre of mass"
+            "the inertia has a radius of gyration of {shown} m: this is as if the {mass} kg of the link were this far \
+             away from its centre of mass"
         );
         // sqrt(1e6) and sqrt(1e9): of the units that CAD programs have
         let label = if radius > 1000.0 * WIDEST_GYRATION { "g mm²?" } else { "kg mm²?" };
@@ -263,8 +264,8 @@ pub(crate) fn placeholders(cx: &Context, root: &Node, joints: &[Joint]) {
             six_digits(moment)
         );
         cx.report(Diagnostic::lint(place, message).label("placeholders of an exporter?").help(
-            "real links differ: torques of placeholders are not those of the arm; take masses, centres of mass and \
-             inertias from the manufacturer, or identify them from a log",
+            "real links differ, and with placeholders the torques are not those of the arm; take masses, centres of \
+             mass and inertias from the manufacturer, or identify them from a log",
         ));
         return;
     }
@@ -293,16 +294,18 @@ fn no_resistance(
     let place = [key, "mass"].iter().find_map(|key| place.get(key)).unwrap_or(place).head();
     let message = match unresisted {
         Unresisted::Alone => format!("no inertia resists joint {number}: it moves without any torque or force"),
-        Unresisted::WithOthers => format!(
-            "no inertia resists joint {number} where the joints behind it move against it: it then moves without any \
-             torque or force"
-        ),
+        Unresisted::WithOthers => {
+            format!(
+                "no inertia resists joint {number} when the joints after it move against it: the joint then moves \
+                 without any torque or force"
+            )
+        }
     };
     let consequence = "or accelerations (`forward_dynamics`) are not finite";
     if joint.motor.is_some_and(|motor| motor.inertia > 0.0) {
         // what real arms with light wrists have; with its rotor the joint is in order
         let message = format!("no link's inertia resists joint {number}, only the rotor of its motor does");
-        let help = format!("where rotors do not count, give link {number} {missing}, {consequence}");
+        let help = format!("for results without rotors, give link {number} {missing}, {consequence}");
         cx.report(Diagnostic::note(place, message).label("resists nothing").help(help));
         return;
     }
@@ -317,7 +320,7 @@ fn centre_without_mass(cx: &Context, item: &Node, index: usize, joint: &Joint) -
     let Some(link) = item.get("link").filter(|link| is_centre && link.get("mass").is_none()) else { return false };
     let Some(com) = link.get("com") else { return false };
     cx.report(
-        Diagnostic::lint(com.head(), format!("link {} has a centre of mass and no mass", index + 1))
+        Diagnostic::lint(com.head(), format!("link {} has a centre of mass but no mass", index + 1))
             .label("of what mass?")
             .help("add the `mass` in kg; if the link is without mass, write `mass: 0`"),
     );
@@ -351,13 +354,9 @@ pub(crate) fn position_limits(cx: &Context, position: &Node, kind: JointKind, li
 
 /// A speed about which friction changes its sign, beside a displacement over which it does.
 pub(crate) fn width_beside_displacement(cx: &Context, width: &Node) {
-    let message = "`coulomb_width` counts for nothing beside `coulomb_displacement`: friction changes its sign over \
-                   the displacement, and not about the speed";
-    cx.report(
-        Diagnostic::lint(width.head(), message)
-            .label("not used")
-            .help("keep one of the two: what identification writes has one"),
-    );
+    let message = "rne ignores `coulomb_width` because `coulomb_displacement` is given: the friction then changes its \
+                   sign over the displacement, and not with the speed";
+    cx.report(Diagnostic::lint(width.head(), message).label("not used").help("keep only one of the two keys"));
 }
 
 /// Parameters that no number uses; of a run-time parameter that is an error.

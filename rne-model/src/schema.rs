@@ -84,7 +84,7 @@ fn robot_name(cx: &Context, node: &Node) -> Option<String> {
         "the name {} is not an identifier; it must be a lower-case letter, then lower-case letters, digits and `_`",
         quoted(&name)
     );
-    cx.refuse(Diagnostic::error(node.span.clone(), message).help("a name for people goes into `title`"))
+    cx.refuse(Diagnostic::error(node.span.clone(), message).help("write a name for people into `title`"))
 }
 
 /// A text of one line: it stands in headings and in comments of generated code.
@@ -192,12 +192,12 @@ fn transform(cx: &Context, node: &Node, place: fn(usize) -> Entry) -> Option<Tra
 fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
     let Content::Sequence(items) = &node.content else {
         let message = format!("found {} where a list of joints is needed", node.described());
-        let help =
-            "begin each joint with a dash, such as `- type: revolute`; joints have no numbers, their order counts";
+        let help = "begin each joint with a dash, such as `- type: revolute`; joints are not numbered, because their \
+                    order counts";
         return cx.refuse(Diagnostic::error(node.head(), message).label("a list of joints is needed").help(help));
     };
     if items.is_empty() {
-        let message = "a robot without joints; 1 to 64 joints are allowed";
+        let message = "the robot has no joints; 1 to 64 joints are allowed";
         return cx.refuse(Diagnostic::error(node.span.clone(), message).help("list the joints from base to tip"));
     }
     if let Some(excess) = items.get(MAX_JOINTS) {
@@ -212,7 +212,7 @@ fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
         if let Some(first) = known.insert(joint.name.clone(), index) {
             unique = false;
             let message = format!(
-                "the name {} of joint {} is already that of joint {}; joint names must differ",
+                "the name {} of joint {} is already the name of joint {}; joint names must differ",
                 quoted(&joint.name),
                 index + 1,
                 first + 1
@@ -230,10 +230,12 @@ fn wrapped_joint(node: &Node) -> Option<Diagnostic> {
     let Content::Mapping(entries) = &node.content else { return None };
     let [document::Entry { key, key_span, value }] = entries.as_slice() else { return None };
     value.get("type").or_else(|| value.get("dh"))?;
-    let message = format!("the joint stands below a key {}; its own keys begin the item", quoted(key));
+    let message =
+        format!("the joint is below a key {}, but the list item must begin with the keys of the joint", quoted(key));
     let help = if key.chars().all(|c| c.is_ascii_digit()) {
         format!(
-            "joints have no numbers, their order counts: delete `{key}:`, so that the joint begins with `- type: …`"
+            "joints are not numbered, because their order counts: delete `{key}:`, so that the joint begins with `- \
+             type: …`"
         )
     } else {
         format!("write `- name: {}`, and below that `type`, `dh` and the other keys", one_line(key))
@@ -294,7 +296,8 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
         (Some(moment), None) if mass == 0.0 => ([0.0; 3], first_moment_alone(cx, moment, joint)?),
         (Some(moment), None) => (com_of_first_moment(cx, moment, joint, mass)?, [0.0; 3]),
         (Some(moment), Some(_)) => {
-            let message = "`first_moment` beside `com`; each says where the centre of mass is, so one must go";
+            let message =
+                "the link has both `first_moment` and `com`; each defines the centre of mass, so delete one of them";
             return cx.refuse(Diagnostic::error(moment.head(), message).help("first_moment = mass * com"));
         }
     };
@@ -331,7 +334,7 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
                  needs `inertia_about: origin`"
             }
             InertiaReference::Origin => {
-                "check mass and com; a tensor that already refers to the centre of mass has `inertia_about: com`"
+                "check mass and com; if the tensor already refers to the centre of mass, write `inertia_about: com`"
             }
         }));
     }
@@ -354,15 +357,18 @@ fn no_body(
     physical: bool,
 ) -> Option<InertiaReference> {
     if physical {
-        let message = "a first moment without mass: no body has one, for it is the mass times the centre of mass";
+        let message = "the link has a first moment but no mass, although the first moment is the mass times the centre \
+                       of mass";
         return cx.refuse(Diagnostic::error(moment.head(), message).label("the mass is 0").help(
-            "give the link its `mass`; if the link is what regrouping leaves of it, as in a set of base parameters, \
-             write `physical: false` beside the first moment",
+            "give the link its `mass`; if its mass was moved to other links (regrouping), as in a set of base \
+             parameters, write `physical: false` beside the first moment",
         ));
     }
     if let (Some(node), InertiaReference::Com) = (reference, about) {
-        let message = "an inertia about the centre of mass of a link that has none, but a first moment without mass";
-        let help = "write `inertia_about: origin`, or nothing: it is about the origin of the link frame";
+        let message = "the inertia refers to the centre of mass, but a link with a first moment and no mass has no \
+                       centre of mass";
+        let help = "write `inertia_about: origin`, or delete the key: the inertia then refers to the origin of the \
+                    link frame";
         return cx.refuse(Diagnostic::error(node.head(), message).help(help));
     }
     lint::first_moment_without_mass(cx, moment);
@@ -473,10 +479,10 @@ fn angle(cx: &Context, node: &Node) -> Option<f64> {
     if value.abs() >= LARGEST_ANGLE {
         let shown = cx.shown(node, value);
         let message = format!(
-            "the angle {shown} rad is too large; angles are below {LARGEST_ANGLE} rad, for beyond that neighbouring \
+            "the angle {shown} rad is too large; angles must be below {LARGEST_ANGLE} rad, because larger neighbouring \
              numbers are more than 1e-9 rad apart"
         );
-        return cx.refuse(Diagnostic::error(node.span.clone(), message).help("leave out its whole turns"));
+        return cx.refuse(Diagnostic::error(node.span.clone(), message).help("subtract whole turns from the angle"));
     }
     lint::angle(cx, node, value);
     Some(value)

@@ -44,7 +44,7 @@ pub(crate) fn is_printable(text: &str, problems: &Problems) -> bool {
             at..at + character.len_utf8(),
             format!("control character U+{:04X}; only tab and line breaks are allowed", u32::from(character)),
         )
-        .help("delete it; is this a text file?"),
+        .help("delete the character, and check that this is a text file"),
     );
     false
 }

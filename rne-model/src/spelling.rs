@@ -45,7 +45,7 @@ pub fn nearest_name<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
 #[must_use]
 pub fn no_shipped_robot(name: &str, names: &[&str]) -> String {
     let meant = nearest_name(name, names).map_or_else(|| ";".to_owned(), |meant| format!("; did you mean `{meant}`?"));
-    format!("there is no shipped robot `{name}`{meant} there are {}", names.join(", "))
+    format!("there is no shipped robot `{name}`{meant} the shipped robots are {}", names.join(", "))
 }
 
 #[cfg(test)]

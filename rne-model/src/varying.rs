@@ -14,7 +14,7 @@ const MOST_LISTED: usize = 12;
 
 /// The remedy for a number that cannot depend on a run-time parameter.
 pub(crate) fn leave_out(name: &str) -> String {
-    format!("leave {} out of the run-time parameters: it then has its value in the file", quoted(name))
+    format!("remove {} from the run-time parameters: rne then uses its value in the file", quoted(name))
 }
 
 /// A number of the table.
@@ -48,8 +48,8 @@ pub(crate) fn fixed(what: &'static str) -> impl Fn(&Context, &Node) -> Option<f6
         }
         let name = cx.parameter_name(quantity.first_parameter());
         let message = format!(
-            "{what} {} depends on the run-time parameter {}; angles and limits are fixed, only lengths, masses, \
-             centres of mass, inertias, gravity and the numbers of motors may vary",
+            "{what} {} depends on the run-time parameter {}; angles and limits must be fixed, and only lengths, \
+             masses, centres of mass, inertias, gravity and the numbers under `motor` may vary",
             quoted(cx.raw(node)),
             quoted(&name)
         );
@@ -70,12 +70,12 @@ fn nonzero(cx: &Context, node: &Node) -> Option<Quantity> {
 
 fn zero(span: Range<usize>, shown: &str, name: &str) -> Diagnostic {
     let message = format!(
-        "{shown} varies with the run-time parameter {}; a number that varies must not be 0 in the file, for zeros are \
-         folded away",
+        "{shown} varies with the run-time parameter {}; such a number must not be 0 in the file, because rne removes \
+         operations with zeros from the code",
         quoted(name)
     );
     Diagnostic::error(span, message).label("zero in the file").help(format!(
-        "give {} a value in the file with which this is not zero, or leave it out of the run-time parameters",
+        "give {} a value in the file for which this number is not zero, or remove it from the run-time parameters",
         quoted(name)
     ))
 }
@@ -175,7 +175,7 @@ fn unknown<'n>(cx: &Context, root: &Node, names: impl Iterator<Item = &'n str>, 
             _ => listed.insert_str(0, "there are "),
         }
         let place = parameters.map_or(root.head(), Node::head);
-        let message = format!("no parameter {}{what}; under `parameters` {listed}", quoted(name));
+        let message = format!("the robot file has no parameter {}{what}; under `parameters` {listed}", quoted(name));
         let help = cx.did_you_mean(name, known.iter().copied()).map_or_else(
             || format!("define `{name}: …` under `parameters`"),
             |meant| format!("did you mean `{meant}`?"),
@@ -193,11 +193,9 @@ pub(crate) fn without_effect(cx: &Context) {
         if run_time.entries.iter().any(|(_, formula)| formula.depends_on(index)) {
             continue;
         }
-        let message = format!(
-            "the run-time parameter {} has no effect; some number of the table must depend on it",
-            quoted(name)
-        );
+        let message =
+            format!("the run-time parameter {} has no effect: no number of the table depends on it", quoted(name));
         let error = Diagnostic::error(parameter.span.clone(), message).label("no effect");
-        cx.report(error.help(format!("use {0} in a number, or leave it out of the run-time parameters", quoted(name))));
+        cx.report(error.help(format!("use {0} in a number, or remove it from the run-time parameters", quoted(name))));
     }
 }

@@ -71,7 +71,11 @@ fn near_misses_are_recognised() {
         ("prismatic", "P", "did you mean `prismatic`?"),
         ("standard", "distal", "did you mean `standard`?"),
         ("name: first", "name: first\n    mass: 1", "`mass` belongs under `link`"),
-        ("name: first", "name: first\n    offset: 1", "a joint offset is the constant in `theta` or `d`"),
+        (
+            "name: first",
+            "name: first\n    offset: 1",
+            "write the offset of the joint as the constant in `theta` or `d`",
+        ),
         ("source: test", "source: test\n<<: {a: 1}", "YAML merge keys are not part of the format; write the keys out"),
     ] {
         assert_eq!(the_one(old, new).help.as_deref(), Some(help), "{new}");
@@ -165,7 +169,7 @@ fn values() {
         ("gear_ratio: -62.6", "gear_ratio: 0", 18, 42, "0", "the gear ratio `0` is zero"),
         ("[0.395, -0.435]", "[-0.395, -0.435]", 18, 76, "-0.395", "`-0.395` for positive speed has the wrong sign"),
         ("[0.395, -0.435]", "[0.395, 0.435]", 18, 83, "0.435", "`0.435` for negative speed has the wrong sign"),
-        ("name: second", "name: first", 19, 11, "first", "the name `first` of joint 2 is already that of joint 1"),
+        ("name: second", "name: first", 19, 11, "first", "the name `first` of joint 2 is already the name of joint 1"),
         ("name: second", "name: \"a\\nb\"", 19, 11, "\"a\\nb\"", "has a line break; a joint name is one line"),
         ("name: second", "name: \"a\\tb\"", 19, 11, "\"a\\tb\"", "joint name `a\\tb` has the control character U+0009"),
         ("{m: 1.5,", "{m: 1.5, pi: 3, ", 7, 22, "pi", "the parameter name `pi` already has a meaning"),
@@ -182,12 +186,12 @@ fn angles_are_so_small_that_their_digits_count() {
             let value = old.split_once(at).and_then(|(_, rest)| rest.split(',').next()).expect("a value");
             let new = old.replacen(value, angle, 1);
             let error = the_one(old, &new);
-            assert!(error.message.contains("rad is too large; angles are below 8388608 rad"), "{}", error.message);
+            assert!(error.message.contains("rad is too large; angles must be below 8388608 rad"), "{}", error.message);
             assert_eq!(&with(old, &new)[error.span.clone()], angle);
         }
     }
     for (old, new) in [("rpy: [0, 0, pi]", "rpy: [0, 0, 1e15]"), ("rpy: [0, 0, pi]", "rpy: [-1e300, 0, pi]")] {
-        assert!(the_one(old, new).message.contains("angles are below 8388608 rad"), "{new}");
+        assert!(the_one(old, new).message.contains("angles must be below 8388608 rad"), "{new}");
     }
     let largest = the_one("alpha: pi/2", "alpha: 8388607.9");
     assert_eq!(largest.severity, Severity::Warning, "{}", largest.message);
@@ -199,7 +203,8 @@ fn a_default_joint_name_can_be_taken_as_well() {
     let report = found(&text);
     assert_eq!(
         report.short(),
-        "robots/x.yaml:19:5: error: the name `joint2` of joint 2 is already that of joint 1; joint names must differ"
+        "robots/x.yaml:19:5: error: the name `joint2` of joint 2 is already the name of joint 1; joint names must \
+         differ"
     );
 }
 
@@ -254,7 +259,7 @@ fn expressions_point_into_the_scalar() {
         // Escapes and folded lines: the whole scalar.
         ("\"m / 12\"", "\"m \\x2f x\"", 22, 35, "\"m \\x2f x\"", "unknown name `x`"),
         ("\"m / 12\"", "1 +\n     x", 22, 35, "1 +\n     x", "unknown name `x`"),
-        ("d: 0.4", "d: 1_000", 11, 23, "1_000", "no digits are grouped"),
+        ("d: 0.4", "d: 1_000", 11, 23, "1_000", "digits must not be grouped"),
         ("d: 0.4", "d: 012", 11, 23, "012", "leading zero"),
         ("d: 0.4", "d: true", 11, 23, "true", "unknown name `true`"),
         ("d: 0.4", "d: 2 +* 3", 11, 26, "*", "`*` stands where a number or a name is needed"),
@@ -274,11 +279,11 @@ fn yaml_itself() {
         ("format: 1\nname: [1, 2\nsource: x\n", 3, 7, "this is not YAML"),
         ("format: 1\njoints:\n\t- a: 1\n", 3, 2, "this is not YAML: tabs"),
         ("source: a: b\n", 1, 10, "this is not YAML: mapping values"),
-        ("format: 1\n---\nformat: 1\n", 2, 1, "a second document begins"),
+        ("format: 1\n---\nformat: 1\n", 2, 1, "a second YAML document begins"),
         ("format: !!int 1\n", 1, 9, "YAML tag in `!!int 1`; tags are not allowed"),
         ("!robot {format: 1}\n", 1, 1, "tags are not allowed"),
         ("format: *one\n", 1, 9, "unknown anchor"),
-        ("a: &x [*x]\n", 1, 8, "does not stand for a complete value"),
+        ("a: &x [*x]\n", 1, 8, "does not name a complete value"),
         ("*x : 1\n", 1, 1, "unknown anchor"),
         ("a: &x 1\n*x : 1\n", 2, 1, "a key must be a plain word"),
         ("a: 1\u{0}b: 2\n", 1, 5, "control character U+0000"),
@@ -391,7 +396,7 @@ fn number_of_joints() {
     let report = found(&arm(65));
     assert_eq!(report.short(), "robots/x.yaml:72:5: error: 65 joints; 1 to 64 joints are allowed");
     let report = found(&arm(0).replace("joints:", "joints: []"));
-    assert_eq!(report.short(), "robots/x.yaml:7:9: error: a robot without joints; 1 to 64 joints are allowed");
+    assert_eq!(report.short(), "robots/x.yaml:7:9: error: the robot has no joints; 1 to 64 joints are allowed");
 }
 
 #[test]
@@ -436,15 +441,15 @@ fn a_first_moment_is_a_centre_of_mass() {
     assert_eq!(com("mass: 4, first_moment: [1, m, 0]"), [0.25, 0.375, 0.0]);
     assert_eq!(com("mass: 0, first_moment: [0, 0, 0]"), [0.0; 3]);
     for (link, part) in [
-        ("mass: 4, com: [0, 0, 0], first_moment: [1, 0, 0]", "`first_moment` beside `com`"),
-        ("mass: 0, first_moment: [1, 0, 0]", "a first moment without mass"),
-        ("first_moment: [1, 0, 0]", "a first moment without mass"),
+        ("mass: 4, com: [0, 0, 0], first_moment: [1, 0, 0]", "both `first_moment` and `com`"),
+        ("mass: 0, first_moment: [1, 0, 0]", "a first moment but no mass"),
+        ("first_moment: [1, 0, 0]", "a first moment but no mass"),
         ("mass: 1, first_moment: [1, 0]", "a list of 2 where 3 numbers"),
     ] {
         let report = Reader::new("x").read(&file(link)).unwrap_err();
         assert!(report.short().contains(part), "{report}");
     }
-    // a first moment without mass is no body: the file has to know it
+    // a first moment but no mass is no body: the file has to know it
     let checked =
         Reader::new("x").read(&file("first_moment: [1, 0, -m], inertia: {xx: -0.5, zz: 0.1}, physical: false"));
     let checked = checked.unwrap_or_else(|report| panic!("{report}"));
@@ -455,9 +460,13 @@ fn a_first_moment_is_a_centre_of_mass() {
     assert!(!joint.is_physical());
     assert_eq!(checked.lints.warnings().count(), 0, "{}", checked.lints);
     let [note] = &checked.lints.diagnostics[..] else { panic!("{}", checked.lints) };
-    assert!(note.message.starts_with("a first moment without mass, as `physical: false` says"), "{}", note.message);
+    assert!(
+        note.message.starts_with("the link has a first moment but no mass, as `physical: false` allows"),
+        "{}",
+        note.message
+    );
     let report = Reader::new("x").read(&file("first_moment: [1, 0, 0], inertia_about: com, physical: false"));
-    assert!(report.unwrap_err().short().contains("a link that has none"));
+    assert!(report.unwrap_err().short().contains("a link with a first moment and no mass has no centre of mass"));
     assert!(Reader::new("x").read(&file("first_moment: [1, 0, 0], inertia_about: origin, physical: false")).is_ok());
     // What depends on a parameter does so through the mass, too.
     let text = file("mass: 1 + r, first_moment: [1, 0, 0]");
@@ -473,7 +482,7 @@ fn a_first_moment_is_a_centre_of_mass() {
     assert_eq!((link.first_moment, link.inertia.zz), ([1.0, 21.0, 0.0], 7.0));
     assert_eq!(other.joints[last].written_inertia.0.zz, 7.0);
     let report = Reader::new("x").run_time(&["r"]).read(&text.replace("3*r", "r - 3")).unwrap_err();
-    assert!(report.short().contains("zeros are folded away"), "{report}");
+    assert!(report.short().contains("rne removes operations with zeros"), "{report}");
 }
 
 #[test]
@@ -484,7 +493,7 @@ fn an_inertia_that_no_body_has_is_kept_where_the_file_says_so() {
     let report = Reader::new("x").read(&file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}")).unwrap_err();
     assert!(report.short().contains("not positive semidefinite"), "{report}");
     let checked = Reader::new("x").read(&file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}, physical: false")).unwrap();
-    assert!(checked.lints.to_string().contains("as `physical: false` says"), "{}", checked.lints);
+    assert!(checked.lints.to_string().contains("as `physical: false` allows"), "{}", checked.lints);
     assert!(!checked.robot.joints.last().unwrap().is_physical());
 }
 
@@ -525,7 +534,7 @@ fn hostile_files() {
     for (what, text, message) in [
         ("long names", long_names, "unknown name"),
         ("shared number", shared, "too large"),
-        ("alias bomb", bomb, "more than 50000 values, aliases (`*name`) written out"),
+        ("alias bomb", bomb, "more than 50000 values when aliases (`*name`) are written out"),
         ("tower of aliases", tower, "nested more than 16 levels deep"),
         ("lists", fill("["), "nested more than 16 levels deep"),
         ("mappings", fill("{a: "), "nested more than 16 levels deep"),

@@ -9,7 +9,7 @@ use rne_model::{Reader, Severity};
 #[test]
 fn a_centre_of_mass_has_a_mass() {
     let diagnostic = the_one("      mass: 2.5\n", "");
-    assert_eq!(diagnostic.message, "link 1 has a centre of mass and no mass");
+    assert_eq!(diagnostic.message, "link 1 has a centre of mass but no mass");
     assert!(diagnostic.help.is_some_and(|help| help.contains("write `mass: 0`")));
     assert!(
         found(&with("      mass: 2.5\n      com: [0, 0, 0.3]\n", "")).diagnostics.is_empty(),
@@ -68,8 +68,8 @@ fn lints() {
             "coulomb_width: 0.02, coulomb_displacement: 0.003",
             18,
             81,
-            "`coulomb_width` counts for nothing beside `coulomb_displacement`",
-            "keep one of the two",
+            "rne ignores `coulomb_width` because `coulomb_displacement` is given",
+            "keep only one of the two",
         ),
         (
             "alpha: pi/2",
@@ -121,7 +121,7 @@ fn lints() {
             "{xx: 11, yy: 9, zz: 9}",
             15,
             16,
-            "a radius of gyration of 2.09762 m: as if the 2.5 kg of the link lay that far",
+            "a radius of gyration of 2.09762 m: this is as if the 2.5 kg of the link were this far",
             "1 kg mm² is 1e-6 kg m²",
         ),
         (
@@ -172,7 +172,7 @@ fn invisible_characters() {
             3,
             12,
             r"the invisible character U+200B stands in `an \u{200b}arm`",
-            "delete it",
+            "delete this character",
         ),
         (
             "source: ",
@@ -180,9 +180,9 @@ fn invisible_characters() {
             3,
             8,
             r"U+00AD stands in `itle of an\u{ad}arm`",
-            "anew",
+            "type the word again",
         ),
-        ("name: first", "name: fi\u{2060}rst", 9, 13, r"U+2060 stands in `fi\u{2060}rst`", "delete it"),
+        ("name: first", "name: fi\u{2060}rst", 9, 13, r"U+2060 stands in `fi\u{2060}rst`", "delete this character"),
     ] {
         let lint = the_one(old, new);
         assert_eq!((lint.severity, lint.line, lint.column), (Severity::Warning, line, column), "{}", lint.message);
@@ -198,7 +198,7 @@ fn notes() {
     assert_eq!(note.severity, Severity::Note);
     assert_eq!((note.line, note.column), (15, 16));
     assert!(
-        note.message.contains("principal moments 0.1, 0.12 and 0.23 kg m² the largest exceeds"),
+        note.message.contains("principal moments 0.1, 0.12 and 0.23 kg m², the largest is more than"),
         "{}",
         note.message
     );
@@ -246,7 +246,7 @@ fn joints_that_nothing_resists() {
             vec![("0", ""), ("0", bar)],
             7,
             "{}",
-            "no inertia resists joint 1 where the joints behind it move against it",
+            "no inertia resists joint 1 when the joints after it move against it",
             "{zz: …}",
         ),
     ] {

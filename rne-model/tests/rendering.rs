@@ -27,7 +27,7 @@ fn a_missing_field_of_a_block() {
     9 |   - name: first
       |     ^^^^ `dh` is missing
       |
-      = help: all four are required, such as `dh: {theta: 0, d: 0.4, a: 0, alpha: pi/2}`
+      = help: all four numbers of `dh` are required, such as `dh: {theta: 0, d: 0.4, a: 0, alpha: pi/2}`
     ");
 }
 
@@ -40,7 +40,7 @@ fn a_missing_convention() {
     1 | format: 1
       | ^^^^^^ `convention` is missing
       |
-      = help: write `convention: standard` (Rz(theta) Tz(d) Tx(a) Rx(alpha)) or `convention: modified` (Rx(alpha) Tx(a) Rz(theta) Tz(d)); it is never guessed
+      = help: write `convention: standard` (Rz(theta) Tz(d) Tx(a) Rx(alpha)) or `convention: modified` (Rx(alpha) Tx(a) Rz(theta) Tz(d)); rne never guesses the convention
     ");
 }
 
@@ -75,7 +75,7 @@ fn an_impossible_inertia_and_a_lint() {
     11 |     dh: {theta: 0, d: 0.4, a: 0, alpha: 1.5708}
        |                                         ^^^^^^ rounded?
        |
-       = help: write `pi/2` if that is meant: its sine and cosine are exactly 0 and ±1, and the code gets shorter
+       = help: write `pi/2` if you mean this angle: its sine and cosine are exactly 0 and ±1, and the code gets shorter
     ");
 }
 
@@ -88,7 +88,7 @@ fn an_open_bracket() {
     6 | base: {xyz: [0, 0, 1], rpy: [0, 0, pi]}
       |     ^
       |
-      = help: is the `[` in line 5 closed?
+      = help: check that the `[` in line 5 is closed
     ");
 }
 

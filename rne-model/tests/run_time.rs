@@ -170,21 +170,20 @@ fn errors() {
             "twist",
             ("unit: 1", "unit: 1"),
             (11, 47, "twist"),
-            "the angle `twist` depends on the run-time parameter `twist`; angles and limits are fixed, only lengths",
-            "leave `twist` out of the run-time parameters: it then has its value in the file",
+            "the angle `twist` depends on the run-time parameter `twist`; angles and limits must be fixed",
+            "remove `twist` from the run-time parameters: rne then uses its value in the file",
         ),
-        ("h", ("theta: 0,", "theta: h - pi,"), (11, 17, "h - pi"), "the angle `h - pi` depends on", "leave `h` out"),
+        ("h", ("theta: 0,", "theta: h - pi,"), (11, 17, "h - pi"), "the angle `h - pi` depends on", "remove `h` from"),
         ("payload", ("pi/4]", "m]"), (6, 36, "m"), "the angle `m` depends on the run-time parameter `payload`", ""),
         ("h", ("[-pi, pi]", "[-pi, h]"), (17, 30, "h"), "the limit `h` depends on the run-time parameter `h`", ""),
-        ("J", ("velocity: 2", "velocity: 2/J"), (17, 45, "2/J"), "the limit `2/J` depends on", "leave `J` out"),
-        ("J", ("effort: 50", "effort: 50*J"), (17, 56, "50*J"), "the limit `50*J` depends on", "leave `J` out"),
+        ("J", ("velocity: 2", "velocity: 2/J"), (17, 45, "2/J"), "the limit `2/J` depends on", "remove `J` from"),
+        ("J", ("effort: 50", "effort: 50*J"), (17, 56, "50*J"), "the limit `50*J` depends on", "remove `J` from"),
         (
             "payload",
             ("d: 0, a: 0,", "d: payload, a: 0,"),
             (20, 29, "payload"),
-            "`payload` = 0 varies with the run-time parameter `payload`; a number that varies must not be 0 in \
-             the file",
-            "give `payload` a value in the file with which this is not zero, or leave it out of the run-time \
+            "`payload` = 0 varies with the run-time parameter `payload`; such a number must not be 0 in the file",
+            "give `payload` a value in the file for which this number is not zero, or remove it from the run-time \
              parameters",
         ),
         ("h", ("h - 0.1", "h - 0.3"), (11, 31, "h - 0.3"), "`h - 0.3` = 0 varies with", "give `h` a value"),
@@ -206,8 +205,9 @@ fn errors() {
             "h",
             ("d: h/2", "d: 1 + sqrt(h)"),
             (11, 27, "sqrt(h)"),
-            "`sqrt(h)` depends on the run-time parameter `h`; at run time there are + - * / and whole powers up to 16",
-            "leave `h` out of the run-time parameters",
+            "`sqrt(h)` depends on the run-time parameter `h`; with run-time parameters, only + - * / and whole powers \
+             are allowed, up to 16",
+            "remove `h` from the run-time parameters",
         ),
         ("h", ("d: h/2", "d: sin(2*h)"), (11, 23, "sin(2*h)"), "`sin(2*h)` depends on", ""),
         ("h", ("theta: 0,", "theta: cos(h),"), (11, 17, "cos(h)"), "`cos(h)` depends on", ""),
@@ -221,8 +221,8 @@ fn errors() {
             "paylod",
             ("unit: 1", "unit: 1"),
             (8, 13, "{"),
-            "no parameter `paylod` for run time; under `parameters` there are `payload`, `g`, `h`, `twist`, `J`, `m`, \
-             `c`, `unit`",
+            "the robot file has no parameter `paylod` for run time; under `parameters` there are `payload`, `g`, `h`, \
+             `twist`, `J`, `m`, `c`, `unit`",
             "did you mean `payload`?",
         ),
         ("width", ("unit: 1", "unit: 1"), (8, 13, "{"), "no parameter `width`", "define `width: …` under `parameters`"),
@@ -230,8 +230,8 @@ fn errors() {
             "spare",
             ("unit: 1", "unit: 1, spare: 2"),
             (8, 124, "spare"),
-            "the run-time parameter `spare` has no effect; some number of the table must depend on it",
-            "use `spare` in a number, or leave it out of the run-time parameters",
+            "the run-time parameter `spare` has no effect: no number of the table depends on it",
+            "use `spare` in a number, or remove it from the run-time parameters",
         ),
     ] {
         let (text, error) = the_one(old, new, &[name]);
@@ -252,8 +252,9 @@ fn every_unknown_name_is_listed() {
     let report = read(&text, &["payload", "length"]).unwrap_err();
     assert_eq!(
         report.short(),
-        "robots/x.yaml:1:1: error: no parameter `length` for run time; under `parameters` there are none\n\
-         robots/x.yaml:1:1: error: no parameter `payload` for run time; under `parameters` there are none"
+        "robots/x.yaml:1:1: error: the robot file has no parameter `length` for run time; under `parameters` there are \
+         none\nrobots/x.yaml:1:1: error: the robot file has no parameter `payload` for run time; under `parameters` \
+         there are none"
     );
     let many = (0..20).fold(String::new(), |mut many, i| {
         let _ = write!(many, "p{i:02}: {i}, ");

@@ -209,22 +209,28 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
 /// Axes with their grid, and the curves; returns the scales.
 pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curves: &[Curve<'_>]) -> (Scale, Scale) {
     let values = curves.iter().flat_map(|curve| curve.values.iter().copied());
-    let (across, up, _) = axes(svg, place, title, SECONDS, time, values);
+    let (across, up, _) = axes(svg, place, title, Ticks::Seconds, time, values);
     for curve in curves {
         svg.curve(curve, time, across, up);
     }
     (across, up)
 }
 
-/// Axes with their grid for values over times; returns the scales, and where the axes are between: [top, bottom].
-/// The axis of times.
-pub(crate) const SECONDS: &str = "t, s";
+/// Labels below the axes.
+#[derive(Clone, Copy)]
+pub(crate) enum Ticks<'a> {
+    /// Times, s.
+    Seconds,
+    /// A name for each place, side by side.
+    Names(&'a [String]),
+}
 
+/// Axes with their grid for values over times; returns the scales, and where the axes are between: [top, bottom].
 pub(crate) fn axes(
     svg: &mut Svg,
     place: Place,
     title: &str,
-    axis: &str,
+    ticks: Ticks<'_>,
     time: &[f64],
     values: impl Iterator<Item = f64>,
 ) -> (Scale, Scale, [f64; 2]) {
@@ -232,18 +238,18 @@ pub(crate) fn axes(
     let (left, right) = (place.x + LEFT, place.x + place.width);
     let (top, bottom) = (place.y + ABOVE, place.y + place.height - BELOW);
     let (start, end) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(1.0));
-    let across = Scale::new(start, end, left, right);
+    // a name has room on both sides of its place
+    let beside = if matches!(ticks, Ticks::Names(_)) { 0.5 } else { 0.0 };
+    let across = Scale::new(start - beside, end + beside, left, right);
     let (low, high) = range(values, ABOUT_UP);
     let up = Scale::new(low, high, bottom, top);
     if !title.is_empty() {
         svg.text(place.x, place.y + 26.0, &[("font-size", "17"), ("font-weight", "600")], title);
     }
-    // what is counted has no parts
-    let is_shown = |tick: &f64| axis == SECONDS || tick.fract() == 0.0;
-    for tick in across.ticks(if place.width > 800.0 { 10.0 } else { 6.0 }).into_iter().filter(is_shown) {
+    for (tick, words) in labels(ticks, time, across, place.width) {
         let x = across.at(tick);
         svg.stroke(x, top, x, bottom, GRID, "", 1.0);
-        svg.text(x, bottom + 19.0, &[("text-anchor", "middle"), ("fill", QUIET)], &label(tick));
+        svg.text(x, bottom + 19.0, &[("text-anchor", "middle"), ("fill", QUIET)], &words);
     }
     for tick in up.ticks(ABOUT_UP) {
         let y = up.at(tick);
@@ -251,8 +257,30 @@ pub(crate) fn axes(
         svg.stroke(left, y, right, y, colour, "", if tick == 0.0 { 1.4 } else { 1.0 });
         svg.text(left - 9.0, y + 5.0, &[("text-anchor", "end"), ("fill", QUIET)], &label(tick));
     }
-    svg.text(left - 20.0, bottom + 19.0, &[("text-anchor", "end"), ("fill", QUIET)], axis);
+    if matches!(ticks, Ticks::Seconds) {
+        svg.text(left - 20.0, bottom + 19.0, &[("text-anchor", "end"), ("fill", QUIET)], "t, s");
+    }
     (across, up, [top, bottom])
+}
+
+/// The ticks of the axis across with their words: of many names as many as have room.
+fn labels(ticks: Ticks<'_>, time: &[f64], across: Scale, width: f64) -> Vec<(f64, String)> {
+    const LONGEST: usize = 24;
+    match ticks {
+        Ticks::Seconds => {
+            let about = if width > 800.0 { 10.0 } else { 6.0 };
+            across.ticks(about).into_iter().map(|tick| (tick, label(tick))).collect()
+        }
+        Ticks::Names(names) => {
+            let names: Vec<String> = names.iter().map(|name| shortened(name, LONGEST)).collect();
+            let widest = names.iter().map(|name| width_of(name, 15.0)).fold(1.0, f64::max) + 16.0;
+            #[allow(clippy::cast_precision_loss)] // a number of logs
+            let apart = (width - LEFT) / names.len().max(1) as f64;
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
+            let every = (widest / apart).ceil().max(1.0) as usize;
+            time.iter().copied().zip(names).step_by(every).collect()
+        }
+    }
 }
 
 /// The samples of a curve that a picture shows: of each stretch the first, the least, the largest and the last.

@@ -42,6 +42,7 @@ pub fn comparison_svg(robot: &Robot, comparison: &Comparison<'_>) -> String {
                 PanelCurve { name: "residual: measured - predicted", values: &residuals[joint] },
             ],
             limits: Vec::new(),
+            bounds: Vec::new(),
             bands: Vec::new(),
         }
     };

@@ -19,6 +19,7 @@
 #![forbid(unsafe_code)]
 
 mod chart;
+mod clipped;
 mod comparison;
 mod history;
 mod panels;

@@ -1,8 +1,9 @@
 //! A picture of panels below each other's times: curves of a joint each, limits, and stretches that are marked.
 
 use crate::chart::{
-    COLOURS, Curve, HEAD, PANEL, Place, QUIET, SECONDS, SIDE, Svg, TEXT, WIDTH, axes, pixels, shortened, width_of,
+    COLOURS, Curve, HEAD, PANEL, Place, QUIET, SIDE, Svg, TEXT, Ticks, WIDTH, axes, pixels, shortened, width_of,
 };
+use crate::clipped::{clipped, edges, room};
 
 /// A curve of a panel.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +36,9 @@ pub struct Panel<'a> {
     pub curves: Vec<PanelCurve<'a>>,
     /// Dashed lines across.
     pub limits: Vec<f64>,
+    /// Curves that may leave the axes, such as thresholds: they are drawn like the others, but what is far beyond these
+    /// is cut off, and its largest value is written at the edge.
+    pub bounds: Vec<PanelCurve<'a>>,
     /// Marked stretches.
     pub bands: Vec<Band>,
 }
@@ -46,12 +50,18 @@ const MARKED: &str = "#f7dfa5";
 /// `title` stands above it and `about` below that. Texts are shown and do nothing.
 #[must_use]
 pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
-    panels_over(SECONDS, name, title, about, time, panels)
+    drawn(Ticks::Seconds, name, title, about, time, panels)
 }
 
-/// Panels like those of [`panels`], over whole numbers; `axis` says what is counted.
+/// Panels like those of [`panels`], over names that stand side by side.
 #[must_use]
-pub fn panels_over(axis: &str, name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
+pub fn panels_over(names: &[String], name: &str, title: &str, about: &str, panels: &[Panel<'_>]) -> String {
+    #[allow(clippy::cast_precision_loss)] // a number of names
+    let places: Vec<f64> = (0..names.len()).map(|place| place as f64).collect();
+    drawn(Ticks::Names(names), name, title, about, &places, panels)
+}
+
+fn drawn(ticks: Ticks<'_>, name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
     let columns = if panels.len() == 1 { 1 } else { 2 };
     #[allow(clippy::cast_precision_loss)] // at most some dozens
     let rows = panels.len().div_ceil(columns) as f64;
@@ -59,8 +69,8 @@ pub fn panels_over(axis: &str, name: &str, title: &str, about: &str, time: &[f64
     svg.text(SIDE, 46.0, &[("font-size", "26"), ("font-weight", "600")], &shortened(title, 72));
     svg.text(SIDE, 74.0, &[("font-size", "16"), ("fill", QUIET)], &shortened(about, 130));
     let mut x = SIDE;
-    let first = panels.first().map_or(&[][..], |panel| &panel.curves);
-    let mut named = first.iter().zip(looks(first)).collect::<Vec<_>>();
+    let first: Vec<PanelCurve<'_>> = panels.first().map_or(Vec::new(), Panel::all);
+    let mut named = first.iter().zip(looks(&first)).collect::<Vec<_>>();
     named.dedup_by_key(|(_, index)| *index);
     for (curve, index) in named {
         svg.stroke(x, 104.0, x + 38.0, 104.0, colour(index), dash(index), 2.2);
@@ -80,17 +90,24 @@ pub fn panels_over(axis: &str, name: &str, title: &str, about: &str, time: &[f64
         #[allow(clippy::cast_precision_loss)] // at most some dozens
         let (column, row) = ((index % columns) as f64, (index / columns) as f64);
         let place = Place { x: SIDE + column * (wide + gap), y: HEAD + row * PANEL, width: wide, height: PANEL };
-        one(&mut svg, place, panel, axis, time);
+        one(&mut svg, place, panel, ticks, time);
     }
     svg.close("svg");
     svg.finish()
 }
 
-fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, axis: &str, time: &[f64]) {
-    let curves: Vec<Curve<'_>> = panel
-        .curves
+impl<'a> Panel<'a> {
+    /// All curves in the order of the legend.
+    fn all(&self) -> Vec<PanelCurve<'a>> {
+        self.curves.iter().chain(&self.bounds).copied().collect()
+    }
+}
+
+fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, ticks: Ticks<'_>, time: &[f64]) {
+    let all = panel.all();
+    let curves: Vec<Curve<'_>> = all
         .iter()
-        .zip(looks(&panel.curves))
+        .zip(looks(&all))
         .map(|(curve, index)| Curve {
             name: curve.name,
             colour: colour(index),
@@ -99,8 +116,13 @@ fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, axis: &str, time: &[f64])
             values: curve.values.to_vec(),
         })
         .collect();
-    let all = curves.iter().flat_map(|curve| curve.values.iter().copied()).chain(panel.limits.iter().copied());
-    let (across, up, [top, bottom]) = axes(svg, place, &shortened(&panel.title, 40), axis, time, all);
+    let (curves, bounds) = curves.split_at(panel.curves.len());
+    let shown = curves.iter().flat_map(|curve| curve.values.iter().copied()).chain(panel.limits.iter().copied());
+    let shown = room(shown, bounds.iter().flat_map(|bound| bound.values.iter().copied()));
+    // without a note the title has all the width
+    let longest = if panel.note.is_empty() { 62 } else { 40 };
+    let title = shortened(&panel.title, longest);
+    let (across, up, [top, bottom]) = axes(svg, place, &title, ticks, time, shown.into_iter());
     for Band { start, end, words } in &panel.bands {
         let (from, to) = (across.at(*start), across.at(*end));
         let numbers = [("x", from), ("y", top), ("width", (to - from).max(2.0)), ("height", bottom - top)];
@@ -114,8 +136,29 @@ fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, axis: &str, time: &[f64])
     for limit in &panel.limits {
         svg.stroke(place.x + 64.0, up.at(*limit), right, up.at(*limit), TEXT, "4 4", 1.2);
     }
-    for curve in &curves {
+    for curve in curves {
         svg.curve(curve, time, across, up);
+        if matches!(ticks, Ticks::Names(_)) && curve.dash.is_empty() {
+            for (place, value) in time.iter().zip(&curve.values).filter(|(_, value)| value.is_finite()) {
+                let (x, y) = (pixels(across.at(*place)), pixels(up.at(*value)));
+                svg.empty("circle", &[("cx", x.as_str()), ("cy", &y), ("r", "3.4"), ("fill", curve.colour)]);
+            }
+        }
+    }
+    for bound in bounds {
+        for (time, values) in clipped(time, &bound.values, up.ends()) {
+            svg.curve(&Curve { values, ..*bound }, &time, across, up);
+        }
+    }
+    for (is_above, words) in edges(bounds, up.ends()) {
+        let y = if is_above { top + 14.0 } else { bottom - 6.0 };
+        // the words are read where curves cross them
+        let wide = width_of(&words, 13.0) + 8.0;
+        let place = [("x", right - 2.0 - wide), ("y", y - 13.0), ("width", wide), ("height", 17.0)];
+        let place = place.map(|(name, value)| (name, pixels(value)));
+        let place = place.each_ref().map(|(name, value)| (*name, value.as_str()));
+        svg.empty("rect", &[&place[..], &[("fill", "#ffffff"), ("fill-opacity", "0.8")]].concat());
+        svg.text(right - 6.0, y, &[("text-anchor", "end"), ("font-size", "13"), ("fill", TEXT)], &words);
     }
     svg.text(right, place.y + 26.0, &[("text-anchor", "end"), ("fill", QUIET)], &panel.note);
 }

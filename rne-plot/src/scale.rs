@@ -18,6 +18,11 @@ impl Scale {
         Self { low, high, from, to }
     }
 
+    /// The numbers at both ends.
+    pub(crate) const fn ends(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
     /// Pixels of a number; the middle of an axis whose ends are too close together to tell numbers apart.
     pub(crate) fn at(&self, value: f64) -> f64 {
         let half = self.high / 2.0 - self.low / 2.0;

@@ -42,7 +42,7 @@ pub enum TrajectoryError {
 impl fmt::Display for TrajectoryError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TooFew { found, needed } => write!(f, "{found} samples, and at least {needed} are needed"),
+            Self::TooFew { found, needed } => write!(f, "{found} samples, but at least {needed} are needed"),
             Self::Time(sample) => write!(f, "the time of sample {} is not later than that before it", sample + 1),
             Self::Length(sample) => write!(f, "sample {} does not have one number for each joint", sample + 1),
             Self::NotFinite(sample) => write!(f, "a number of sample {} is not finite", sample + 1),

@@ -220,6 +220,57 @@ pub trait MomentumObserver<const DOF: usize> {
     fn momentum_and_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> MomentumAndRate<DOF, T>;
 }
 
+/// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has
+/// the
+/// payload too. [`inverse_dynamics_with_payload`](InverseDynamics::inverse_dynamics_with_payload) belongs to
+/// [`InverseDynamics`]. A payload of zero gives the numbers of the function without a payload.
+pub trait PayloadDynamics<const DOF: usize> {
+    /// Torques that hold the arm and the payload still against gravity, N m or N. See
+    /// [`gravity_torques`](InverseDynamics::gravity_torques).
+    #[must_use]
+    fn gravity_torques_with_payload<T: Scalar>(&self, q: &[T; DOF], payload: &Payload<T>) -> [T; DOF];
+
+    /// Coriolis, centrifugal and gravity torques, N m or N. See [`bias_torques`](InverseDynamics::bias_torques).
+    #[must_use]
+    fn bias_torques_with_payload<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], payload: &Payload<T>) -> [T; DOF];
+
+    /// The mass matrix, symmetric to the last bit. See [`mass_matrix`](MassMatrix::mass_matrix).
+    #[must_use]
+    fn mass_matrix_with_payload<T: Scalar>(&self, q: &[T; DOF], payload: &Payload<T>) -> [[T; DOF]; DOF];
+
+    /// Accelerations, rad/s² or m/s². See [`forward_dynamics`](ForwardDynamics::forward_dynamics).
+    #[must_use]
+    fn forward_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        payload: &Payload<T>,
+    ) -> [T; DOF];
+
+    /// ∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_payload`. See
+    /// [`inverse_dynamics_derivatives`](InverseDynamicsDerivatives::inverse_dynamics_derivatives).
+    #[must_use]
+    fn inverse_dynamics_derivatives_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        payload: &Payload<T>,
+    ) -> TorqueDerivatives<DOF, T>;
+
+    /// The momentum of the joints and its rate without external torques, for an observer that does not take the payload
+    /// for an external torque. See [`momentum_and_rate`](MomentumObserver::momentum_and_rate).
+    #[must_use]
+    fn momentum_and_rate_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        payload: &Payload<T>,
+    ) -> MomentumAndRate<DOF, T>;
+}
+
 /// Torques on a vehicle, a ship or another robot.
 pub trait MovingBase<const DOF: usize> {
     /// Torques with a free tip when frame 0 moves as `base` says, which replaces the robot's own gravity as well.

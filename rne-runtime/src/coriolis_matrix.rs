@@ -12,6 +12,7 @@
 //! an identity and no difference quotient: it is exact up to rounding. Half the derivative of b with respect to q̇ is
 //! the same matrix.
 
+use crate::at_tip::AtTip;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
@@ -23,7 +24,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn coriolis_matrix<T: Scalar>(self, q: &[T], qd: &[T]) -> Square<J, T> {
         let weightless = BaseMotion::fixed([T::zero(); 3]);
         let zeros = self.zeros();
-        let torques = |qd: J::Of<T>| self.torques(JointMotions::new(q, qd.as_ref(), zeros.as_ref()), &weightless);
+        let torques =
+            |qd: J::Of<T>| self.torques(JointMotions::new(q, qd.as_ref(), zeros.as_ref()), &weightless, AtTip::Nothing);
         let quarter = T::from_f64(0.25);
         let mut matrix = self.per_joint.all(&zeros);
         for j in 0..q.len() {

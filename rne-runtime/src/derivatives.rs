@@ -1,10 +1,11 @@
 //! Derivatives of the torques with respect to positions and velocities, by dual numbers through the seven steps: exact
 //! up to rounding, one direction at a time.
 
+use crate::at_tip::AtTip;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, Constant, Dual, InverseDynamicsDerivatives, Scalar, TorqueDerivatives};
+use crate::{Arm, Constant, Dual, InverseDynamicsDerivatives, Payload, Scalar, TorqueDerivatives};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
@@ -19,8 +20,14 @@ pub struct DynTorqueDerivatives<T> {
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// ∂τ/∂q and ∂τ/∂q̇.
-    pub(crate) fn torque_derivatives<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> (Square<J, T>, Square<J, T>) {
+    /// ∂τ/∂q and ∂τ/∂q̇ of an arm with or without a payload.
+    pub(crate) fn torque_derivatives<T: Scalar>(
+        self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        payload: Option<&Payload<T>>,
+    ) -> (Square<J, T>, Square<J, T>) {
         let constant = |x: &[T]| self.per_joint.of(|i| Dual::constant(x[i]));
         // x, with joint j on its way
         let along = |x: &[T], j: usize| {
@@ -28,9 +35,11 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             self.per_joint.of(|i| Dual { value: x[i], derivative: unit.as_ref()[i] })
         };
         let base = self.fixed_base();
+        let payload = payload.map(|payload| Payload::from_array(payload.to_array().map(Dual::constant)));
+        let tip = payload.as_ref().map_or(AtTip::Nothing, AtTip::Payload);
         let torques = |q: &J::Of<Dual<T>>, qd: &J::Of<Dual<T>>| {
             let qdd = constant(qdd);
-            self.torques(JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()), &base)
+            self.torques(JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()), &base, tip)
         };
         let (still_q, still_qd) = (constant(q), constant(qd));
         // Columns first.
@@ -50,7 +59,7 @@ impl<const DOF: usize, S: Constant> InverseDynamicsDerivatives<DOF> for Arm<DOF,
         qd: &[T; DOF],
         qdd: &[T; DOF],
     ) -> TorqueDerivatives<DOF, T> {
-        let (dq, dqd) = self.mechanism().torque_derivatives(q, qd, qdd);
+        let (dq, dqd) = self.mechanism().torque_derivatives(q, qd, qdd, None);
         TorqueDerivatives { dq, dqd }
     }
 }
@@ -68,7 +77,7 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
     ) -> Result<DynTorqueDerivatives<T>, WrongLength> {
         self.joints(q, qd, qdd)?;
-        let (dq, dqd) = self.mechanism().torque_derivatives(q, qd, qdd);
+        let (dq, dqd) = self.mechanism().torque_derivatives(q, qd, qdd, None);
         Ok(DynTorqueDerivatives { dq, dqd })
     }
 }

@@ -14,6 +14,7 @@
 //! backward           q̈_i  = z_i - L_{i+1,i} q̈_{i+1} - L_{i+2,i} q̈_{i+2} - …   over k > i, ascending
 //! ```
 
+use crate::at_tip::AtTip;
 use crate::ldlt::factor;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
@@ -23,11 +24,11 @@ use crate::{Arm, Constant, ForwardDynamics, Scalar};
 use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    pub(crate) fn forward_dynamics<T: Scalar>(self, q: &[T], qd: &[T], tau: &[T]) -> J::Of<T> {
+    pub(crate) fn forward_dynamics<T: Scalar>(self, q: &[T], qd: &[T], tau: &[T], tip: AtTip<'_, T>) -> J::Of<T> {
         let zeros = self.zeros();
-        let bias = self.torques(JointMotions::new(q, qd, zeros.as_ref()), &self.fixed_base());
+        let bias = self.torques(JointMotions::new(q, qd, zeros.as_ref()), &self.fixed_base(), tip);
         let mut x = self.per_joint.of(|i| tau[i] - bias.as_ref()[i]);
-        let (mut m, mut inverse) = (self.mass_matrix(q), zeros);
+        let (mut m, mut inverse) = (self.mass_matrix(q, tip), zeros);
         factor(m.as_mut(), inverse.as_mut());
         solve(m.as_ref(), inverse.as_ref(), x.as_mut());
         x
@@ -54,7 +55,7 @@ fn solve<T: Scalar, R: AsRef<[T]>>(m: &[R], inverse: &[T], x: &mut [T]) {
 
 impl<const DOF: usize, S: Constant> ForwardDynamics<DOF> for Arm<DOF, S> {
     fn forward_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> [T; DOF] {
-        self.mechanism().forward_dynamics(q, qd, tau)
+        self.mechanism().forward_dynamics(q, qd, tau, AtTip::Nothing)
     }
 }
 
@@ -68,6 +69,6 @@ impl<S: Constant> DynArm<S> {
         self.has_length("q", q)?;
         self.has_length("qd", qd)?;
         self.has_length("tau", tau)?;
-        Ok(self.mechanism().forward_dynamics(q, qd, tau))
+        Ok(self.mechanism().forward_dynamics(q, qd, tau, AtTip::Nothing))
     }
 }

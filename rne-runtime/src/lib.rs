@@ -58,6 +58,8 @@ mod observer;
 mod operations;
 mod payload;
 #[cfg(feature = "arm")]
+mod payload_dynamics;
+#[cfg(feature = "arm")]
 mod per_joint;
 mod pose;
 #[doc(hidden)]
@@ -86,7 +88,8 @@ pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, Regressor, TorqueDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, PayloadDynamics, Regressor,
+    TorqueDerivatives,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

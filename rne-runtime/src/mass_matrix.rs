@@ -5,6 +5,7 @@
 //! generated code repeats it. The inverse is L⁻ᵀ D⁻¹ L⁻¹ by the factors of
 //! [forward dynamics](crate::ForwardDynamics): column j from row j on, mirrored too.
 
+use crate::at_tip::AtTip;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
@@ -13,13 +14,14 @@ use crate::{Arm, BaseMotion, Constant, MassMatrix, Scalar};
 use crate::{DynArm, WrongLength, ldlt::inverse_of};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T]) -> Square<J, T> {
+    pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T], tip: AtTip<'_, T>) -> Square<J, T> {
         let weightless = BaseMotion::fixed([T::zero(); 3]);
         let at_rest = self.zeros();
         let mut matrix = self.per_joint.all(&at_rest);
         for j in 0..q.len() {
             let unit = self.unit(j);
-            let column = self.torques(JointMotions::new(q, at_rest.as_ref(), unit.as_ref()), &weightless);
+            let joints = JointMotions::new(q, at_rest.as_ref(), unit.as_ref());
+            let column = self.torques(joints, &weightless, tip);
             for (i, &element) in column.as_ref().iter().enumerate().take(j + 1) {
                 matrix.as_mut()[i].as_mut()[j] = element;
                 matrix.as_mut()[j].as_mut()[i] = element;
@@ -31,7 +33,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
 impl<const DOF: usize, S: Constant> MassMatrix<DOF> for Arm<DOF, S> {
     fn mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF] {
-        self.mechanism().mass_matrix(q)
+        self.mechanism().mass_matrix(q, AtTip::Nothing)
     }
 }
 
@@ -43,7 +45,7 @@ impl<S: Constant> DynArm<S> {
     /// When an argument does not have one element per joint.
     pub fn mass_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
         self.has_length("q", q)?;
-        Ok(self.mechanism().mass_matrix(q))
+        Ok(self.mechanism().mass_matrix(q, AtTip::Nothing))
     }
 
     /// As [`MassMatrix::inverse_mass_matrix`]: rows of M(q)⁻¹.

@@ -75,9 +75,14 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         Some((motor.gear_ratio * motor.gear_ratio) * motor.inertia)
     }
 
-    /// Torques of the seven steps with a free tip.
-    pub(crate) fn torques<T: Scalar>(self, joints: JointMotions<'_, T>, base: &BaseMotion<T>) -> J::Of<T> {
-        let (_, loads) = self.passes(joints, base, AtTip::Nothing);
+    /// Torques of the seven steps.
+    pub(crate) fn torques<T: Scalar>(
+        self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        tip: AtTip<'_, T>,
+    ) -> J::Of<T> {
+        let (_, loads) = self.passes(joints, base, tip);
         self.per_joint.of(|joint| loads.as_ref()[joint].tau)
     }
 

@@ -14,7 +14,8 @@
 //! -∂V/∂q_i              e · (s_i × g_i)                   M_i e · g_i
 //! ```
 //!
-//! k runs over the joints that link i carries; j̇_i = R_iᵀ (ċ_p + ω_p × r_i). A first moment h beside the mass adds h_i
+//! k runs over the joints that link i carries, and over the payload at the tip; j̇_i = R_iᵀ (ċ_p + ω_p × r_i). A first
+//! moment h beside the mass adds h_i
 //! to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. The order of the operations is part of the contract; generated code
 //! repeats it.
 
@@ -24,8 +25,9 @@ use rne_model::JointKind;
 use crate::link_frame::LinkFrame;
 use crate::link_state::{JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
+use crate::mount::Mount;
 use crate::per_joint::PerJoint;
-use crate::{Arm, BaseMotion, Constant, MomentumAndRate, MomentumObserver, Scalar};
+use crate::{Arm, BaseMotion, Constant, MomentumAndRate, MomentumObserver, Payload, Scalar};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
@@ -68,6 +70,18 @@ impl<T: Scalar> Body<T> {
         }
     }
 
+    /// A payload in tip axes, about the origin of the tip frame: v = Rᵀ (ċ_n + ω_n × r) + ω × c, P = m v, L = I ω + c ×
+    /// P.
+    fn of_payload(payload: &Payload<T>, last: &LinkMotion<T>, velocity: &Vector3<T>, tip: &Mount<T>) -> Self {
+        let (com, inertia) = (Vector3::from(payload.com), Matrix3::from(payload.inertia.rows()).transpose());
+        let omega = tip.rotation.tr_mul(&last.omega);
+        let origin = velocity + last.omega.cross(&tip.r);
+        let velocity = tip.rotation.tr_mul(&origin) + omega.cross(&com);
+        let linear = velocity * payload.mass;
+        let angular = inertia * omega + com.cross(&linear);
+        Self { mass: payload.mass, first_moment: com * payload.mass, linear, angular }
+    }
+
     /// Rotates the values into the axes of the parent.
     fn turned(&self, rotation: &Matrix3<T>) -> Self {
         Self {
@@ -98,7 +112,13 @@ fn carry<T: Scalar>(others: Option<Carried<T>>, body: Body<T>, r: &Vector3<T>) -
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// p, and τ + ∂T/∂q - ∂V/∂q.
-    pub(crate) fn momentum_and_rate<T: Scalar>(self, q: &[T], qd: &[T], tau: &[T]) -> [J::Of<T>; 2] {
+    pub(crate) fn momentum_and_rate<T: Scalar>(
+        self,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        payload: Option<&Payload<T>>,
+    ) -> [J::Of<T>; 2] {
         let zeros = self.zeros();
         let joints = JointMotions::new(q, qd, zeros.as_ref());
         let base: BaseMotion<T> = self.fixed_base();
@@ -108,6 +128,12 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let still = (LinkMotion::of_base(&base), Vector3::zeros());
         let e = Vector3::new(T::zero(), T::zero(), T::one());
         let mut carried = self.per_joint.all(&None);
+        let last = carried.as_mut().last_mut().zip(motions.last()).zip(velocities.last());
+        if let (Some(((of_last, motion), velocity)), Some(payload)) = (last, payload) {
+            let tip = self.chain.tip.to::<T>();
+            let body = Body::of_payload(payload, motion, velocity, &tip);
+            *of_last = Some(carry(None, body.turned(&tip.rotation), &tip.r));
+        }
         let [mut momentum, mut rate] = [self.zeros::<T>(), self.zeros::<T>()];
         for (i, link) in self.chain.links::<T>().enumerate().rev() {
             let this = &motions[i];
@@ -136,7 +162,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
 impl<const DOF: usize, S: Constant> MomentumObserver<DOF> for Arm<DOF, S> {
     fn momentum_and_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> MomentumAndRate<DOF, T> {
-        let [momentum, rate] = self.mechanism().momentum_and_rate(q, qd, tau);
+        let [momentum, rate] = self.mechanism().momentum_and_rate(q, qd, tau, None);
         MomentumAndRate { momentum, rate }
     }
 }
@@ -151,6 +177,6 @@ impl<S: Constant> DynArm<S> {
         self.has_length("q", q)?;
         self.has_length("qd", qd)?;
         self.has_length("tau", tau)?;
-        Ok(self.mechanism().momentum_and_rate(q, qd, tau))
+        Ok(self.mechanism().momentum_and_rate(q, qd, tau, None))
     }
 }

@@ -145,10 +145,10 @@ impl Constant for f32 {
 
 /// A field of a robot's type that is a parameter of its file: `f64` or `f32`. Only derived code uses it.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` can be no run-time parameter",
+    message = "`{Self}` cannot be a run-time parameter",
     label = "`f64` or `f32` is needed",
-    note = "a field of a robot is a parameter of its file that stays free until run time; a field for other purposes \
-            says `#[robot(skip)]`"
+    note = "each field of a robot is a parameter of its robot file whose value is given at run time; for any other \
+            field, write `#[robot(skip)]` before it"
 )]
 pub trait RunTimeParameter {
     /// This number in the scalar of a computation.

@@ -30,11 +30,12 @@ impl From<CompileError> for SearchError {
 impl fmt::Display for SearchError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::RunTimeParameters => {
-                f.write_str("an arm with run-time parameters has no plan; search for the arm with their values")
-            }
+            Self::RunTimeParameters => f.write_str(
+                "a search needs an arm without run-time parameters; give these parameters their values, then search \
+                 again",
+            ),
             Self::Irreducible(function) => {
-                write!(f, "`{function}` has no reduced form: there is no graph that a search could make smaller")
+                write!(f, "`{function}` has no reduced form, so a search cannot reduce its operations")
             }
             Self::Compile(error) => error.fmt(f),
             Self::NotWritten => f.write_str("the plan that was found cannot be written. Please report this robot"),

@@ -29,15 +29,15 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
     let report = PlanFile::read("ur5.plan.yaml", &text, &other).unwrap_err();
     let error = report.errors().next().unwrap();
     assert_eq!((error.line, error.column), (7, 14));
-    assert!(error.message.contains("numbers of its robot file have changed"), "{}", error.message);
+    assert!(error.message.contains("numbers of the robot file have changed"), "{}", error.message);
     assert_eq!(error.help, None, "what helps is said by whoever shows it");
     for (from, to, what, line) in [
         ("format: 3", "format: 1", "format: 3", "format: 1"),
         ("format: 3", "format: one", "found `one` where a whole number is needed", "format: one"),
-        ("robot: ur5", "robot: ur6", "this plan is of `ur6`, not of `ur5`", "robot: ur6"),
+        ("robot: ur5", "robot: ur6", "this plan is for `ur6`, not for `ur5`", "robot: ur6"),
         ("robot:", "robt:", "unknown key `robt`; a plan file has the keys format, robot", "robt: ur5"),
-        ("fingerprint: ", "fingerprint: +", "is no fingerprint", "fingerprint: +"),
-        ("fingerprint: ", "fingerprint: 0", "is no fingerprint", "fingerprint: 0"),
+        ("fingerprint: ", "fingerprint: +", "is not a fingerprint", "fingerprint: +"),
+        ("fingerprint: ", "fingerprint: 0", "is not a fingerprint", "fingerprint: 0"),
         ("    mul: ", "    mull: ", "unknown key `mull`; `operations` has the keys mul, add, sincos", "mull"),
         ("    mul: ", "    mul: -", "where a whole number is needed", "mul: -"),
         ("    double: ", "    double: about ", "where a number is needed", "double: about"),
@@ -46,8 +46,8 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
         ("    joints:\n", "    jonts:\n", "unknown key `jonts`", "jonts"),
         ("    joints:\n", "    joints:\n    - {}\n", "7 joints", "    joints:"),
         ("    joints:\n", "    joints:\n    - 3\n", "found `3` where a mapping (targets", "- 3"),
-        ("length_scale: ", "length_scale: zz", "is no scale", "length_scale: zz"),
-        ("length_scale: a", "length_scale: a+", "is no scale", "length_scale: a+"),
+        ("length_scale: ", "length_scale: zz", "is not a valid scale", "length_scale: zz"),
+        ("length_scale: a", "length_scale: a+", "is not a valid scale", "length_scale: a+"),
         (
             "    joints:\n",
             "    turned_last_frame: up\n    joints:\n",
@@ -57,17 +57,22 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
         (
             "    joints:\n",
             "    joints:\n    - origin_shift: up\n",
-            "`up` is no origin shift; there are `none`, `minus_d`",
+            "`up` is not a valid origin shift; the valid words are `none`, `minus_d`",
             "origin_shift: up",
         ),
         (
             "    joints:\n",
             "    joints:\n    - on: [light]\n",
-            "`light` is no choice of a joint; there are `axis_column`",
+            "`light` is not a valid choice of a joint; the valid words are `axis_column`",
             "light",
         ),
-        ("    joints:\n", "    joints:\n    - inward_offset: joint\n", "acts in `link` or `parent`", "inward_offset"),
-        ("    double: ", "    double: -", "is no accuracy, which is a number from 0 on", "double: -"),
+        (
+            "    joints:\n",
+            "    joints:\n    - inward_offset: joint\n",
+            "`inward_offset` must be `link` or `parent`",
+            "inward_offset",
+        ),
+        ("    double: ", "    double: -", "is not an accuracy; an accuracy is a number of 0 or more", "double: -"),
         ("    joints:\n", "    joints:\n    - targets: [own]\n", "a list of 1 where 3 are needed", "targets: [own]"),
     ] {
         let wrong = text.replacen(from, to, 1);
@@ -88,7 +93,7 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
         (&"[".repeat(1 << 20), "nested more than 16 levels deep"),
         (&"{a: ".repeat(1 << 18), "nested more than 16 levels deep"),
         ("format: 3\nformat: 3\n", "repeated key `format`; it is already in line 1"),
-        (&format!("{text}---\n{text}"), "a second document begins; a plan file has exactly one"),
+        (&format!("{text}---\n{text}"), "a second YAML document begins here; a plan file must have exactly one"),
         (&format!("{text}reduced: {{}}\n"), "repeated key `reduced`"),
         (&format!("{text}# {}\n", "x".repeat(1 << 20)), "more than 1048576 bytes"),
     ] {

@@ -47,7 +47,9 @@ impl Cell {
         self.logs += 1;
         let Some(event) = changes.events.first() else { return };
         let (is_named, size) = match fault {
-            Fault::Coulomb(joint, size) => (event.cause == Cause::Friction && event.joint == Some(joint), size),
+            Fault::Coulomb(joint, size) | Fault::Viscous(joint, size) => {
+                (event.cause == Cause::Friction && event.joint == Some(joint), size)
+            }
             Fault::Payload(mass) => (event.cause == Cause::Payload, mass),
             Fault::Delay(delay) => (event.parameter == "delay", delay),
             Fault::Gain(joint, gain) => (event.parameter == "gain" && event.joint == Some(joint), gain - 1.0),

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use rne_identify::{FittedModel, FrictionParameter, MotionError, Options, Stretch, Stretches, Structure};
-use rne_logs::Motion;
+use rne_logs::{Motion, UtcTime};
 use rne_model::Robot;
 
 use crate::WatchError;
@@ -50,6 +50,8 @@ pub struct Baseline {
     pub rows: u64,
     /// s
     pub duration: f64,
+    /// The beginning and the end of the quiet logs. `None` where their times do not count from 1970.
+    pub span: Option<[UtcTime; 2]>,
     /// The factor by which the error of the model is larger than between two logs of one arm: 1, or more for the links
     /// of a robot file, which come from another motion.
     pub doubt: f64,
@@ -98,6 +100,7 @@ impl Baseline {
             residual,
             rows: stretches.rows(),
             duration: stretches.duration(),
+            span: None,
             model,
             doubt: 1.0,
             contact: None,
@@ -127,6 +130,7 @@ impl Baseline {
     #[must_use]
     pub fn against_file(mut self, structure: &Structure) -> Self {
         self.doubt = DOUBT_OF_FILE;
+        self.span = None;
         self.model.solution = FittedModel::of_file(structure, &self.model.transitions).solution;
         self
     }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::{DMatrix, DVector};
 use rne_identify::FittedModel;
+use rne_logs::UtcTime;
 use rne_model::document::{self, Content, Kind, Node};
 use rne_model::{Report, Robot, one_line};
 
@@ -14,6 +15,9 @@ use crate::{Baseline, Candidate, Scale};
 const FORMAT: u32 = 2;
 
 const KIND: Kind = Kind { name: "a baseline file", format: FORMAT };
+
+/// The beginning and the end of the quiet logs, UTC.
+const KEYS_OF_SPAN: [&str; 2] = ["quiet_since", "quiet_until"];
 
 /// No number of a baseline is larger.
 const LARGEST: f64 = 1e18;
@@ -43,6 +47,11 @@ impl Baseline {
         line("cutoff", &written(self.cutoff));
         line("duration", &written(self.duration));
         line("rows", &self.rows.to_string());
+        if let Some([start, end]) = self.span {
+            let [since, until] = KEYS_OF_SPAN;
+            line(since, &start.rfc3339());
+            line(until, &end.rfc3339());
+        }
         line("freedom", &written(self.freedom));
         line("delay", &written(self.model.delay));
         line("mass", &written(self.scale.mass));
@@ -141,6 +150,7 @@ impl Baseline {
             residual: read.numbers("residual", dof)?,
             rows,
             duration: read.number("duration")?,
+            span: read.span()?,
             doubt: 1.0,
             contact,
         })
@@ -183,6 +193,23 @@ impl Reading<'_> {
         self.number_of(self.node(key)?)
     }
 
+    /// The span of the quiet logs, which a baseline has if their times were dates.
+    fn span(&self) -> Result<Option<[UtcTime; 2]>, Report> {
+        if self.root.get(KEYS_OF_SPAN[0]).is_none() {
+            return Ok(None);
+        }
+        let time = |key: &str| {
+            let node = self.node(key)?;
+            let found = match &node.content {
+                Content::Scalar(scalar) => UtcTime::from_rfc3339(&scalar.text),
+                _ => None,
+            };
+            found.ok_or_else(|| self.refuse_at(node, "a date such as 2026-11-23T08:00:10.528Z is expected here"))
+        };
+        let [start, end] = KEYS_OF_SPAN;
+        Ok(Some([time(start)?, time(end)?]))
+    }
+
     fn check(&self, key: &str, number: f64, is_right: bool) -> Result<f64, Report> {
         if is_right { Ok(number) } else { Err(self.refuse(key, &format!("`{key}` must be above 0"))) }
     }
@@ -203,7 +230,7 @@ impl Reading<'_> {
         if numbers.len() == count {
             Ok(numbers)
         } else {
-            let message = format!("`{key}` has {} numbers, and {count} are expected for this robot", numbers.len());
+            let message = format!("`{key}` has {} numbers, but {count} are expected for this robot", numbers.len());
             Err(self.refuse(key, &message))
         }
     }
@@ -229,13 +256,13 @@ impl Reading<'_> {
         };
         let mut matrix = DMatrix::zeros(count, count);
         if rows.len() != count {
-            return Err(self.refuse_at(node, &format!("{} rows, and {count} are expected for this robot", rows.len())));
+            return Err(self.refuse_at(node, &format!("{} rows, but {count} are expected for this robot", rows.len())));
         }
         for (row, node) in rows.iter().enumerate() {
             let numbers = self.list_of(node)?;
             if numbers.len() != count - row {
                 return Err(
-                    self.refuse_at(node, &format!("{} numbers, and {} are expected", numbers.len(), count - row))
+                    self.refuse_at(node, &format!("{} numbers, but {} are expected", numbers.len(), count - row))
                 );
             }
             for (column, number) in (row..count).zip(numbers) {

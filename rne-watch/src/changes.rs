@@ -177,7 +177,12 @@ fn event(structure: &Structure, baseline: &Baseline, selection: &Selection<'_>, 
         until,
         is_whole: *window == (0..selection.stretches.len()),
         lasts: window.end == selection.stretches.len(),
+        since_time: None,
+        until_time: None,
+        not_before: None,
+        not_after: None,
         others: Vec::new(),
+        rivals: selection.rivals(found).into_iter().map(Candidate::parameter).collect(),
     }
 }
 
@@ -204,7 +209,12 @@ fn grown(structure: &Structure, selection: &Selection<'_>, joint: usize, [value,
         until,
         is_whole: true,
         lasts: true,
+        since_time: None,
+        until_time: None,
+        not_before: None,
+        not_after: None,
         others: Vec::new(),
+        rivals: Vec::new(),
     }
 }
 

@@ -55,7 +55,7 @@ pub enum WatchError {
 impl fmt::Display for WatchError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Joints { expected, found } => write!(f, "{found} joints, and the robot has {expected}"),
+            Self::Joints { expected, found } => write!(f, "{found} joints, but the robot has {expected}"),
             Self::Length(list, joint) => {
                 write!(f, "`{list}` of joint {joint} does not have one number for each time")
             }
@@ -64,7 +64,7 @@ impl fmt::Display for WatchError {
                 "sample {} has a number that is not finite, or is not later than the one before it",
                 index + 1
             ),
-            Self::TooFew { found, needed } => write!(f, "{found} samples, and at least {needed} are needed"),
+            Self::TooFew { found, needed } => write!(f, "{found} samples, but at least {needed} are needed"),
             Self::ShortLog { duration, needed, cutoff } => write!(
                 f,
                 "{duration:.1} s are too short to watch after a low-pass of {cutoff:.1} Hz: more than {needed:.1} s of \

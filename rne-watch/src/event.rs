@@ -1,5 +1,6 @@
 //! Events: one for each cause.
 
+use rne_logs::UtcTime;
 use rne_model::{JointKind, Robot};
 
 use crate::Candidate;
@@ -85,8 +86,22 @@ pub struct Event {
     pub is_whole: bool,
     /// Whether it lasts until the end of the log.
     pub lasts: bool,
+    /// The date at which it begins; that of the beginning of the log if it lasts from there to the end. `None` where
+    /// the times of the log do not count from 1970.
+    pub since_time: Option<UtcTime>,
+    /// The date at which it ends; that of the end of the log if it lasts until then.
+    pub until_time: Option<UtcTime>,
+    /// For a change that the whole log has: the end of the quiet logs, where they end before the log begins. The change
+    /// began after it.
+    pub not_before: Option<UtcTime>,
+    /// For a change that the whole log has: the beginning of the quiet logs, where they begin after the log ends. The
+    /// change ended before it.
+    pub not_after: Option<UtcTime>,
     /// Further joints that the same event moves, counted from 0.
     pub others: Vec<usize>,
+    /// Further friction parameters of the joint, each of which would explain the change almost as well: `coulomb` or
+    /// `viscous`.
+    pub rivals: Vec<&'static str>,
 }
 
 impl Event {

@@ -35,11 +35,12 @@ mod baseline_file;
 mod candidate;
 mod changes;
 mod contact;
+mod dates;
 mod error;
 mod event;
 mod picture;
 mod report;
-
+mod rivals;
 mod score;
 mod selection;
 mod settings;

@@ -7,9 +7,10 @@ use crate::contact::contact_limits;
 use crate::event::Event;
 use crate::{Report, Settings};
 
-/// The residual torque of each joint, the observer's torque with its thresholds, and the events, as an SVG; the
-/// torques of changed parameters are drawn as their own curve. Empty without signals. `about` says what the log is.
-/// Texts of the robot file are shown and do nothing.
+/// The residual torque of each joint, measured less what the robot file predicts, with its root mean square; the
+/// observer's torque with its thresholds, and the events, as an SVG. The torques of changed parameters are drawn as
+/// their own curve. Thresholds that are far beyond the curves are cut off. Empty without signals. `about` says what the
+/// log is. Texts of the robot file are shown and do nothing.
 #[must_use]
 pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> String {
     let Some(signals) = &report.signals else { return String::new() };
@@ -33,26 +34,38 @@ pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> 
             curves.push(PanelCurve { name: "changed parameters", values: &report.explained[joint] });
         }
         curves.push(PanelCurve { name: "external torque", values: &signals.external[joint] });
-        curves.push(PanelCurve { name: "contact threshold", values: &bounds[joint][0] });
-        curves.push(PanelCurve { name: "contact threshold", values: &bounds[joint][1] });
+        let thresholds = bounds[joint].iter().map(|values| PanelCurve { name: "contact threshold", values });
         let is_here = |event: &&Event| event.joint.is_none_or(|of| of == joint) || event.others.contains(&joint);
         let bands = report.events.iter().filter(is_here).map(|event| Band {
             start: event.since,
             end: event.until,
             words: words(robot, event),
         });
-        let note = format!("residual {:.3} {unit}, RMS", report.changes.residual[joint]);
+        let note = format!("residual {} {unit}, RMS", significant(root_mean_square(&residuals[joint])));
         Panel {
             title: format!("{} {}, {unit}", joint + 1, row.name),
             note,
             curves,
             limits: Vec::new(),
+            bounds: thresholds.collect(),
             bands: bands.collect(),
         }
     };
     let joints = robot.joints.iter().enumerate().take(signals.dof());
     let title = robot.title.as_deref().unwrap_or(&robot.name);
     panels(&format!("Watched: {title}"), title, about, &signals.time, &joints.map(panel).collect::<Vec<_>>())
+}
+
+/// Root mean square of the curve that is drawn.
+fn root_mean_square(values: &[f64]) -> f64 {
+    #[allow(clippy::cast_precision_loss)] // samples of a picture
+    let count = values.len().max(1) as f64;
+    (values.iter().map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+/// Three decimals of what is small, none of what is large: a curve says no more.
+fn significant(value: f64) -> String {
+    if value < 10.0 { format!("{value:.3}") } else { format!("{value:.1}") }
 }
 
 /// An event in words: `friction of elbow: coulomb 9.9 ± 0.5 N m, 0.3 s to 18.9 s`.

@@ -5,6 +5,7 @@ use rne_logs::Motion;
 use rne_model::Robot;
 
 use crate::contact::{Contact, ContactNoise, contacts};
+use crate::dates::Dates;
 use crate::event::{Cause, Event, unit};
 use crate::{Baseline, Candidate, Changes, Settings, Signals, WatchError};
 
@@ -81,12 +82,13 @@ impl Baseline {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Self, WatchError> {
         let judged = log.judged(progress).map_err(WatchError::Log)?;
-        let baseline = Self::of::<WatchError>(structure, |take| {
+        let mut baseline = Self::of::<WatchError>(structure, |take| {
             judged
                 .pass_runs(Part::All, &mut |run, motion| take(run, motion).map_err(WatchError::from), progress)
                 .map_err(WatchError::from)
         })?;
         baseline.check(structure)?;
+        baseline.span = log.span();
         Ok(baseline)
     }
 }
@@ -142,6 +144,7 @@ pub fn watch(
     for (run, of_run) in found {
         events.extend(touches(robot, &contact, run, Contact::joined(of_run, JOINED)));
     }
+    Dates::of(log, baseline.span).give(&mut events);
     Ok(Report { events: one_cause(&events), changes, contact, signals, explained, is_cut })
 }
 
@@ -194,8 +197,9 @@ pub fn changes(
         )
         .map_err(WatchError::from)?;
     if stretches.rows() >= FEWEST
-        && let Some(found) = Changes::of(structure, baseline, &stretches)
+        && let Some(mut found) = Changes::of(structure, baseline, &stretches)
     {
+        Dates::of(log, baseline.span).give(&mut found.events);
         return Ok(found);
     }
     let duration: f64 = log.survey().runs.iter().map(|run| run.duration).sum();
@@ -286,7 +290,12 @@ fn touches(robot: &Robot, noise: &ContactNoise, run: u64, contacts: Vec<Contact>
             until: group.iter().fold(f64::NEG_INFINITY, |end, of| end.max(of.end)),
             is_whole: false,
             lasts: false,
+            since_time: None,
+            until_time: None,
+            not_before: None,
+            not_after: None,
             others,
+            rivals: Vec::new(),
         })
     };
     groups.into_iter().filter_map(event).collect()
@@ -313,7 +322,12 @@ mod tests {
             until: 2.0,
             is_whole: false,
             lasts: false,
+            since_time: None,
+            until_time: None,
+            not_before: None,
+            not_after: None,
             others: Vec::new(),
+            rivals: Vec::new(),
         }
     }
 

@@ -107,8 +107,9 @@ pub(crate) struct Selection<'a> {
     baseline: &'a Baseline,
     /// The stretches that count.
     pub(crate) stretches: Vec<&'a Stretch>,
-    score: Score,
-    given: Vec<Projected>,
+    pub(crate) score: Score,
+    /// The changes that were found.
+    pub(crate) given: Vec<Projected>,
     /// The ratio of each joint's speed to that in the quiet logs.
     speed_ratios: Vec<f64>,
 }

@@ -114,12 +114,11 @@ impl Trend {
         text
     }
 
-    /// Coulomb friction of each joint and the payload over the logs, with intervals of 95 % and the thresholds of
-    /// events, as an SVG. `about` names the logs that were compared.
+    /// Coulomb friction of each joint and the payload over the names of the logs, with intervals of 95 % and the
+    /// thresholds of events, as an SVG. `about` names the logs that were compared.
     #[must_use]
     pub fn svg(&self, robot: &Robot, about: &str) -> String {
-        #[allow(clippy::cast_precision_loss)] // a number of logs
-        let numbers: Vec<f64> = (1..=self.rows.len()).map(|number| number as f64).collect();
+        let names: Vec<String> = self.rows.iter().map(|row| row.name.clone()).collect();
         let of_joint = |(joint, [_, before]): (usize, &[f64; 2])| {
             let unit = unit(robot, Candidate::Coulomb(joint));
             let title = format!("{} {}: Coulomb friction, {unit}", joint + 1, robot.joints[joint].name);
@@ -129,7 +128,7 @@ impl Trend {
         series.push(Series::new("payload, kg".to_owned(), 0.0, self.rows.iter().map(|row| row.payload)));
         let panels: Vec<Panel<'_>> = series.iter().map(Series::panel).collect();
         let title = robot.title.as_deref().unwrap_or(&robot.name);
-        panels_over("log", &format!("Trend of {title}"), title, about, &numbers, &panels)
+        panels_over(&names, &format!("Trend of {title}"), title, about, &panels)
     }
 }
 
@@ -159,6 +158,13 @@ impl Series {
     fn panel(&self) -> Panel<'_> {
         let names = ["value", "interval of 95 %", "interval of 95 %", "threshold", "threshold"];
         let curves = names.into_iter().zip(&self.curves).map(|(name, values)| PanelCurve { name, values }).collect();
-        Panel { title: self.title.clone(), note: String::new(), curves, limits: Vec::new(), bands: Vec::new() }
+        Panel {
+            title: self.title.clone(),
+            note: String::new(),
+            curves,
+            limits: Vec::new(),
+            bounds: Vec::new(),
+            bands: Vec::new(),
+        }
     }
 }

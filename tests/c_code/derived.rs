@@ -2,8 +2,8 @@
 
 use rne::{
     Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Pose, Regressor,
-    Scalar, Wrench,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
+    Pose, Regressor, Scalar, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -34,6 +34,7 @@ pub(crate) trait Everything<const DOF: usize>:
     + MomentumObserver<DOF>
     + MovingBase<DOF>
     + Actuation<DOF>
+    + PayloadDynamics<DOF>
 {
 }
 
@@ -95,6 +96,23 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
         }
         Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
         Function::ActuatorTorques => robot.actuator_torques(qd, qdd).to_vec(),
+        Function::GravityTorquesWithPayload => {
+            robot.gravity_torques_with_payload(q, &states::payload(payload)).to_vec()
+        }
+        Function::BiasTorquesWithPayload => robot.bias_torques_with_payload(q, qd, &states::payload(payload)).to_vec(),
+        Function::MassMatrixWithPayload => flat(robot.mass_matrix_with_payload(q, &states::payload(payload))),
+        Function::ForwardDynamicsWithPayload => {
+            robot.forward_dynamics_with_payload(q, qd, tau, &states::payload(payload)).to_vec()
+        }
+        Function::InverseDynamicsDerivativesWithPayload => {
+            let payload = states::payload(payload);
+            let derivatives = robot.inverse_dynamics_derivatives_with_payload(q, qd, qdd, &payload);
+            [flat(derivatives.dq), flat(derivatives.dqd)].concat()
+        }
+        Function::MomentumAndRateWithPayload => {
+            let found = robot.momentum_and_rate_with_payload(q, qd, tau, &states::payload(payload));
+            [found.momentum, found.rate].concat()
+        }
     }
 }
 
@@ -117,6 +135,7 @@ macro_rules! robot {
                 rne::MomentumObserver,
                 rne::MovingBase,
                 rne::Actuation,
+                rne::PayloadDynamics,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

@@ -132,7 +132,12 @@ impl Driver<'_> {
                 | Function::InverseDynamicsDerivatives
                 | Function::JointWrenches => "q, qd, qdd",
                 Function::InverseDynamicsWithWrench => "q, qd, qdd, force, moment",
-                Function::InverseDynamicsWithPayload => "q, qd, qdd, payload",
+                Function::InverseDynamicsWithPayload | Function::InverseDynamicsDerivativesWithPayload => {
+                    "q, qd, qdd, payload"
+                }
+                Function::GravityTorquesWithPayload | Function::MassMatrixWithPayload => "q, payload",
+                Function::BiasTorquesWithPayload => "q, qd, payload",
+                Function::ForwardDynamicsWithPayload | Function::MomentumAndRateWithPayload => "q, qd, tau, payload",
                 Function::InverseDynamicsFromSinCos => "sine, cosine, q, qd, qdd",
                 Function::GravityTorques
                 | Function::MassMatrix
@@ -157,9 +162,10 @@ impl Driver<'_> {
                         writeln!(text, "    {{ {real} x = {prefix}_{function}({arguments}); print_{real}(&x, 1u); }}");
                     continue;
                 }
-                Function::MassMatrix | Function::InverseMassMatrix | Function::CoriolisMatrix => {
-                    (format!("{real} x[{n}][{n}]"), "x")
-                }
+                Function::MassMatrix
+                | Function::MassMatrixWithPayload
+                | Function::InverseMassMatrix
+                | Function::CoriolisMatrix => (format!("{real} x[{n}][{n}]"), "x"),
                 Function::ForwardKinematics => (format!("{prefix}_pose x"), "&x"),
                 Function::LinkPoses => (format!("{prefix}_pose x[{n}]"), "x"),
                 Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
@@ -167,8 +173,12 @@ impl Driver<'_> {
                 Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
                 Function::JacobianRateTimesVelocity => (format!("{real} x[6]"), "x"),
                 Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
-                Function::InverseDynamicsDerivatives => (format!("{prefix}_torque_derivatives x"), "&x"),
-                Function::MomentumAndRate => (format!("{prefix}_momentum x"), "&x"),
+                Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
+                    (format!("{prefix}_torque_derivatives x"), "&x")
+                }
+                Function::MomentumAndRate | Function::MomentumAndRateWithPayload => {
+                    (format!("{prefix}_momentum x"), "&x")
+                }
                 Function::JointWrenches => (format!("{prefix}_wrench x[{n}]"), "x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
             };

@@ -335,7 +335,15 @@ def filtered(trial, log, *options):
         return None
     with open(trial.folder / "out.csv", newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return {name: numpy.array([float(row[name]) for row in rows if row[name]]) for name in rows[0]}
+    letters = {"position": "q", "velocity": "qd", "acceleration": "qdd", "effort": "tau"}
+    columns = {}
+    for name in rows[0]:
+        column = numpy.array([float(row[name]) for row in rows if row[name]])
+        # `a.position` of the first joint is q1
+        if of := letters.get(name.rpartition(".")[2]):
+            name = next(f"{of}{joint}" for joint in range(1, 1000) if f"{of}{joint}" not in columns)
+        columns[name] = column
+    return columns
 
 
 def names_of_the_right_arm(trial):

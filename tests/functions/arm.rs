@@ -371,6 +371,16 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
+        Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),
+        Function::BiasTorquesWithPayload => arm.bias_torques_with_payload(q, qd, payload),
+        Function::MassMatrixWithPayload => arm.mass_matrix_with_payload(q, payload).map(flat),
+        Function::ForwardDynamicsWithPayload => arm.forward_dynamics_with_payload(q, qd, tau, payload),
+        Function::InverseDynamicsDerivativesWithPayload => {
+            arm.inverse_dynamics_derivatives_with_payload(q, qd, qdd, payload).map(|by| flat([by.dq, by.dqd].concat()))
+        }
+        Function::MomentumAndRateWithPayload => {
+            arm.momentum_and_rate_with_payload(q, qd, tau, payload).map(|numbers| numbers.concat())
+        }
     };
     numbers.expect("one per joint")
 }

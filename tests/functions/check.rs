@@ -59,6 +59,7 @@ pub(crate) fn eigenvalues(symmetric: &[Vec<f64>]) -> DVector<f64> {
 }
 
 /// How much a matrix magnifies errors when it is divided by.
+#[derive(Clone, Copy)]
 pub(crate) struct Conditioning {
     /// The ratio of its largest to its smallest eigenvalue.
     pub(crate) number: f64,

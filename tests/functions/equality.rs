@@ -4,8 +4,8 @@
 //! Shipped and dense robots by their plan files, random ones by the choices of a build without one.
 
 use fastrand::Rng;
-use rne::{BaseMotion, Wrench};
-use rne_codegen::{Form, Function};
+use rne::{BaseMotion, Payload, Wrench};
+use rne_codegen::{Argument, Form, Function};
 use rne_model::{Dh, Robot};
 
 use crate::arm::{Arm, Given, Maker, of_runtime};
@@ -14,7 +14,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 16] = [
+const SAME_BITS: [Function; 22] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -31,6 +31,12 @@ const SAME_BITS: [Function; 16] = [
     Function::InverseDynamicsOnMovingBase,
     Function::ActuatorTorques,
     Function::InverseMassMatrix,
+    Function::GravityTorquesWithPayload,
+    Function::BiasTorquesWithPayload,
+    Function::MassMatrixWithPayload,
+    Function::ForwardDynamicsWithPayload,
+    Function::InverseDynamicsDerivativesWithPayload,
+    Function::MomentumAndRateWithPayload,
 ];
 
 /// Of the largest number of the result.
@@ -58,6 +64,12 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::GravityTorques
         | Function::BiasTorques
         | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),
+        // the joints carry the payload, too
+        Function::GravityTorquesWithPayload
+        | Function::BiasTorquesWithPayload
+        | Function::InverseDynamicsDerivativesWithPayload => {
+            LEAST * of(Function::JointWrenches).max(of(Function::InverseDynamicsWithPayload))
+        }
         // differences of torques at unit rates
         Function::CoriolisMatrix => of(Function::MassMatrix),
         // a sum of products of masses and heights
@@ -102,8 +114,9 @@ pub(crate) fn error(
             assert_eq!(found, expected, "{}, {function}", arm.robot.name);
             return 0.0;
         }
-        Function::ForwardDynamics | Function::InverseMassMatrix => {
-            let matrix = arm.runtime.mass_matrix(given.q).expect("one per joint");
+        Function::ForwardDynamics | Function::InverseMassMatrix | Function::ForwardDynamicsWithPayload => {
+            let payload = if function.takes(Argument::Payload) { given.payload } else { Payload::none() };
+            let matrix = arm.runtime.mass_matrix_with_payload(given.q, &payload).expect("one per joint");
             let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
             if number >= 1e12 {
                 return 0.0;
@@ -113,7 +126,7 @@ pub(crate) fn error(
             if function == Function::InverseMassMatrix {
                 return error_on_scale(found, &expected, number / of_matrix) / number;
             }
-            let bias = arm.runtime.bias_torques(given.q, given.qd).expect("one per joint");
+            let bias = arm.runtime.bias_torques_with_payload(given.q, given.qd, &payload).expect("one per joint");
             let scale = largest(given.tau).max(largest(&bias)) / of_matrix;
             error_on_scale(found, &expected, scale) / number
         }

@@ -4,11 +4,12 @@
 use fastrand::Rng;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rne::{DynArm, Payload};
+use rne_codegen::Function;
 use rne_model::{Inertia, Link, Robot};
 
-use crate::arm::{Arm, Maker};
-use crate::case::{self, Case};
-use crate::check::{Worst, error_on_scale, relative_error};
+use crate::arm::{Arm, Given, Maker, of_runtime};
+use crate::case::{self, Case, largest};
+use crate::check::{Conditioning, Worst, conditioning, error_on_scale, relative_error};
 use crate::golden::ROBOTS;
 
 const TOLERANCE: f64 = 1e-13;
@@ -82,6 +83,94 @@ fn shipped_arms_carry_it_as_their_own_link() {
             }
         }
         worst.at_most(TOLERANCE, &format!("payload of shipped arms, {maker}"));
+    }
+}
+
+/// The arm that `--payload` makes for functions without a payload is the lumped one.
+#[test]
+fn a_link_that_carries_it_is_the_lumped_one() {
+    let mut worst = Worst::default();
+    for case in case::cases(Maker::Runtime) {
+        let Case { arm, payload, .. } = case;
+        let carried = rne_convert::carrying(&arm.robot, payload.mass, payload.com, payload.inertia);
+        let (carried, lumped) = (DynArm::from_robot(&carried), carrying(&arm.robot, payload));
+        for function in [Function::InverseDynamics, Function::KineticEnergy, Function::CentreOfMass] {
+            let [found, expected] = [&carried, &lumped].map(|arm| of_runtime(arm, function, &case.given()));
+            worst.see(function.name(), error_on_scale(&found, &expected, 1.0));
+        }
+    }
+    worst.at_most(TOLERANCE, "a link that carries a payload");
+}
+
+/// The functions that have one with a payload, and those with it.
+fn pairs() -> impl Iterator<Item = (Function, Function)> {
+    Function::ALL.into_iter().filter_map(|function| Some((function, function.with_payload()?)))
+}
+
+/// Every function with a payload is the function without one of the arm whose last link has the payload.
+#[test]
+fn every_function_is_that_of_the_lumped_arm() {
+    assert_eq!(pairs().count(), 7);
+    for maker in Maker::ALL {
+        let mut worst = Worst::default();
+        for case in case::cases(maker) {
+            let lumped = carrying(&case.arm.robot, &case.payload);
+            let given = case.given();
+            let of = |function| largest(&of_runtime(&lumped, function, &given));
+            let matrix = lumped.mass_matrix(&case.q).expect("one per joint");
+            let condition = conditioning(&matrix);
+            for (without, with) in pairs() {
+                let found = case.arm.numbers(with, &given);
+                let expected = of_runtime(&lumped, without, &given);
+                let scale = match without {
+                    Function::ForwardDynamics => {
+                        // as in the comparison with the runtime
+                        let Some(Conditioning { number, largest: of_matrix }) = condition else { continue };
+                        if number >= 1e8 {
+                            continue;
+                        }
+                        let scale = largest(given.tau).max(of(Function::BiasTorques)) / of_matrix;
+                        worst.see(with.name(), error_on_scale(&found, &expected, scale) / number.max(1.0));
+                        continue;
+                    }
+                    Function::MassMatrix => of(Function::MassMatrix),
+                    Function::MomentumAndRate => 0.0,
+                    _ => 1e-2 * of(Function::JointWrenches),
+                };
+                worst.see(with.name(), error_on_scale(&found, &expected, scale));
+            }
+        }
+        worst.at_most(TOLERANCE, &format!("functions with a payload, {maker}"));
+    }
+}
+
+/// A payload of zero gives the numbers of the function without one; the seven steps and the runtime give its bits.
+#[test]
+fn without_mass_and_inertia_every_function_is_that_of_the_arm_alone() {
+    for maker in Maker::ALL {
+        let mut worst = Worst::default();
+        for case in case::cases(maker) {
+            let given = Given { payload: Payload::none(), ..case.given() };
+            let condition = conditioning(&case.arm.runtime.mass_matrix(&case.q).expect("one per joint"));
+            for (without, with) in pairs() {
+                let (found, expected) = (case.arm.numbers(with, &given), case.arm.numbers(without, &given));
+                if maker != Maker::Code(rne_codegen::Form::Reduced) {
+                    // accelerations of a singular mass matrix are not numbers
+                    if expected.iter().all(|x| x.is_finite()) {
+                        assert_eq!(found, expected, "{with}");
+                    }
+                    continue;
+                }
+                let number = match (without, condition) {
+                    (Function::ForwardDynamics, Some(condition)) if condition.number < 1e8 => condition.number,
+                    (Function::ForwardDynamics, _) => continue,
+                    _ => 1.0,
+                };
+                let scale = largest(&of_runtime(&case.arm.runtime, Function::JointWrenches, &given));
+                worst.see(with.name(), error_on_scale(&found, &expected, 1e-2 * scale) / number);
+            }
+        }
+        worst.at_most(TOLERANCE, &format!("functions with a payload of zero, {maker}"));
     }
 }
 

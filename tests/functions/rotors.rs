@@ -91,6 +91,9 @@ fn seven_steps_are_the_runtime_in_every_bit() {
             Function::InverseMassMatrix,
             Function::KineticEnergy,
             Function::ActuatorTorques,
+            Function::MassMatrixWithPayload,
+            Function::ForwardDynamicsWithPayload,
+            Function::MomentumAndRateWithPayload,
         ] {
             let expected = of_runtime(&arm.runtime, function, &case.given());
             if expected.iter().all(|x| x.is_finite()) {

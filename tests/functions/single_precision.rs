@@ -33,7 +33,12 @@ impl State {
         let q = limits.map(|(low, high)| between(low.max(-3.1), high.min(3.1))).collect();
         let [qd, qdd, tau] =
             [2.0, 5.0, 50.0].map(|range| robot.joints.iter().map(|_| between(-range, range)).collect());
-        Self { joints: [q, qd, qdd, tau], vectors: [(); 11].map(|()| [(); 3].map(|()| between(-10.0, 10.0))) }
+        let mut vectors = [(); 11].map(|()| [(); 3].map(|()| between(-10.0, 10.0)));
+        // a payload is a body: with another one, the mass matrix may be singular
+        let mut triple = |low, high| [(); 3].map(|()| between(low, high));
+        let payload = [triple(0.1, 5.0), triple(-0.3, 0.3), triple(0.02, 0.04), triple(-0.005, 0.005)];
+        vectors[7..].copy_from_slice(&payload);
+        Self { joints: [q, qd, qdd, tau], vectors }
     }
 
     /// All numbers of a function, in a precision.

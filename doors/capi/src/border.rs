@@ -531,7 +531,7 @@ unsafe fn text<'a>(pointer: *const c_char, what: &str) -> Result<&'a str, Failur
     }
     // SAFETY: the caller's promise.
     let text = unsafe { CStr::from_ptr(pointer) };
-    text.to_str().map_err(|_| Failure::new(Status::NotUtf8, format!("`{what}` is no text in UTF-8")))
+    text.to_str().map_err(|_| Failure::new(Status::NotUtf8, format!("`{what}` is not text in UTF-8")))
 }
 
 /// The addresses of an array, if it can be one; empty where it has no values.
@@ -547,10 +547,12 @@ fn checked<T>(pointer: *const T, count: usize, what: &str) -> Result<Range<usize
     match bytes.and_then(|bytes| start.checked_add(bytes)) {
         Some(end) if pointer.is_aligned() => Ok(start..end),
         Some(_) => {
-            let message = format!("`{what}` is not aligned: its address is no multiple of {}", align_of::<T>());
+            let message = format!("`{what}` is not aligned: its address is not a multiple of {}", align_of::<T>());
             Err(Failure::new(Status::WrongMemory, message))
         }
-        None => Err(Failure::new(Status::WrongMemory, format!("`{what}` has {count} values: memory has not as many"))),
+        None => {
+            Err(Failure::new(Status::WrongMemory, format!("`{what}` has {count} values, more than fit into memory")))
+        }
     }
 }
 

@@ -35,11 +35,11 @@ fn arguments<'a, T: Number>(
     for given in inputs {
         let Given { name, numbers, state, element } = given?;
         let Some(place) = ARGUMENTS.iter().position(|argument| *argument == name) else {
-            let message = format!("there is no argument `{name}`; there are {}", ARGUMENTS.join(", "));
+            let message = format!("there is no argument `{name}`; the arguments are {}", ARGUMENTS.join(", "));
             return Err(Failure::new(Status::UnknownName, message));
         };
         if taken & 1 << place != 0 {
-            return Err(Failure::new(Status::WrongSize, format!("`{name}` is there twice")));
+            return Err(Failure::new(Status::WrongSize, format!("the argument `{name}` is given twice")));
         }
         taken |= 1 << place;
         let Some(&(name, elements)) = function.arguments().iter().find(|(argument, _)| *argument == name) else {

@@ -73,7 +73,7 @@ impl Arm {
             return Err(Failure::new(Status::InvalidFile, format!("{path} is a shipped robot, no URDF")));
         };
         let text = String::from_utf8(bytes)
-            .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is no text in UTF-8")))?;
+            .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is not text in UTF-8")))?;
         let options = Options { selection, snap: false, ..Options::default() };
         let imported = rne_convert::import(path, &text, &options)?;
         Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))

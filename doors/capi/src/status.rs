@@ -61,9 +61,11 @@ impl Failure {
 fn in_arguments(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne_arm_load_urdf() reads a URDF".to_owned(),
-        Remedy::NameTip => "name it by `tip`".to_owned(),
-        Remedy::LockJoint { joint } => format!("`{joint}` among `lock_names` is held still"),
-        Remedy::LockOthers => "`lock_names` and `lock_values` hold some, `lock_others` holds all at zero".to_owned(),
+        Remedy::NameTip => "name the tip by `tip`".to_owned(),
+        Remedy::LockJoint { joint } => format!("write `{joint}` into `lock_names` to hold this joint still"),
+        Remedy::LockOthers => {
+            "`lock_names` and `lock_values` hold some of the joints, `lock_others` holds all of them at zero".to_owned()
+        }
         Remedy::KeepUnphysical => return None,
     })
 }

@@ -278,7 +278,7 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
     check(2, &good[..1], 12, Status::MissingArgument, "`bias_torques` needs the argument `qd`");
     check(3, &good, 12, Status::WrongSize, "that is 18 numbers; `count` says 12");
     check(2, &good, 11, Status::WrongSize, "the result has 6 numbers for each of 2 states");
-    check(2, &[good[0], good[1], good[0]], 12, Status::WrongSize, "`q` is there twice");
+    check(2, &[good[0], good[1], good[0]], 12, Status::WrongSize, "the argument `q` is given twice");
     check(2, &[input(c"q", &q[..5], 0, 1), good[1]], 12, Status::WrongSize, "`q` has 6 elements");
     check(2, &[input(c"q", &q, usize::MAX, 1), good[1]], 12, Status::WrongSize, "more than memory");
     check(usize::MAX, &[input(c"q", &q, 2, 1), good[1]], 12, Status::WrongSize, "more than memory");
@@ -287,9 +287,9 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
     check(2, &[Input { data: null(), ..good[0] }, good[1]], 12, Status::NullPointer, "`q` is NULL");
     check(2, &[good[0], Input { name: null(), ..good[0] }], 12, Status::NullPointer, "input 1: `name");
     let odd = Input { data: good[1].data.wrapping_byte_add(1), count: 6, ..good[1] };
-    check(1, &[good[0], odd], 6, Status::WrongMemory, "no multiple of 8");
+    check(1, &[good[0], odd], 6, Status::WrongMemory, "not a multiple of 8");
     let huge = Input { count: usize::MAX / 8, ..good[1] };
-    check(1, &[good[0], huge], 6, Status::WrongMemory, "memory has not as many");
+    check(1, &[good[0], huge], 6, Status::WrongMemory, "more than fit into memory");
 
     // of the rest of a call
     let (inputs, count) = (good.as_ptr(), good.len());

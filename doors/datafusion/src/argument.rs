@@ -141,7 +141,7 @@ pub(crate) fn of_list<'a>(
         }
         other => {
             let Place { function, column, .. } = place;
-            exec_err!("{function}: column `{column}` is {other}; lists of Float64 are wanted")
+            exec_err!("{function}: column `{column}` is {other}, but must be lists of Float64")
         }
     }
 }
@@ -157,7 +157,10 @@ fn gather<'a>(
 ) -> Result<(Argument<'a>, Option<NullBuffer>)> {
     let Place { function, column, robot } = place;
     let Some(numbers) = values.as_primitive_opt::<Float64Type>() else {
-        return exec_err!("{function}: column `{column}` has lists of {}; of Float64 are wanted", values.data_type());
+        return exec_err!(
+            "{function}: column `{column}` has lists of {}, but must have lists of Float64",
+            values.data_type()
+        );
     };
     let is_null = |state: usize| nulls.is_some_and(|nulls| nulls.is_null(state));
     let mut whole = true;
@@ -206,7 +209,7 @@ fn gather<'a>(
 pub(crate) fn of_column<'a>(array: &'a ArrayRef, place: &Place<'_>) -> Result<&'a Float64Array> {
     let Some(numbers) = array.as_primitive_opt::<Float64Type>() else {
         let Place { function, column, .. } = place;
-        return exec_err!("{function}: column `{column}` is {}; Float64 is wanted", array.data_type());
+        return exec_err!("{function}: column `{column}` is {}, but must be Float64", array.data_type());
     };
     Ok(numbers)
 }
@@ -261,7 +264,7 @@ pub(crate) fn all<'a>(
 pub(crate) fn check(function: &str, names: &[&str], columns: &[Column<'_>], robot: &str, joints: usize) -> Result<()> {
     if let Some(Column { name, of }) = columns.iter().find(|column| !has_numbers(column.of)) {
         return plan_err!(
-            "{function}: column `{name}` is {of}; lists of numbers are wanted, or a column of numbers per joint"
+            "{function}: column `{name}` is {of}, but must be lists of numbers; or give one column of numbers per joint"
         );
     }
     let mut first = 0;

@@ -27,11 +27,15 @@ pub(crate) fn scalar(numbers: Vec<f64>) -> Result<ScalarValue> {
 /// Hands on the lists of other processes.
 pub(crate) fn each(aggregate: &str, states: &[ArrayRef], mut take: impl FnMut(&[f64]) -> Result<()>) -> Result<()> {
     let Some(lists) = states.first().and_then(|states| states.as_list_opt::<i32>()) else {
-        return exec_err!("{aggregate}: what other processes gathered is no list: they are of another version");
+        return exec_err!(
+            "{aggregate}: the data from other processes is not a list: these processes run another version of rne"
+        );
     };
     for list in lists.iter().flatten() {
         let Some(numbers) = list.as_primitive_opt::<Float64Type>() else {
-            return exec_err!("{aggregate}: what other processes gathered are no numbers: they are of another version");
+            return exec_err!(
+                "{aggregate}: the data from other processes are not numbers: these processes run another version of rne"
+            );
         };
         take(numbers.values())?;
     }

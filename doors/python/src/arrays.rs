@@ -121,7 +121,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
     pub(crate) fn array<'a>(&'a self, states: usize, columns: &'a [&'a [T]]) -> PyResult<Array<'a, T>> {
         if let Some(found) = self.states.filter(|&found| found != states && found != 1) {
             return Err(PyValueError::new_err(format!(
-                "`{}` has {found} states where others have {states}",
+                "`{}` has {found} states, but other arguments have {states}",
                 self.name
             )));
         }
@@ -129,8 +129,11 @@ impl<'py, T: Element + Number> Held<'py, T> {
             Layout::Rows(array) => (array, false),
             Layout::Fortran(array) => (array, true),
             Layout::Columns(_) if self.states == Some(1) && states != 1 => {
-                let message =
-                    format!("`{}` has 1 state where others have {states}; a row of numpy is that of all", self.name);
+                let message = format!(
+                    "`{}` has 1 state, but other arguments have {states}; a row as an array of numpy is used for all \
+                     states",
+                    self.name
+                );
                 return Err(PyValueError::new_err(message));
             }
             Layout::Columns(_) => return Ok(Array::Columns(columns)),
@@ -230,7 +233,7 @@ pub(crate) fn refuse_masked(name: &str, value: &Bound<'_, PyAny>) -> PyResult<()
         _ => is_masked(value)?,
     };
     if has_masked {
-        let message = format!("`{name}`: there are masked elements, which are no numbers: drop or fill them before");
+        let message = format!("`{name}`: there are masked elements, which are not numbers: drop or fill them before");
         return Err(PyValueError::new_err(message));
     }
     Ok(())
@@ -286,7 +289,7 @@ fn converted<'py, T: Element>(
             "parameters" => ": write them in the order of `arm.parameters`, or as a dict by their names",
             _ => "",
         };
-        return Err(PyTypeError::new_err(format!("`{name}` is no array of real numbers{order}")));
+        return Err(PyTypeError::new_err(format!("`{name}` is not an array of real numbers{order}")));
     }
     Ok(numpy.call_method("asarray", (value,), Some(&keywords))?.cast_into::<PyArrayDyn<T>>()?)
 }
@@ -298,7 +301,7 @@ pub(crate) fn states<T: Element + Number>(held: &[Held<'_, T>]) -> PyResult<Opti
         states = match (states, held.states) {
             (None | Some(1), Some(found)) => Some(found),
             (Some(states), Some(found)) if found != states && found != 1 => {
-                let message = format!("`{}` has {found} states where others have {states}", held.name());
+                let message = format!("`{}` has {found} states, but other arguments have {states}", held.name());
                 return Err(PyValueError::new_err(message));
             }
             (states, _) => states,

@@ -85,6 +85,28 @@ macro_rules! methods {
 }
 
 macro_rules! method {
+    // `Function::with_payload` is the other one
+    (InverseDynamics $($rest:tt)*) => {
+        loaded! { InverseDynamics InverseDynamicsWithPayload $($rest)* }
+    };
+    (GravityTorques $($rest:tt)*) => {
+        loaded! { GravityTorques GravityTorquesWithPayload $($rest)* }
+    };
+    (BiasTorques $($rest:tt)*) => {
+        loaded! { BiasTorques BiasTorquesWithPayload $($rest)* }
+    };
+    (MassMatrix $($rest:tt)*) => {
+        loaded! { MassMatrix MassMatrixWithPayload $($rest)* }
+    };
+    (ForwardDynamics $($rest:tt)*) => {
+        loaded! { ForwardDynamics ForwardDynamicsWithPayload $($rest)* }
+    };
+    (InverseDynamicsDerivatives $($rest:tt)*) => {
+        loaded! { InverseDynamicsDerivatives InverseDynamicsDerivativesWithPayload $($rest)* }
+    };
+    (MomentumAndRate $($rest:tt)*) => {
+        loaded! { MomentumAndRate MomentumAndRateWithPayload $($rest)* }
+    };
     // a base whose motion is not given stands still
     (
         $variant:ident $name:ident (q: Positions, qd: Rates, qdd: Accelerations, base: Base)
@@ -148,6 +170,40 @@ macro_rules! method {
             ) -> PyResult<Bound<'py, PyAny>> {
                 let given = vec![$(given!(self, $argument: $kind)),*];
                 self.compute(py, Function::$variant, given, parameters, out)
+            }
+        }
+    };
+}
+
+/// A function that has another one for the arm with a payload.
+macro_rules! loaded {
+    (
+        $variant:ident $with_payload:ident $name:ident ($($argument:ident: $kind:ident),*)
+            $returned:ident $summary:literal $($details:literal)?
+    ) => {
+        #[pymethods]
+        impl Arm {
+            #[doc = $summary]
+            ///
+            $(#[doc = details!($returned, $details)]
+            #[doc = ""])?
+            #[doc = about!(Payload)]
+            #[doc = concat!("Returns ", returned!($returned))]
+            #[pyo3(signature = ($($argument,)* *, payload=None, parameters=None, out=None))]
+            fn $name<'py>(
+                &self,
+                py: Python<'py>,
+                $($argument: &Bound<'py, PyAny>,)*
+                payload: Option<&Bound<'py, PyAny>>,
+                parameters: Option<&Bound<'py, PyAny>>,
+                out: Option<&Bound<'py, PyAny>>,
+            ) -> PyResult<Bound<'py, PyAny>> {
+                let mut given = vec![$(given!(self, $argument: $kind)),*];
+                let Some(payload) = payload else {
+                    return self.compute(py, Function::$variant, given, parameters, out);
+                };
+                given.push(given!(self, payload: Payload));
+                self.compute(py, Function::$with_payload, given, parameters, out)
             }
         }
     };

@@ -37,8 +37,10 @@ fn in_keywords(remedy: &Remedy) -> Option<String> {
         Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),
         Remedy::NameTip => "name the tip with tip=\"LINK\"".to_owned(),
         Remedy::LockJoint { joint } => format!("lock={{{joint:?}: VALUE}} holds it still"),
-        Remedy::LockOthers => "lock={\"JOINT\": VALUE} holds one, lock_others=True holds all at zero".to_owned(),
-        Remedy::KeepUnphysical => "keep_unphysical=True keeps it".to_owned(),
+        Remedy::LockOthers => {
+            "lock={\"JOINT\": VALUE} holds one joint, lock_others=True holds all of them at zero".to_owned()
+        }
+        Remedy::KeepUnphysical => "keep_unphysical=True keeps the inertia as it is".to_owned(),
     })
 }
 

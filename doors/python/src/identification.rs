@@ -41,6 +41,7 @@ struct OfVerdict {
     frictions: Option<usize>,
     excited_frictions: Option<usize>,
     not_excited_friction: Vec<String>,
+    not_excited_offset: Vec<String>,
 }
 
 impl OfVerdict {
@@ -53,6 +54,7 @@ impl OfVerdict {
         };
         let excited = verdict.excited.as_ref();
         let unknown = excited.iter().flat_map(|excited| &excited.unknown_friction);
+        let offsets = excited.iter().flat_map(|excited| &excited.unknown_offsets);
         let not_excited = found.bases.iter().filter(|base| !base.is_excited());
         Self {
             errors_on: if verdict.evidence == Evidence::HeldOut { "held_out" } else { "fitted" },
@@ -65,6 +67,7 @@ impl OfVerdict {
             frictions: excited.map(|excited| excited.frictions),
             excited_frictions: excited.map(Excited::known_frictions),
             not_excited_friction: unknown.map(|joint| robot.joints[*joint].name.clone()).collect(),
+            not_excited_offset: offsets.map(|joint| robot.joints[*joint].name.clone()).collect(),
         }
     }
 }
@@ -125,6 +128,7 @@ fn doubt<'py>(py: Python<'py>, doubt: &Doubt, verdict: &JointVerdict) -> PyResul
             found.set_item("until", standstill.end)?;
             let part = verdict.error().and_then(|error| finite(error.part_at_rest));
             found.set_item("part_of_squared_error", part)?;
+            found.set_item("error_in_motion", verdict.error().and_then(JointError::in_motion))?;
             "standstill"
         }
         Doubt::FrictionNotExcited => "friction_not_excited",
@@ -164,6 +168,7 @@ struct OfFriction {
     joint: usize,
     name: String,
     excited: bool,
+    offset_excited: bool,
     viscous: Measured,
     coulomb_forward: Measured,
     coulomb_backward: Measured,
@@ -190,6 +195,7 @@ fn friction(found: &Identification) -> Vec<OfFriction> {
             joint: at + 1,
             name: joint.name.clone(),
             excited: report.is_friction_excited(),
+            offset_excited: report.is_friction_excited() && !report.is_offset_unknown(),
             viscous: measured(viscous, rate),
             coulomb_forward: measured(forward, effort),
             coulomb_backward: measured(backward, effort),

@@ -89,7 +89,7 @@ impl Arm {
             "double" => Precision::Double,
             "single" => Precision::Single,
             other => {
-                return Err(PyValueError::new_err(format!("`{other}` is no precision; write double or single")));
+                return Err(PyValueError::new_err(format!("`{other}` is not a precision; write double or single")));
             }
         };
         match language {
@@ -97,7 +97,7 @@ impl Arm {
             "c" => rne_emit::c_code(self.robot(), &programs, precision, &Prefix::of(self.robot()))
                 .map(|code| code.one_file())
                 .map_err(|error| of_evaluation(&error)),
-            other => Err(PyValueError::new_err(format!("`{other}` is no language; write c or rust"))),
+            other => Err(PyValueError::new_err(format!("`{other}` is not a language; write c or rust"))),
         }
     }
 
@@ -118,7 +118,7 @@ impl Arm {
     ) -> PyResult<Bound<'py, PyDict>> {
         let numbers = |name: &str, value: &Bound<'py, PyAny>| -> PyResult<Vec<f64>> {
             refuse_masked(name, value)?;
-            value.extract().map_err(|_| PyTypeError::new_err(format!("`{name}` is no sequence of real numbers")))
+            value.extract().map_err(|_| PyTypeError::new_err(format!("`{name}` is not a sequence of real numbers")))
         };
         let (q, qd, qdd) = (numbers("q", q)?, numbers("qd", qd)?, numbers("qdd", qdd)?);
         let tau = numbers("tau", tau)?;

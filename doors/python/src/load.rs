@@ -82,7 +82,9 @@ pub(crate) fn load(
     let convention = match convention {
         "standard" => Convention::Standard,
         "modified" => Convention::Modified,
-        other => return Err(PyValueError::new_err(format!("`{other}` is no convention; write standard or modified"))),
+        other => {
+            return Err(PyValueError::new_err(format!("`{other}` is not a convention; write standard or modified")));
+        }
     };
     let origin = Origin { form, rotors, run_time, settings: settings.unwrap_or_default(), ..Origin::default() };
     let given = Given::of(source)?;
@@ -100,13 +102,13 @@ pub(crate) fn load(
             return Arm::of(py, Origin { robot: text.clone(), ..origin });
         }
         (Description::Urdf(bytes), _) => bytes,
-        _ => return Err(PyValueError::new_err("`source` is no robot file and no URDF")),
+        _ => return Err(PyValueError::new_err("`source` is neither a robot file nor a URDF")),
     };
     let name = match given {
         Given::Text(_) => "<text>".to_owned(),
         Given::File(path) => path.display().to_string(),
     };
-    let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is no text in UTF-8")))?;
+    let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
     let selection = Selection { base, tip, lock, lock_others };
     let options = Options { selection, convention, snap, keep_unphysical, ..Options::default() };

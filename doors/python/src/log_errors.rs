@@ -17,12 +17,12 @@ pub(crate) fn of_arm_log(error: &ArmLogError) -> PyErr {
         ArmLogError::Log { error, joints } => return of_log(error, joints),
         ArmLogError::NamedJoints { .. } => error.to_string().replacen("the list of joints", "`joints`", 1),
         ArmLogError::Unmatched { mismatch: Mismatch::More | Mismatch::Order { .. }, .. } => {
-            format!("{error}; joints=[…] says which of the log's are the robot's, base to tip")
+            format!("{error}; joints=[…] lists the joints of the log that belong to the robot, from base to tip")
         }
         ArmLogError::NoEfforts { logged, unread } if !unread.is_empty() => {
             format!("{error}; name the columns: {}", map(&suggested(unread, logged)))
         }
-        ArmLogError::NoCutoff => format!("{error}; give one with cutoff=HZ"),
+        ArmLogError::NoCutoff => format!("{error}; give a cut-off with cutoff=HZ"),
         ArmLogError::Cutoff { .. } => error.to_string().replacen("the cut-off can", "`cutoff` can", 1),
         other => other.to_string(),
     };
@@ -61,6 +61,9 @@ pub(crate) fn of_excitation(error: &ExcitationError) -> PyErr {
 pub(crate) fn remark(remark: &ArmLogRemark) -> String {
     match remark {
         ArmLogRemark::Log(remark) => log_remark(remark),
+        ArmLogRemark::MatchedByOrder { .. } if remark.is_warning() => {
+            format!("{remark}; joints=[…] gives another order")
+        }
         other => other.to_string(),
     }
 }
@@ -107,21 +110,23 @@ fn map(mappings: &[Mapping]) -> String {
 fn given(setting: &Setting) -> String {
     match setting {
         Setting::Joints(names) if names.is_empty() => {
-            "joints=[\"A\", \"B\", …] names the joints to read, base to tip".to_owned()
+            "joints=[\"A\", \"B\", …] lists the joints to read, from base to tip".to_owned()
         }
-        Setting::Joints(names) => format!("joints={names:?} reads these"),
-        Setting::Topic => "topic=\"…\" names one".to_owned(),
-        Setting::Prefix => "topic=\"actual\" reads the columns whose names begin so".to_owned(),
-        Setting::TorqueConstants => "torque_constants=… gives the N m/A that make torques of them".to_owned(),
+        Setting::Joints(names) => format!("joints={names:?} reads these joints"),
+        Setting::Topic => "topic=\"…\" reads one topic".to_owned(),
+        Setting::Prefix => "topic=\"actual\" reads the columns whose names begin with actual".to_owned(),
+        Setting::TorqueConstants => "torque_constants=… gives the factors in N m/A from currents to torques".to_owned(),
         Setting::Angles => {
             "angles=\"degrees\" if they are in degrees, angles=\"radians\" if they are in radians or metres".to_owned()
         }
-        Setting::Gap => "gap=… is the keyword".to_owned(),
-        Setting::Cutoff => "cutoff=HZ is the keyword".to_owned(),
-        Setting::TimeUnit => "time_unit=\"s\", \"ms\", \"us\" or \"ns\" says the unit".to_owned(),
-        Setting::Rate => "rate=HZ says the sampling rate".to_owned(),
-        Setting::Columns => "columns=[\"time\", \"q\", \"tau\"] says such an order".to_owned(),
-        Setting::Select { column, value } => format!("where={{{column:?}: {value:?}}} reads the rows of one"),
+        Setting::Gap => "gap=… sets the limit of gaps".to_owned(),
+        Setting::Cutoff => "cutoff=HZ sets the cut-off".to_owned(),
+        Setting::TimeUnit => "time_unit=\"s\", \"ms\", \"us\" or \"ns\" gives the unit of the times".to_owned(),
+        Setting::Rate => "rate=HZ gives the sampling rate".to_owned(),
+        Setting::Columns => "columns=[\"time\", \"q\", \"tau\"] gives the order of the columns".to_owned(),
+        Setting::Select { column, value } => {
+            format!("where={{{column:?}: {value:?}}} reads only the rows with this text")
+        }
         Setting::Map(_) | Setting::TimeColumn(_) => "map={…} names a column".to_owned(),
     }
 }

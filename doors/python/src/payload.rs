@@ -83,7 +83,8 @@ pub(crate) fn payload_identified<'py>(
         let mut remarks = said(log.remarks());
         let is_lost = payload.is_there() && added.is_none();
         if is_lost {
-            let why = "the last link has less mass than the log would take from it, so the two are not of the same arm";
+            let why = "the log would take more mass from the last link than this link has, \
+                       so the robot and the log are not of the same arm";
             remarks.push((true, why.to_owned()));
         } else if !payload.mass.is_excited {
             let why = "the log does not determine the mass of a payload: record a motion in which gravity or \

@@ -7,6 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne_identify::{ArmLog, Identification, JointError, Part, Prediction, Purpose};
+use rne_logs::UtcTime;
 use rne_model::{Robot, one_line};
 use rne_watch::{
     Baseline, Candidate, Cause, Changes, Event, Report, Settings, Statistic, Trend, changes, svg, unit, watch,
@@ -39,12 +40,22 @@ struct OfEvent {
     until: f64,
     whole: bool,
     lasts: bool,
+    since_time: Option<String>,
+    until_time: Option<String>,
+    not_before_time: Option<String>,
+    not_after_time: Option<String>,
     also: Vec<usize>,
     rivals: Vec<&'static str>,
 }
 
 fn name(robot: &Robot, joint: Option<usize>) -> Option<String> {
     joint.map(|joint| robot.joints[joint].name.clone())
+}
+
+/// Causes that a log cannot tell from an event.
+fn rivals(event: &Event) -> Vec<&'static str> {
+    let of_friction: &[&str] = if event.cause == Cause::Friction { &["temperature", "speed"] } else { &[] };
+    of_friction.iter().chain(&event.rivals).copied().collect()
 }
 
 impl OfEvent {
@@ -66,8 +77,12 @@ impl OfEvent {
             until: event.until,
             whole: event.is_whole,
             lasts: event.lasts,
+            since_time: event.since_time.map(UtcTime::rfc3339),
+            until_time: event.until_time.map(UtcTime::rfc3339),
+            not_before_time: event.not_before.map(UtcTime::rfc3339),
+            not_after_time: event.not_after.map(UtcTime::rfc3339),
             also: event.others.iter().map(|joint| joint + 1).collect(),
-            rivals: if event.cause == Cause::Friction { vec!["temperature", "speed"] } else { Vec::new() },
+            rivals: rivals(event),
         }
     }
 

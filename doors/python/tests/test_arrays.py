@@ -61,7 +61,7 @@ def test_no_states():
 
 @pytest.mark.parametrize("wrong, says", [
     ((q[:, :5], qd, qdd), r"`q` has the shape \(200, 5\); it is \(6,\) for one state or \(N, 6\) for many"),
-    ((q, qd[:7], qdd), "`qd` has 7 states where others have 200"),
+    ((q, qd[:7], qdd), "`qd` has 7 states, but other arguments have 200"),
     ((q, qd, np.zeros(())), r"`qdd` has the shape \(\)"),
     ((q[None], qd, qdd), r"`q` has the shape \(1, 200, 6\)"),
 ])

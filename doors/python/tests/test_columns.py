@@ -103,7 +103,7 @@ def test_what_is_refused():
             arm.gravity_torques(value)
     with pytest.raises(TypeError, match="`collect` makes one"):
         arm.gravity_torques(polars.DataFrame({"a": [1.0]}).lazy())
-    with pytest.raises(ValueError, match="`qd` has 3 states where others have 500"):
+    with pytest.raises(ValueError, match="`qd` has 3 states, but other arguments have 500"):
         arm.inverse_dynamics(q, polars.DataFrame({f"x{j}": [0.0] * 3 for j in range(6)}), qdd)
     with pytest.raises(ValueError, match="1 state"):
         arm.inverse_dynamics(q, polars.DataFrame({f"x{j}": [0.0] for j in range(6)}), qdd)

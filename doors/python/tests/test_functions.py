@@ -158,14 +158,52 @@ joints: [{type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: m, 
         ({"m": 3}, "the value of `half` is missing; this arm has half, m"),
         ({"m": 3, "half": 0.5, "l": 1}, "there is no run-time parameter `l`; this arm has half, m"),
         ({"m": masses, "half": masses[:3]}, "arrays have 3 and 4 states"),
-        ({"m": masses[:3], "half": 0.5}, "`parameters` has 3 states where others have 4"),
+        ({"m": masses[:3], "half": 0.5}, "`parameters` has 3 states, but other arguments have 4"),
         ({"m": "three", "half": 0.5}, "`m` is no real number"),
         ({"m": q, "half": 0.5}, "`m` is no real number and no array"),
         ({"m": np.ma.array(masses, mask=[0, 0, 1, 0]), "half": 0.5}, "`m`: there are masked elements"),
-        ("three", "no array of real numbers: write them in the order of `arm.parameters`, or as a dict by their names"),
+        ("three", "an array of real numbers: write them in the order of `arm.parameters`, or as a dict by their names"),
     ]:
         with pytest.raises((TypeError, ValueError), match=says):
             of(wrong)
+
+
+LOADED = {
+    "inverse_dynamics": ("q", "qd", "qdd"),
+    "gravity_torques": ("q",),
+    "bias_torques": ("q", "qd"),
+    "mass_matrix": ("q",),
+    "forward_dynamics": ("q", "qd", "tau"),
+    "inverse_dynamics_derivatives": ("q", "qd", "qdd"),
+    "momentum_and_rate": ("q", "qd", "tau"),
+}
+
+
+@pytest.mark.parametrize("name", LOADED)
+def test_a_payload_of_every_function(name):
+    """`payload=` is the function of that name with a payload; a payload of zero is the arm alone."""
+    arm = rne.robots.panda
+    random = np.random.default_rng(29)
+    state = {key: random.uniform(-1.5, 1.5, (5, arm.dof)) for key in ("q", "qd", "qdd", "tau")}
+    given = [state[key] for key in LOADED[name]]
+    body = rne.payload(1.5, [0.02, -0.03, 0.1], np.diag([0.02, 0.03, 0.04]) + 0.001)
+    found = np.asarray(getattr(arm, name)(*given, payload=body))
+    assert np.array_equal(found, np.asarray(getattr(arm, f"{name}_with_payload")(*given, np.tile(body, (5, 1)))))
+    alone = np.asarray(getattr(arm, name)(*given))
+    assert not np.allclose(found, alone)
+    close(np.asarray(getattr(arm, name)(*given, payload=rne.payload(0.0))), alone)
+
+
+def test_equations_of_motion_with_a_payload():
+    """M q̈ + bias = τ with the same payload, and q̈ back from τ."""
+    arm = rne.robots.puma560
+    random = np.random.default_rng(30)
+    q, qd, qdd = random.uniform(-1.5, 1.5, (3, 40, arm.dof))
+    body = rne.payload(2.0, [0.0, 0.05, 0.1], np.diag([0.02, 0.03, 0.04]))
+    tau = arm.inverse_dynamics(q, qd, qdd, payload=body)
+    mass, bias = arm.mass_matrix(q, payload=body), arm.bias_torques(q, qd, payload=body)
+    close(np.einsum("nij,nj->ni", mass, qdd) + bias, tau)
+    np.testing.assert_allclose(arm.forward_dynamics(q, qd, tau, payload=body), qdd, rtol=1e-9, atol=1e-9)
 
 
 def test_payloads():

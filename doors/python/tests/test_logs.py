@@ -178,7 +178,7 @@ def test_the_identified_arm_predicts_the_log(identified, name):
 def test_the_verdict_comes_first(identified, name):
     lines = identified.verdict.lines
     predicted, count = len(identified.verdict.predicted), len(identified.joints)
-    assert lines[0].startswith("The model predicts ") and " on held-out data, with errors of " in lines[0]
+    assert lines[0].startswith("The model predicts the torque of ") and " on held-out data, with RMS errors of " in lines[0]
     assert (f"{predicted} of {count} joints" if predicted < count else f"all {count} joints") in lines[0]
     for joint in identified.verdict.not_predicted:
         assert any(line.startswith(joint) and "is not predicted" in line for line in lines[1:])
@@ -325,7 +325,7 @@ def test_the_motion_that_excites_is_that_of_the_command_line(program, tmp_path):
     np.testing.assert_allclose(ours, written, rtol=1e-12, atol=1e-15)
     assert np.abs(found.qd).max() <= 1.5 * (1 + 1e-9) and found.evaluations == 60
     assert list(found.to_polars().columns) == list(found.to_pandas().columns)
-    with pytest.raises(ValueError, match="velocity has 2 numbers, and the robot 6 joints"):
+    with pytest.raises(ValueError, match="velocity has 2 numbers, but the robot has 6 joints"):
         rne.excite(robot_of("ur10"), velocity=[1, 2])
     with pytest.raises(ValueError, match="`harmonics`"):
         rne.excite(robot_of("ur10"), harmonics=1)

@@ -128,7 +128,7 @@ def test_masked_numbers_are_refused():
                   np.ma.masked_invalid([0, np.inf] * 3), [q[0], masked(row)], (masked(row), q[0]),
                   [0.1, np.ma.masked, 0.2, 0.3, 0.4, 0.5], np.ma.array(np.asfortranarray(q), mask=q > 2),
                   np.ma.array(q, mask=True)):
-        with pytest.raises(ValueError, match="`q`: there are masked elements, which are no numbers: drop or fill"):
+        with pytest.raises(ValueError, match="`q`: there are masked elements, which are not numbers: drop or fill"):
             arm.gravity_torques(given)
     with pytest.raises(ValueError, match="`qdd`: there are masked elements"):
         arm.inverse_dynamics(zeros, zeros, masked(zeros))

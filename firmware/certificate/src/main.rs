@@ -177,30 +177,38 @@ fn summary(report: &Report) -> Result<()> {
 const OBSERVER: u64 = 1000;
 
 const M4F: &str = "\
-The target is `thumbv7em-none-eabihf`, as in `firmware/example`. Where a term of a sum is a product, the compiler uses
-`vmla.f32`, which rounds both the product and the sum.";
+This table is about `inverse_dynamics` for the target `thumbv7em-none-eabihf`, which `firmware/example` uses too. If a
+term of a sum is a product, the compiler uses the instruction `vmla.f32`, which rounds the product and the sum
+separately.";
 
 const M7F: &str = "\
-The processor has double precision, but the code does not use it. The compiler schedules the instructions for this
-processor.";
+This table is about `inverse_dynamics`. The processor has instructions for double precision, but the code does not use
+them. The compiler orders the instructions for this processor.";
 
 const FUSED: &str = "\
-The feature `core_float_math` needs a nightly compiler. On a stable compiler there is no fused multiply-add:
-`f32::math::mul_add` of `core` is unstable, inline assembly does not accept the registers, and `libm` computes in
-software. With the feature, the reduced form uses `vfma.f32`, which rounds once; sines and cosines of both forms use it
-too. The results differ because the host rounds products and sums separately: its base instruction set has no fused
-multiply-add. The unit in the column `results` is one ulp of the largest torque of the state; the terms of this torque
-may cancel. The feature saves little, because `vmla.f32` is as short and as slow as `vfma.f32`. So the feature is not a
-default.";
+This table is about `inverse_dynamics` with the cargo feature `core_float_math` of `rne`. With this feature, the form
+`reduced` uses the fused multiply-add `vfma.f32`, which rounds once. The sines and cosines of both forms use it, too.
+
+The feature needs a nightly compiler. A stable compiler offers no fused multiply-add here: `f32::math::mul_add` of
+`core` is unstable, inline assembly does not accept the registers, and `libm` computes in software.
+
+The results differ from those of the host, because the host rounds products and sums separately: its base instruction
+set has no fused multiply-add. The column `results` shows the difference in ulp of the largest torque of the state. The
+terms of this torque may cancel, so a small rounding error can be several ulp of the torque.
+
+The feature is not a default because it saves little: `vmla.f32` is as short and as slow as `vfma.f32`.";
 
 const METHODS: &str = "\
-The tables above contain `inverse_dynamics`. This table omits `regressor`: most of its 360 numbers are zero, and the
-compiler writes them by calls that clear and copy memory. Apart from these calls its code has no branch. Its results are
-compared with the host like the results of the other functions.";
+The tables above are about `inverse_dynamics`. This table is about the other functions of the PUMA 560. It omits
+functions whose code calls memory functions. The compiler writes such calls for large arrays with many zeros, such as
+the 360 numbers of `regressor`: the calls clear or copy memory. Apart from these calls, the code of an omitted function
+has no branch, and its results are compared with the host like all others.";
 
 const C: &str = "\
-The code is written by `rne emit --lang c`, uses `float`, and is compiled with
-`-Wall -Wextra -Wconversion -Werror -pedantic`. Sine and cosine are one function, which is called for each angle. The
-instructions include all of these calls; the bytes include one copy of the function. The functions of the PUMA 560 in
-the table above are compared in the same way. Every bit agrees, whether sines and cosines are inputs
-(`inverse_dynamics_from_sin_cos`) or not.";
+This table is about `inverse_dynamics` in the C code that `rne emit --lang c` writes. The code uses `float`. GCC
+compiles the code with `-Wall -Wextra -Wconversion -Werror -pedantic`. The code has one function for sine and cosine,
+and calls it for each angle. The column `instructions` includes all of these calls. The columns for bytes include the
+function once.
+
+`cargo xtask certificate` also compares the C code of all other functions of the PUMA 560 with the host. The results
+have the same bits, also when sines and cosines are inputs (`inverse_dynamics_from_sin_cos`).";

@@ -72,15 +72,16 @@ impl Report {
         let [seven_steps, reduced] = riscv.puma560;
         let mut text = format!(
             "\n## RISC-V and WebAssembly\n\n\
-             - `riscv32imafc-unknown-none-elf`: {} functions are built, and none calls, branches or computes in double \
-             precision.\n  PUMA 560: {seven_steps} instructions in `seven_steps`, {reduced} in `reduced`. \
-             The code is read, but not run.\n",
+             - `riscv32imafc-unknown-none-elf`: `cargo xtask certificate` builds {} functions. It reads their \
+             instructions, but\n  does not run them. No function calls, branches or computes in double precision. \
+             The torques of the PUMA 560 take\n  {seven_steps} instructions in the form `seven_steps` and {reduced} \
+             in the form `reduced`.\n",
             riscv.functions
         );
         let _ = match self.wasm {
             Some(numbers) => writeln!(
                 text,
-                "{WASM}, in Node: {numbers} torques (all robots, both forms, `f32` and `f64`) have the host's bits."
+                "{WASM}: in Node, {numbers} torques (all robots and forms, `f32`, `f64`) have the same bits as on a PC."
             ),
             None => writeln!(text, "{WITHOUT_NODE}"),
         };
@@ -99,53 +100,66 @@ pub(crate) fn is_same(committed: &str, document: &str) -> bool {
 }
 
 const WASM: &str = "- `wasm32-unknown-unknown`";
-const WITHOUT_NODE: &str = "- `wasm32-unknown-unknown`: not compared, because there is no Node.";
+const WITHOUT_NODE: &str = "- `wasm32-unknown-unknown`: not compared, because Node.js is not installed.";
 
 const HEAD: &str = "\
 # Generated code on microcontrollers
 
-`cargo xtask certificate --update` writes this page. `cargo xtask certificate` builds, reads and runs everything again,
-and fails if a certified property no longer holds.
+The command `cargo xtask certificate --update` writes this page. Without `--update`, the command builds, reads and runs
+the code again, and compares the result with this page. It fails if the code does not have a property that this page
+certifies.
 
-The page covers every shipped robot, in `f32`, with sines and cosines. The image is built for a board, and `objdump`
-lists its instructions. The image then runs on that board in QEMU
+The generated code computes the joint torques of each [shipped robot](../robots/README.md) and, for the PUMA 560, also
+the other functions. The code uses single precision (`f32`), and it computes the sines and cosines of the joint angles
+itself. The command builds a program for a board and lists its instructions with `objdump`. The command then runs the
+program on the same board, emulated by QEMU
 ({qemu}).
 
-| certified of each function | how |
+Each function has two forms. The form `seven_steps` computes every intermediate vector of the recursive Newton-Euler
+algorithm. The form `reduced` computes the same result with about half the operations.
+
+| property of each function | how the command checks or measures it |
 |---|---|
-| no call: no panic, no allocator, no formatting, no library | no instruction is a call. The image also contains four functions that are faulty on purpose (an index that can panic, a loop, an `f64`, a call); the check must refuse them |
-| no branch | no instruction is a branch, except jumps over the constants that lie between the instructions |
-| no double precision | the M4F has no instruction for double precision, and software arithmetic would need a call |
-| instructions | counted in the listing; without branches, each instruction runs once. For `inverse_dynamics`, the timer SysTick in QEMU must give exactly the same count, with 1024 ns per instruction |
-| bytes of code and constants | size of the function's symbol; the constants are the literal pools in it |
-| bytes of stack | size of the stack frame that the compiler records (`-Z emit-stack-sizes`); it is the whole stack use because the function calls nothing |
-| results | compared at {states} states with the same code on an x86-64 host. They must be bit-identical. With fused multiply-add they may differ; the difference is given in units in the last place (ulp) of the largest torque of the state |
-| growth | the check fails if instructions, size or stack grow by more than 2 % over this page, for the same compiler |
+| no call: no panic, no allocator, no formatting, no library | No instruction is a call. The program also contains four faulty functions: one has an index that can panic, one has a loop, one uses `f64`, one calls another function. The command fails if its own check accepts one of these four functions. |
+| no branch | No instruction is a branch, except jumps over the constants that lie between the instructions. |
+| no double precision | The M4F has no instruction for double precision, and software arithmetic would need a call. |
+| instructions | The command counts them in the listing. Without branches, each instruction runs once. For `inverse_dynamics`, the timer SysTick in QEMU must give exactly the same count; QEMU takes 1024 ns for each instruction. |
+| bytes of code and constants | They are the size of the function's symbol. The constants are the literal pools in it. |
+| bytes of stack | They are the size of the stack frame that the compiler records (`-Z emit-stack-sizes`). The function needs no other stack, because it calls nothing. |
+| results | The command compares the results at {states} states with the results of the same code on an x86-64 host. They must be bit-identical. With fused multiply-add they may differ; the table then shows the difference in units in the last place (ulp) of the largest torque of the state. |
+| growth | The command fails if the instructions, the size or the stack of a function is more than 2 % larger than on this page. It compares them only if the compiler is the same. |
 
 ## Worst case
 
-Each function has only one path. So the count is also the worst case, for every input: NaN, infinities, subnormal
-numbers. The count does not apply to the following:
+The generated code of a function has only one execution path. So a call takes the same number of instructions for every
+input, also for NaN, infinities and subnormal numbers. This number is therefore also the worst case.
 
-- time: QEMU counts instructions and does not measure their duration. Without a cache, the processor waits for code and
-  constants from flash. The M7 executes two instructions at once where it can. On the Cortex-M4, `vmla` and `vfma` take
-  three cycles, and `vmul` and `vadd` take one cycle each (Arm, Cortex-M4 Technical Reference Manual, FPU instruction
-  set). With `-C target-cpu=cortex-m4` the compiler uses separate `vmul` and `vadd`: more instructions, but possibly
-  less time. Measure the time on your board with the cycle counter of the DWT unit; QEMU has no such counter.
-- your own sine and cosine: a `Scalar` of your own, or `RNE_SIN_COS` in C. The counts here include the sine and cosine
-  of the crate, in `f32` only, for angles up to 10⁵ rad. Larger angles take the same time, but give wrong results.
-- the dev profile: its code contains the calls and checks that an optimiser removes. The counts here are for `--release`
-  with `opt-level` 3.
-- more than sixteen angles: a loop computes their sines and cosines, sixteen at a time.
+The instruction counts of this page have these limits:
+
+- The counts are not times. QEMU counts instructions and does not measure their duration. Without a cache, the processor
+  waits for code and constants from flash. The M7 executes two instructions at once where it can. On the Cortex-M4,
+  `vmla` and `vfma` take three cycles, and `vmul` and `vadd` take one cycle each (Arm, Cortex-M4 Technical Reference
+  Manual, FPU instruction set). With `-C target-cpu=cortex-m4` the compiler uses separate `vmul` and `vadd`: the code
+  has more instructions, but it may take less time. Measure the time on your board with the cycle counter of the DWT
+  unit. QEMU has no such counter.
+- The counts include the sine and cosine functions of `rne` in `f32`. If you use your own sine and cosine (your own
+  `Scalar` type in Rust, or `RNE_SIN_COS` in C), the counts are different. The functions of `rne` are made for angles up
+  to 10⁵ rad. For a larger angle they take the same time, but give a wrong result.
+- The counts are for `--release` with `opt-level` 3. The code of the dev profile contains calls and checks that the
+  optimizer would remove.
+- The counts are for arms with at most sixteen joint angles. For more angles, the code contains a loop, which computes
+  the sines and cosines of sixteen angles at a time.
 
 ";
 
 const LOOP: &str = "\
 ## Compared with a loop over a baked-in table
 
-`rne::Arm` without `std` computes the same recursion in the same image. Its table is a constant in `f32` in flash. Its
-torques are {agreement} of the torques of the seven steps. The difference comes from constants: the compiler computes
-them from the table in double precision and rounds once, and the loop computes them in `f32`.
+The type `rne::Arm` of the runtime library computes the torques in loops, without `std`. It reads the numbers of the
+robot from a constant table in `f32` in flash. The certified program contains it, too. The torques of `rne::Arm` are
+{agreement} (units in the last place) of the torques of the derived code in the form `seven_steps`. The difference
+comes from constants: the derive computes each constant in double precision and rounds it once, and `rne::Arm` computes
+it in `f32`.
 
 ";
 

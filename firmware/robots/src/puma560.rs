@@ -78,7 +78,7 @@ macro_rules! methods {
             #[derive(
                 rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
                 rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
-                rne::MomentumObserver, rne::MovingBase, rne::Actuation,
+                rne::MomentumObserver, rne::MovingBase, rne::Actuation, rne::PayloadDynamics,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -142,4 +142,16 @@ methods! {
     MovingBase: inverse_dynamics_on_moving_base(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], base: BaseMotion<f32>)
         -> [f32; 6];
     Actuation: actuator_torques(qd: [f32; 6], qdd: [f32; 6]) -> [f32; 6];
+    PayloadDynamics: gravity_torques_with_payload(q: [f32; 6], payload: Payload<f32>) -> [f32; 6];
+    PayloadDynamics: bias_torques_with_payload(q: [f32; 6], qd: [f32; 6], payload: Payload<f32>) -> [f32; 6];
+    PayloadDynamics: mass_matrix_with_payload(q: [f32; 6], payload: Payload<f32>) -> [[f32; 6]; 6];
+    PayloadDynamics: forward_dynamics_with_payload(
+        q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
+    ) -> [f32; 6];
+    PayloadDynamics: inverse_dynamics_derivatives_with_payload(
+        q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], payload: Payload<f32>
+    ) -> TorqueDerivatives<6, f32>;
+    PayloadDynamics: momentum_and_rate_with_payload(
+        q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
+    ) -> MomentumAndRate<6, f32>;
 }

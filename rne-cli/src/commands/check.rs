@@ -17,24 +17,29 @@ use crate::render::layout::{left, width};
 use crate::render::physics;
 use crate::values::choice;
 
-/// Check robot files and plans; print `ok` and lints, or every error
+/// Check robot files and plans; print errors, warnings and notes
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne check robots/*.yaml
   rne check --physics robots/planar2.yaml
-  rne check robots/puma560.plan.yaml   a plan is compiled and proved
+  rne check robots/puma560.plan.yaml   compiles and proves a plan
 
-A plan next to a robot file is checked too. For arms of up to 8 joints a note
-names each function whose reduced form is refused, with the reason. The exit
-status is 1 if a file has errors, or if an arm violates a law of physics by more
-than rounding. Lints (warnings and notes) leave it at 0.
-docs/robot-file.md explains every key.")]
+`rne search` writes plan files (NAME.plan.yaml). A plan file lists the choices
+that save operations in the code of a robot. rne also checks the plan file next
+to a robot file. If an arm has at most 8 joints, a note names each function for
+which rne refuses the reduced form, which is the code with the fewest
+operations. The note gives the reason.
+
+The exit status is 1 if a file has errors, or if an arm violates a law of
+mechanics by more than rounding. Warnings and notes do not change the status 0.
+docs/robot-file.md explains every key of a robot file.")]
 pub(crate) struct Arguments {
-    /// Robot files, or plans; - is standard input
+    /// Robot files, names from `rne list`, or plan files of `rne search` (NAME.plan.yaml: choices that save operations
+    /// in the code); - is standard input
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Check laws that every arm obeys, and print the deviations
+    /// Check laws of mechanics that every arm obeys, and print the deviations
     #[arg(long)]
     physics: bool,
 }

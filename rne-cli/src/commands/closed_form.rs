@@ -15,13 +15,13 @@ use crate::render::letters::Letters;
 /// The dynamics in closed form, instead of code.
 #[derive(Args)]
 pub(crate) struct Wanted {
-    /// Print the closed form, τ = M θ̈ + h + γ
+    /// Print symbolic equations of motion, τ = M θ̈ + h + γ
     #[arg(long, conflicts_with_all = OTHERS)]
     symbolic: bool,
-    /// Print the closed form as LaTeX
+    /// Print symbolic equations of motion as LaTeX
     #[arg(long, conflicts_with_all = OTHERS)]
     latex: bool,
-    /// Closed form of the arm up to joint N only
+    /// Print symbolic equations of motion of joints 1 to N
     #[arg(long, value_name = "N", value_parser = crate::values::choice::joint, conflicts_with_all = OTHERS)]
     first: Option<usize>,
 }

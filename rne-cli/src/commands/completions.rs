@@ -14,7 +14,7 @@ Examples:
   rne completions zsh > ~/.zfunc/_rne
   rne completions fish > ~/.config/fish/completions/rne.fish")]
 pub(crate) struct Arguments {
-    /// The shell
+    /// Shell for which rne prints the script
     #[arg(value_enum, value_name = "SHELL")]
     shell: Shell,
 }

@@ -15,21 +15,21 @@ use crate::palette::QUIET;
 use crate::render::heading::rounding;
 use crate::values::choice::convention;
 
-/// Write the table of an arm in the other convention
+/// Convert a robot file to the other Denavit-Hartenberg convention
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne convert robots/panda.yaml --convention standard -o panda_standard.yaml
   rne convert robots/ur5.yaml --convention modified
 
-Torques, limits and motors do not change; expressions are replaced by their
-values. If the first axis is not z of frame 0, a standard table moves frame 0
-there and rotates base and gravity with it.")]
+Torques, limits and motors do not change. rne replaces expressions by their
+values. If the first joint axis is not z of frame 0, rne moves frame 0 of a
+standard table to this axis, and rotates base and gravity with frame 0.")]
 pub(crate) struct Arguments {
-    /// The robot file; - is standard input
+    /// Robot file, or a name from `rne list`; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Convention of the new table
+    /// Denavit-Hartenberg convention of the new robot file
     #[arg(long, value_parser = convention())]
     convention: Convention,
     #[command(flatten)]

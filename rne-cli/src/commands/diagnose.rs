@@ -18,7 +18,7 @@ use crate::terminal;
 use crate::values::numbers::{List, checked, resolution, rounded};
 use crate::values::state::{Given, State};
 
-/// Find the mistakes that explain another tool's torques
+/// Find mistakes that explain different torques of another program
 #[derive(Args)]
 #[command(override_usage = "rne diagnose [OPTIONS] --q <Q> --qd <QD> --qdd <QDD> --tau <TAU> <FILE>")]
 #[command(after_help = "\
@@ -29,35 +29,36 @@ Examples:
   rne diagnose puma560 --q 0,0.3,-0.5,0.1,0.2,0 --qd 1,1,1,1,1,1 \\
     --qdd 1,0,0,0,0,0 --tau=-0.28771,-37.706,-1.35305,0.0035967,0.003694,5.56e-5
 
-The usual mistakes are tried one by one, then in pairs: convention, gravity,
+rne tries the usual mistakes one by one, then in pairs: convention, gravity,
 inertia and centre of mass about another point, units, offsets, signs, motors,
-wrench, and the misprints of the lecture. Single mistakes also include the sign
-of one alpha, one theta, or one component of a centre of mass. Use a state with
-speeds and accelerations of all joints: it distinguishes most mistakes.")]
+wrench, and the misprints of the lecture (docs/lecture/errata.md). Single
+mistakes also include the sign of one alpha, one theta, or one component of a
+centre of mass. Give speeds and accelerations of all joints: such a state
+distinguishes most mistakes.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
-    /// Joint positions, rad or m
+    /// Joint positions, base to tip, rad or m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     q: List,
-    /// Joint velocities, rad/s or m/s
+    /// Joint velocities, base to tip, rad/s or m/s
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     qd: List,
-    /// Joint accelerations, rad/s² or m/s²
+    /// Joint accelerations, base to tip, rad/s² or m/s²
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     qdd: List,
-    /// Torques of the other tool, with all their digits
+    /// Torques that the other program computed, with all digits, N m or N
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Printed,
-    /// Tip wrench on the environment: fx,fy,fz,nx,ny,nz in tip axes, N and N m
+    /// Force and moment of the tip on its environment, fx,fy,fz,nx,ny,nz, N and N m, in tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// Accepted error of a torque, relative to the largest [default: from its last digit]
+    /// Accepted error of a torque, relative to the largest torque [default: half of the last digit of --tau]
     #[arg(long, value_name = "T", allow_hyphen_values = true,
         value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
         "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]
     tolerance: Option<f64>,
-    /// Print JSON: {"agrees": …, "error": …, "explanations": […]}
+    /// Print the answer as JSON: {"agrees": …, "error": …, "explanations": […]}
     #[arg(long)]
     json: bool,
 }
@@ -106,7 +107,7 @@ const COARSEST: f64 = 1e-3;
 const SHOWN: usize = 5;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.arm.robot()?;
+    let robot = arguments.arm.robot_with_payload()?;
     let (seen, right) = observation(arguments, &robot)?;
     let diagnosis = rne_diagnose::diagnose(&robot, std::slice::from_ref(&seen)).map_err(Failure::usage)?;
     let at_fault = matches!(diagnosis, Diagnosis::Unexplained(_));

@@ -20,7 +20,7 @@ use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
-/// Write the generated code as a file without dependencies
+/// Write the generated code in Rust or C, without dependencies
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -31,54 +31,54 @@ Examples:
   rne emit robots/puma560.yaml --lang c --real double --prefix arm
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
 
-By default the functions of the trait InverseDynamics are written; --function
-selects others, and `all` selects every function of the robot. --check exits
-with 1 if the file is out of date, and prints the command that updates it. C
-code needs no library; on standard output header and source are one file;
--DRNE_TEST turns its tests into a program.")]
+Without --function rne writes the functions of the trait InverseDynamics. If the
+file of --check is out of date, rne exits with status 1 and prints the command
+that updates the file. C code needs no library. On standard output, the C header
+and the C source are one file. A C compiler with the option -DRNE_TEST makes a
+program that runs the tests.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
-    /// Robot file
+    /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Language of the code
+    /// Programming language of the code
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
     /// Number type of C code: float (default) or double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
     real: Option<Real>,
-    /// Prefix of names in C code [default: the robot's name]
+    /// Prefix of all names in C code [default: the robot's name]
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
-    /// Functions to write, F,F,…; see `rne explain functions`
+    /// Functions to write, F,F,… or `all`; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
-    /// seven_steps (every intermediate of the lecture) or reduced (fewest operations)
+    /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations)
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true)]
     form: Form,
-    /// Parameters that become arguments, N,N,…; others are constants
-    #[arg(long, value_name = "N", value_delimiter = ',')]
+    /// Names of parameters of FILE that become function arguments, NAME,NAME,…; the others are constants in the code
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     run_time: Vec<String>,
-    /// Include sine and cosine in Rust code, as in C code
+    /// Add functions for sine and cosine to Rust code; C code always contains them
     #[arg(long)]
     with_sin_cos: bool,
-    /// Add tests: values of the runtime, laws of mechanics
+    /// Add tests that compare results of the code with `rne::Arm` and check laws of mechanics
     #[arg(long)]
     tests: bool,
-    /// Write comments in ASCII: dw for ω̇, ^T for ᵀ
+    /// Write comments of the code in ASCII: dw for ω̇, ^T for ᵀ
     #[arg(long)]
     ascii: bool,
-    /// File to write, with a header for C; - is standard output
+    /// Output file; C code also gets a header file; - is standard output [default: -]
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Overwrite OUT even if rne did not generate it
+    /// Overwrite the output file even if rne did not generate it
     #[arg(long, requires = "output")]
     force: bool,
-    /// Compare with this file instead of writing
+    /// Write nothing; check that this file contains the code that rne would write
     #[arg(long, value_name = "OUT", conflicts_with = "output")]
     check: Option<PathBuf>,
 }

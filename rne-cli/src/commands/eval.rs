@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::DynArm;
-use rne_codegen::{Function, Layout, Record, Step};
+use rne_codegen::{Argument, Function, Layout, Record, Step};
 use rne_diagnose::worksheet::Worksheet;
 use serde_json::{Value, json};
 
@@ -27,7 +27,7 @@ use crate::values::limits;
 use crate::values::numbers::List;
 use crate::values::state::{Given, State};
 
-/// Compute a function at one state; --trace prints every vector
+/// Compute torques, or another function of an arm, at given states
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -38,7 +38,7 @@ Examples:
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
-    /// Function; see `rne explain functions`
+    /// Function to compute; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true)]
     function: Option<Function>,
     /// Joint positions, base to tip, rad or m
@@ -53,64 +53,62 @@ pub(crate) struct Arguments {
     /// Joint torques for forward_dynamics, N m or N
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// Wrench on the environment: fx,fy,fz,nx,ny,nz
+    /// Force and moment of the tip on its environment, fx,fy,fz,nx,ny,nz, N and N m, in tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] fixed to tip
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    payload: Option<List>,
-    /// Angular velocity x,y,z of moving base, rad/s
+    /// Angular velocity of a moving base, x,y,z, rad/s
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
-    /// Angular acceleration of the base, rad/s²
+    /// Angular acceleration of the base, x,y,z, rad/s²
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
-    /// Acceleration of the base without gravity, m/s²
+    /// Acceleration of a moving base, x,y,z, m/s², without gravity
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
-    /// Gravity in moving frame 0 [default: the file's]
+    /// Gravity in the moving frame 0, x,y,z, m/s² [default: gravity of the robot file]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
-    /// Print torques at N states as a golden file
+    /// Print torques at N random states, as a file of expected values for tests (NAME.golden.csv)
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
         "gravity", "trace", "json", "csv", "compare",
     ])]
     golden: Option<u16>,
-    /// File of states: CSV, npy, or - for a pipe
+    /// Compute the function at every state in this file: CSV or npy; - is standard input
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration", "gravity",
         "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
-    /// File for the results: CSV, or NAME.npy
+    /// Output file of --states: CSV, or NAME.npy
     #[arg(short, long = "output", value_name = "TABLE", requires = "states")]
     out: Option<PathBuf>,
     /// Overwrite an existing file
     #[arg(long, requires = "out", hide = true)]
     force: bool,
-    /// Print the worksheet of the seven steps
+    /// Print every intermediate value of the seven steps
     #[arg(long)]
     trace: bool,
-    /// Axes: link, joint (as in the lecture) or base
+    /// Axes in which --trace prints vectors: link (default), joint, or base (frame 0)
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
-    /// Only the lines of this joint, from 1
+    /// Print only joint I of --trace; 1 is at the base
     #[arg(long, value_name = "I", value_parser = choice::joint, requires = "trace", conflicts_with = "compare")]
     joint: Option<usize>,
-    /// Only the lines of this step, 1 to 7
+    /// Print only step S of --trace: 1 angular velocity, …, 7 torque
     #[arg(long, value_name = "S", value_parser = choice::step, requires = "trace", conflicts_with = "compare")]
     step: Option<Step>,
-    /// Print the worksheet as CSV
+    /// Print the values of --trace as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// Find the first mistake in your worksheet
+    /// With --trace: compare the values in your file (CSV or JSON, named as --trace prints them), and print the first
+    /// wrong one
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
-    /// Significant digits to compare [default: 4]
+    /// Significant digits for --compare [default: 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=15), requires = "compare")]
     digits: Option<u8>,
-    /// Print JSON: {"result": …}, with --trace "trace"
+    /// Print JSON, {"result": …}; --trace adds "trace"
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -158,11 +156,14 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
             arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
         return golden::file(&robot, states, &settings).map(Outcome::text);
     }
-    let function = arguments.function.unwrap_or(match (&arguments.wrench, &arguments.payload) {
-        (Some(_), _) => Function::InverseDynamicsWithWrench,
-        (None, Some(_)) => Function::InverseDynamicsWithPayload,
-        (None, None) => Function::InverseDynamics,
+    let function = arguments.function.unwrap_or(match arguments.wrench {
+        Some(_) => Function::InverseDynamicsWithWrench,
+        None => Function::InverseDynamics,
     });
+    let loaded = function.with_payload().filter(|_| arguments.arm.payload.is_some());
+    let function = loaded.unwrap_or(function);
+    // of a function that takes no payload, the payload is a part of the last link
+    let robot = if function.takes(Argument::Payload) { robot } else { arguments.arm.carrying(robot)? };
     if arguments.trace && !function.returns_torques() {
         let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
         return Err(Failure::usage(format_args!(
@@ -171,7 +172,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     }
     let zeros = List(vec![0.0; robot.dof()]);
-    let (given, assumed) = arguments.given().at_rest(function, &zeros);
+    let (given, assumed) = arguments.given(function).at_rest(function, &zeros);
     let state = State::new(function, given, &robot)?;
     let arm = DynArm::from_robot(&robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
@@ -216,14 +217,14 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 impl Arguments {
-    fn given(&self) -> Given<'_> {
+    fn given(&self, function: Function) -> Given<'_> {
         Given {
             q: self.q.as_ref(),
             qd: self.qd.as_ref(),
             qdd: self.qdd.as_ref(),
             tau: self.tau.as_ref(),
             wrench: self.wrench.as_ref(),
-            payload: self.payload.as_ref(),
+            payload: self.arm.payload.as_ref().filter(|_| function.takes(Argument::Payload)),
             base_omega: self.base_omega.as_ref(),
             base_omega_dot: self.base_omega_dot.as_ref(),
             base_acceleration: self.base_acceleration.as_ref(),

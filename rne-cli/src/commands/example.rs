@@ -9,14 +9,14 @@ use crate::outcome::{Failure, Outcome};
 #[command(after_help = "\
 Examples:
   rne example puma560 > my_puma.yaml
-  rne example puma560 --plan > my_puma.plan.yaml    its reduced form
+  rne example puma560 --plan > my_puma.plan.yaml    its plan file
 
-`rne list` prints the names.")]
+`rne list` prints the names of the shipped robots.")]
 pub(crate) struct Arguments {
-    /// The robot's name
+    /// Name of a shipped robot; see `rne list`
     #[arg(value_name = "NAME")]
     name: String,
-    /// Print the plan of its reduced form instead
+    /// Print the plan file of the robot instead: the choices for code with the fewest operations
     #[arg(long)]
     plan: bool,
 }

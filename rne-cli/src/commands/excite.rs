@@ -35,7 +35,7 @@ const MOTIONS: u64 = 100_000_000;
 /// Samples of a picture.
 const DRAWN: u32 = 1000;
 
-/// Find a motion that excites the parameters of an arm
+/// Find a motion for `rne identify` that excites the parameters well
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -43,57 +43,59 @@ Examples:
   rne excite planar2 --evaluations 200 --velocity 1.5,2 --plot motion.svg
 
 The motion is a Fourier series from rest to rest within the limits, with the
-least condition number. Collisions are not checked, only limits, so try it in a
-simulator or at low speed first. Ctrl-C ends the search and keeps the best.
-Columns: t, q1, …, qd1, …, qdd1, … in s, rad or m.")]
+least condition number that the search finds. rne checks limits but no
+collisions, so try the motion in a simulator or at low speed first. Ctrl-C ends
+the search and keeps the best motion. The trajectory has the columns t, q1, …,
+qd1, …, qdd1, … in s, rad or m, and per second.")]
 pub(crate) struct Arguments {
-    /// Robot file
+    /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Duration of the motion
+    /// Duration of the motion, s
     #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true,
         value_parser = checked(|s: &f64| (1e-3..=86_400.0).contains(s), "write a number of seconds, 0.001 to 86400"))]
     seconds: f64,
-    /// Number of repetitions in this time
+    /// Number of times that the motion repeats within --seconds
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     periods: u32,
-    /// Harmonics of each joint's series, 2 or more
+    /// Harmonics in the Fourier series of each joint, 2 to 50
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = checked(|n: &usize| (2..=50).contains(n),
         "write 2 to 50 harmonics; a motion with fewer than two cannot start and end at rest"))]
     harmonics: usize,
-    /// Largest distance from the middle of the limits, or from 0 without limits; rad or m, one number or a list
+    /// Largest distance of a joint from the middle of its limits, or from 0 if it has no limits; rad or m, one number
+    /// or one per joint
     #[arg(long, value_name = "LIST")]
     range: Option<List>,
-    /// Largest speed, one number or a list; limits in the file apply too
+    /// Largest joint speed, rad/s or m/s, one number or one per joint; limits in FILE also apply
     #[arg(long, value_name = "LIST")]
     velocity: Option<List>,
-    /// Largest acceleration, one number or a list [default: speed divided by 0.5 s]
+    /// Largest joint acceleration, rad/s² or m/s², one number or one per joint [default: speed / 0.5 s]
     #[arg(long, value_name = "LIST")]
     acceleration: Option<List>,
-    /// Assume no friction
+    /// Design the motion for an arm without friction
     #[arg(long)]
     no_friction: bool,
-    /// Excite the rotor inertia of the motors, too
+    /// Also excite the rotor inertia of the motors
     #[arg(long)]
     rotors: bool,
-    /// Number of motions to try
+    /// Number of motions that the search tries
     #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=MOTIONS))]
     evaluations: u64,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Samples per second in OUT
+    /// Samples per second in the trajectory file, Hz
     #[arg(long, value_name = "HZ", default_value_t = 100.0, allow_negative_numbers = true,
         value_parser = checked(|hz: &f64| (1e-3..=1e6).contains(hz),
         "write a number of samples per second, 0.001 to 1000000"))]
     rate: f64,
-    /// Plot the positions (SVG)
+    /// Plot the joint positions to this SVG file
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// Trajectory to write (CSV); - is standard output
+    /// Write the trajectory to this CSV file; - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Overwrite existing files
+    /// Overwrite output files that exist
     #[arg(long)]
     force: bool,
 }
@@ -172,8 +174,8 @@ fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError
     Failure::input(if least.part > 1.0 {
         let name = one_line(&robot.joints[least.joint].name);
         format!(
-            "{none}: {}, and no less at {POSITIONS} positions within the limits, so {helps}: are the effort limit of \
-             {name} and the masses that it carries right?",
+            "{none}: {}, and no less at {POSITIONS} positions within the limits, so {helps}: check the effort limit of \
+             {name} and the masses that this joint carries",
             least.words(robot, limits)
         )
     } else if middle.part > 1.0 {
@@ -407,6 +409,7 @@ fn picture(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
         note: format!("starts at {}", rounded(used.start, 3)),
         curves: vec![PanelCurve { name: "position", values }],
         limits: vec![used.limits.position.0, used.limits.position.1],
+        bounds: Vec::new(),
         bands: Vec::new(),
     });
     let title = robot.title.as_deref().unwrap_or(&robot.name);

@@ -18,6 +18,7 @@ use crate::render::equations;
 use crate::render::equations::View;
 use crate::render::layout::{PAGE, wrap};
 use crate::render::letters::Letters;
+use crate::render::link_parameter::LinkParameter;
 use crate::terminal;
 use crate::values::choice;
 use crate::values::choice::Kept;
@@ -26,24 +27,27 @@ use crate::values::choice::Kept;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne explain functions     values of --function
+  rne explain functions     functions of a robot, the values of --function
   rne explain arguments     options of `rne eval` for each function
-  rne explain tricks        values of --without: tricks of the reduced form
-  rne explain quantities    values of `rne show --keep`
-  rne explain exit-status   meaning of the exit statuses
-  rne explain w2_z puma560  meaning of a name in the code of a robot")]
+  rne explain tricks        simplifications of code, the values of --without
+  rne explain quantities    quantities that `rne show --keep` can keep
+  rne explain exit-status   meaning of the exit statuses of all commands
+  rne explain hold-out      what `rne identify --hold-out` does
+  rne explain Jzz3          meaning of the name of a link parameter
+  rne explain w2_z puma560  meaning of w2_z in the code of the PUMA 560")]
 pub(crate) struct Arguments {
-    /// Topic: functions, arguments, tricks, quantities, exit-status, or a name in the code of FILE
+    /// Topic: functions, arguments, tricks, quantities, exit-status, hold-out, a link parameter such as Jzz3, or a
+    /// name in the code of FILE
     #[arg(value_name = "TOPIC")]
     topic: String,
-    /// Robot file
+    /// Robot file or name of a robot from `rne list`; needed only if TOPIC is a variable of the code
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Function in which the name occurs, with FILE
+    /// If TOPIC is a variable: the function whose code is read
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true,
         default_value = Function::InverseDynamics.name(), requires = "file")]
     function: Function,
-    /// Form of the function, seven_steps or reduced, with FILE
+    /// If TOPIC is a variable: the form of the code that is read, seven_steps or reduced
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true, requires = "file")]
     form: Form,
@@ -58,11 +62,15 @@ enum Topic {
     Tricks,
     Quantities,
     ExitStatus,
+    HoldOut,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(file) = &arguments.file {
         return name_in_code(arguments, file);
+    }
+    if let Some(parameter) = LinkParameter::parse(&arguments.topic) {
+        return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
     }
     let topic = Topic::from_str(&arguments.topic, false).map_err(|_| {
         let topics: Vec<_> = Topic::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
@@ -71,17 +79,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let meant = did_you_mean(word, topics.iter().copied())
             .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
         Failure::usage(format_args!(
-            "there is no topic `{word}`{meant}; expected {}, or a name in the code of a robot and its file, as in \
-             {TYPED}rne explain w2_z puma560{TYPED:#}",
+            "there is no topic `{word}`{meant}; expected {}, a link parameter such as Jzz3, or a name in the code of a \
+             robot and its file, as in {TYPED}rne explain w2_z puma560{TYPED:#}",
             topics.join(", ")
         ))
     })?;
     let text = match topic {
         Topic::Functions => entries(Function::ALL.map(|function| (function.name(), function.summary().to_owned()))),
         Topic::Arguments => of_eval(),
-        Topic::Tricks => entries(Trick::ALL.map(|trick| (trick.name(), trick.formula().to_owned()))),
+        Topic::Tricks => {
+            let tricks = Trick::ALL.map(|trick| (trick.name(), trick.formula().to_owned()));
+            wrap(OF_TRICKS, terminal::width(PAGE), "") + "\n\n" + &entries(tricks)
+        }
         Topic::Quantities => quantities(),
         Topic::ExitStatus => EXIT_STATUS.to_owned(),
+        Topic::HoldOut => wrap(HOLD_OUT, terminal::width(PAGE), "") + "\n",
     };
     Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
 }
@@ -101,6 +113,9 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     if let Some(text) = equations::of_name(View { inspection: &inspection, letters: arguments.letters }, name) {
         return Ok(Outcome::text(text));
     }
+    if let Some(parameter) = LinkParameter::parse(name) {
+        return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
+    }
     let meant = did_you_mean(name, inspection.names.keys().map(String::as_str))
         .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
     Err(Failure::usage(format_args!(
@@ -111,29 +126,47 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
 }
 
 const EXIT_STATUS: &str = "\
-0    success. `rne check`: no file has an error, with or without lints;
-     `rne emit --check`: the file is up to date
-1    the input is at fault: a robot file or a plan has an error, cannot be read
-     or changes during a search; the result of one state is not finite; a file
-     of `rne emit --check` is out of date; torques differ and `rne diagnose`
-     does not find the reason; `rne eval --trace --compare` finds a difference;
-     `rne watch` has events; `rne log` cannot find the units or the noise of a
-     log; `rne identify` finds nothing in a log; the output cannot be written
-2    the command line is at fault: an option, a joint, parameter or link that
-     the robot does not have, a list of another length, or a file or folder that
-     rne does not overwrite
-130  Ctrl-C ended the command (`rne search` and `rne excite`: the second Ctrl-C)
-129, 143  SIGHUP or SIGTERM ended the command
+0    The command succeeded. `rne check`: no file has an error; files may have
+     warnings and notes. `rne emit --check`: the file is up to date.
+1    The input has a fault, or the answer of the command is negative:
+     - A robot file or a plan has an error, cannot be read, or changes during a
+       search.
+     - The result of one state is not finite.
+     - `rne check --physics`: an arm violates a law of mechanics.
+     - `rne emit --check`: the file is out of date.
+     - `rne diagnose`: torques differ, and rne does not find the reason.
+     - `rne eval --trace --compare`: a value differs.
+     - `rne watch`: there is an event, a log cannot be compared, or the model
+       does not explain the torques of a joint.
+     - `rne log`: rne cannot find the units or the noise of a log.
+     - `rne identify`: a log determines no link and no friction.
+     - The output cannot be written.
+2    The command line has a fault: a wrong option; a joint, parameter or link
+     that the robot does not have; a list of a wrong length; a file or folder
+     that rne does not overwrite.
+130  Ctrl-C ended the command. `rne search` and `rne excite`: the second Ctrl-C.
+129, 143  The signal SIGHUP (129) or SIGTERM (143) ended the command.
 
-If a signal ends a command, files do not change and no temporary file is left.
+If a signal ends a command, rne changes no file and leaves no temporary file.
 
-Errors go to standard error, and standard output is then empty. Exceptions: the
-results of an answer with status 1, such as events, are on standard output, and
-so are the states that `rne eval --states` has printed before a mistake. A file
-of -o is written completely or not at all. With --states, a result that is not
-finite is NaN or inf in its row, with a note and status 0. A reader that closes
-the pipe (`rne show … | head`) is not an error.
+rne writes errors to standard error. If there is an error, standard output is
+empty, with two exceptions. First, the results of an answer with status 1, such
+as events, are on standard output. Second, `rne eval --states` prints the
+results of all states before a mistake.
+
+rne writes a file of -o completely or not at all. With --states, a result that
+is not finite is NaN or inf in its row; rne prints a note and exits with status
+0. It is not an error if a reader closes the pipe, as in `rne show … | head`.
 ";
+
+const HOLD_OUT: &str = "\
+`rne identify FILE LOG --hold-out 0.3` identifies the robot from the first 70 % of the log. The last 30 % of the log \
+is held out: the identification does not use it. rne then computes the torques of the held-out part with the \
+identified robot and compares these torques with the measured torques. The error on the held-out part shows how well \
+the robot predicts data that it was not fitted to. A held-out error that is much larger than the fitted error means: \
+the fitted part determines too few parameters, or the two parts contain different motions. Record a longer log, or \
+design a better motion with `rne excite`. --csv writes the measured, predicted and residual torques of both parts; \
+its column held_out is 1 in the held-out part.";
 
 /// Names, each with words below it.
 fn entries(entries: impl IntoIterator<Item = (&'static str, String)>) -> String {
@@ -163,14 +196,20 @@ fn swapped(name: &str, path: &Path) -> Option<Failure> {
     })
 }
 
+/// Explanation of the formulas of tricks.
+const OF_TRICKS: &str = "\
+A trick is a simplification that saves operations in the reduced form. The number in brackets after a formula is the \
+section of docs/reduced-form.md that explains the formula.";
+
 /// How arguments are given.
 const OF_EVAL: &str = "\
-Every function needs exactly its arguments; none has the default zero. A LIST has one number per joint, \
-base to tip: rad for a revolute joint, m for a prismatic one; pi/2 and 'deg(30)' are numbers. A wrench, in N \
-and N m, is exerted by the last link at the tip, in tip axes. A payload, in kg, m and kg m², is in tip axes \
-too. The motion of a moving base is in frame 0. Tables are rounded for reading; --json prints every digit, in \
-the shape that the Rust function returns. The default function is inverse_dynamics, or its variant with a wrench \
-or payload if --wrench or --payload is given.";
+Give each function all of its options and no others. Only --qd, --qdd and --gravity may be missing: --qd and --qdd \
+are zero by default, and --gravity is the gravity of the robot file. A LIST has one number per joint, base to tip: \
+rad for a revolute joint, m for a prismatic joint. pi/2 and 'deg(30)' are numbers, too. --wrench is the force and the \
+moment that the last link exerts at the tip, N and N m, in tip axes. --payload is in kg, m and kg m², in tip axes. \
+The options --base-… are in frame 0. rne rounds the tables that it prints; --json prints every digit, in the shape \
+that the Rust function returns. Without --function rne computes inverse_dynamics, or its variant with a wrench or \
+payload if --wrench or --payload is given.";
 
 /// The table of functions and the options of `rne eval` that each takes.
 fn of_eval() -> String {
@@ -190,7 +229,7 @@ fn of_eval() -> String {
          inverse_dynamics_with_payload, with the --base-… options inverse_dynamics_on_moving_base",
     );
     row("--q --qd --tau", &functions_of(&[Positions, Rates, Torques]));
-    row("--qd --qdd", "actuator_torques; zero where no joint has a motor");
+    row("--qd --qdd", "actuator_torques (zero for a joint without a motor)");
     text + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
 }
 

@@ -10,22 +10,22 @@ use crate::files::output_file::Output;
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 
-/// Write an arm as a URDF, for other programs
+/// Convert a robot file to a URDF, for other programs
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne export robots/ur5.yaml --urdf -o ur5.urdf
   rne export puma560 --urdf
 
-Links are `world`, `base` (frame 0), `link_1` … and `tip`; the frame of a link
-is on the axis of its joint. Friction is written at the joint: G² B and |G| Tc
-of its motor. A URDF cannot store gravity, so a note reports it if it is not
-[0, 0, -9.81] in `world`.")]
+The links of the URDF are `world`, `base` (frame 0), `link_1` … and `tip`. The
+frame of a link is on the axis of its joint. rne writes the friction of a motor
+as friction of its joint: G² B and |G| Tc. A URDF cannot store gravity, so a
+note reports a gravity that is not [0, 0, -9.81] in `world`.")]
 pub(crate) struct Arguments {
-    /// The robot file; - is standard input
+    /// Robot file, or a name from `rne list`; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Write a URDF
+    /// Write the URDF format (required)
     #[arg(long, required = true)]
     urdf: bool,
     #[command(flatten)]

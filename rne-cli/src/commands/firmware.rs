@@ -24,28 +24,28 @@ use crate::palette::{GOOD, TYPED};
 #[command(after_help = "\
 Examples:
   rne firmware torque                      the folder torque, for the PUMA 560
-  rne firmware ur5                         for the shipped robot of this name
+  rne firmware ur5                         for the shipped robot ur5
   rne firmware desk --robot my_arm.yaml -o desk_firmware
 
 Until rne is published, add --rne-path with the folder of its repository.
 
-Then, in the folder:
+Commands that run the firmware, in its folder:
   rustup target add thumbv7em-none-eabihf
   sudo apt-get install --yes qemu-system-arm
   cargo run --release
 
-The folder must be empty or must not exist: nothing is overwritten.")]
+The folder of -o must be empty or must not exist: rne overwrites nothing.")]
 pub(crate) struct Arguments {
     /// Name of the firmware crate: letters, digits, - and _
     #[arg(value_name = "NAME", value_parser = name)]
     name: String,
-    /// Robot file, or a shipped robot [default: the shipped robot NAME, else puma560]
+    /// Robot file, or name of a shipped robot [default: the shipped robot NAME, else puma560]
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// Folder to write [default: NAME]
+    /// Folder to create for the firmware [default: NAME]
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Folder with a clone of the rne repository, used instead of the registry
+    /// Take rne from this folder, a clone of its repository, instead of the registry of crates
     #[arg(long, value_name = "PATH")]
     rne_path: Option<PathBuf>,
 }

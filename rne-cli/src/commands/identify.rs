@@ -11,9 +11,12 @@ use rne_model::{Robot, one_line};
 use rne_plot::{Comparison, comparison_svg};
 
 use crate::commands::prediction_errors::errors_table;
+use crate::commands::residuals;
 use crate::files::file_name::Format;
 use crate::files::motion_log::MotionLog;
-use crate::files::output_file::{self, check_picture, check_place, is_standard_output, will_be_same};
+use crate::files::output_file::{
+    self, check_file, check_new_place, check_picture, check_place, is_standard_output, will_be_same,
+};
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{TITLE, TYPED, WARNING};
@@ -41,43 +44,46 @@ pub(crate) struct Arguments {
     /// Robot file with the geometry of the arm
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Logs: ROS 2 bags, MCAP, Parquet, CSV, npy
+    /// Logs of the arm: ROS 2 bags, MCAP, Parquet, CSV, npy
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
-    /// Identify the rotor inertia of the motors, too
+    /// Also identify the rotor inertia of the motors
     #[arg(long)]
     rotors: bool,
-    /// Assume no friction; ignore the friction of FILE
+    /// Identify an arm without friction; ignore friction in FILE
     #[arg(long)]
     no_friction: bool,
-    /// Regularization to FILE's links
+    /// Weight that keeps unknown link parameters near the values in FILE; 1 is the weight of one row of the log
     #[arg(long, value_name = "G", default_value_t = 1.0,
         value_parser = checked(|pull: &f64| pull.is_finite() && *pull >= 1e-6,
         "a pull is a number of 1e-6 or more; 1 is as strong as one row of noise"))]
     pull: f64,
-    /// Compute errors on this last fraction, such as 0.3
+    /// Do not fit the last part of the data, such as 0.3 for 30 %; compute the errors on it
     #[arg(long, value_name = "PART", conflicts_with = "judge",
         value_parser = checked(|part: &f64| *part > 0.0 && *part < 1.0, "a part lies between 0 and 1, such as 0.3"))]
     hold_out: Option<f64>,
-    /// Only compute the errors of FILE on the logs
+    /// Identify nothing; compute how well FILE predicts the torques in the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
     judge: bool,
-    /// Identify only the payload at the last link
+    /// Identify only a payload at the last link, not the links
     #[arg(long, conflicts_with_all = ["judge", "rotors", "no_friction", "hold_out", "pull"])]
     payload: bool,
-    /// Print every parameter, and errors by speed
+    /// Print every parameter, and the errors by joint speed
     #[arg(long, conflicts_with = "json")]
     all: bool,
     /// Print verdict, parameters and errors as JSON
     #[arg(long)]
     json: bool,
-    /// Plot measured and predicted torques (SVG)
+    /// Plot measured and predicted torques to this SVG file
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// Robot file to write; - is standard output
+    /// Write measured, predicted and residual torques of every state to this CSV file
+    #[arg(long, value_name = "CSV")]
+    csv: Option<PathBuf>,
+    /// Write the identified arm to this robot file; - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Overwrite existing files
+    /// Overwrite output files that exist
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -97,6 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let verdict = Verdict::of_file(&robot, &judged.errors);
         let about = format!("{} on {}", one_line(&robot.name), log.words());
         draw(arguments, &robot, &log, &judged, [about, "the whole log".to_owned()], &sources, &mut remark)?;
+        tabulate(arguments, &robot, &log, &[(Part::All, false)], &mut remark)?;
         if arguments.json {
             let reply = Reply::of_file(&robot, &verdict, logs(arguments), log.cutoff(), judged.extent);
             return Ok(Outcome { remark, ..Outcome::json(&reply)? });
@@ -135,6 +142,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             draw(arguments, &found.robot, &log, drawn, [title, about], &sources, &mut remark)?;
         }
     }
+    let parts = match held {
+        Some(held) => vec![(training, false), (held, true)],
+        None => vec![(training, false)],
+    };
+    tabulate(arguments, &found.robot, &log, &parts, &mut remark)?;
+    remark += &worded.offsets().map_or_else(String::new, |what| note(&what));
     for what in warnings(&found).into_iter().chain(worded.grown()) {
         remark += &warning(&what);
     }
@@ -206,10 +219,12 @@ fn payload(
     let title = format!("{} on {}", one_line(&robot.name), log.words());
     let about = if with.is_some() { "predicted with the payload" } else { "predicted without a payload" };
     draw(arguments, drawn, log, judged.as_ref().unwrap_or(&without), [title, about.to_owned()], sources, &mut remark)?;
+    tabulate(arguments, drawn, log, &[(Part::All, false)], &mut remark)?;
     let is_lost = found.is_there() && with.is_none();
     if !found.mass.is_excited || is_lost {
         let why = if is_lost {
-            "the last link of FILE has less mass than the log would take from it, so the two are not of the same arm"
+            "the log would take more mass from the last link of FILE than this link has, so FILE and the log are not \
+             of the same arm"
         } else {
             "the log does not determine the mass of a payload: record a motion in which gravity or accelerations load \
              the joints"
@@ -266,6 +281,10 @@ fn heading(robot: &Robot, log: &MotionLog) -> String {
 
 fn warning(what: &str) -> String {
     format!("{WARNING}warning{WARNING:#}: {}\n", wrap(what, PAGE - 9, "         ").replace(TIED, " "))
+}
+
+fn note(what: &str) -> String {
+    format!("{TITLE}note{TITLE:#}: {}\n", wrap(what, PAGE - 6, "      "))
 }
 
 fn logs(arguments: &Arguments) -> Vec<String> {
@@ -349,7 +368,20 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
             "{TYPED}--json{TYPED:#} and {TYPED}-o -{TYPED:#} both write to standard output; name a file for the robot"
         )));
     }
+    let csv = arguments.csv.as_deref();
+    for (other, kind) in [(output, "the robot file"), (plot, "the picture")] {
+        if let (Some(csv), Some(other)) = (csv, other)
+            && will_be_same(csv, other)
+        {
+            let shown = one_line(&csv.display().to_string());
+            return Err(Failure::usage(format_args!("{shown} is both the table and {kind}; name two files")));
+        }
+    }
     check_picture(plot)?;
+    check_file(csv, "--csv", "residuals.csv")?;
+    if let Some(csv) = csv {
+        check_new_place(csv, Format::Csv, sources, arguments.force)?;
+    }
     for (path, kind) in [(output, (Format::RobotFile, "# Identified")), (plot, (Format::Svg, "<svg"))] {
         if let Some(path) = path {
             check_place(path, kind, sources, arguments.force)?;
@@ -364,6 +396,20 @@ fn options(arguments: &Arguments, cutoff: f64) -> Options {
     options.rotors = arguments.rotors;
     options.cutoff = Some(cutoff);
     options
+}
+
+/// Writes the torques of parts of the log, each marked as held out or not, as a table.
+fn tabulate(
+    arguments: &Arguments,
+    robot: &Robot,
+    log: &MotionLog,
+    parts: &[(Part, bool)],
+    remark: &mut String,
+) -> Result<(), Failure> {
+    if let Some(path) = &arguments.csv {
+        *remark += &residuals::write(path, robot, log, parts)?;
+    }
+    Ok(())
 }
 
 /// Draws a part of the log; a title, and what is below it.

@@ -24,39 +24,40 @@ Examples:
   rne import puma.urdf --convention modified     to the terminal
   rne import puma.urdf --name puma -o puma.yaml
 
-For an arm with several ends: --base torso_lift_link --tip arm_tool_link; with
-joints outside the chain: --lock torso_lift_joint=0.1 --lock-others.
+For an arm with several ends: --base torso_lift_link --tip arm_tool_link. For a
+URDF with joints outside the arm: --lock torso_lift_joint=0.1 --lock-others.
 
-Links fixed to a link become part of it. Angles within 2e-4 rad of a multiple of
-pi/12 are replaced by it, and the resulting change is reported. Without -o the
-robot file goes to standard output and the report to standard error.")]
+rne joins links that are fixed to each other. rne replaces an angle within 2e-4
+rad of a multiple of pi/12 by this multiple, and reports the resulting change.
+Without -o rne writes the robot file to standard output and its report to
+standard error.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
-    /// The URDF; - is standard input
+    /// URDF file; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Fixed link at the base [default: the root]
+    /// Fixed link at the base of the arm [default: the root link]
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
-    /// Link at the end of the arm [default: the end behind all joints]
+    /// Last link of the arm [default: the last link, if the URDF has only one end]
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
-    /// Convention of the table, standard or modified
+    /// Denavit-Hartenberg convention of the new table: standard or modified
     #[arg(long, value_name = "C", value_parser = convention(), default_value = "standard", hide_possible_values = true)]
     convention: Convention,
-    /// Lock a movable joint at this position, rad or m, such as finger=0.04
+    /// Lock a movable joint at this position, rad or m, such as finger=0.04; may be repeated
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
     lock: Vec<(String, f64)>,
-    /// Lock all other joints outside the chain at zero
+    /// Lock all movable joints outside the arm at zero, except joints of --lock
     #[arg(long)]
     lock_others: bool,
-    /// Keep rounded angles: 1.5708 stays 1.5708
+    /// Keep angles that are nearly exact: 1.5708 stays 1.5708 and does not become pi/2
     #[arg(long)]
     no_snap: bool,
-    /// Accept inertias that no physical body has
+    /// Accept inertias that no physical body can have
     #[arg(long)]
     keep_unphysical: bool,
-    /// Name of the robot [default: as in the URDF]
+    /// Name of the robot [default: the name in the URDF]
     #[arg(long, value_parser = robot_name)]
     name: Option<String>,
     #[command(flatten)]

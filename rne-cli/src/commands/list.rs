@@ -18,7 +18,8 @@ Examples:
   rne show panda                       a robot of the list, by its name
   rne example panda > my_panda.yaml    its file, to change it
 
-A file with the same name takes precedence. In a crate: #[robot(builtin = \"panda\")].")]
+If there is a file with the name that you type, rne reads the file and not the
+shipped robot. In a Rust crate, write #[robot(builtin = \"panda\")].")]
 pub(crate) struct Arguments {}
 
 pub(crate) fn run(_: &Arguments) -> Result<Outcome, Failure> {

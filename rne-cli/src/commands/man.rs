@@ -18,10 +18,10 @@ Examples:
   rne man eval | man -l -                the page of a command
   rne man -o ~/.local/share/man/man1     all pages, for `man rne-eval`")]
 pub(crate) struct Arguments {
-    /// Command to describe, instead of rne itself
+    /// Print the page of this command [default: the page of rne]
     #[arg(value_name = "COMMAND", conflicts_with = "output")]
     command: Option<String>,
-    /// Write the pages of rne and of every command into this folder
+    /// Write the pages of rne and of all its commands to this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }

@@ -1,7 +1,7 @@
 //! The grammar of the command line: a module for each command, with its `Arguments` and the `run` that answers them.
 //!
-//! `tour` is what `rne` does without a command. `compare`, `closed_form` and `golden` are parts of commands, and
-//! `prediction_errors` is what `identify` and `watch` share.
+//! `tour` is what `rne` does without a command. `compare`, `closed_form`, `golden` and `residuals` are parts of
+//! commands, and `prediction_errors` is what `identify` and `watch` share.
 
 mod check;
 mod closed_form;
@@ -27,6 +27,7 @@ mod ops;
 mod plot;
 mod prediction_errors;
 mod report;
+mod residuals;
 mod search;
 mod show;
 mod tour;
@@ -45,11 +46,11 @@ use crate::palette::{HELP_STYLES, TITLE, TYPED};
 #[command(after_help = "\
 Examples:
   rne check robots/*.yaml                   check files
-  rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
-  rne emit robots/puma560.yaml --lang c     C99 that needs no library
+  rne show robots/puma560.yaml --joint 2    show the code of joint 2
+  rne emit robots/puma560.yaml --lang c     write C99 code
 
-FILE is a robot file or a name from `rne list`. Exit statuses: `rne explain
-exit-status`. Without a command rne prints a tour of the PUMA 560.")]
+FILE is a robot file or a name from `rne list`. `rne explain exit-status` lists
+the exit statuses. Without a command rne prints a tour of the PUMA 560.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,

@@ -20,8 +20,8 @@ Examples:
   rne new scara --dof 4 --prismatic 3 -o -   to the terminal; joint 3 prismatic
   rne new wrist --dof 3 --convention modified
 
-The file is valid: its links are slender, 0.3 m long, with 1 kg each. Replace
-their numbers by yours.")]
+The file is valid: each link is a slender rod of 0.3 m and 1 kg. Replace these
+numbers by the numbers of your arm.")]
 pub(crate) struct Arguments {
     /// The robot's name: small letters, digits and underscores
     #[arg(value_name = "NAME", value_parser = robot_name)]
@@ -29,13 +29,13 @@ pub(crate) struct Arguments {
     /// Number of joints, 1 to 64
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     dof: u8,
-    /// Prismatic joints, counted from 1 at the base
+    /// Numbers of the prismatic joints, such as 3; joint 1 is at the base
     #[arg(long, value_name = "I,…", value_delimiter = ',')]
     prismatic: Vec<u8>,
-    /// Denavit-Hartenberg convention of the table
+    /// Denavit-Hartenberg convention of the table of joints
     #[arg(long, value_parser = convention(), default_value = "standard")]
     convention: Convention,
-    /// File to write [default: NAME.yaml]; - is standard output
+    /// Robot file to write [default: NAME.yaml]; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }

@@ -18,39 +18,40 @@ use crate::render::layout::{Align, columns, width, wrap};
 use crate::terminal;
 use crate::values::choice;
 
-/// Count operations, before folding and in the generated code
+/// Count the arithmetic operations of the generated code
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne ops robots/puma560.yaml robots/scara_cobra600.yaml
   rne ops robots/*.yaml --json --function mass_matrix,forward_dynamics
   rne ops robots/puma560.yaml --tricks             savings of each trick
-  rne ops robots/puma560.yaml --without gyrostat   reduced form without it
+  rne ops robots/puma560.yaml --without gyrostat   without one of them
 
-A subtraction counts as an addition, a negation is free, x·x is one
-multiplication, and sincos counts the angles whose sine or cosine is used;
-divisions have a column if there are any, and are not in the total. `before
-folding` is a loop over 3-vectors. actuator_torques is listed if the robot has
-motors.")]
+rne counts a subtraction as an addition, and x·x as one multiplication. A
+negation counts nothing. The column `sincos` counts the angles whose sine or
+cosine the code uses. Divisions have a column of their own if there are any, and
+are not in the total. The column `before folding` counts the operations of a
+loop over 3-vectors, before rne simplifies the code. The function
+actuator_torques is listed only if the robot has motors.")]
 pub(crate) struct Arguments {
-    /// Robot files
+    /// Robot files, or names from `rne list`
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Functions to count; may be repeated; see `rne explain functions`
+    /// Count only this function; may be repeated; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function(),
         hide_possible_values = true,
         conflicts_with = "tricks")]
     functions: Vec<Function>,
     #[command(flatten)]
     rotors: Rotors,
-    /// Print JSON: a list of {robot, function, form, mul, add, div, sincos, statements}
+    /// Print the counts as JSON: a list of {robot, function, form, mul, add, div, sincos, statements}
     #[arg(long)]
     json: bool,
-    /// Print what each trick of the reduced form saves in `inverse_dynamics`, and its formula
+    /// Print formula and saved operations of each simplification of the reduced form of `inverse_dynamics`
     #[arg(long, conflicts_with_all = ["json", "without"])]
     tricks: bool,
-    /// Omit these tricks of the reduced form; see `rne explain tricks`. A rewritten graph of the plan is not used
-    /// then
+    /// Omit this simplification of the reduced form (see `rne explain tricks`) and all results of `rne search
+    /// --rewrite`
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = choice::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,

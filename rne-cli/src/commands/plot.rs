@@ -16,7 +16,7 @@ use crate::palette::{QUIET, TYPED};
 use crate::render::layout::{Align, columns};
 use crate::values::numbers::{above_zero, rounded};
 
-/// Plot torques along a trajectory, with their parts
+/// Plot torques over a motion: inertia, velocity and gravity parts
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -24,22 +24,22 @@ Examples:
   rne plot planar2 --duration 0.8 > planar2.svg
   rne plot planar2 --csv > torques.csv
 
-A trajectory is CSV with columns t, q1, …, qd1, …, qdd1, … in s, rad or m, and
-per second. If qd and qdd are missing, they follow from the parabola through a
-sample and its neighbours. Without a trajectory all joints move from a quarter
-to three quarters of the way between their limits, from rest to rest, in 2 s, or
-longer if speed limits require it. No wrench acts on the tip. Torques do not
-include friction; they include rotors with --rotors.")]
+The CSV file of --trajectory has the columns t, q1, …, qd1, …, qdd1, … in s, rad
+or m, and per second. If qd and qdd are missing, rne computes them from the
+parabola through a sample and its neighbours. Without --trajectory all joints
+move from a quarter to three quarters of the way between their limits, from rest
+to rest, in 2 s, or longer if speed limits require it. No wrench acts on the
+tip. Torques do not include friction; they include rotors only with --rotors.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
-    /// Motion as CSV [default: between two postures]
+    /// CSV file with the motion [default: from one quarter to three quarters of the way between the joint limits]
     #[arg(long, value_name = "CSV", conflicts_with = "duration")]
     trajectory: Option<PathBuf>,
-    /// Seconds from one posture to the other
+    /// Duration of the default motion, s [default: 2, or longer if speed limits require it]
     #[arg(long, value_name = "S", value_parser = above_zero("write a number of seconds above 0, such as 1.5"))]
     duration: Option<f64>,
-    /// Print numbers as CSV instead of a picture
+    /// Write the torques as numbers (CSV) instead of a picture (SVG)
     #[arg(long)]
     csv: bool,
     #[command(flatten)]
@@ -53,10 +53,13 @@ const DURATION: f64 = 2.0;
 const SAMPLES: usize = 241;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.arm.robot()?;
+    let robot = arguments.arm.robot_with_payload()?;
     let (trajectory, mut about) = motion(arguments, &robot)?;
     for Setting { name, value } in &arguments.arm.set {
         let _ = write!(about, ", {name} = {value}");
+    }
+    if arguments.arm.payload.is_some() {
+        about.push_str(", with a payload");
     }
     if robot.has_rotors() {
         about.push_str(", with rotors");

@@ -11,27 +11,28 @@ use crate::files::output_file::Output;
 use crate::files::plan_file::Compiler;
 use crate::outcome::{Failure, Outcome};
 
-/// Write a page that shows an arm, its equations and its torques
+/// Write an HTML page with an arm, its equations and its torques
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne report puma560 -o puma560.html
   rne report robots/planar2.yaml -o planar2.html --force
 
-The page is one HTML file that needs no network. It shows the arm in 3-D and the
-seven steps joint by joint: each component as equation, numbers and code, with
-the terms that vanish and why, linked with the vector on the arm; torques over a
-motion; exercises. docs/teaching.md describes how to use it.")]
+The page is one HTML file and needs no network. The page shows the arm in 3-D,
+the seven steps of inverse dynamics for each joint, torques over a motion, and
+exercises. Each component of a step has its equation, its numbers, its code, and
+the terms that vanish, with the reasons. The component is linked with its vector
+on the arm. docs/teaching.md describes how to use the page.")]
 pub(crate) struct Arguments {
-    /// Robot file
+    /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Page to write; - is standard output
+    /// HTML file to write; - is standard output
     #[arg(short, long = "output", value_name = "OUT.html")]
     out: PathBuf,
-    /// Overwrite an existing file
+    /// Overwrite the output file if it exists
     #[arg(long)]
     force: bool,
 }

@@ -24,31 +24,31 @@ use crate::palette::{FOUND, GOOD, QUIET, TYPED};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
-/// Search for a reduced form with fewer operations; keep its plan
+/// Search for code with fewer operations, and save it as a plan
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne search robots/puma560.yaml --seconds 60              search for choices
-  rne search robots/puma560.yaml --seconds 300 --rewrite   also rewrite graphs
+  rne search robots/puma560.yaml --seconds 60              writes a plan
+  rne search robots/puma560.yaml --seconds 300 --rewrite   and shortens code
   rne search robots/puma560.yaml --seconds 600 --rewrite --function all
 
-The result is NAME.plan.yaml next to NAME.yaml; every later build uses it
-without a search. A search continues from an existing plan and never writes a
-worse one, except that a plan with a large loss of precision in f32 may be
-replaced by one with more operations. Ctrl-C ends the search and keeps the best;
-a second Ctrl-C ends it at once, with status 130. Every form is proved identical
-to the seven steps before it is written.")]
+rne writes the plan file NAME.plan.yaml next to NAME.yaml. Every later build
+uses this file without a search. A search starts from an existing plan and never
+writes a worse plan, with one exception: a plan that loses much precision in f32
+may be replaced by a plan with more operations. Ctrl-C ends the search and keeps
+the best plan. A second Ctrl-C ends the search at once, with status 130. Before
+rne writes a plan, it proves that the code computes the same as the seven steps.")]
 pub(crate) struct Arguments {
-    /// Robot file
+    /// Robot file; the plan file is written next to it
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Duration of the search
+    /// Duration of the search, s
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
     seconds: f64,
-    /// Also rewrite the graphs of the best plans; a graph that saves operations is kept
+    /// Also shorten the code of the best plans by exact algebra, and keep the result if it saves operations
     #[arg(long)]
     rewrite: bool,
-    /// Rewrite these functions instead of inverse_dynamics, or `all`; may be repeated; see `rne explain functions`
+    /// Functions that --rewrite shortens, F,F,… or `all` [default: inverse_dynamics]; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true,
         requires = "rewrite")]
@@ -56,7 +56,8 @@ pub(crate) struct Arguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Replace a plan that cannot be read or belongs to another robot; a valid plan that is better is kept
+    /// If the plan file cannot be read or belongs to another robot, search anew and overwrite the file, in place of an
+    /// error
     #[arg(long)]
     fresh: bool,
 }
@@ -390,7 +391,10 @@ mod tests {
         assert_ne!(right, wrong);
         arm.write(&wrong);
         let (_, said) = refused(arm.keep(arm.found(Function::ForwardDynamics), || ()));
-        assert!(said.contains("is not the seven steps") && said.contains("and is kept"), "{said}");
+        assert!(
+            said.contains("does not compute the same as the seven steps") && said.contains("and is kept"),
+            "{said}"
+        );
         assert_eq!(arm.written().as_deref(), Some(wrong.as_str()));
         let kept = arm.keep_as(true, arm.found(Function::ForwardDynamics), || ());
         let kept = kept.unwrap_or_else(|failure| panic!("{}", failure.text));

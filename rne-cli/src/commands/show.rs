@@ -29,50 +29,51 @@ use crate::values::choice::{self, Kept};
 #[command(after_help = "\
 Examples:
   rne show robots/puma560.yaml --joint 2 --step 4
-  rne show robots/planar2.yaml --step 3            not used by torques
+  rne show robots/planar2.yaml --step 3            velocities of step 3
   rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
   rne show robots/puma560.yaml --function mass_matrix --form reduced
-  rne show robots/puma560.yaml --base-parameters   parameters of the torques
-  rne show puma560 --joint 2 --step 1 --equations  equations before folding
-  rne show puma560 --json                          data for programs
+  rne show robots/puma560.yaml --base-parameters   parameters in torques
+  rne show puma560 --joint 2 --step 1 --equations  equations and code
+  rne show puma560 --json                          JSON for programs
   rne show robots/planar2.yaml --symbolic          τ = M θ̈ + h + γ in symbols
   rne show robots/stanford.yaml --first 3 --latex > stanford.tex
 
-`rne explain w2_z puma560` explains a name in the code.")]
+`rne explain w2_z puma560` explains the name w2_z in the code of the PUMA 560.")]
 pub(crate) struct Arguments {
-    /// Robot file
+    /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// One joint only, counted from 1 at the base
+    /// Show only joint I; joint 1 is at the base
     #[arg(long, value_name = "I", value_parser = choice::joint)]
     joint: Option<usize>,
-    /// One of the seven steps only
+    /// Show only one step of the algorithm: 1 angular velocity, 2 angular acceleration, 3 velocity, 4 acceleration, 5
+    /// gravity, 6 force and moment, 7 torque
     #[arg(long, value_name = "S", value_parser = choice::step)]
     step: Option<Step>,
-    /// seven_steps (default) or reduced (fewest operations)
+    /// Form of the code: seven_steps (default) or reduced (fewest operations)
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true, hide_default_value = true)]
     form: Form,
-    /// Function; see `rne explain functions`
+    /// Function to show [default: inverse_dynamics]; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true,
         default_value = Function::InverseDynamics.name(), hide_default_value = true)]
     function: Function,
-    /// Keep unused quantities: `rne explain quantities`
+    /// Also compute this quantity, even if torques do not need it; see `rne explain quantities`
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',', hide_possible_values = true)]
     keep: Vec<Kept>,
-    /// Omit these tricks: `rne explain tricks`
+    /// Omit this simplification of the reduced form; see `rne explain tricks`
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = choice::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,
-    /// Show equation, vanished terms and code
+    /// Show each component as an equation, with the terms that vanish and the code
     #[arg(long, conflicts_with_all = ["keep", "without"])]
     equations: bool,
-    /// Print JSON, described in docs/inspection.md
+    /// Print equations and code as JSON, described in docs/inspection.md
     #[arg(long, conflicts_with_all = ["joint", "step", "keep", "without", "equations"])]
     json: bool,
-    /// List the link parameters that torques depend on
+    /// List the combinations of link parameters on which the torques depend
     #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without", "equations",
         "json"])]
     base_parameters: bool,

@@ -18,7 +18,9 @@ use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED, WARNING};
 use crate::render::layout::{PAGE, wrap};
-use crate::render::watch_report::{self, Reply, TrendReply};
+use crate::render::watch_dates::{LogName, LogNames};
+use crate::render::watch_reply::{Reply, TrendReply};
+use crate::render::watch_report;
 use crate::values::log_arguments::{self, LogArguments};
 use crate::values::numbers::above_zero;
 
@@ -29,47 +31,48 @@ Examples:
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_worn.csv \\
     --quiet docs/desk_arm_log.csv
 
-Exit status 1: events, or torques that are not explained. See docs/watch.md.")]
+The exit status is 1 if rne reports an event, or if the model does not explain
+the torques of a joint. docs/watch.md describes the events.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
-    /// Robot file with friction, from `rne identify`
+    /// Robot file with friction, such as the output of `rne identify`
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Logs: ROS 2 bags, MCAP, Parquet, CSV, npy
+    /// Logs of the arm: ROS 2 bags, MCAP, Parquet, CSV, npy
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
-    /// Log in which nothing happens, for comparison
+    /// Log of normal motion without contacts, to compare the other logs with; may be repeated
     #[arg(long, value_name = "LOG")]
     quiet: Vec<PathBuf>,
-    /// Baseline that was saved from quiet logs
+    /// Compare the logs with this file, which --save-baseline wrote, and not with --quiet logs
     #[arg(long, value_name = "YAML", conflicts_with = "quiet")]
     baseline: Option<PathBuf>,
-    /// Save the quiet logs as a baseline, for later
+    /// Save a summary of the --quiet logs to this file, for --baseline
     #[arg(long, value_name = "YAML", requires = "quiet")]
     save_baseline: Option<PathBuf>,
-    /// Compare groups of rows: log, day or a column
+    /// Compare groups of the data: log (each log), day (each day), or the name of a column
     #[arg(long, value_name = "GROUP")]
     by: Option<String>,
-    /// Print all parameters with their thresholds
+    /// Print all parameters and their event thresholds
     #[arg(long)]
     all: bool,
-    /// Gain of the momentum observer, Hz
+    /// Gain of the momentum observer that finds contacts, Hz
     #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero("it is a number above 0"))]
     gain: f64,
-    /// Shortest contact to report, s
+    /// Shortest duration of a contact to report, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero("it is a number above 0"))]
     hold: f64,
-    /// False contacts per hour [default: 0.01]
+    /// Permitted false contact reports per hour [default: 0.01]
     #[arg(long, value_name = "RATE", default_value_t = 0.01, hide_default_value = true,
         value_parser = above_zero("it is a number above 0"))]
     false_alarms: f64,
-    /// Plot residuals and events, or the trend (SVG)
+    /// Plot residual torques and events to this SVG file; with --by, friction and payload of each group
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// Write the trend as a table; - is standard output
-    #[arg(long, value_name = "CSV", requires = "by", conflicts_with = "json")]
+    /// Write the parameters with their thresholds as CSV, or with --by a row for each group; - is standard output
+    #[arg(long, value_name = "CSV", conflicts_with = "json")]
     csv: Option<PathBuf>,
-    /// Overwrite existing files
+    /// Overwrite output files that exist
     #[arg(long)]
     force: bool,
     /// Print events and parameters as JSON
@@ -77,6 +80,12 @@ pub(crate) struct Arguments {
     json: bool,
     #[command(flatten)]
     reading: LogArguments,
+}
+
+/// Whether a file is a log by the end of its name: a baseline file is YAML.
+fn is_log(path: &Path) -> bool {
+    let end = path.extension().map(|end| end.to_string_lossy().to_lowercase());
+    end.is_some_and(|end| ["csv", "db3", "mcap", "npy", "parquet"].contains(&end.as_str()))
 }
 
 /// Whether two paths lead to one log: the same file, or a folder and what is inside.
@@ -103,6 +112,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 struct Known {
     baseline: Baseline,
     words: String,
+    name: LogName,
     /// Remarks that were printed already.
     remarks: Vec<ArmLogRemark>,
 }
@@ -117,11 +127,19 @@ fn known_baseline(
 ) -> Result<Option<Known>, Failure> {
     if let Some(path) = &arguments.baseline {
         let shown = path.display().to_string();
+        if path.is_dir() || is_log(path) {
+            return Err(Failure::usage(format_args!(
+                "{} is a log, and {TYPED}--baseline{TYPED:#} reads a file that {TYPED}--save-baseline{TYPED:#} wrote; \
+                 give a log with {TYPED}--quiet{TYPED:#}",
+                one_line(&shown)
+            )));
+        }
         let bytes = rne_model::read_file(path).map_err(|error| output_file::unreadable(path, &error))?;
         let text = String::from_utf8_lossy(&bytes);
         let baseline = Baseline::from_yaml(&shown, &text, robot).map_err(|report| Failure::from(&report))?;
         let words = format!("{} ({:.1} s)", one_line(&shown), baseline.duration);
-        return Ok(Some(Known { baseline, words, remarks: Vec::new() }));
+        let name = LogName::several(format!("the logs of {}", one_line(&shown)));
+        return Ok(Some(Known { baseline, words, name, remarks: Vec::new() }));
     }
     if arguments.quiet.is_empty() {
         return Ok(None);
@@ -145,7 +163,8 @@ fn known_baseline(
         let text = baseline.to_yaml(robot, &quiet.words());
         *remark += &output_file::write_new(path, &text, sources, arguments.force)?;
     }
-    Ok(Some(Known { baseline, words: quiet.words(), remarks: quiet.log().remarks().to_vec() }))
+    let name = LogName::of(&arguments.quiet, "the quiet logs");
+    Ok(Some(Known { baseline, words: quiet.words(), name, remarks: quiet.log().remarks().to_vec() }))
 }
 
 fn warn(remark: &mut String, what: &str) {
@@ -172,7 +191,8 @@ fn baseline_of(robot: &Robot, known: Option<Known>, log: &MotionLog) -> Result<K
     let bar = reading::bar("read", false);
     let baseline = Baseline::of_file(robot, log.log(), &mut |share| reading::show(&bar, share))
         .map_err(|error| watch_failure(&error, &log.words()))?;
-    Ok(Known { baseline, words: "the robot file".to_owned(), remarks: Vec::new() })
+    let name = LogName::several("the quiet logs".to_owned());
+    Ok(Known { baseline, words: "the robot file".to_owned(), name, remarks: Vec::new() })
 }
 
 fn events(
@@ -186,7 +206,7 @@ fn events(
     let all = Group { name: String::new(), paths: arguments.logs.clone(), rows: None };
     let log = open(arguments, &all, robot, known.as_ref())?;
     remark += &log.remark_beside(known.as_ref().map_or(&[], |known| &known.remarks), PAGE);
-    let Known { baseline, words, .. } = baseline_of(robot, known, &log)?;
+    let Known { baseline, words, name, .. } = baseline_of(robot, known, &log)?;
     let bar = reading::bar("read", false);
     let report =
         watch(robot, &baseline, log.log(), settings, arguments.plot.is_some(), &mut |share| reading::show(&bar, share))
@@ -204,6 +224,13 @@ fn events(
         warn(&mut remark, &format!("the model explains nothing of the torques of {names}: {what}"));
     }
     let at_fault = !(report.events.is_empty() && names.is_empty());
+    if let Some(path) = &arguments.csv {
+        let table = watch_report::parameters_csv(robot, &baseline, &report.changes);
+        if output_file::is_standard_output(path) {
+            return Ok(Outcome { text: table, remark, at_fault, ..Outcome::default() });
+        }
+        remark += &output_file::write_new(path, &table, sources, arguments.force)?;
+    }
     if arguments.json {
         let reply = Reply::of(robot, &log, &words, &baseline, &report, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
@@ -211,7 +238,8 @@ fn events(
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), baseline.cutoff);
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("compared with: {words}"), PAGE, "  "));
-    text += &watch_report::events(robot, &baseline, &report, log.runs() > 1);
+    let names = LogNames { log: LogName::of(&arguments.logs, "the logs"), quiet: &name };
+    text += &watch_report::events(robot, &baseline, &report, log.runs() > 1, &names);
     if arguments.all {
         text += &watch_report::parameters(robot, &baseline, &report.changes);
         text += &errors_table(robot, &judged, &errors, &Identification::not_excited(robot), "errors on the log");
@@ -242,6 +270,16 @@ struct Group {
     paths: Vec<PathBuf>,
     /// The column and the text of the rows that are read; all rows without.
     rows: Option<(String, String)>,
+}
+
+impl Group {
+    /// `friday.mcap`, `the logs of 2026-11-27`, `the rows of pick`.
+    fn log_name(&self) -> LogName {
+        match &self.rows {
+            Some(_) => LogName::several(format!("the rows of {}", one_line(&self.name))),
+            None => LogName::of(&self.paths, &format!("the logs of {}", self.name)),
+        }
+    }
 }
 
 /// The groups of a trend, in the order of the logs.
@@ -287,7 +325,8 @@ fn of_first(arguments: &Arguments, robot: &Robot, group: &Group) -> Result<Known
     let bar = reading::bar("read", false);
     let baseline = Baseline::of_parameters(&structure, log.log(), &mut |share| reading::show(&bar, share))
         .map_err(|error| watch_failure(&error, &log.words()))?;
-    Ok(Known { baseline, words: format!("the first, {}", group.name), remarks: Vec::new() })
+    let (words, name) = (format!("the first, {}", group.name), group.log_name());
+    Ok(Known { baseline, words, name, remarks: Vec::new() })
 }
 
 fn trend(
@@ -307,7 +346,7 @@ fn trend(
     };
     let structure = Baseline::structure(robot, known.baseline.cutoff);
     let mut trend = Trend::new(&structure, &known.baseline);
-    let mut events = Vec::new();
+    let (mut events, mut names) = (Vec::new(), Vec::new());
     let mut first_failure = None;
     for group in groups {
         let mut one = || -> Result<Changes, Failure> {
@@ -320,6 +359,7 @@ fn trend(
         };
         match one() {
             Ok(found) => {
+                names.push(group.log_name());
                 trend.push(group.name, &found);
                 events.push(found.events);
             }
@@ -359,7 +399,8 @@ fn trend(
     }
     let head = format!("{}: {about}", one_line(&robot.name));
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&head, PAGE, "  "));
-    text += &watch_report::trend(robot, &trend, &events);
+    let names: Vec<LogNames<'_>> = names.into_iter().map(|log| LogNames { log, quiet: &known.name }).collect();
+    text += &watch_report::trend(robot, &trend, &events, &names);
     Ok(Outcome { text, remark, at_fault, remark_last: true })
 }
 
@@ -377,7 +418,7 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
     let csv = arguments.csv.clone().filter(|path| !output_file::is_standard_output(path));
     let places = [
         (&arguments.plot, (Format::Svg, "<svg")),
-        (&csv, (Format::Csv, "log,")),
+        (&csv, (Format::Csv, if arguments.by.is_some() { "log," } else { watch_report::PARAMETERS })),
         (&arguments.save_baseline, (Format::RobotFile, "# A baseline of ")),
     ];
     for (path, kind) in places {

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
+use rne::Payload;
 use rne_model::Robot;
 
 use crate::files::robot_file;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 use crate::values::numbers::List;
+use crate::values::state::payload;
 
 /// Rotors belong to the arm.
 #[derive(Args, Clone, Copy, Default)]
@@ -61,14 +63,18 @@ impl FromStr for Setting {
 /// The arm whose numbers a command computes.
 #[derive(Args)]
 pub(crate) struct ChosenArm {
-    /// Robot file
+    /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Replace a parameter's value; may be repeated
+    /// Replace the value of a parameter; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub(crate) set: Vec<Setting>,
+    /// Payload at the tip, m,cx,cy,cz[,xx,yy,zz,xy,xz,yz]: mass, centre of mass, inertia about it; kg, m, kg m²; tip
+    /// axes
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) payload: Option<List>,
 }
 
 impl ChosenArm {
@@ -77,12 +83,25 @@ impl ChosenArm {
         &self.file
     }
 
+    /// The robot with the payload as a part of its last link.
+    pub(crate) fn robot_with_payload(&self) -> Result<Robot, Failure> {
+        self.carrying(self.robot()?)
+    }
+
+    /// A robot with the payload as a part of its last link.
+    pub(crate) fn carrying(&self, robot: Robot) -> Result<Robot, Failure> {
+        let Some(list) = &self.payload else { return Ok(robot) };
+        let Payload { mass, com, inertia } = payload(list)?;
+        Ok(rne_convert::carrying(&robot, mass, com, inertia))
+    }
+
+    /// The robot without the payload.
     pub(crate) fn robot(&self) -> Result<Robot, Failure> {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
-                "`{shown}` is in the place of FILE, the robot; write the numbers of a list with commas and without \
-                 blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
+                "`{shown}` stands where FILE, the robot, is expected; write the numbers of a list with commas and \
+                 without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
         Ok(self.rotors.of(with_settings(&self.file, &self.set)?))

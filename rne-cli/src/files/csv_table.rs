@@ -124,7 +124,7 @@ pub(crate) fn other_separator(header: &Row<'_>) -> Option<&'static str> {
     let has = |separator: char| header.cells.iter().any(|cell| cell.text.contains(separator));
     let found = [
         ('\t', "the columns are separated by tabs; separate them by commas: spreadsheets and `tr '\\t' ,` do that"),
-        (';', "some columns are separated by semicolons, others by commas; take one of them throughout"),
+        (';', "some columns are separated by semicolons, others by commas; use the same separator everywhere"),
         ('|', "the columns are separated by `|`; separate them by commas"),
         (' ', "the columns are separated by blanks; separate them by commas"),
     ];

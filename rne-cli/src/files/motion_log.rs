@@ -4,7 +4,7 @@ use std::fmt::{Display, Write as _};
 use std::path::PathBuf;
 
 use rne_identify::{ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, Options, Part, PassError, Purpose};
-use rne_logs::Motion;
+use rne_logs::{Motion, UtcTime};
 use rne_model::{Robot, one_line};
 
 use crate::files::reading;
@@ -14,26 +14,6 @@ use crate::render::layout::wrap;
 use crate::render::log_remark::{error_sentence, remark_sentence};
 use crate::values::log_arguments::LogArguments;
 use rne_watch::WatchError;
-
-/// ns: earlier stamps are since the start of a machine.
-const LEAST_DATE: i64 = 315_360_000_000_000_000;
-
-/// ns
-const DAY: i64 = 86_400_000_000_000;
-
-/// The date of a number of days since 1970-01-01, in the Gregorian calendar.
-///
-/// H. F. Fliegel, T. C. van Flandern, A machine algorithm for processing calendar dates, CACM 11 (1968), 657.
-fn date(days: i64) -> String {
-    let l = days + 2_440_588 + 68_569;
-    let n = 4 * l / 146_097;
-    let l = l - (146_097 * n + 3) / 4;
-    let i = 4000 * (l + 1) / 1_461_001;
-    let l = l - 1461 * i / 4 + 31;
-    let j = 80 * l / 2447;
-    let (day, l) = (l - 2447 * j / 80, j / 11);
-    format!("{:04}-{:02}-{day:02}", 100 * (n - 49) + i + l, j + 2 - 12 * l)
-}
 
 fn names(paths: &[PathBuf]) -> String {
     let name = |path: &PathBuf| one_line(&path.file_name().unwrap_or_default().to_string_lossy());
@@ -90,8 +70,7 @@ impl MotionLog {
 
     /// The day of the first state, UTC, such as 2026-11-23; none where times do not count from 1970.
     pub(crate) fn day(&self) -> Option<String> {
-        let origin = self.0.log().layout().origin;
-        (origin > LEAST_DATE).then(|| date(origin.div_euclid(DAY)))
+        self.0.log().layout().utc(0.0).map(UtcTime::day)
     }
 
     /// The logs through the filter with which a robot file is judged; runs that are too short for it are included.

@@ -199,10 +199,10 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
 /// The file of a result, or standard output.
 #[derive(Args)]
 pub(crate) struct Output {
-    /// File to write; - or no option: standard output
+    /// Output file; - is standard output [default: -]
     #[arg(short, long = "output", value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// Overwrite an existing file
+    /// Overwrite the output file if it exists
     #[arg(long, requires = "out")]
     pub(crate) force: bool,
 }
@@ -234,9 +234,14 @@ pub(crate) fn is_standard_output(path: &Path) -> bool {
 
 /// Whether the file of a picture is a file: standard output has the account.
 pub(crate) fn check_picture(path: Option<&Path>) -> Result<(), Failure> {
+    check_file(path, "--plot", "picture.svg")
+}
+
+/// Whether what an option names is a file, such as the example: standard output has the account.
+pub(crate) fn check_file(path: Option<&Path>, option: &str, example: &str) -> Result<(), Failure> {
     if path.is_some_and(is_standard_output) {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--plot{TYPED:#} needs the name of a file, such as picture.svg"
+            "{TYPED}{option}{TYPED:#} needs the name of a file, such as {example}"
         )));
     }
     Ok(())
@@ -248,7 +253,7 @@ pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], forc
     interruption::catch();
     let shown = path.display();
     if sources.iter().any(|source| is_same(path, source)) {
-        return Err(Failure::usage(format_args!("{shown} is the file that is read; name another")));
+        return Err(Failure::usage(format_args!("{shown} is also the file that rne reads; name another file")));
     }
     match existing(path) {
         Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder; name a file in it"))),
@@ -278,6 +283,17 @@ pub(crate) fn check_place(
         _ => None,
     };
     check_new(path, alike.as_deref(), sources, force)?;
+    check_name(path, format)
+}
+
+/// Whether a new file of a format can be written, before there is anything to write.
+pub(crate) fn check_new_place(path: &Path, format: Format, sources: &[&Path], force: bool) -> Result<(), Failure> {
+    check_new(path, None, sources, force)?;
+    check_name(path, format)
+}
+
+/// Whether a file can have its name and stand in its folder.
+fn check_name(path: &Path, format: Format) -> Result<(), Failure> {
     file_name::check(path, format)?;
     // a file beside it, which is gone at once
     Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
@@ -310,7 +326,12 @@ pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
         )),
         // the message of a temporary file has its name
         None if error.get_ref().is_some_and(|inner| inner.to_string().contains(" at path ")) => {
-            Failure::input(format_args!("{shown} cannot be written: {}", error.kind()))
+            // the folder exists, but refuses new files, as /proc does
+            let why = match error.kind() {
+                ErrorKind::NotFound => "the system does not allow a new file in this folder".to_owned(),
+                kind => kind.to_string(),
+            };
+            Failure::input(format_args!("{shown} cannot be written: {why}"))
         }
         None => Failure::input(format_args!("{shown} cannot be written: {error}")),
     }

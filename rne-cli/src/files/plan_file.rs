@@ -110,7 +110,7 @@ fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec
             Ok((Some(plan), wrong))
         }
         _ => Err(Failure::usage(format_args!(
-            "{} is not a plan written by rne and is not changed; move it away",
+            "{} is not a plan written by rne, so rne does not change it; move the file away",
             path.display()
         ))),
     }

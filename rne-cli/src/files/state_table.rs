@@ -70,8 +70,14 @@ impl Read for Bounded {
 }
 
 impl Table {
-    /// Opens a file that has these columns: by name in CSV, in this order in an array. One of them may be a mass.
-    pub(crate) fn open(path: &Path, columns: &[String], mass: Option<usize>) -> Result<Self, Failure> {
+    /// Opens a file that has these columns: by name in CSV, in this order in an array. A column that is missing in CSV
+    /// may have its other name. One of them may be a mass.
+    pub(crate) fn open(
+        path: &Path,
+        columns: &[String],
+        others: &[Option<String>],
+        mass: Option<usize>,
+    ) -> Result<Self, Failure> {
         let name = input_file::name(path);
         let unreadable = |error: io::Error| Failure::input(format_args!("the states {name} cannot be read: {error}"));
         let file: Box<dyn Read> = if is_standard_input(path) {
@@ -90,10 +96,15 @@ impl Table {
         if first.starts_with(&Npy::MAGIC[..Npy::MAGIC.len().min(first.len())]) && !first.is_empty() {
             return Ok(Self { mass, ..Self::npy(name, file, columns)? });
         }
-        Ok(Self { mass, ..Self::csv(name, file, columns)? })
+        Ok(Self { mass, ..Self::csv(name, file, columns, others)? })
     }
 
-    fn csv(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
+    fn csv(
+        name: String,
+        file: Box<dyn BufRead>,
+        wanted: &[String],
+        others: &[Option<String>],
+    ) -> Result<Self, Failure> {
         let end = Rc::new(Cell::new(LONGEST_LINE));
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
@@ -111,7 +122,9 @@ impl Table {
             return Err(Failure::input(format_args!("{name} is empty; its header is {needed}, in any order")));
         }
         let mut columns = Vec::new();
-        for column in wanted {
+        for (at, column) in wanted.iter().enumerate() {
+            let other = others.get(at).and_then(Option::as_ref).filter(|other| header.contains(other));
+            let column = if header.contains(column) { column } else { other.unwrap_or(column) };
             let places: Vec<usize> = (0..header.len()).filter(|&place| header[place] == *column).collect();
             match places[..] {
                 [place] => columns.push((place, column.clone())),
@@ -142,7 +155,7 @@ impl Table {
         };
         if width != wanted.len() as u64 {
             let (numbers, needed) = (wanted.len(), wanted.join(", "));
-            return Err(wrong(&format_args!("the array has {width} columns where there are {numbers}: {needed}")));
+            return Err(wrong(&format_args!("the array has {width} columns, but {numbers} are needed: {needed}")));
         }
         let rows = Rows::Npy { numbers: npy.numbers, width: wanted.len(), read: 0 };
         Ok(Self { states: Some(states), name, rows, mass: None })

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rne_codegen::{Answer, Function, Layout};
+use rne_logs::Heading;
 use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination};
 
 use crate::files::input_file::is_standard_input;
@@ -38,6 +39,18 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
                 (1..=elements).map(|joint| format!("{name}{joint}")).collect()
             }
             _ => axes.map(|axis| format!("{name}_{axis}")).into(),
+        }
+    };
+    compiled.arguments().iter().flat_map(of).collect()
+}
+
+/// The same columns as `rne log` names them in a table: elements of joints by the names of the robot's joints.
+fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<String>> {
+    let joints: Vec<String> = arm.robot().joints.iter().map(|joint| joint.name.clone()).collect();
+    let of = |&(name, elements): &(&str, usize)| -> Vec<Option<String>> {
+        match Heading::quantity(name).filter(|_| elements == joints.len()) {
+            Some(quantity) => Heading::of(&joints).columns(quantity).into_iter().map(Some).collect(),
+            None => vec![None; if name == "parameters" { arm.robot().run_time.names.len() } else { elements }],
         }
     };
     compiled.arguments().iter().flat_map(of).collect()
@@ -79,7 +92,7 @@ impl Job<'_> {
     pub(crate) fn run(&self) -> Result<Outcome, Failure> {
         let compiled = self.arm.function(self.function).map_err(Failure::input)?;
         let columns = columns(compiled, self.arm);
-        let mut table = Table::open(self.states, &columns, mass(compiled))?;
+        let mut table = Table::open(self.states, &columns, &named_columns(compiled, self.arm), mass(compiled))?;
         let outputs = results(self.function, self.arm.dof());
         let read = [self.robot_file, self.states];
         let mut results = Results::open(self.out.filter(|out| !is_standard_output(out)), &read, self.force, &outputs)?;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use rne_logs::Heading;
 use rne_model::{Robot, did_you_mean};
 use rne_plot::{Trajectory, TrajectoryError};
 
@@ -55,7 +56,8 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
         }
         return mistakes.finish(()).and(Err(Failure::input("the file is empty")));
     };
-    let Some(columns) = columns(&header, dof, &help, &mut mistakes) else {
+    let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    let Some(columns) = columns(&header, &joints, &help, &mut mistakes) else {
         return mistakes.finish(()).and(Err(Failure::input("the header is not one of a trajectory")));
     };
     let asked = columns.asked(header.cells.len());
@@ -96,9 +98,10 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
                     let start = rows.get(*sample).copied().unwrap_or_default();
                     (start..start + 1, None)
                 }
-                TrajectoryError::TooFew { .. } => {
-                    (text.len()..text.len(), Some("a derivative needs three samples, a trajectory two"))
-                }
+                TrajectoryError::TooFew { .. } => (
+                    text.len()..text.len(),
+                    Some("a trajectory needs at least two samples, and at least three if rne must compute derivatives"),
+                ),
                 _ => (header.span.clone(), None),
             };
             mistakes.push(span, error.to_string(), help);
@@ -111,8 +114,9 @@ fn names(quantity: &str, dof: usize) -> Vec<String> {
     (1..=dof).map(|joint| format!("{quantity}{joint}")).collect()
 }
 
-/// The columns, all of a quantity or none.
-fn columns(header: &Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>) -> Option<Columns> {
+/// The columns, all of a quantity or none: by the numbers of the joints, or by their names as `rne log` writes them.
+fn columns(header: &Row<'_>, joints: &[String], help: &str, mistakes: &mut Mistakes<'_>) -> Option<Columns> {
+    let dof = joints.len();
     let known: Vec<String> =
         std::iter::once("t".to_owned()).chain(["q", "qd", "qdd"].into_iter().flat_map(|q| names(q, dof))).collect();
     for (index, cell) in header.cells.iter().enumerate() {
@@ -143,7 +147,12 @@ fn columns(header: &Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>
         return None;
     };
     let mut all = |quantity: &str, needed: bool| -> Result<Option<Vec<usize>>, ()> {
-        let names = names(quantity, dof);
+        let mut names = names(quantity, dof);
+        let named = Heading::quantity(quantity).map(|quantity| Heading::of(joints).columns(quantity));
+        let is_there = |names: &[String]| names.iter().any(|name| find(name).is_some());
+        if let Some(named) = named.filter(|named| !is_there(&names) && is_there(named)) {
+            names = named;
+        }
         if !needed && names.iter().all(|name| find(name).is_none()) {
             return Ok(None);
         }
@@ -174,7 +183,7 @@ impl Columns {
 /// The numbers of a line, column by column; 0 for a column that is not asked for, and for a cell without a number.
 fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mistakes<'_>) -> Vec<f64> {
     if row.cells.len() != header.cells.len() {
-        let message = format!("{} cells, and {} columns in the header", row.cells.len(), header.cells.len());
+        let message = format!("{} cells, but {} columns in the header", row.cells.len(), header.cells.len());
         mistakes.push(row.span.clone(), message, Some("write numbers with a decimal point, not with a comma"));
         return Vec::new();
     }

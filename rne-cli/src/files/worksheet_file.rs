@@ -170,7 +170,7 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
     let mut rows = Vec::new();
     for row in rest {
         if row.cells.len() > columns.len() {
-            let message = format!("{} cells, and {} columns in the header", row.cells.len(), columns.len());
+            let message = format!("{} cells, but {} columns in the header", row.cells.len(), columns.len());
             let help = "write a number with a decimal point, not with a comma; put a text with a comma in quotes";
             mistakes.push(row.span.clone(), message, Some(help));
         }
@@ -182,7 +182,7 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
 
 fn too_many(span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) {
     let message = format!("there are more rows than a worksheet of {} has", robot.name);
-    mistakes.push(span.clone(), message, Some("each component of each joint is given once"));
+    mistakes.push(span.clone(), message, Some("give each component of each joint only once"));
 }
 
 /// Whether a worksheet is of this format and robot, where it says so.
@@ -374,7 +374,7 @@ impl Reading<'_> {
             Ok(quantity) => Some(quantity),
             Err(error) => {
                 let message = format!("{}: {error}", quoted(&cell.text));
-                let help = format!("there are {}", Quantity::ALL.map(Quantity::name).join(", "));
+                let help = format!("the quantities are {}", Quantity::ALL.map(Quantity::name).join(", "));
                 self.mistakes.push(cell.span.clone(), message, Some(&help));
                 None
             }
@@ -390,13 +390,17 @@ impl Reading<'_> {
                 self.mistakes.push(
                     cell.span.clone(),
                     message,
-                    Some("there are `link`, `joint` (or `lecture`), `base`"),
+                    Some("the axes are `link`, `joint` (or `lecture`) and `base`"),
                 );
             }
             _ if !quantity.has_axes() => {}
             (Some(found), Some(asked)) if found != asked => {
-                let message = format!("this is in {} axes, and the comparison in {} axes", found.name(), asked.name());
-                let help = format!("a file has one kind of axes: --axes {}", found.name());
+                let message =
+                    format!("this value is in {} axes, but the comparison is in {} axes", found.name(), asked.name());
+                let help = format!(
+                    "use the same axes for the whole file; for the axes of this value, add --axes {}",
+                    found.name()
+                );
                 self.mistakes.push(cell.span.clone(), message, Some(&help));
             }
             (Some(found), _) => self.axes = Some(found),

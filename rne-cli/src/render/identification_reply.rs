@@ -42,6 +42,7 @@ struct OfVerdict {
     frictions: Option<usize>,
     excited_frictions: Option<usize>,
     not_excited_friction: Vec<String>,
+    not_excited_offset: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -74,7 +75,7 @@ enum OfDoubt {
     NotExcited,
     Offset { offset: f64, coulomb: f64 },
     Outliers { rows: u64, first: f64 },
-    Standstill { from: f64, until: f64, part_of_squared_error: Option<f64> },
+    Standstill { from: f64, until: f64, part_of_squared_error: Option<f64>, error_in_motion: Option<f64> },
     FrictionNotExcited,
     WithoutFriction,
     HeldOutErrorGrown { factor: Option<f64> },
@@ -106,6 +107,7 @@ struct OfFriction {
     joint: usize,
     name: String,
     excited: bool,
+    offset_excited: bool,
     viscous: Measured,
     coulomb_forward: Measured,
     coulomb_backward: Measured,
@@ -180,6 +182,7 @@ impl OfVerdict {
         };
         let excited = verdict.excited.as_ref();
         let unknown = excited.iter().flat_map(|excited| &excited.unknown_friction);
+        let offsets = excited.iter().flat_map(|excited| &excited.unknown_offsets);
         let not_excited = found.iter().flat_map(|found| &found.bases).filter(|base| !base.is_excited());
         Self {
             errors_on: match verdict.evidence {
@@ -196,6 +199,7 @@ impl OfVerdict {
             frictions: excited.map(|excited| excited.frictions),
             excited_frictions: excited.map(rne_identify::Excited::known_frictions),
             not_excited_friction: unknown.map(|joint| robot.joints[*joint].name.clone()).collect(),
+            not_excited_offset: offsets.map(|joint| robot.joints[*joint].name.clone()).collect(),
         }
     }
 }
@@ -248,6 +252,7 @@ impl OfDoubt {
                 from: standstill.start,
                 until: standstill.end,
                 part_of_squared_error: verdict.error().and_then(|error| finite(error.part_at_rest)),
+                error_in_motion: verdict.error().and_then(JointError::in_motion),
             },
             Doubt::FrictionNotExcited => Self::FrictionNotExcited,
             Doubt::WithoutFriction => Self::WithoutFriction,
@@ -276,6 +281,7 @@ fn friction(found: &Identification) -> Vec<OfFriction> {
             joint: at + 1,
             name: joint.name.clone(),
             excited: report.is_friction_excited(),
+            offset_excited: report.is_friction_excited() && !report.is_offset_unknown(),
             viscous: measured(viscous, rate),
             coulomb_forward: measured(forward, effort),
             coulomb_backward: measured(backward, effort),

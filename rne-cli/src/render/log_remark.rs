@@ -27,6 +27,9 @@ pub(crate) fn log_remark(remark: &Remark) -> String {
 pub(crate) fn remark_sentence(remark: &ArmLogRemark) -> String {
     match remark {
         ArmLogRemark::Log(remark) => log_remark(remark),
+        ArmLogRemark::MatchedByOrder { .. } if remark.is_warning() => {
+            format!("{remark}; --joints gives another order")
+        }
         other => other.to_string(),
     }
 }
@@ -39,7 +42,10 @@ pub(crate) fn error_sentence(error: &ArmLogError) -> String {
             error.to_string().replacen("the list of joints", &format!("{TYPED}--joints{TYPED:#}"), 1)
         }
         ArmLogError::Unmatched { mismatch: Mismatch::More | Mismatch::Order { .. }, .. } => {
-            format!("{error}; {TYPED}--joints{TYPED:#} says which of the log's are the robot's, base to tip")
+            format!(
+                "{error}; {TYPED}--joints{TYPED:#} lists the joints of the log that belong to the robot, from base to \
+                 tip"
+            )
         }
         ArmLogError::NoEfforts { logged, unread } if !unread.is_empty() => {
             let is_effort = |target: &Target| matches!(target, Target::Joint { quantity: Quantity::Effort, .. });
@@ -47,7 +53,7 @@ pub(crate) fn error_sentence(error: &ArmLogError) -> String {
             let efforts: Vec<Mapping> = efforts.collect();
             format!("{error}; name the columns: {}", one_line(&log_remedy::map(&efforts)))
         }
-        ArmLogError::NoCutoff => format!("{error}; give one with {TYPED}--cutoff HZ{TYPED:#}"),
+        ArmLogError::NoCutoff => format!("{error}; give a cut-off with {TYPED}--cutoff HZ{TYPED:#}"),
         ArmLogError::Cutoff { .. } => {
             error.to_string().replacen("the cut-off can", &format!("{TYPED}--cutoff{TYPED:#} can"), 1)
         }

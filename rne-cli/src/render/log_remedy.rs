@@ -41,23 +41,25 @@ pub(crate) fn quoted(text: String) -> String {
 /// The option of a setting with what it says.
 fn given(setting: &Setting) -> String {
     let about = match setting {
-        Setting::Joints(names) if names.is_empty() => "A,B,… names the joints to read, base to tip".to_owned(),
-        Setting::Joints(names) => format!("{} reads these", names.join(",")),
-        Setting::Topic => "names one".to_owned(),
-        Setting::Prefix => "actual reads the columns whose names begin so".to_owned(),
-        Setting::TorqueConstants => "gives the N m/A that make torques of them".to_owned(),
+        Setting::Joints(names) if names.is_empty() => "A,B,… lists the joints to read, from base to tip".to_owned(),
+        Setting::Joints(names) => format!("{} reads these joints", names.join(",")),
+        Setting::Topic => "TOPIC reads one topic".to_owned(),
+        Setting::Prefix => "actual reads the columns whose names begin with actual".to_owned(),
+        Setting::TorqueConstants => "gives the factors in N m/A from currents to torques".to_owned(),
         Setting::Angles => {
             return "--degrees if they are in degrees, --radians if they are in radians or metres".to_owned();
         }
-        Setting::Gap => "is the option".to_owned(),
-        Setting::Cutoff => "HZ is the option".to_owned(),
-        Setting::TimeUnit => "s, ms, us or ns says the unit".to_owned(),
-        Setting::Rate => "HZ says the sampling rate".to_owned(),
-        Setting::Columns => "says the order, as in --columns time,q,tau".to_owned(),
+        Setting::Gap => "STEPS sets the limit of gaps".to_owned(),
+        Setting::Cutoff => "HZ sets the cut-off".to_owned(),
+        Setting::TimeUnit => "s, ms, us or ns gives the unit of the times".to_owned(),
+        Setting::Rate => "HZ gives the sampling rate".to_owned(),
+        Setting::Columns => "gives the order, as in --columns time,q,tau".to_owned(),
         Setting::Select { column, value } => {
             let by = quoted(column.clone());
             let one = quoted(format!("{column}={value}"));
-            return format!("--where {one} reads the rows of one; `rne log` describes each with --by {by}");
+            return format!(
+                "--where {one} reads only the rows with this text; `rne log` describes each text with --by {by}"
+            );
         }
         Setting::Map(_) | Setting::TimeColumn(_) => "names a column".to_owned(),
     };

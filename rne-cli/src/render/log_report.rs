@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::palette::{QUIET, Style, TITLE, WARNING};
 use crate::render::layout::{Align, columns, wrap};
-use crate::render::log_remark::log_remark;
+use crate::render::log_remark::{log_remark, remark_sentence};
 use crate::terminal;
 
 /// Lines of runs that are shown; the other runs are counted.
@@ -36,7 +36,7 @@ impl Described {
     /// Remarks on the log.
     pub(crate) fn notes(&self) -> Vec<Note> {
         let matched = self.matched.iter().map(|remark| Note {
-            text: remark.to_string(),
+            text: remark_sentence(remark),
             is_warning: remark.is_warning(),
             is_reason: false,
         });
@@ -168,8 +168,8 @@ impl Reply {
     }
 }
 
-/// A log for people.
-pub(crate) fn text(described: &Described) -> String {
+/// A log for people, with the filter if the motion is filtered.
+pub(crate) fn text(described: &Described, is_filtered: bool) -> String {
     let Described { log, survey, .. } = described;
     let layout = log.layout();
     let mut text = String::new();
@@ -206,7 +206,9 @@ pub(crate) fn text(described: &Described) -> String {
     text.push('\n');
     text += &runs(survey);
     text.push('\n');
-    text += &filter(log, survey);
+    if is_filtered {
+        text += &filter(log, survey);
+    }
     for note in &others {
         note.push(&mut text);
     }

@@ -13,12 +13,14 @@ pub(crate) fn worded(report: &Report) -> Report {
         Some(match remedy {
             Remedy::ImportUrdf { file } => {
                 let file = file.as_deref().unwrap_or("FILE");
-                format!("`rne import {file} -o robot.yaml` makes a robot file of a URDF")
+                format!("`rne import {file} -o robot.yaml` converts a URDF to a robot file")
             }
             Remedy::NameTip => "name the tip with --tip LINK".to_owned(),
             Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE holds `{joint}` still"),
-            Remedy::LockOthers => "--lock JOINT=VALUE holds one, --lock-others holds all at zero".to_owned(),
-            Remedy::KeepUnphysical => "--keep-unphysical keeps it".to_owned(),
+            Remedy::LockOthers => {
+                "--lock JOINT=VALUE holds one joint, --lock-others holds all of them at zero".to_owned()
+            }
+            Remedy::KeepUnphysical => "--keep-unphysical keeps the inertia as it is".to_owned(),
         })
     })
 }
@@ -38,10 +40,10 @@ pub(crate) fn of_plan(report: Report, remedy: Remedy) -> Report {
     let robot = robot_of(Path::new(&report.name)).map(|path| path.display().to_string());
     let robot = robot.as_deref().unwrap_or("ROBOT.yaml");
     let words = match remedy {
-        Remedy::CountAnew => "`rne search ROBOT.yaml` counts anew".to_owned(),
+        Remedy::CountAnew => "`rne search ROBOT.yaml` counts again".to_owned(),
         _ => format!(
-            "`rne search {robot} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a \
-             build chooses by itself"
+            "`rne search {robot} --fresh` ignores the wrong parts of the plan and searches again; if you delete the \
+             plan file, the build chooses by itself"
         ),
     };
     report.with_help(&words)
@@ -51,7 +53,7 @@ pub(crate) fn of_plan(report: Report, remedy: Remedy) -> Report {
 pub(crate) fn of_compiler(error: &CompileError) -> String {
     match error.remedy() {
         Some(Remedy::RewriteAfresh) => {
-            format!("{error}; `rne search ROBOT.yaml --rewrite --fresh` writes the plan anew")
+            format!("{error}; `rne search ROBOT.yaml --rewrite --fresh` writes a new plan")
         }
         Some(_) => format!("{error}; `rne search ROBOT.yaml --fresh` finds another plan"),
         None => error.to_string(),

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use rne_identify::{Doubt, Evidence, Excited, JointVerdict, Parameter, Verdict};
+use rne_identify::{Doubt, Evidence, Excited, JointError, JointVerdict, Parameter, Standstill, Verdict};
 use rne_logs::median;
 use rne_model::{Joint, Robot, one_line};
 
@@ -41,7 +41,11 @@ impl Worded<'_> {
         let joints = || self.robot.joints.iter().zip(&self.verdict.joints);
         let mut doubtful: Vec<(&Joint, &JointVerdict)> =
             joints().filter(|(_, verdict)| !verdict.is_predicted).collect();
-        doubtful.sort_by_key(|(_, verdict)| verdict.doubts.is_empty());
+        // the largest error first, and joints without a reason last
+        let error = |verdict: &JointVerdict| verdict.error().map_or(f64::INFINITY, |error| error.error);
+        doubtful.sort_by(|(_, one), (_, other)| {
+            (one.doubts.is_empty().cmp(&other.doubts.is_empty())).then(error(other).total_cmp(&error(one)))
+        });
         let with_reasons = doubtful.iter().filter(|(_, verdict)| !verdict.doubts.is_empty()).count();
         let first = wrap(&self.first(), "");
         let last = self.verdict.excited.as_ref().map(|excited| self.excited(excited)).unwrap_or_default();
@@ -61,9 +65,9 @@ impl Worded<'_> {
     fn first(&self) -> String {
         let Verdict { evidence, joints, .. } = self.verdict;
         let [does, data] = match evidence {
-            Evidence::Fitted => ["The model reproduces", "on the data that it was fitted to"],
-            Evidence::Judged => ["The robot file predicts", "on this log"],
-            _ => ["The model predicts", "on held-out data"],
+            Evidence::Fitted => ["The model reproduces the torque of", "on the data that it was fitted to"],
+            Evidence::Judged => ["The robot file predicts the torque of", "on this log"],
+            _ => ["The model predicts the torque of", "on held-out data"],
         };
         let predicted = joints.iter().filter(|joint| joint.is_predicted);
         let errors: Vec<f64> = predicted.filter_map(|joint| Some(joint.error()?.error)).collect();
@@ -73,9 +77,9 @@ impl Worded<'_> {
             let _ = write!(text, " ({})", self.held_out);
         }
         if !errors.is_empty() {
-            let noun = if errors.len() == 1 { "an error" } else { "errors" };
-            let _ =
-                write!(text, ", with {noun} of {} of the standard deviation of the measured torque", range(&errors));
+            let noun = if errors.len() == 1 { "an RMS error" } else { "RMS errors" };
+            let limit = percent(Verdict::limit());
+            let _ = write!(text, ", with {noun} of {} of its standard deviation (limit: {limit})", range(&errors));
         }
         text.push('.');
         if *evidence == Evidence::Fitted {
@@ -103,7 +107,7 @@ impl Worded<'_> {
     fn others(&self, joints: &[(&Joint, &JointVerdict)], is_more: bool) -> Option<String> {
         let of = |(joint, verdict): &(&Joint, &JointVerdict)| match (verdict.growth(), verdict.fitted) {
             (Some(_), Some(fitted)) => {
-                let both = format!(", fitted {})", percent(fitted.error));
+                let both = format!("; {} on the fitted part)", percent(fitted.error));
                 named(joint, verdict).trim_end_matches(')').to_owned() + &both
             }
             _ => named(joint, verdict),
@@ -125,24 +129,28 @@ impl Worded<'_> {
                 "its file says that it was not excited when it was identified".to_owned()
             }
             Doubt::WithoutFriction => "the robot file has no friction for it".to_owned(),
-            Doubt::NotExcited => "its torque in this log is mostly noise".to_owned(),
+            Doubt::NotExcited => {
+                let noise = verdict.fitted.map_or(f64::NAN, |error| error.as_read);
+                format!("noise is {} of its unfiltered torque", percent(noise))
+            }
             Doubt::Offset { offset, .. } => {
                 format!("it has an offset of {} {unit}, more than a robot file can store", rounded(*offset, 3))
             }
             Doubt::Outliers(rejected) => {
                 format!("{} of {} rows are outliers, the first at {:.1} s", rejected.rows, self.rows, rejected.time)
             }
-            Doubt::Standstill(standstill) => format!(
-                "it stands still from {:.1} to {:.1} s, and its friction at rest is not known ({} of its squared error \
-                 arises at rest)",
-                standstill.start,
-                standstill.end,
-                percent(verdict.error().map_or(f64::NAN, |error| error.part_at_rest))
-            ),
+            Doubt::Standstill(Standstill { start, end, .. }) => {
+                let moving = verdict.error().and_then(JointError::in_motion);
+                let moving = moving.map(|error| format!("; in motion, its error is {}", percent(error)));
+                format!(
+                    "it stands still from {start:.1} to {end:.1} s, where static friction is not known{}",
+                    moving.unwrap_or_default()
+                )
+            }
             Doubt::FrictionNotExcited => "the log does not excite its friction".to_owned(),
-            Doubt::Grown(factor) => {
+            Doubt::Grown(_) => {
                 let fitted = verdict.fitted.map_or(f64::NAN, |error| error.error);
-                format!("its error is {factor:.1} times the error on the fitted part ({})", percent(fitted))
+                format!("its error on the fitted part is {}", percent(fitted))
             }
             _ => String::new(),
         }
@@ -163,10 +171,11 @@ impl Worded<'_> {
         if unknown.is_empty() {
             return vec![wrap(&(text + "."), "")];
         }
-        let _ = write!(text, ". It does not excite {}.", enumerated(&unknown));
+        let unknown = enumerated(&unknown);
+        let _ = write!(text, ", but not {unknown}: the model holds for similar motions only.");
         // a command is not broken into lines
         let command = format!("rne excite {}", one_line(&self.file.display().to_string())).replace(' ', TIED);
-        let next = format!("To excite more, record the motion that {TYPED}`{command}`{TYPED:#} designs.");
+        let next = format!("{TYPED}`{command}`{TYPED:#} designs a better motion.");
         vec![wrap(&text, ""), wrap(&next, "")]
     }
 
@@ -240,6 +249,24 @@ impl Worded<'_> {
             Some(_) => ": larger than fitted",
         };
         format!("{}{reason}", self.not_predicted())
+    }
+
+    /// The note on joints whose offset the logs do not determine.
+    pub(crate) fn offsets(&self) -> Option<String> {
+        let unknown = &self.verdict.excited.as_ref()?.unknown_offsets;
+        let is_equal = |joint: &usize| {
+            let coulomb = self.robot.joints[*joint].motor.map_or([0.0; 2], |motor| motor.coulomb);
+            coulomb[0] == -coulomb[1]
+        };
+        let joints = listed("joint", unknown);
+        let written = if unknown.iter().all(is_equal) {
+            format!("rne uses the same Coulomb friction in both directions of {joints}")
+        } else {
+            format!("rne keeps the ratio of FILE between the Coulomb friction in both directions of {joints}")
+        };
+        (!unknown.is_empty()).then(|| {
+            format!("the log does not determine the offset of {joints}: gravity hides it. Therefore {written}")
+        })
     }
 
     /// The warning on joints whose held-out error is much larger than the error on the data of the identification.

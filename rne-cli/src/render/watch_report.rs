@@ -1,15 +1,15 @@
-//! The result of `rne watch`, as text and as JSON.
+//! The result of `rne watch` as text.
 
 use std::fmt::Write as _;
 
-use rne_identify::JointError;
 use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Candidate, Cause, Changes, Event, Report, Statistic, Trend, TrendValue, unit};
-use serde::Serialize;
 
-use crate::files::motion_log::MotionLog;
+use crate::files::motion_file::cell;
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::render::watch_dates::{LogNames, times};
+use crate::render::watch_reply::name;
 use crate::values::numbers::{rounded, with_deviation};
 
 /// Events that are shown; the others are counted.
@@ -37,7 +37,13 @@ fn with_unit(number: &str, unit: &str) -> String {
 }
 
 /// Events, and how near the other parameters are to their thresholds.
-pub(crate) fn events(robot: &Robot, baseline: &Baseline, report: &Report, has_runs: bool) -> String {
+pub(crate) fn events(
+    robot: &Robot,
+    baseline: &Baseline,
+    report: &Report,
+    has_runs: bool,
+    names: &LogNames<'_>,
+) -> String {
     let events = &report.events;
     let mut text = match events.len() {
         0 => format!("\n{GOOD}no events{GOOD:#}\n"),
@@ -45,7 +51,7 @@ pub(crate) fn events(robot: &Robot, baseline: &Baseline, report: &Report, has_ru
         count => format!("\n{WARNING}{count} events{WARNING:#}\n"),
     };
     for event in events.iter().take(SHOWN) {
-        let sentence = sentence(robot, event, has_runs);
+        let sentence = sentence(robot, event, has_runs, names);
         let _ = writeln!(text, "  {}", wrap(&sentence, PAGE - 2, "    "));
     }
     if events.len() > SHOWN {
@@ -100,7 +106,7 @@ fn signed(value: f64) -> String {
 }
 
 /// An event in a sentence.
-pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
+fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) -> String {
     let unit = event.unit;
     let joint = event.joint.map_or(String::new(), |joint| one_line(&robot.joints[joint].name));
     let value = with_unit(&with_deviation(event.value, event.deviation), unit);
@@ -110,11 +116,12 @@ pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
     };
     let what = match event.cause {
         Cause::Friction => {
-            let kind = if event.parameter == "viscous" { "viscous friction" } else { "Coulomb friction" };
             format!(
-                "friction of {joint}: {kind} {value}, before {}{}",
+                "friction of {joint}: {} {value}, before {}{}{}",
+                friction(event.parameter),
                 rounded(event.baseline_value, 3),
-                percent(event.baseline_value)
+                percent(event.baseline_value),
+                rivals(event)
             )
         }
         Cause::Payload if event.value < 0.0 => format!("payload: {value}: the tip has lost mass"),
@@ -142,7 +149,17 @@ pub(crate) fn sentence(robot: &Robot, event: &Event, has_runs: bool) -> String {
             rounded(event.baseline_value, 3)
         ),
     };
-    format!("{what}; {}", times(event, has_runs))
+    format!("{what}; {}", times(event, has_runs, names))
+}
+
+fn friction(parameter: &str) -> &'static str {
+    if parameter == "viscous" { "viscous friction" } else { "Coulomb friction" }
+}
+
+/// Other causes that the log cannot tell from the change.
+fn rivals(event: &Event) -> String {
+    let of = |rival: &&'static str| format!("; {} would explain it almost as well", friction(rival));
+    event.rivals.iter().map(of).collect::<Vec<_>>().concat()
 }
 
 /// The reason for which an effort can have another gain.
@@ -153,16 +170,6 @@ fn gain(event: &Event) -> &'static str {
         ": it has the opposite sign"
     } else {
         ": another unit, another torque constant, or a fault of the sensor"
-    }
-}
-
-fn times(event: &Event, has_runs: bool) -> String {
-    let run = if has_runs { format!("run {}, ", event.run + 1) } else { String::new() };
-    match event.cause {
-        _ if event.is_whole => "in the whole log".to_owned(),
-        Cause::Contact => format!("{run}{:.2} s to {:.2} s", event.since, event.until),
-        _ if event.lasts => format!("{run}since {:.1} s", event.since),
-        _ => format!("{run}since {:.1} s, until {:.1} s", event.since, event.until),
     }
 }
 
@@ -189,8 +196,31 @@ pub(crate) fn parameters(robot: &Robot, baseline: &Baseline, changes: &Changes) 
     text
 }
 
+/// How the table of [`parameters_csv`] begins.
+pub(crate) const PARAMETERS: &str = "cause,joint,name,parameter,";
+
+/// All parameters with their thresholds as CSV: a header, then a line for each parameter. Columns are the keys of
+/// `--json`; numbers have all digits. A parameter of the whole arm has no joint.
+pub(crate) fn parameters_csv(robot: &Robot, baseline: &Baseline, changes: &Changes) -> String {
+    let mut text = format!("{PARAMETERS}change,deviation,threshold,ratio,unit,watched\n");
+    for statistic in &changes.statistics {
+        let candidate = statistic.candidate;
+        let joint = candidate.joint().map_or_else(String::new, |joint| (joint + 1).to_string());
+        let name = name(robot, candidate.joint()).map_or_else(String::new, |name| cell(&one_line(&name)));
+        let (cause, unit) = (Cause::of(candidate).name(), unit(robot, candidate));
+        let Statistic { change, deviation, threshold, .. } = statistic;
+        let (ratio, is_watched) = (statistic.ratio(), baseline.scale.is_watched(statistic));
+        let _ = writeln!(
+            text,
+            "{cause},{joint},{name},{},{change:?},{deviation:?},{threshold:?},{ratio:?},{unit},{is_watched}",
+            candidate.parameter()
+        );
+    }
+    text
+}
+
 /// A trend as a table, with the events of each log.
-pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>]) -> String {
+pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>], names: &[LogNames<'_>]) -> String {
     let joints = changing(trend);
     let mut cells = vec![vec!["  log".to_owned(), "events".to_owned(), "payload, kg".to_owned()]];
     cells[0].extend(joints.iter().map(|joint| shortened(&one_line(&robot.joints[*joint].name), 14)));
@@ -218,9 +248,9 @@ pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>]) -> Stri
     }
     let count: usize = events.iter().map(Vec::len).sum();
     let _ = writeln!(text, "\n{WARNING}{count} event{}{WARNING:#}", if count == 1 { "" } else { "s" });
-    for (row, events) in trend.rows.iter().zip(events) {
+    for ((row, events), names) in trend.rows.iter().zip(events).zip(names) {
         for event in events {
-            let said = format!("{}: {}", row.name, sentence(robot, event, false));
+            let said = format!("{}: {}", row.name, sentence(robot, event, false, names));
             let _ = writeln!(text, "  {}", wrap(&said, PAGE - 2, "    "));
         }
     }
@@ -240,217 +270,4 @@ fn changing(trend: &Trend) -> Vec<usize> {
     joints.truncate(COLUMNS);
     joints.sort_unstable();
     joints
-}
-
-/// The result for a log as JSON.
-#[derive(Serialize)]
-pub(crate) struct Reply {
-    robot: String,
-    log: String,
-    /// The logs or the file of the baseline.
-    baseline: String,
-    /// Hz
-    low_pass: f64,
-    read_to: f64,
-    events: Vec<OfEvent>,
-    parameters: Vec<OfParameter>,
-    joints: Vec<OfJoint>,
-}
-
-#[derive(Serialize)]
-pub(crate) struct OfEvent {
-    cause: &'static str,
-    joint: Option<usize>,
-    name: Option<String>,
-    parameter: &'static str,
-    value: f64,
-    file_value: f64,
-    baseline_value: f64,
-    deviation: Option<f64>,
-    half_interval: Option<f64>,
-    threshold: Option<f64>,
-    unit: &'static str,
-    run: u64,
-    since: f64,
-    until: f64,
-    whole: bool,
-    /// Whether it lasts until the end of the log.
-    lasts: bool,
-    /// Further joints of a contact.
-    also: Vec<usize>,
-    /// Causes that the log cannot tell from this one.
-    rivals: Vec<&'static str>,
-}
-
-#[derive(Serialize)]
-struct OfParameter {
-    cause: &'static str,
-    joint: Option<usize>,
-    name: Option<String>,
-    parameter: &'static str,
-    change: f64,
-    deviation: f64,
-    threshold: f64,
-    ratio: f64,
-    unit: &'static str,
-    /// Whether the quiet log determines it.
-    watched: bool,
-}
-
-#[derive(Serialize)]
-struct OfJoint {
-    joint: usize,
-    name: String,
-    error: Option<f64>,
-    unfiltered: Option<f64>,
-    /// N m or N, root mean square: what is left with all changes, and before.
-    residual: f64,
-    residual_of_baseline: f64,
-    /// Deviation of the observer's torque, N m or N; contacts are beyond a multiple of it.
-    observer_deviation: f64,
-}
-
-fn finite(number: f64) -> Option<f64> {
-    number.is_finite().then_some(number)
-}
-
-fn name(robot: &Robot, joint: Option<usize>) -> Option<String> {
-    joint.map(|joint| robot.joints[joint].name.clone())
-}
-
-impl OfEvent {
-    fn of(robot: &Robot, event: &Event) -> Self {
-        Self {
-            cause: event.cause.name(),
-            joint: event.joint.map(|joint| joint + 1),
-            name: name(robot, event.joint),
-            parameter: event.parameter,
-            value: event.value,
-            file_value: event.file_value,
-            baseline_value: event.baseline_value,
-            deviation: finite(event.deviation),
-            half_interval: finite(event.half_interval),
-            threshold: finite(event.threshold),
-            unit: event.unit,
-            run: event.run + 1,
-            since: event.since,
-            until: event.until,
-            whole: event.is_whole,
-            lasts: event.lasts,
-            also: event.others.iter().map(|joint| joint + 1).collect(),
-            rivals: if event.cause == Cause::Friction { vec!["temperature", "speed"] } else { Vec::new() },
-        }
-    }
-}
-
-impl Reply {
-    pub(crate) fn of(
-        robot: &Robot,
-        log: &MotionLog,
-        words: &str,
-        baseline: &Baseline,
-        report: &Report,
-        errors: &[JointError],
-    ) -> Self {
-        let of_parameter = |statistic: &Statistic| OfParameter {
-            cause: Cause::of(statistic.candidate).name(),
-            joint: statistic.candidate.joint().map(|joint| joint + 1),
-            name: name(robot, statistic.candidate.joint()),
-            parameter: statistic.candidate.parameter(),
-            change: statistic.change,
-            deviation: statistic.deviation,
-            threshold: statistic.threshold,
-            ratio: statistic.ratio(),
-            unit: unit(robot, statistic.candidate),
-            watched: baseline.scale.is_watched(statistic),
-        };
-        let of_joint = |(at, error): (usize, &JointError)| OfJoint {
-            joint: at + 1,
-            name: robot.joints[at].name.clone(),
-            error: finite(error.error),
-            unfiltered: finite(error.unfiltered),
-            residual: report.changes.residual[at],
-            residual_of_baseline: baseline.residual[at],
-            observer_deviation: report.contact.joints[at].deviation,
-        };
-        Self {
-            robot: robot.name.clone(),
-            log: log.words(),
-            baseline: words.to_owned(),
-            low_pass: baseline.cutoff,
-            read_to: log.read_to(),
-            events: report.events.iter().map(|event| OfEvent::of(robot, event)).collect(),
-            parameters: report.changes.statistics.iter().map(of_parameter).collect(),
-            joints: errors.iter().enumerate().map(of_joint).collect(),
-        }
-    }
-}
-
-/// A trend as JSON.
-#[derive(Serialize)]
-pub(crate) struct TrendReply {
-    robot: String,
-    baseline: String,
-    logs: Vec<OfRow>,
-    left_out: Vec<OfLeftOut>,
-}
-
-/// A log that cannot be compared.
-#[derive(Serialize)]
-struct OfLeftOut {
-    log: String,
-    reason: String,
-}
-
-#[derive(Serialize)]
-struct OfRow {
-    log: String,
-    events: Vec<OfEvent>,
-    payload: Option<f64>,
-    payload_deviation: Option<f64>,
-    joints: Vec<OfFriction>,
-}
-
-#[derive(Serialize)]
-struct OfFriction {
-    joint: usize,
-    name: String,
-    coulomb: Option<f64>,
-    coulomb_deviation: Option<f64>,
-    threshold: Option<f64>,
-    file_value: f64,
-    residual: f64,
-    unit: &'static str,
-}
-
-impl TrendReply {
-    pub(crate) fn of(robot: &Robot, words: &str, trend: &Trend, events: &[Vec<Event>]) -> Self {
-        let rows = trend.rows.iter().zip(events).map(|(row, events)| {
-            let joints = row.friction.iter().zip(&row.residual).enumerate();
-            let joints = joints.map(|(joint, (of, residual))| OfFriction {
-                joint: joint + 1,
-                name: robot.joints[joint].name.clone(),
-                coulomb: finite(of.value),
-                coulomb_deviation: finite(of.deviation),
-                threshold: finite(of.threshold),
-                file_value: trend.friction[joint][0],
-                residual: *residual,
-                unit: unit(robot, Candidate::Coulomb(joint)),
-            });
-            OfRow {
-                log: row.name.clone(),
-                events: events.iter().map(|event| OfEvent::of(robot, event)).collect(),
-                payload: finite(row.payload.value),
-                payload_deviation: finite(row.payload.deviation),
-                joints: joints.collect(),
-            }
-        });
-        let left_out = trend.left_out.iter();
-        Self {
-            robot: robot.name.clone(),
-            baseline: words.to_owned(),
-            logs: rows.collect(),
-            left_out: left_out.map(|(log, reason)| OfLeftOut { log: log.clone(), reason: reason.clone() }).collect(),
-        }
-    }
 }

@@ -17,9 +17,9 @@ use crate::values::state::State;
 /// Axes in which vectors are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Axes {
-    /// Fixed to link i, z along joint i: the generated code's
+    /// Axes fixed to link i, z along joint i, as in the generated code
     Link,
-    /// Fixed to link i-1, z along joint i: the lecture's
+    /// Axes fixed to link i-1, z along joint i, as in the lecture
     #[value(alias = "lecture")]
     Joint,
     /// Axes of frame 0

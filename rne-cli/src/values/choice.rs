@@ -35,7 +35,7 @@ impl fmt::Display for FunctionOrAll {
 /// Reads the name of a function, or `all`.
 pub(crate) fn function_or_all() -> impl TypedValueParser<Value = FunctionOrAll> {
     let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
-    let all = PossibleValue::new("all").help("Every function that there is");
+    let all = PossibleValue::new("all").help("Every function of the robot");
     PossibleValuesParser::new(Function::ALL.map(value).into_iter().chain([all])).try_map(|name| match name.as_str() {
         "all" => Ok(FunctionOrAll::All),
         name => name.parse::<Function>().map(FunctionOrAll::One),
@@ -45,8 +45,8 @@ pub(crate) fn function_or_all() -> impl TypedValueParser<Value = FunctionOrAll> 
 /// Reads the name of a form.
 pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
     let value = |form: Form| match form {
-        Form::SevenSteps => PossibleValue::new(form.name()).help("Every intermediate is the lecture's"),
-        Form::Reduced => PossibleValue::new(form.name()).help("Fewest operations; only the torques keep a meaning"),
+        Form::SevenSteps => PossibleValue::new(form.name()).help("With every intermediate value of the seven steps"),
+        Form::Reduced => PossibleValue::new(form.name()).help("Fewest operations; only the results have a meaning"),
     };
     PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
 }
@@ -91,23 +91,23 @@ pub(crate) fn step(text: &str) -> Result<Step, String> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub(crate) enum Kept {
-    /// Angular velocity ω
+    /// Angular velocity ω of a link
     Omega,
-    /// Angular acceleration ω̇
+    /// Angular acceleration ω̇ of a link
     OmegaDot,
-    /// Velocity of the centre of mass ċ, step 3
+    /// Velocity ċ of the centre of mass of a link, from step 3
     Velocity,
-    /// Acceleration of the centre of mass c̈
+    /// Acceleration c̈ of the centre of mass of a link
     Acceleration,
-    /// Acceleration of gravity g
+    /// Acceleration of gravity g in the axes of a link
     Gravity,
-    /// f_i = m c̈ by itself
+    /// Inertia force f_i = m c̈ of link i
     InertiaForce,
-    /// n_i, about the centre of mass
+    /// Inertia moment n_i of link i about its centre of mass
     InertiaMoment,
-    /// f_{i-1,i}
+    /// Force f_{i-1,i} that link i-1 exerts on link i
     JointForce,
-    /// n_{i-1,i}
+    /// Moment n_{i-1,i} that link i-1 exerts on link i
     JointMoment,
 }
 

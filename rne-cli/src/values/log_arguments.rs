@@ -13,49 +13,49 @@ use crate::values::numbers::List;
 #[command(next_help_heading = "How the log is read")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct LogArguments {
-    /// Names of the joints in the log, base to tip
+    /// Joints to read: their names in the log, from base to tip, such as 1,3 or waist,elbow
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) joints: Option<Vec<String>>,
-    /// Topic of a bag, or prefix of column names
+    /// Read this topic of a bag, or the columns of a table whose names begin with this word
     #[arg(long, value_name = "T")]
     topic: Option<String>,
-    /// Efforts are currents in A; factor in N m/A
+    /// Efforts are currents, A; multiply them by this constant, N m/A, one number or one per joint
     #[arg(long, alias = "torque-constants", value_name = "LIST", allow_hyphen_values = true)]
     torque_constant: Option<List>,
-    /// Angles are in degrees (revolute joints only)
+    /// Read angles as degrees, for revolute joints only
     #[arg(long, conflicts_with = "radians")]
     degrees: bool,
-    /// Angles are in radians; do not check their range
+    /// Read angles as radians, even if they range over more than 4π
     #[arg(long)]
     radians: bool,
-    /// Cut-off of the low-pass [default: automatic]
+    /// Cut-off of the low-pass filter, Hz [default: automatic]
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     pub(crate) cutoff: Option<f64>,
-    /// Split runs at longer gaps
+    /// Split the log at gaps longer than this number of sampling intervals
     #[arg(long, value_name = "STEPS", default_value_t = 3.5)]
     gap: f64,
-    /// Ignore measured velocities; derive them
+    /// Compute velocities from positions; ignore the velocities in the log
     #[arg(long)]
     derive_velocities: bool,
-    /// Use receive times instead of time stamps
+    /// Use the receive times of a bag, not the time stamps of its messages
     #[arg(long)]
     recorded: bool,
-    /// Unit of the time column: s, ms, us, ns
+    /// Unit of the time column: s, ms, us or ns
     #[arg(long, value_name = "UNIT", value_parser = time_unit(), hide_possible_values = true)]
     time_unit: Option<TimeUnit>,
-    /// Name of the time column of a table
+    /// Name of the column that contains the time
     #[arg(long, value_name = "NAME")]
     time_column: Option<String>,
-    /// Only read the rows with this text: robot_id=r1
+    /// Read only the rows with this text in this column, such as robot_id=r1
     #[arg(long = "where", value_name = "COLUMN=TEXT", value_parser = selection)]
     select: Vec<(String, String)>,
-    /// Sampling rate of a table without times
+    /// Sampling rate, Hz, of a table without times
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     rate: Option<f64>,
-    /// Order in an array [default: time,q,qd,tau]
+    /// Meaning of the columns of an npy array, in order [default: time,q,qd,tau]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
-    /// Column of a quantity: elbow.effort='I3 [A]'
+    /// Read a quantity from a named column, such as elbow.effort='I3 [A]'; may be repeated
     #[arg(long, value_name = "MAP", value_parser = mapping)]
     map: Vec<Mapping>,
 }

@@ -1,7 +1,7 @@
 //! Arguments of a function, complete and of the right lengths.
 
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
-use rne_codegen::{Argument, Function};
+use rne_codegen::{Argument, Capability, Function};
 use rne_model::Robot;
 
 use crate::outcome::Failure;
@@ -65,7 +65,13 @@ impl State {
         let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
         let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
         let wrench = wrench.map(|w| Wrench { force: triple(&w, 0), moment: triple(&w, 3) });
-        let payload = payload(function, given.payload)?;
+        let payload = match given.payload {
+            Some(list) => Some(payload(list)?),
+            None if function.takes(Argument::Payload) => {
+                return Err(Failure::usage(format_args!("{function} needs --payload, {PAYLOAD}")));
+            }
+            None => None,
+        };
         let axes = "three numbers x,y,z, in the axes of frame 0";
         let of_base = |name, list| {
             let list = argument(function, name, list, Base, 3, axes)?;
@@ -178,23 +184,20 @@ macro_rules! records {
 
 records! { Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd } }
 
-/// Mass and centre of mass, and inertia where it is given.
-fn payload(function: Function, given: Option<&List>) -> Result<Option<Payload<f64>>, Failure> {
-    let of_a_point = given.filter(|List(values)| values.len() == 4);
-    let (numbers, what) = match of_a_point {
-        Some(_) => (4, ""),
-        None => {
-            (10, "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point")
-        }
-    };
-    let list = argument(function, "--payload", given, Argument::Payload, numbers, what)?;
-    let payload = list.map(|list| {
-        let mut all = [0.0; 10];
-        all.iter_mut().zip(list).for_each(|(number, value)| *number = value);
-        Payload::from_array(all)
-    });
-    let check = payload.map_or(Ok(()), |payload| payload.check());
-    check.map_err(|error| Failure::usage(format_args!("--payload begins with the mass: {error}")))?;
+/// The numbers of a payload in words.
+const PAYLOAD: &str =
+    "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point";
+
+/// A payload from its list: mass and centre of mass, and inertia where it is given.
+pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
+    if values.len() != 4 && values.len() != 10 {
+        let found = values.len();
+        return Err(Failure::usage(format_args!("--payload needs 10 numbers, not {found}: {PAYLOAD}")));
+    }
+    let mut all = [0.0; 10];
+    all.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
+    let payload = Payload::from_array(all);
+    payload.check().map_err(|error| Failure::usage(format_args!("--payload begins with the mass: {error}")))?;
     Ok(payload)
 }
 
@@ -215,7 +218,9 @@ fn argument(
         None if !function.takes(kind) => Ok(None),
         None => Err(Failure::usage(format_args!("{function} needs {name}, {what}"))),
         Some(_) if !function.takes(kind) => {
-            let others: Vec<Function> = Function::ALL.into_iter().filter(|other| other.takes(kind)).collect();
+            // --payload chooses the others
+            let is_named = |other: &Function| other.takes(kind) && other.capability() != Capability::PayloadDynamics;
+            let others: Vec<Function> = Function::ALL.into_iter().filter(is_named).collect();
             let hint = match others.as_slice() {
                 [only] => format!("; {only} does"),
                 [one, other] => format!("; {one} and {other} do"),

@@ -5,7 +5,8 @@ use std::fs;
 use crate::call::{ROOT, fails, fine, folder, rne};
 use rne::{
     Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, Pose, Regressor, Wrench,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, PayloadDynamics, Pose,
+    Regressor, Wrench,
 };
 use serde_json::{Value, json};
 
@@ -39,8 +40,8 @@ fn close(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn a_number_is_no_file() {
-    fails(2, &["eval", "--q", "0.5", "0.3"], &["`0.3` is in the place of FILE", "--q 0.5,0.3"]);
-    fails(2, &["eval", "--q", "0.5", "pi/2"], &["`pi/2` is in the place of FILE"]);
+    fails(2, &["eval", "--q", "0.5", "0.3"], &["`0.3` stands where FILE, the robot, is expected", "--q 0.5,0.3"]);
+    fails(2, &["eval", "--q", "0.5", "pi/2"], &["`pi/2` stands where FILE, the robot, is expected"]);
     fails(1, &["eval", "nowhere", "--q", "1"], &["there is no robot file nowhere"]);
 }
 
@@ -257,6 +258,18 @@ fn every_function_has_the_shape_of_its_trait() {
     for (payload, written) in [(bob, "2,0.1,0.2,-0.3"), (body, "2,0.1,0.2,-0.3,0.04,0.05,0.06,0.001,-0.002,0.003")] {
         let found = of_puma("inverse_dynamics_with_payload", full, &["--payload", written]);
         same(&found, &json!(arm.inverse_dynamics_with_payload(&Q, &QD, &QDD, &payload)));
+        let of = |function, arguments| of_puma(function, arguments, &["--payload", written]);
+        same(&of("inverse_dynamics", full), &found);
+        same(&of("gravity_torques", "q"), &json!(arm.gravity_torques_with_payload(&Q, &payload)));
+        same(&of("gravity_torques_with_payload", "q"), &of("gravity_torques", "q"));
+        same(&of("bias_torques", "q qd"), &json!(arm.bias_torques_with_payload(&Q, &QD, &payload)));
+        same(&of("mass_matrix", "q"), &json!(arm.mass_matrix_with_payload(&Q, &payload)));
+        // a function that takes no payload has it as a part of the last link: ½ q̇ᵀ M q̇
+        let energy = of("kinetic_energy", "q qd").as_f64().expect("a number");
+        let mass = arm.mass_matrix_with_payload(&Q, &payload);
+        let twice: f64 =
+            mass.iter().zip(&QD).map(|(row, qd)| qd * row.iter().zip(&QD).map(|(m, qd)| m * qd).sum::<f64>()).sum();
+        assert!((2.0 * energy - twice).abs() < 1e-12 * twice, "{energy} {twice}");
     }
     same(&of_puma("gravity_torques", "q", &[]), &json!(arm.gravity_torques(&Q)));
     same(&of_puma("bias_torques", "q qd", &[]), &json!(arm.bias_torques(&Q, &QD)));

@@ -83,13 +83,13 @@ fn what_is_wrong_is_said() {
         fails(2, &["excite", DESK, "--seconds", seconds], &[words]);
     }
     fails(2, &excite(&["--harmonics", "1"]), &["fewer than two cannot start and end at rest"]);
-    fails(2, &excite(&["--velocity", "1,2"]), &["--velocity has 2 numbers, and the robot 3 joints"]);
-    fails(2, &excite(&["--velocity", "0"]), &["--velocity takes finite numbers above 0"]);
+    fails(2, &excite(&["--velocity", "1,2"]), &["--velocity has 2 numbers, but the robot has 3 joints"]);
+    fails(2, &excite(&["--velocity", "0"]), &["--velocity needs finite numbers above 0"]);
     fails(2, &excite(&["--acceleration", "nan"]), &["nan"]);
     fails(2, &excite(&["--rate", "0"]), &["samples per second"]);
     fails(2, &excite(&["--rate", "1e6"]), &["more than 500000 samples"]);
     fails(2, &["excite", DESK, "--evaluations", "0"], &["0 is not in 1.."]);
-    fails(2, &excite(&["-o", DESK, "--force"]), &["is the file that is read"]);
+    fails(2, &excite(&["-o", DESK, "--force"]), &["is also the file that rne reads"]);
     fails(1, &excite(&["-o", "nowhere/trajectory.csv"]), &["there is no folder nowhere"]);
     fails(1, &["excite", "puma56"], &["puma560"]);
     let slide = folder("excite_wrong").join("slide.yaml");
@@ -104,7 +104,11 @@ fn what_is_wrong_is_said() {
     // 2 kg wherever they are
     let weighs = "gravity alone needs 19.620 of 5.000 N of rail at rail 0.500 m";
     let helps = "neither a slower motion nor a smaller --range helps";
-    fails(1, &["excite", path, "--evaluations", "20"], &[weighs, helps, "are the effort limit of rail and the masses"]);
+    fails(
+        1,
+        &["excite", path, "--evaluations", "20"],
+        &[weighs, helps, "check the effort limit of rail and the masses"],
+    );
     fs::write(&slide, text.replace("LIMITS", "limits: {position: [1, 1]},")).expect("a file");
     fails(1, &["excite", path], &["the position limits of rail leave it no room to move"]);
 }

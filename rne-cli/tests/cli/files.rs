@@ -326,7 +326,7 @@ mod unix {
         let emit = ["emit", "puma560", "--lang", "c", "--function", "all", "-o", "arm.c"];
         let excite = ["excite", "planar2", "--evaluations", "50", "-o", "motion.csv", "--plot", "motion.svg"];
         let commands: [(&[&str], usize); 4] = [
-            (&emit, 32),
+            (&emit, 64),
             (&["firmware", "torque", "--robot", "puma560"], 16),
             (&["man", "-o", "pages"], 2),
             (&excite, 128),

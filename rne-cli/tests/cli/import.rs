@@ -46,7 +46,7 @@ fn the_tip_of_one_arm_is_chosen() {
         fs::write(&path, with(&more)).expect("written");
         let chosen = rne(&["import", urdf]);
         assert_eq!(chosen.status, 0, "{tip}: {chosen:?}");
-        let note = format!("the tip is `{tip}`; behind the same joints are also: {others}");
+        let note = format!("the tip is `{tip}`; these links are also after the same joints: {others}");
         let words = chosen.err.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(words.contains(&format!("note: {note}")), "{note}: {words}");
         // the file says it, too, and is otherwise that of the tip by name
@@ -73,11 +73,15 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
     ] {
         assert!(called.err.contains(part), "no `{part}` in {}", called.err);
     }
-    fails(1, &["import", urdf], &["`base` has 2 leaves", "`finger` (3 joints)", "`tip` (2 joints)", "--tip"]);
-    fails(1, &["import", urdf, "--tip", "tip"], &["movable joints off the chain", "`grip`", &format!("{urdf}:14:3")]);
+    fails(1, &["import", urdf], &["`base` has 2 end links", "`finger` (3 joints)", "`tip` (2 joints)", "--tip"]);
+    fails(
+        1,
+        &["import", urdf, "--tip", "tip"],
+        &["movable joints that are not on the chain", "`grip`", &format!("{urdf}:14:3")],
+    );
     fails(1, &["import", "no.urdf"], &["there is no URDF no.urdf"]);
     fails(2, &["import", urdf, "--lock", "grip"], &["JOINT=VALUE"]);
-    let leaves = ["those that carry no other", "`finger` (3 joints)", "`tip` (2 joints)"];
+    let leaves = ["these links carry no other link", "`finger` (3 joints)", "`tip` (2 joints)"];
     let unknown = [&["no link `tipp` that could be the tip", "did you mean `tip`?"], &leaves[..]].concat();
     fails(2, &["import", urdf, "--tip", "tipp"], &unknown);
     fails(2, &["import", urdf, "--base", "fing", "--tip", "tip"], &["did you mean `finger`?", "the links are `base`"]);
@@ -103,7 +107,7 @@ fn a_robot_file_that_is_there_stays() {
     assert!(forced.err.contains("wrote"), "{forced:?}");
     assert!(rne(&import).err.contains("up to date:"), "the same text is no conflict");
     assert!(fine(&["check", out]).contains("two_links, RR, standard"));
-    fails(2, &["import", urdf, "--tip", "tip", "--lock-others", "-o", urdf], &["is the file that is read"]);
+    fails(2, &["import", urdf, "--tip", "tip", "--lock-others", "-o", urdf], &["is also the file that rne reads"]);
 }
 
 #[test]

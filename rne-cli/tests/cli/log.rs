@@ -95,14 +95,15 @@ fn a_motion_is_what_other_commands_read() {
     // a motion is a log itself
     assert!(fine(&["log", path, "--cutoff", "8"]).contains("356 of 356 rows contain states"));
     fails(2, &["log", UR10, "-o", path], &["--force"]);
-    fails(2, &["log", path, "-o", path, "--force"], &["is the file that is read"]);
+    fails(2, &["log", path, "-o", path, "--force"], &["is also the file that rne reads"]);
 }
 
 /// One rule for names of joints, whatever command reads a log.
 #[test]
 #[cfg(feature = "bags")]
 fn joints_of_other_names_are_taken_by_their_order() {
-    let by_order = "joints of the log are matched by their order: fer_joint1, fer_joint2";
+    let by_order =
+        "joints of the log are matched by their order: fer_joint1 is panda_joint1, fer_joint2 is panda_joint2";
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let described = fine(&["log", PANDA, "--robot", "panda"]);
     assert!(words(&described).contains(&format!("note: {by_order}")), "{described}");
@@ -116,16 +117,16 @@ fn joints_of_other_names_are_taken_by_their_order() {
     let names = "fer_joint7,fer_joint6,fer_joint5,fer_joint4,fer_joint3,fer_joint2,fer_joint1";
     let named = fine(&["log", PANDA, "--robot", "panda", "--joints", names]);
     assert!(named.contains("\n1  fer_joint7 ") && !words(&named).contains("by their order"), "{named}");
-    let too_few = ["names 2 joints of the log", "and the robot has 7 joints: panda_joint1"];
+    let too_few = ["names 2 joints of the log", "but the robot has 7 joints: panda_joint1"];
     fails(2, &["log", PANDA, "--robot", "panda", "--joints", "fer_joint1,fer_joint2"], &too_few);
-    fails(2, &["log", PANDA, "--robot", "planar2"], &["the log has 7 joints, the robot 2", "--joints says which"]);
+    fails(2, &["log", PANDA, "--robot", "planar2"], &["the log has 7 joints (", "--joints lists"]);
 }
 
 #[test]
 #[cfg(feature = "bags")]
 fn what_is_wrong_is_said() {
     fails(1, &["log", "nowhere.csv"], &["nowhere.csv: there is no such file"]);
-    fails(1, &["log", "docs"], &["docs: the folder has no bag of rosbag2", "such as docs/*.csv"]);
+    fails(1, &["log", "docs"], &["docs: the folder has no rosbag2 bag", "such as docs/*.csv"]);
     let folder = folder("log_wrong");
     let write = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
@@ -134,8 +135,16 @@ fn what_is_wrong_is_said() {
     };
     fails(2, &["log", PANDA, "--joints", "fer_joint1,fer_jont2"], &["did you mean fer_joint2?"]);
     for names in ["", " ", ",,", "fer_joint1,", ",fer_joint1"] {
-        fails(2, &["identify", "panda", PANDA, "--joints", names], &["a name of a joint is empty; the log has fer"]);
-        fails(2, &["log", PANDA, "--joints", names], &["a name of a joint is empty; the log has fer_joint1, fer"]);
+        fails(
+            2,
+            &["identify", "panda", PANDA, "--joints", names],
+            &["a name of a joint is empty; the joints of the log are fer"],
+        );
+        fails(
+            2,
+            &["log", PANDA, "--joints", names],
+            &["a name of a joint is empty; the joints of the log are fer_joint1, fer"],
+        );
     }
     let numbered = rne(&["log", "docs/desk_arm_log.csv", "--joints", "7,1,2"]);
     assert!(numbered.status == 2 && !numbered.err.contains("did you mean"), "{numbered:?}");
@@ -144,7 +153,7 @@ fn what_is_wrong_is_said() {
         fails(2, &["identify", "panda", twice[0], twice[1]], &["named twice"]);
     }
     fails(2, &["log", PANDA, "--topic", "/joints"], &["no topic /joints", "/joint_states"]);
-    fails(2, &["log", UR10, "--rate", "125"], &["messages have times"]);
+    fails(2, &["log", UR10, "--rate", "125"], &["the messages of this log have times"]);
     fails(2, &["log", PANDA, "--cutoff", "12"], &["too high for samples at 30.0007 Hz"]);
     fails(2, &["log", PANDA, "--torque-constant", "1,2"], &["2 torque constants for 7 joints"]);
     fails(2, &["log", "-"], &["read twice"]);
@@ -153,7 +162,7 @@ fn what_is_wrong_is_said() {
     let cut = write("cut.db3", &whole[..100_000]);
     fails(1, &["log", &cut], &["cut.db3: the bag is cut off: it has 100000 bytes of 135168"]);
     let short = write("short.csv", b"time,q1\n0,1\n0.1,1\n0.2,1\n");
-    fails(1, &["log", &short, "--cutoff", "1", "-o", "-"], &["no run is longer"]);
+    fails(1, &["log", &short, "--cutoff", "1", "-o", "-"], &["no run (a part of the log without gaps) is long enough"]);
 }
 
 /// A bag is read by a build with its feature; another one says how to get it, in `rne log`, `identify` and `watch`.
@@ -174,7 +183,7 @@ fn the_robot_file_of_a_log_is_not_overwritten() {
     let yaml = fs::read_to_string(format!("{}/docs/desk_arm.yaml", crate::call::ROOT)).expect("the arm");
     fs::write(&arm, &yaml).expect("a file");
     let path = arm.to_str().expect("UTF-8");
-    fails(2, &["log", log, "--robot", path, "-o", path, "--force"], &["is the file that is read"]);
+    fails(2, &["log", log, "--robot", path, "-o", path, "--force"], &["is also the file that rne reads"]);
     assert_eq!(fs::read_to_string(&arm).expect("it is there"), yaml);
 }
 
@@ -237,7 +246,7 @@ fn columns_are_joints_by_number_and_say_their_units() {
     desk_log(&path, [2, 0, 1], said, [degree, degree, 1e-3]);
     assert_eq!(judged(log, &[]), expected);
     let noted = fine(&["log", log]);
-    assert!(noted.contains("converted from the units of columns' names: q1 [deg], q2 [deg]"), "{noted}");
+    assert!(noted.contains("converts numbers from the units in the names of columns: q1 [deg], q2 [deg]"), "{noted}");
     assert!(!noted.contains("--torque-constant"), "{noted}");
     fine(&["log", log, "--robot", "docs/desk_arm.yaml"]);
     // a joint that turns has no millimetres
@@ -282,7 +291,7 @@ fn joints_are_named_as_the_log_names_them() {
     desk_log(&path, [0, 1, 2], plain, [1.0; 3]);
     let expected = judged(log, &[]);
     for names in ["foo,bar,baz", "waist,shoulder,elbow", "elbow,shoulder,waist"] {
-        let said = ["the log has no joint", "it has 1, 2, 3", "names the joints to read"];
+        let said = ["the log has no joint", "its joints are 1, 2, 3", "lists the joints to read"];
         fails(2, &judge(log, &["--joints", names]), &said);
         fails(2, &["watch", "docs/desk_arm.yaml", log, "--joints", names], &said);
         fails(2, &["log", log, "--joints", names], &said);
@@ -305,16 +314,20 @@ fn joints_are_named_as_the_log_names_them() {
         format!("{}.{}", ["position", "velocity", "effort"][quantity], ["base", "elbow", "shoulder"][joint])
     };
     desk_log(&path, [0, 1, 2], other, [1.0; 3]);
-    fails(2, &judge(log, &[]), &["base, elbow, shoulder there", "shoulder has another place", "--joints"]);
+    fails(2, &judge(log, &[]), &["3 joints (base, elbow, shoulder)", "shoulder has another place", "--joints"]);
     assert_eq!(judged(log, &["--joints", "base,elbow,shoulder"]), expected);
     // fewer or more than the robot has; what is advised is no circle
     let few = "use a log with all joints";
-    fails(2, &["identify", "ur10", log], &["the log has 3 joints, the robot 6: base, elbow, shoulder there", few]);
-    let there = "names 3 joints of the log, which has base, elbow, shoulder, and the robot has 6 joints: shoulder";
+    fails(2, &["identify", "ur10", log], &["the log has 3 joints (base, elbow, shoulder), but the robot has 6 (", few]);
+    let there = "names 3 joints of the log, which has base, elbow, shoulder, but the robot has 6 joints: shoulder";
     fails(2, &["identify", "ur10", log, "--joints", "base,elbow,shoulder"], &[there, few]);
-    fails(2, &["watch", "planar2", log], &["the log has 3 joints, the robot 2", "--joints says which"]);
-    let there = "names 1 joint of the log, which has base, elbow, shoulder, and the robot has 3 joints: waist";
-    fails(2, &judge(log, &["--joints", "base"]), &[there, "say which joint of the log each of them is"]);
+    fails(
+        2,
+        &["watch", "planar2", log],
+        &["the log has 3 joints (base, elbow, shoulder), but the robot has 2 (", "--joints lists"],
+    );
+    let there = "names 1 joint of the log, which has base, elbow, shoulder, but the robot has 3 joints: waist";
+    fails(2, &judge(log, &["--joints", "base"]), &[there, "name one joint of the log for each joint of the robot"]);
 }
 
 /// Degrees are of what turns, where a robot file says what does.
@@ -348,9 +361,12 @@ fn metres_of_a_slide_are_no_degrees() {
     let (found, said) = account(&["identify", &robot, &degrees, "--judge", "--degrees"]);
     assert_eq!(found, expected);
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(said.contains("degrees are for joints that turn: 1 slides, and is taken for m and m/s"), "{said}");
+    assert!(said.contains("degrees are only for joints that turn: 1 slides, and is read in m and m/s"), "{said}");
     let said = fine(&["log", &degrees, "--degrees", "--robot", &robot]);
-    assert!(said.contains("1  1      -0.4 … 0.4") && said.contains("degrees are for joints that turn: 1"), "{said}");
+    assert!(
+        said.contains("1  1      -0.4 … 0.4") && said.contains("degrees are only for joints that turn: 1"),
+        "{said}"
+    );
     let watched = account(&["watch", &robot, &degrees, "--degrees"]).1;
     assert!(watched.contains("joints that turn: 1"), "{watched}");
     // without a robot nobody knows, but its column may say it
@@ -373,14 +389,15 @@ fn columns_that_are_not_understood_are_named() {
     desk_log(&path, [0, 1, 2], german, [1.0; 3]);
     let text = fs::read_to_string(&path).expect("a log");
     fs::write(&path, text.replacen("time", "Zeit [s]", 1)).expect("a log");
-    let there = "the columns are Zeit [s], Achse1_position, Achse2_position, Achse3_position, Achse1_speed";
+    let there =
+        "the columns of this file are Zeit [s], Achse1_position, Achse2_position, Achse3_position, Achse1_speed";
     fails(2, &["log", log], &["no column has times", there, "--rate"]);
     let unread = "Zeit [s], Achse1_Moment, Achse2_Moment, Achse3_Moment";
     let said = fine(&["log", log, "--rate", "25"]);
     let place = |words: &str| said.find(words).unwrap_or_else(|| panic!("no `{words}` in {said}"));
     assert!(place(&format!("columns that are not read: {unread}")) < place("the log has no efforts"));
     let judge = judge(log, &["--rate", "25"]);
-    fails(1, &judge, &["the log has no efforts", &format!("not read are {unread}"), "tau1, …"]);
+    fails(1, &judge, &["the log has no efforts", &format!("rne does not read the columns {unread}"), "tau1 or"]);
     // what is printed can be typed
     let efforts =
         "--map Achse1.effort=Achse1_Moment --map Achse2.effort=Achse2_Moment --map Achse3.effort=Achse3_Moment";
@@ -397,12 +414,12 @@ fn columns_that_are_not_understood_are_named() {
     fails(
         2,
         &["log", log, "--rate", "25"],
-        &["the column t [s] has times, and a sampling rate is for tables", "remove --rate"],
+        &["the column t [s] has times, but a sampling rate can be given only for tables", "remove --rate"],
     );
     fails(
         2,
         &["log", log, "--columns", "time,q,tau"],
-        &["an order of columns is for arrays of numpy; this is CSV", "remove --columns"],
+        &["an order of columns can be given only for arrays of numpy, but this file is CSV", "remove --columns"],
     );
     let rows = timed.lines().skip(1).map(|line| {
         let (time, others) = line.split_once(',').expect("a time");
@@ -410,7 +427,9 @@ fn columns_that_are_not_understood_are_named() {
     });
     let header = timed.lines().next().expect("a header").replace("t [s]", "t [ms]");
     fs::write(&path, header + &rows.collect::<String>() + "\n").expect("a log");
-    assert!(fine(&["log", log]).contains("note: numbers are converted from the units of columns' names: t [ms]\n"));
+    assert!(
+        fine(&["log", log]).contains("note: rne converts numbers from the units in the names of columns: t [ms]\n")
+    );
 }
 
 /// The line that a refused table gets can be typed, with the names of the robot's joints.
@@ -437,7 +456,7 @@ fn a_table_without_known_names_gets_its_map() {
     for (option, wanted) in [
         ("q1", "write a meaning, `=` and a column"),
         ("base=q1", "neither `time` nor a joint with a quantity"),
-        ("base.torque=q1", "there are position, velocity, effort, acceleration"),
+        ("base.torque=q1", "the quantities are position, velocity, effort, acceleration"),
         ("base.position=w1", "no column `w1` for base.position"),
         ("base.position=q1 [furlong]", "`furlong` is not a unit for base.position"),
     ] {
@@ -464,7 +483,7 @@ fn a_motion_is_written_into_names_of_its_format() {
     for (name, said) in [
         ("x.mcap", "x.mcap ends with .mcap, which this command does not write; name a file that ends with .csv or"),
         ("x.db3", "x.db3 ends with .db3, which this command does not write"),
-        ("x.npy", "x.npy ends with .npy, which this command does not write"),
+        ("x.npy", "x.npy is an array of numpy, which rne log writes with --raw only; name a file that ends with"),
         ("x", "has no ending that gives the format; name a file that ends with .csv or .parquet"),
     ] {
         fails(2, &["log", &path("log.csv"), "--cutoff", "8", "-o", &path(name)], &[said]);

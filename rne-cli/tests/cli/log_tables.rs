@@ -34,7 +34,11 @@ fn two_arms_in_a_table_are_refused_with_what_to_type() {
     ] {
         fine(&[command, &["--where", "robot_id=r1"]].concat());
     }
-    fails(2, &["log", TWO_ARMS, "--where", "robot_id=r9"], &["no row has r9 in the column robot_id; it has r1, r2"]);
+    fails(
+        2,
+        &["log", TWO_ARMS, "--where", "robot_id=r9"],
+        &["no row has r9 in the column robot_id; the column has r1, r2"],
+    );
     fails(2, &["log", TWO_ARMS, "--where", "robot_id"], &["write a column, `=` and a text in it"]);
     fails(2, &["log", TWO_ARMS, "--where", "robot=r1"], &["no column `robot` (did you mean robot_id?)"]);
     fails(2, &["log", TWO_ARMS, "--by", "robot"], &["no column `robot` (did you mean robot_id?)"]);

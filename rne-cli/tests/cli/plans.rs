@@ -96,7 +96,7 @@ fn a_plan_is_not_believed() {
         let wrong = format!("{before}{}", graph.replacen(line, &format!("      mul: {count}"), 1));
         fs::write(&plan, &wrong).expect("written");
         let called = rne(&["check", &plan]);
-        assert!(called.status == 1 && called.out.contains(&format!("the file says {count} products")), "{called:?}");
+        assert!(called.status == 1 && called.out.contains(&format!("the file states {count} products")), "{called:?}");
         fine(&["search", &robot, "--seconds", "0"]);
         assert!(fine(&["check", &plan]).contains("proved"), "it has been counted anew");
     }
@@ -119,7 +119,7 @@ fn a_plan_is_not_believed() {
     // a base moves what kinematics return
     let text = fs::read_to_string(&robot).expect("a robot");
     fs::write(&robot, text.replacen("\njoints:", "\nbase: {xyz: [0, 0, 0.4]}\njoints:", 1)).expect("written");
-    fails(1, &["emit", &robot, "--form", "reduced"], &["the numbers of its robot file have changed"]);
+    fails(1, &["emit", &robot, "--form", "reduced"], &["numbers of the robot file have changed"]);
 }
 
 /// What a build refuses is said wherever the form is told, and nothing is said of an arm without a refusal.

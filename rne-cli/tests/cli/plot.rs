@@ -75,13 +75,13 @@ fn pictures_are_written() {
     let file = folder("plots").join("arm.yaml");
     fs::copy(format!("{}/robots/planar1.yaml", crate::call::ROOT), &file).expect("a copy");
     let file = file.to_str().expect("UTF-8");
-    fails(2, &["plot", file, "-o", file, "--force"], &["is the file that is read"]);
+    fails(2, &["plot", file, "-o", file, "--force"], &["is also the file that rne reads"]);
     // with a trajectory two files are read
     let csv = &format!("{file}.csv");
     fs::write(csv, "t,q1,qd1,qdd1\n-1e308,0,0,1\n1e308,0,0,1\n").expect("a trajectory");
     for read in [file, csv] {
         let before = fs::read(read).expect("a file");
-        fails(2, &["plot", file, "--trajectory", csv, "-o", read, "--force"], &["is the file that is read"]);
+        fails(2, &["plot", file, "--trajectory", csv, "-o", read, "--force"], &["is also the file that rne reads"]);
         assert_eq!(fs::read(read).expect("a file"), before);
     }
 }
@@ -127,8 +127,8 @@ fn trajectories_that_are_none() {
     let rows = |rows: &str, parts: &[&str]| bad(&format!("t,q1,q2\n0,0,0\n1,1,1\n{rows}"), parts);
     bad("", &["the file is empty", "the header is t,q1,q2"]);
     bad("t\tq1\tq2\n0\t0\t0\n", &["no column `t`", "separated by tabs"]);
-    bad("t,q1,q2\n", &["0 samples, and at least 3"]);
-    bad("t,q1,q2\n0,0,0\n1,1,1\n", &["2 samples, and at least 3", "a derivative needs three samples"]);
+    bad("t,q1,q2\n", &["0 samples, but at least 3"]);
+    bad("t,q1,q2\n0,0,0\n1,1,1\n", &["2 samples, but at least 3", "at least three if rne must compute derivatives"]);
     bad("t,q1\n0,1\n", &["there is no column `q2`"]);
     bad("time,q1,q2\n0,1,2\n", &["there is no column `t`"]);
     bad("t,q1,q_2\n0,1,2\n", &["there is no column `q2`; is it `q_2`?"]);
@@ -138,8 +138,8 @@ fn trajectories_that_are_none() {
     rows("2,x,1\n", &[":4:3", "`x` of column `q1` is not a finite number"]);
     rows("2,nan,1\n", &[":4:3", "not a finite number"]);
     rows("2,,1\n", &[":4:3", "a number of column `q1` is missing"]);
-    rows("2,1\n", &[":4:1", "2 cells, and 3 columns"]);
-    rows("2,0,5,1\n", &["4 cells, and 3 columns", "decimal point"]);
+    rows("2,1\n", &[":4:1", "2 cells, but 3 columns"]);
+    rows("2,0,5,1\n", &["4 cells, but 3 columns", "decimal point"]);
     rows("1,2,2\n", &[":4:1", "the time of sample 3 is not later"]);
     rows("0.5,2,2\n", &[":4:1", "not later"]);
     bad(&("t,q1,q2\n".to_owned() + &"0,0,0\n".repeat(200_001)), &["more than 200000 samples"]);

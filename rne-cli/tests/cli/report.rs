@@ -39,7 +39,7 @@ fn a_page_has_the_operations_of_the_plan() {
 #[test]
 fn what_is_wrong_is_said() {
     let robot = format!("{ROOT}/robots/puma560.yaml");
-    fails(2, &["report", &robot, "-o", &robot], &["is the file that is read"]);
+    fails(2, &["report", &robot, "-o", &robot], &["is also the file that rne reads"]);
     fails(2, &["report", "puma560"], &["--output"]);
     let nowhere = format!("{}/x.html", folder("report_nowhere").join("none").display());
     let called = rne(&["report", "planar1", "-o", &nowhere]);

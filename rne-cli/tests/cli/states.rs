@@ -314,15 +314,20 @@ fn mistakes_in_arrays_are_told() {
     for (kind, fortran, shape, said) in [
         ("<f8", "False", "(6,)", "the array has 1 axis; its shape is (states, 2)"),
         ("<f8", "False", "(1, 3, 2)", "the array has 3 axes; its shape is (states, 2)"),
-        ("<f8", "False", "(2, 3)", "the array has 3 columns where there are 2: q1, q2"),
+        ("<f8", "False", "(2, 3)", "the array has 3 columns, but 2 are needed: q1, q2"),
         ("<f8", "True", "(3, 2)", "the array is in Fortran's order; save numpy.ascontiguousarray(states)"),
         ("<i8", "False", "(3, 2)", "the numbers are `<i8`; save them as float64 or float32"),
         ("<f8", "False", "(4, 2)", "the file ends before the last of 4 states"),
-        ("<f8", "False", "(9223372036854775807, 2)", "no array of numpy: its shape is too large"),
-        ("<f8", "False", "(0, 0xffffffffffffffff, 2)", "no array of numpy: its shape is too large, or none"),
-        ("<f8", "False", "(0, 9999999999, 9999999999, 2)", "no array of numpy: its shape is too large"),
-        ("<f8", "False", "(-3, 2)", "no array of numpy: its shape is too large, or none"),
-        ("<f8", "False", "3, 2)", "no array of numpy: its header wants '(', and there is `3, 2)"),
+        ("<f8", "False", "(9223372036854775807, 2)", "not an array of numpy: its shape is too large"),
+        (
+            "<f8",
+            "False",
+            "(0, 0xffffffffffffffff, 2)",
+            "not an array of numpy: its shape is too large, or is not a shape",
+        ),
+        ("<f8", "False", "(0, 9999999999, 9999999999, 2)", "not an array of numpy: its shape is too large"),
+        ("<f8", "False", "(-3, 2)", "not an array of numpy: its shape is too large, or is not a shape"),
+        ("<f8", "False", "3, 2)", "not an array of numpy: its header must have '(' here, but there is `3, 2)"),
     ] {
         let found = reading(&npy(kind, fortran, shape, &six));
         assert!(found.status == 1 && found.out.is_empty(), "{kind} {shape}: {found:?}");
@@ -339,7 +344,9 @@ fn mistakes_in_arrays_are_told() {
         assert!(found.status == 1 && found.out.is_empty() && found.err.contains(said), "{length}: {found:?}");
     }
     let long = [b"\x93NUMPY\x02\x00".as_slice(), &u32::MAX.to_le_bytes(), b"{}"].concat();
-    assert!(reading(&long).err.contains("no array of numpy: its header has 4294967295 bytes; at most 65536 are read"));
+    assert!(
+        reading(&long).err.contains("not an array of numpy: its header has 4294967295 bytes; at most 65536 are read")
+    );
     assert!(reading(b"\xff\xfeq\x001\x00").err.contains("looks like UTF-16; save the file as UTF-8"));
 }
 
@@ -365,7 +372,7 @@ fn files_stay_unless_told_otherwise() {
     assert_eq!(text, gravity("q1,q2\n1,2\n").out);
     for (out, more, status, said) in [
         (&out, &[][..], 2, "exists and is not changed; --force overwrites it"),
-        (&states, &["--force"], 2, "is the file that is read; name another"),
+        (&states, &["--force"], 2, "is also the file that rne reads; name another file"),
         (&folder.display().to_string(), &["--force"], 2, "is a folder; name a file in it"),
         (&path("nowhere/out.csv"), &[], 1, "make it first"),
         (

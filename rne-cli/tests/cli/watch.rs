@@ -5,22 +5,22 @@ use std::fs;
 
 use crate::call::{ROOT, fails, fine, folder, rne};
 
-const ARM: &str = "docs/desk_arm_identified.yaml";
-const QUIET: &str = "docs/desk_arm_log.csv";
-const KNOCK: &str = "docs/desk_arm_knock.csv";
-const WORN: &str = "docs/desk_arm_worn.csv";
+pub(crate) const ARM: &str = "docs/desk_arm_identified.yaml";
+pub(crate) const QUIET: &str = "docs/desk_arm_log.csv";
+pub(crate) const KNOCK: &str = "docs/desk_arm_knock.csv";
+pub(crate) const WORN: &str = "docs/desk_arm_worn.csv";
 
-fn json(arguments: &[&str], status: i32) -> serde_json::Value {
+pub(crate) fn json(arguments: &[&str], status: i32) -> serde_json::Value {
     let called = rne(&[&["watch", ARM], arguments, &["--json"]].concat());
     assert_eq!(called.status, status, "{}", called.err);
     serde_json::from_str(&called.out).expect("JSON")
 }
 
-fn events(reply: &serde_json::Value) -> &Vec<serde_json::Value> {
+pub(crate) fn events(reply: &serde_json::Value) -> &Vec<serde_json::Value> {
     reply["events"].as_array().expect("a list")
 }
 
-fn number(of: &serde_json::Value, key: &str) -> f64 {
+pub(crate) fn number(of: &serde_json::Value, key: &str) -> f64 {
     of[key].as_f64().unwrap_or_else(|| panic!("{key} of {of}"))
 }
 
@@ -81,7 +81,7 @@ fn a_baseline_is_saved_and_used_again() {
     let text = fs::read_to_string(&path).expect("a baseline");
     for (from, to, said) in [
         ("cutoff: ", "cutoff: -", "above 0"),
-        ("noise: [", "noise: [1.0, ", "`noise` has 4 numbers, and 3 are expected"),
+        ("noise: [", "noise: [1.0, ", "`noise` has 4 numbers, but 3 are expected"),
         ("rows: ", "row: ", "`rows` is missing"),
         ("delay: ", "delay: x", "a number is expected"),
         ("format: 2", "format: 1", "format"),
@@ -117,7 +117,52 @@ fn a_trend_has_a_row_for_each_log() {
         assert!((of_csv - value).abs() < 0.02 && row.last() == Some(&events), "{row:?}");
     }
     fails(2, &["watch", ARM, KNOCK, "--quiet", QUIET, "--by", "day"], &["not dates", "--by log"]);
-    fails(2, &["watch", ARM, KNOCK, "--quiet", QUIET, "--csv", "t.csv"], &["--by"]);
+}
+
+/// Without groups the table is that of `--all`: the parameters with their thresholds, as in JSON.
+#[test]
+fn parameters_are_a_table() {
+    let folder = folder("watch_csv");
+    let path = folder.join("w.csv").to_str().expect("UTF-8").to_owned();
+    let call = ["watch", ARM, WORN, "--quiet", QUIET];
+    let called = rne(&[&call[..], &["--csv", &path]].concat());
+    assert!(called.status == 1 && called.err.contains("w.csv") && called.out.contains("1 event"), "{called:?}");
+    let csv = fs::read_to_string(&path).expect("a table");
+    assert_eq!(rne(&[&call[..], &["--csv", "-"]].concat()).out, csv);
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let keys = lines.next().expect("a heading");
+    assert_eq!(keys.join(","), "cause,joint,name,parameter,change,deviation,threshold,ratio,unit,watched");
+    let reply = json(&[WORN, "--quiet", QUIET], 1);
+    let parameters = reply["parameters"].as_array().expect("a list");
+    let rows: Vec<_> = lines.collect();
+    assert_eq!(rows.len(), parameters.len());
+    for (row, parameter) in rows.iter().zip(parameters) {
+        for (key, cell) in keys.iter().zip(row) {
+            let wanted = match &parameter[key] {
+                serde_json::Value::Null => String::new(),
+                serde_json::Value::String(text) => text.clone(),
+                other => other.to_string(),
+            };
+            let numbers = cell.parse::<f64>().ok().zip(wanted.parse::<f64>().ok());
+            let is_number = numbers.is_some_and(|(a, b)| (a - b).abs() <= 1e-14 * a.abs());
+            assert!(*cell == wanted || is_number, "{key}: {cell} and {wanted}");
+        }
+    }
+    // the same numbers again need no --force, other ones do
+    assert_eq!(rne(&[&call[..], &["--csv", &path]].concat()).status, 1);
+    fails(2, &["watch", ARM, KNOCK, "--quiet", QUIET, "--csv", &path], &["--force"]);
+    fails(2, &["watch", ARM, KNOCK, "--csv", ARM, "--force"], &["is also the file that rne reads"]);
+    fails(2, &["watch", ARM, KNOCK, "--csv", "x.csv", "--json"], &["cannot be used with"]);
+}
+
+/// A log is no baseline file, and the message says which option takes a log.
+#[test]
+fn a_log_is_no_baseline() {
+    for log in [QUIET, "docs"] {
+        let said = ["is a log, and --baseline reads a file that --save-baseline wrote", "give a log with --quiet"];
+        fails(2, &["watch", ARM, WORN, "--baseline", log], &said);
+    }
+    fails(1, &["watch", ARM, WORN, "--baseline", "nowhere.yaml"], &["nowhere.yaml cannot be read"]);
 }
 
 /// Efforts that come a sample later than in the quiet log are one event: no friction, and no contact in what is left.
@@ -203,30 +248,6 @@ fn a_column_has_groups() {
     fails(2, &["watch", ARM, path, "--by", "tsk"], &["tsk", "task"]);
 }
 
-/// Logs of one day are one group, by the date of their times.
-#[test]
-fn days_are_dates() {
-    let folder = folder("watch_days");
-    let log = fs::read_to_string(format!("{ROOT}/{QUIET}")).expect("a log");
-    let mut paths = Vec::new();
-    // 2026-11-23 and 2024-02-29, 10:00 UTC
-    for (name, start) in [("a", 1_795_428_000_u64), ("b", 1_709_200_800)] {
-        let moved = log.lines().enumerate().map(|(at, line)| match line.split_once(',') {
-            Some((time, rest)) if at > 0 => {
-                let (seconds, parts) = time.split_once('.').expect("a number");
-                let seconds: u64 = seconds.parse().expect("a whole number");
-                format!("{}.{parts},{rest}\n", start + seconds)
-            }
-            _ => format!("{line}\n"),
-        });
-        let path = folder.join(format!("{name}.csv"));
-        fs::write(&path, moved.collect::<String>()).expect("a file");
-        paths.push(path.to_str().expect("UTF-8").to_owned());
-    }
-    let text = fine(&["watch", ARM, &paths[0], &paths[1], "--quiet", QUIET, "--by", "day"]);
-    assert!(text.contains("2026-11-23") && text.contains("2024-02-29") && text.contains("no events"), "{text}");
-}
-
 /// Two logs whose times begin at the same number: events of one are not those of the other.
 #[test]
 fn events_belong_to_their_run() {
@@ -286,29 +307,6 @@ joints:
     let [since, until] = ["since", "until"].map(|key| number(event, key));
     assert!((130.7..130.9).contains(&since) && (131.3..131.6).contains(&until), "{reply}");
     assert!((number(event, "value") + 1.0).abs() < 0.15, "{reply}");
-}
-
-/// What is drawn is what is used: the contact's thresholds as curves, and the event.
-#[test]
-fn the_picture_has_the_events() {
-    let folder = folder("watch_picture");
-    let picture = folder.join("knock.svg");
-    let path = picture.to_str().expect("UTF-8");
-    let output = rne(&["watch", ARM, KNOCK, "--plot", path]);
-    assert_eq!(output.status, 1, "{}", output.err);
-    let svg = fs::read_to_string(&picture).expect("a picture");
-    assert!(svg.contains("contact of shoulder: external -2.1") && svg.contains("contact threshold"), "{svg}");
-    // residual, external torque, two thresholds
-    assert_eq!(svg.matches("<polyline").count(), 3 * 4, "{svg}");
-    // once more is the same; another picture is not written over it
-    assert_eq!(rne(&["watch", ARM, KNOCK, "--plot", path]).status, 1);
-    fails(2, &["watch", ARM, QUIET, "--plot", path], &["--force"]);
-    assert_eq!(fs::read_to_string(&picture).expect("a picture"), svg);
-    // friction that grew has a curve of its own
-    let worn = folder.join("worn.svg");
-    rne(&["watch", ARM, WORN, "--quiet", QUIET, "--plot", worn.to_str().expect("UTF-8")]);
-    let svg = fs::read_to_string(&worn).expect("a picture");
-    assert!(svg.contains("changed parameters") && svg.contains("friction of elbow: coulomb 0.45"), "{svg}");
 }
 
 /// A model that explains nothing is no quiet arm.
@@ -379,21 +377,6 @@ fn a_quiet_log_of_another_arm_is_not_in_order() {
     assert!(!rne(&["watch", ARM, KNOCK, "--quiet", QUIET]).err.contains("warning"));
 }
 
-/// A picture that cannot be written is refused before the logs are read.
-#[test]
-fn a_picture_without_a_place_is_refused_at_once() {
-    let folder = folder("watch_no_place");
-    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
-    fs::write(path("notes.txt"), "not a picture").expect("a file");
-    for (status, name, words) in [(1, "none/knock.svg", "no folder"), (2, ".", "folder"), (2, "notes.txt", "--force")] {
-        fails(status, &["watch", ARM, "there_is_none.csv", "--plot", &path(name)], &[words]);
-    }
-    fails(2, &["watch", ARM, QUIET, "--plot", QUIET], &["is the file that is read"]);
-    // a place is tried, and left as it is
-    fails(1, &["watch", ARM, "there_is_none.csv", "--plot", &path("knock.svg")], &["there_is_none.csv"]);
-    assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
-}
-
 #[test]
 fn what_cannot_be_watched_is_said() {
     let folder = folder("watch_wrong");
@@ -411,7 +394,7 @@ fn what_cannot_be_watched_is_said() {
     fails(1, &["watch", ARM, QUIET, "--quiet", &short, "--cutoff", "2"], &["short"]);
     fails(1, &["watch", ARM, "there_is_none.csv"], &["there_is_none.csv"]);
     fails(2, &["watch", ARM, KNOCK, KNOCK, "--quiet", KNOCK], &["is also watched"]);
-    fails(2, &["watch", "puma560", QUIET], &["the log has 3 joints, the robot 6"]);
+    fails(2, &["watch", "puma560", QUIET], &["the log has 3 joints (waist, shoulder, elbow), but the robot has 6"]);
     fails(2, &["watch", ARM, QUIET, "--gain", "0"], &["above 0"]);
     fails(2, &["watch", ARM, QUIET, "--hold", "NaN"], &["above 0"]);
     fails(2, &["watch", ARM, QUIET, "--false-alarms", "-1"], &["--false-alarms"]);

@@ -189,7 +189,10 @@ fn files_that_are_no_worksheets() {
     bad("1,omega,z,1.3\n", &["there is no column `joint`"]);
     bad("joint,quantty,value\n1,tau,2\n", &["<standard input>:1:7", "did you mean `quantity`?"]);
     bad("joint,quantity,value,value\n1,tau,2,3\n", &["`value` occurs twice"]);
-    row("1,2,omega_dt,z,1,rad/s²,link", &[":3:5", "`omega_dt`", "did you mean `omega_dot`?", "there are q, qd"]);
+    row(
+        "1,2,omega_dt,z,1,rad/s²,link",
+        &[":3:5", "`omega_dt`", "did you mean `omega_dot`?", "the quantities are q, qd"],
+    );
     row("1,2,omega_dot,w,1,rad/s²,link", &[":3:15", "has no component `w`", "x, y, z"]);
     row("1,2,omega_dot,,1,rad/s²,link", &["which component of omega_dot"]);
     row("1,7,tau,z,1,N m,", &["tau has no component `z`", "leave the component empty"]);
@@ -197,7 +200,10 @@ fn files_that_are_no_worksheets() {
     row("j3,2,omega_dot,x,1,rad/s²,link", &["did you mean `j1`?"]);
     row("1,3,omega_dot,x,1,rad/s²,link", &[":3:3", "omega_dot is computed by step 2, not by step `3`"]);
     row("1,2,omega_dot,x,1,deg/s²,link", &["omega_dot of joint 1 is in rad/s², not in `deg/s²`", "deg(30)"]);
-    row("1,2,omega_dot,x,1,rad/s^2,base", &["this is in base axes, and the comparison in link axes", "--axes base"]);
+    row(
+        "1,2,omega_dot,x,1,rad/s^2,base",
+        &["this value is in base axes, but the comparison is in link axes", "--axes base"],
+    );
     row("1,2,omega_dot,x,1,rad/s2,lonk", &["`lonk` is not a name of axes", "`lecture`"]);
     row("1,1,omega,z,1.3,rad/s,link", &[":3:1", "omega z of joint 1 is given twice; first on line 2"]);
     row("1,1,omega,z,1,,\n1,1,omega,z,1,,", &[":3:1", ":4:1", "first on line 2"]);
@@ -205,7 +211,7 @@ fn files_that_are_no_worksheets() {
     for number in ["nan", "inf", "1e999", "O.5", "1/0"] {
         row(&format!("1,2,omega_dot,x,{number},rad/s²,link"), &[":3:17", "is not a number"]);
     }
-    row("1,2,omega_dot,x,0,5,rad/s²,link", &["8 cells, and 7 columns", "decimal point"]);
+    row("1,2,omega_dot,x,0,5,rad/s²,link", &["8 cells, but 7 columns", "decimal point"]);
     row("1,2,\"omega_dot,x,0", &["this quote is not closed"]);
     row("1,0,orientation,xx,1,,", &["a worksheet in link axes has no orientation"]);
     bad("# rne worksheet, format 2, robot planar2\njoint,quantity,value\n1,tau,1\n", &[":1:1", "reads format 1"]);

@@ -16,7 +16,7 @@ pub(crate) mod seven_steps;
 pub(crate) use arm::{Arm, Link, Mount};
 pub(crate) use joint::{Joint, JointState, Wrench};
 pub(crate) use kinematics::{Frame, Frames};
-pub(crate) use payload::Payload;
+pub(crate) use payload::{AtTip, Payload};
 pub(crate) use seven_steps::{Load, Motion, Turning};
 
 use rne_model::Robot;
@@ -35,10 +35,14 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         | Function::InverseDynamicsFromSinCos
         | Function::GravityTorques
         | Function::BiasTorques
-        | Function::InverseDynamicsOnMovingBase => derivation.torques(),
-        Function::MassMatrix => mass_matrix(&derivation.upper_half()),
+        | Function::InverseDynamicsOnMovingBase
+        | Function::GravityTorquesWithPayload
+        | Function::BiasTorquesWithPayload => derivation.torques(),
+        Function::MassMatrix | Function::MassMatrixWithPayload => mass_matrix(&derivation.upper_half()),
         Function::CoriolisMatrix => derivation.coriolis_matrix(),
-        Function::ForwardDynamics => forward_dynamics(builder, &derivation.upper_half(), derivation.tau()),
+        Function::ForwardDynamics | Function::ForwardDynamicsWithPayload => {
+            forward_dynamics(builder, &derivation.upper_half(), derivation.tau())
+        }
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
         Function::Jacobian => derivation.jacobian(),
@@ -48,9 +52,11 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::CentreOfMass => derivation.centre_of_mass(),
         Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
         Function::Regressor => derivation.regressor(),
-        Function::InverseDynamicsDerivatives => derivatives(builder, &derivation.tau()),
+        Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
+            derivatives(builder, &derivation.tau())
+        }
         Function::JointWrenches => derivation.joint_wrenches(),
-        Function::MomentumAndRate => derivation.momentum_and_rate(),
+        Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.upper_half()),
     };
@@ -67,7 +73,7 @@ struct Derivation<'s, 'r> {
     arm: Arm<'s>,
     states: Vec<JointState<'s>>,
     base: Motion<'s>,
-    tip: Wrench<'s>,
+    tip: AtTip<'s>,
 }
 
 impl<'s, 'r> Derivation<'s, 'r> {
@@ -89,10 +95,13 @@ impl<'s, 'r> Derivation<'s, 'r> {
             qdd: given(Argument::Accelerations, Quantity::RateDot, joint, Cause::NoAcceleration),
         };
         let states = (1..=dof).map(state).collect();
-        let tip = if function.takes(Argument::Wrench) {
-            Wrench { force: vector(Quantity::JointForce, dof + 1), moment: vector(Quantity::JointMoment, dof + 1) }
+        let tip = if let Some(payload) = Payload::argument(builder, dof) {
+            AtTip::Payload(payload)
+        } else if function.takes(Argument::Wrench) {
+            let [force, moment] = [Quantity::JointForce, Quantity::JointMoment].map(|part| vector(part, dof + 1));
+            AtTip::Wrench(Wrench { force, moment })
         } else {
-            Wrench::of_free_tip(builder)
+            AtTip::Nothing
         };
         let base = if function.takes(Argument::Base) {
             let motion = [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration];
@@ -104,10 +113,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn loads(&self) -> Vec<Load<'s>> {
-        let motions = self.motions();
-        let payload = Payload::argument(self.builder, self.states.len()).zip(motions.last());
-        let tip = payload.map_or(self.tip, |(payload, last)| payload.wrench(&self.arm, last));
-        seven_steps::backward(&self.arm, &self.states, &motions, &tip)
+        seven_steps::inverse_dynamics(&self.arm, &self.states, &self.base, &self.tip)
     }
 
     fn motions(&self) -> Vec<Motion<'s>> {
@@ -140,7 +146,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     /// The upper half of M.
     fn upper_half(&self) -> Vec<Vec<Symbol<'s>>> {
-        mass_matrix::upper_half(&self.arm, &self.states)
+        mass_matrix::upper_half(&self.arm, &self.states, &self.tip)
     }
 
     fn coriolis_matrix(&self) -> Outputs<'s> {
@@ -212,7 +218,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn momentum_and_rate(&self) -> Outputs<'s> {
-        let [momenta, rates] = momentum::momentum_and_rate(&self.arm, &self.states, &self.motions(), &self.base);
+        let [momenta, rates] =
+            momentum::momentum_and_rate(&self.arm, &self.states, &self.motions(), &self.base, &self.tip);
         [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
     }
 

@@ -24,7 +24,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::{Arm, Joint, JointState, Motion};
+use crate::formulate::{Arm, AtTip, Joint, JointState, Motion, Payload};
 use crate::ir::{Name, Quantity, Symbol, Vector};
 
 /// A link and all that it carries: as one body, about its joint, in its axes or in those of its parent.
@@ -38,14 +38,19 @@ struct Carried<'s> {
     r: Vector<'s>,
 }
 
-/// p and τ + ∂T/∂q - ∂V/∂q of every joint. `motions` are those of a base that stands still.
+/// p and τ + ∂T/∂q - ∂V/∂q of every joint; a payload is one more body that the last link carries. `motions` are those
+/// of a base that stands still.
 pub(crate) fn momentum_and_rate<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     motions: &[Motion<'s>],
     base: &Motion<'s>,
+    tip: &AtTip<'s>,
 ) -> [Vec<Symbol<'s>>; 2] {
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
+    if let (AtTip::Payload(payload), Some(last), Some(of_last)) = (tip, motions.last(), carried.last_mut()) {
+        of_last.push(of_payload(arm, payload, last));
+    }
     let (mut momenta, mut rates) = (Vec::with_capacity(motions.len()), Vec::with_capacity(motions.len()));
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
         let Joint { lines: line, link, .. } = joint;
@@ -79,6 +84,22 @@ pub(crate) fn momentum_and_rate<'s>(
     momenta.reverse();
     rates.reverse();
     [momenta, rates]
+}
+
+/// The payload as a body that the last link carries.
+fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, last: &Motion<'s>) -> Carried<'s> {
+    let (dof, rotation) = (arm.links.len(), arm.tip.rotation);
+    let [linear, angular] = payload.momenta(arm, last);
+    let moment = arm.builder.joint(dof + 1).vector(Quantity::MomentBehind, || payload.com * payload.mass);
+    let line = arm.builder.joint(dof);
+    let turned = |quantity, vector| line.vector(quantity, || rotation * vector);
+    Carried {
+        mass: payload.mass,
+        first_moment: turned(Quantity::TurnedMomentBehind, moment),
+        linear: turned(Quantity::TurnedLinearMomentum, linear),
+        angular: turned(Quantity::TurnedAngularMomentum, angular),
+        r: arm.tip.r,
+    }
 }
 
 /// Link i with what it carries.

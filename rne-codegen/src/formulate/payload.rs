@@ -37,7 +37,7 @@ impl<'s> Payload<'s> {
     }
 
     /// The wrench that the last link exerts on it, at the tip, in tip axes.
-    pub(crate) fn wrench(&self, arm: &Arm<'s>, last: &Motion<'s>) -> Wrench<'s> {
+    fn wrench(&self, arm: &Arm<'s>, last: &Motion<'s>) -> Wrench<'s> {
         let Self { mass, com, inertia } = *self;
         let dof = arm.links.len();
         let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
@@ -65,5 +65,43 @@ impl<'s> Payload<'s> {
         let force = line.vector(Quantity::JointForce, || (c_ddot - gravity) * mass);
         let moment = line.vector(Quantity::JointMoment, || inertia_moment + com.cross(force));
         Wrench { force, moment }
+    }
+
+    /// Its momenta, in tip axes and about the origin of the tip frame: v = Rᵀ (ċ_n + ω_n × r) + ω × c, P = m v and L =
+    /// I ω
+    /// + c × P. `last` is the motion of the last link.
+    pub(crate) fn momenta(&self, arm: &Arm<'s>, last: &Motion<'s>) -> [Vector<'s>; 2] {
+        let Self { mass, com, inertia } = *self;
+        let dof = arm.links.len();
+        let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
+        let omega = line.vector(Quantity::Omega, || back * last.turning.omega);
+        let omega_cross_r = line.named(dof).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
+        let tip = line.vector(Quantity::JointPointVelocity, || last.c_dot + omega_cross_r);
+        let velocity = line.vector(Quantity::Velocity, || back * tip + omega.cross(com));
+        let linear = line.vector(Quantity::LinearMomentum, || velocity * mass);
+        let angular = line.vector(Quantity::AngularMomentumBehind, || inertia * omega + com.cross(linear));
+        [linear, angular]
+    }
+}
+
+/// The load of the last link at the tip.
+#[derive(Clone, Copy)]
+pub(crate) enum AtTip<'s> {
+    /// Nothing.
+    Nothing,
+    /// A wrench, which the last link exerts on the environment.
+    Wrench(Wrench<'s>),
+    /// A payload.
+    Payload(Payload<'s>),
+}
+
+impl<'s> AtTip<'s> {
+    /// The wrench that the last link exerts, in tip axes.
+    pub(crate) fn wrench(&self, arm: &Arm<'s>, last: Option<&Motion<'s>>) -> Wrench<'s> {
+        match (self, last) {
+            (Self::Wrench(wrench), _) => *wrench,
+            (Self::Payload(payload), Some(last)) => payload.wrench(arm, last),
+            _ => Wrench::of_free_tip(arm.builder),
+        }
     }
 }

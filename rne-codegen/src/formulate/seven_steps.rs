@@ -10,7 +10,7 @@
 //! as in a set of base parameters: its terms are written separately, because no real body has them.
 
 use crate::formulate::arm::identity;
-use crate::formulate::{Arm, Joint, JointState, Mount, Wrench};
+use crate::formulate::{Arm, AtTip, Joint, JointState, Mount, Wrench};
 use crate::ir::{Builder, Cause, JointLines, Matrix, Quantity, Symbol, Vector};
 
 /// How a link turns, in its frame: what steps 1 and 2 find.
@@ -79,15 +79,15 @@ impl<'s> Wrench<'s> {
     }
 }
 
-/// The torques of all joints, base to tip, when the last link exerts `tip` on its environment.
+/// The torques of all joints, base to tip.
 pub(crate) fn inverse_dynamics<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     base: &Motion<'s>,
-    tip: &Wrench<'s>,
+    tip: &AtTip<'s>,
 ) -> Vec<Load<'s>> {
     let motions = forward(arm, states, base);
-    backward(arm, states, &motions, tip)
+    backward(arm, states, &motions, &tip.wrench(arm, motions.last()))
 }
 
 /// Steps 1 and 2: how link i turns.

@@ -70,6 +70,21 @@ impl Function {
         self.arguments().contains(&argument)
     }
 
+    /// The same function of the arm with a payload, where there is one.
+    #[must_use]
+    pub const fn with_payload(self) -> Option<Self> {
+        match self {
+            Self::InverseDynamics => Some(Self::InverseDynamicsWithPayload),
+            Self::GravityTorques => Some(Self::GravityTorquesWithPayload),
+            Self::BiasTorques => Some(Self::BiasTorquesWithPayload),
+            Self::MassMatrix => Some(Self::MassMatrixWithPayload),
+            Self::ForwardDynamics => Some(Self::ForwardDynamicsWithPayload),
+            Self::InverseDynamicsDerivatives => Some(Self::InverseDynamicsDerivativesWithPayload),
+            Self::MomentumAndRate => Some(Self::MomentumAndRateWithPayload),
+            _ => None,
+        }
+    }
+
     /// Whether what it returns are the torques of the joints.
     #[must_use]
     pub const fn returns_torques(self) -> bool {

@@ -117,6 +117,29 @@ macro_rules! functions {
                 "inverse[i][j]: acceleration of joint i for a unit torque at joint j, from rest and without gravity. \
                  Rotor inertia in an arm with its rotors only. A singular mass matrix (a joint that moves nothing) \
                  gives numbers that are not finite.";
+            GravityTorquesWithPayload = gravity_torques_with_payload(q: Positions, payload: Payload) -> Vector:
+                "Torques that hold the arm and a payload at its tip still against gravity.",
+                "payload: as in inverse_dynamics_with_payload.";
+            BiasTorquesWithPayload = bias_torques_with_payload(q: Positions, qd: Rates, payload: Payload) -> Vector:
+                "Coriolis, centrifugal and gravity torques of the arm with a payload at its tip.",
+                "payload: as in inverse_dynamics_with_payload.";
+            MassMatrixWithPayload = mass_matrix_with_payload(q: Positions, payload: Payload) -> Matrix:
+                "The mass matrix of the arm with a payload at its tip, symmetric.",
+                "mass[i][j]: as in mass_matrix. payload: as in inverse_dynamics_with_payload.";
+            ForwardDynamicsWithPayload =
+                forward_dynamics_with_payload(q: Positions, qd: Rates, tau: Torques, payload: Payload) -> Vector:
+                "Accelerations for positions `q`, velocities `qd` and torques `tau` with a payload at the tip.",
+                "qdd: as in forward_dynamics. payload: as in inverse_dynamics_with_payload.";
+            InverseDynamicsDerivativesWithPayload = inverse_dynamics_derivatives_with_payload(
+                q: Positions, qd: Rates, qdd: Accelerations, payload: Payload
+            ) -> TorqueDerivatives:
+                "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_payload`; row i is torque i.",
+                "dq[i][j], dqd[i][j]: of torque i, by joint j. The derivative by q̈ is mass_matrix_with_payload.";
+            MomentumAndRateWithPayload = momentum_and_rate_with_payload(
+                q: Positions, qd: Rates, tau: Torques, payload: Payload
+            ) -> MomentumAndRate:
+                "The momentum of the joints with a payload at the tip, and its rate without external torques.",
+                "momentum, rate: as in momentum_and_rate. payload: as in inverse_dynamics_with_payload.";
         }
     };
 }
@@ -175,6 +198,8 @@ named! {
         MovingBase = "MovingBase",
         /// Rotors, gears, friction.
         Actuation = "Actuation",
+        /// The arm with a payload that is known when the program runs.
+        PayloadDynamics = "PayloadDynamics",
     }
 }
 
@@ -188,35 +213,83 @@ const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
 /// Why a centre of mass may be none.
 const WITHOUT_MASS: &str = "the centre of mass is not finite: the arm has no mass, or the state is too large";
 
+/// The mass of the payload in a listing.
+const PAYLOAD_MASS: Own = Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1");
+
+/// Its centre of mass.
+const PAYLOAD_COM: Own = Own::names(
+    Quantity::Com,
+    "centre of mass from the link frame's origin; of the payload, from the tip frame's, for i = n + 1",
+);
+
+/// Its inertia.
+const PAYLOAD_INERTIA: Own =
+    Own::names(Quantity::Inertia, "inertia about the centre of mass; of the payload, in tip axes, for i = n + 1");
+
+/// The momenta of the joints in a listing.
+const MOMENTUM: Own = Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇"));
+
+/// Their rates.
+const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
+    format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
+});
+
+const MASS_MATRIX: Entry = Entry {
+    output: "mass",
+    listed: "returned: the rows of the matrix",
+    answer: Answer::Tables(&[of_joints("", MatrixUnit::Mass)]),
+    is_of_motion: true,
+    feels_rotors: true,
+    ..Entry::of(Function::MassMatrix, Capability::MassMatrix)
+};
+
+const FORWARD_DYNAMICS: Entry = Entry {
+    output: "qdd",
+    answer: Answer::Accelerations,
+    divides: Some(
+        "the accelerations are not finite: the mass matrix is singular \
+         (a joint moves no mass), or the state is too large",
+    ),
+    inverts_mass: true,
+    feels_rotors: true,
+    ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
+};
+
+const DERIVATIVES: Entry = Entry {
+    output: "derivatives",
+    listed: "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
+    answer: Answer::Tables(&[of_joints("∂τ/∂q", MatrixUnit::PerPosition), of_joints("∂τ/∂q̇", MatrixUnit::PerRate)]),
+    is_of_motion: true,
+    ..Entry::of(Function::InverseDynamicsDerivatives, Capability::InverseDynamicsDerivatives)
+};
+
+const MOMENTUM_AND_RATE: Entry = Entry {
+    output: "momentum",
+    listed: "returned: the momenta of the joints, then their rates",
+    own: &[MOMENTUM, MOMENTUM_RATE],
+    answer: Answer::Tables(&[AnswerTable::of(
+        "momentum of each joint, M q̇ (N m s, prismatic: N s), and its rate without external torques (N m, \
+        prismatic: N)",
+        Labels::Names(&["momentum", "rate"]),
+        Labels::Joints,
+    )]),
+    is_of_motion: true,
+    feels_rotors: true,
+    ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
+};
+
 /// The functions.
 pub(crate) const TABLE: &[Entry] = &[
     Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
     Entry { ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics) },
     Entry {
-        own: &[
-            Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1"),
-            Own::names(
-                Quantity::Com,
-                "centre of mass from the link frame's origin; of the payload, from the tip frame's, for i = n + 1",
-            ),
-            Own::names(
-                Quantity::Inertia,
-                "inertia about the centre of mass; of the payload, in tip axes, for i = n + 1",
-            ),
-        ],
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics)
     },
     Entry { ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics) },
     Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorques, Capability::InverseDynamics) },
     Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorques, Capability::InverseDynamics) },
-    Entry {
-        output: "mass",
-        listed: "returned: the rows of the matrix",
-        answer: Answer::Tables(&[of_joints("", MatrixUnit::Mass)]),
-        is_of_motion: true,
-        feels_rotors: true,
-        ..Entry::of(Function::MassMatrix, Capability::MassMatrix)
-    },
+    MASS_MATRIX,
     Entry {
         output: "coriolis",
         listed: "returned: the rows of the matrix",
@@ -227,17 +300,7 @@ pub(crate) const TABLE: &[Entry] = &[
         is_of_motion: true,
         ..Entry::of(Function::CoriolisMatrix, Capability::CoriolisMatrix)
     },
-    Entry {
-        output: "qdd",
-        answer: Answer::Accelerations,
-        divides: Some(
-            "the accelerations are not finite: the mass matrix is singular \
-             (a joint moves no mass), or the state is too large",
-        ),
-        inverts_mass: true,
-        feels_rotors: true,
-        ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
-    },
+    FORWARD_DYNAMICS,
     Entry {
         output: "tip",
         listed: "returned: the rows of the rotation, then the translation",
@@ -337,13 +400,7 @@ pub(crate) const TABLE: &[Entry] = &[
         answer: Answer::PerParameter,
         ..Entry::of(Function::Regressor, Capability::Regressor)
     },
-    Entry {
-        output: "derivatives",
-        listed: "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
-        answer: Answer::Tables(&[of_joints("∂τ/∂q", MatrixUnit::PerPosition), of_joints("∂τ/∂q̇", MatrixUnit::PerRate)]),
-        is_of_motion: true,
-        ..Entry::of(Function::InverseDynamicsDerivatives, Capability::InverseDynamicsDerivatives)
-    },
+    DERIVATIVES,
     Entry {
         output: "wrenches",
         listed: "returned: force and moment of every joint",
@@ -356,25 +413,7 @@ pub(crate) const TABLE: &[Entry] = &[
         is_irreducible: true,
         ..Entry::of(Function::JointWrenches, Capability::JointWrenches)
     },
-    Entry {
-        output: "momentum",
-        listed: "returned: the momenta of the joints, then their rates",
-        own: &[
-            Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇")),
-            Own::of(Quantity::MomentumRate, |joint| {
-                format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
-            }),
-        ],
-        answer: Answer::Tables(&[AnswerTable::of(
-            "momentum of each joint, M q̇ (N m s, prismatic: N s), and its rate without external torques (N m, \
-            prismatic: N)",
-            Labels::Names(&["momentum", "rate"]),
-            Labels::Joints,
-        )]),
-        is_of_motion: true,
-        feels_rotors: true,
-        ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
-    },
+    MOMENTUM_AND_RATE,
     Entry { ..Entry::torques(Function::InverseDynamicsOnMovingBase, Capability::MovingBase) },
     Entry {
         output: "tau",
@@ -413,6 +452,40 @@ pub(crate) const TABLE: &[Entry] = &[
              (a joint moves no mass), or the positions are too large",
         ),
         ..Entry::of(Function::InverseMassMatrix, Capability::MassMatrix)
+    },
+    Entry {
+        is_of_motion: true,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM],
+        ..Entry::torques(Function::GravityTorquesWithPayload, Capability::PayloadDynamics)
+    },
+    Entry {
+        is_of_motion: true,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..Entry::torques(Function::BiasTorquesWithPayload, Capability::PayloadDynamics)
+    },
+    Entry {
+        function: Function::MassMatrixWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..MASS_MATRIX
+    },
+    Entry {
+        function: Function::ForwardDynamicsWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..FORWARD_DYNAMICS
+    },
+    Entry {
+        function: Function::InverseDynamicsDerivativesWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..DERIVATIVES
+    },
+    Entry {
+        function: Function::MomentumAndRateWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..MOMENTUM_AND_RATE
     },
 ];
 

@@ -17,7 +17,7 @@ use crate::ir::{ExactAngle, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
 use crate::reduced::inward::full;
 use crate::reduced::rnea_derivatives::{matter, stations};
-use crate::reduced::{Arm, Gradient, Inward, JointMotion, Outward, Symmetric, Turned, Wrench};
+use crate::reduced::{Arm, Composite, Gradient, Inward, JointMotion, Outward, Symmetric, Turned, Wrench};
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 
@@ -142,9 +142,8 @@ impl<'s> Articulated<'s> {
 /// The link alone.
 fn rigid<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> Articulated<'s> {
     let builder = arm.builder;
-    let matter = matter(arm, index);
-    let s = matter.s.map(|row| row.map(|x| builder.number(x)));
-    let (h, m, zero) = (builder.vector(matter.h), builder.number(matter.mass), builder.zero());
+    let Composite { mass: m, h, s, .. } = Composite::of_link(arm, index, &matter(arm, index));
+    let (s, zero) = (full(s), builder.zero());
     let [x, y, z] = h.0;
     let gradient = Gradient::new(station.own.omega, builder.no_vector());
     Articulated {

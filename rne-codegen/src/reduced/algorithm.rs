@@ -1,13 +1,13 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
-use crate::formulate::{self, Outputs, Payload, by_joint, square, torque_by};
+use crate::formulate::{self, Outputs, by_joint, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::torques;
 use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
-use crate::reduced::{Arm, JointFrames, Load, aba, crba, momentum};
+use crate::reduced::{Arm, JointFrames, aba, crba, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,12 +59,24 @@ impl Algorithm {
             | Function::InverseDynamicsWithWrench
             | Function::InverseDynamicsFromSinCos
             | Function::BiasTorques => &[Algorithm::Rnea],
-            Function::InverseDynamicsWithPayload => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
+            Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
+                &[Algorithm::Rnea, Algorithm::UnturnedPayload]
+            }
             Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea],
             Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
+            Function::GravityTorquesWithPayload => &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS],
             Function::MassMatrix | Function::InverseMassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
             // where the first moments behind the joints are gathered
-            Function::MomentumAndRate => &[BY_GROUPS, BY_JOINTS],
+            Function::MomentumAndRate | Function::MomentumAndRateWithPayload => &[BY_GROUPS, BY_JOINTS],
+            Function::MassMatrixWithPayload | Function::InverseDynamicsDerivativesWithPayload => {
+                &[BY_GROUPS, BY_JOINTS]
+            }
+            Function::ForwardDynamicsWithPayload => &[
+                BY_GROUPS,
+                BY_JOINTS,
+                Algorithm::Aba(ExpressedIn::GroupFrame),
+                Algorithm::Aba(ExpressedIn::JointFrame),
+            ],
             Function::ForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -129,16 +141,25 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
     let upper_half = || mass_matrix(arm, algorithm);
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function, algorithm) {
-        (Function::GravityTorques, Algorithm::Crba(_)) => by_joint(Quantity::Torque, crba::gravity_torques(arm)),
-        (Function::MomentumAndRate, _) => {
+        (Function::GravityTorques | Function::GravityTorquesWithPayload, Algorithm::Crba(_)) => {
+            by_joint(Quantity::Torque, crba::gravity_torques(arm))
+        }
+        (Function::MomentumAndRate | Function::MomentumAndRateWithPayload, _) => {
             let [momenta, rates] = momentum::momentum_and_rate(arm);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
-        (Function::MassMatrix, _) => formulate::mass_matrix(&upper_half()),
+        (Function::MassMatrix | Function::MassMatrixWithPayload, _) => formulate::mass_matrix(&upper_half()),
         (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &upper_half()),
-        (Function::ForwardDynamics, Algorithm::Aba(_)) => by_joint(Quantity::RateDot, aba::forward_dynamics(arm)),
-        (Function::ForwardDynamics, _) => formulate::forward_dynamics(builder, &upper_half(), recursion(arm)),
-        (Function::InverseDynamicsDerivatives, Algorithm::Crba(_)) => {
+        (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
+            by_joint(Quantity::RateDot, aba::forward_dynamics(arm))
+        }
+        (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, _) => {
+            formulate::forward_dynamics(builder, &upper_half(), recursion(arm, algorithm))
+        }
+        (
+            Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload,
+            Algorithm::Crba(_),
+        ) => {
             let found = sensitivity(arm, Number::integer(2));
             let by = |kind: fn(usize) -> WithRespectTo, matrix: &[Vec<Symbol<'s>>]| {
                 square(dof, |row, column| named(torque_by(row, kind(column + 1)), matrix[row][column]))
@@ -151,9 +172,9 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
                 named(Name::indexed(Quantity::CoriolisElement, row + 1, column + 1), found.by_rate[row][column])
             })
         }
-        (Function::InverseDynamicsDerivatives, _) => formulate::derivatives(builder, &recursion(arm)),
+        (Function::InverseDynamicsDerivatives, _) => formulate::derivatives(builder, &recursion(arm, algorithm)),
         (Function::CoriolisMatrix, _) => {
-            let torques = recursion(arm);
+            let torques = recursion(arm, algorithm);
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
             formulate::coriolis_matrix(builder, &torques, half)
         }
@@ -163,21 +184,18 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             | Function::InverseDynamicsWithPayload
             | Function::InverseDynamicsFromSinCos
             | Function::GravityTorques
-            | Function::BiasTorques,
+            | Function::BiasTorques
+            | Function::GravityTorquesWithPayload
+            | Function::BiasTorquesWithPayload,
             algorithm,
-        ) => {
-            let moved = motions(arm);
-            let unturned = algorithm == Algorithm::UnturnedPayload;
-            let payload = Payload::argument(builder, dof).map(|payload| Load { payload, unturned });
-            by_joint(Quantity::Torque, torques(arm, &moved, payload))
-        }
+        ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
         // `Algorithm::of` matches them all
         _ => return None,
     })
 }
 
-fn recursion<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
-    torques(arm, &motions(arm), None)
+fn recursion<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Symbol<'s>> {
+    torques(arm, &motions(arm), arm.load(algorithm == Algorithm::UnturnedPayload))
 }
 
 /// The upper half of M.
@@ -190,7 +208,7 @@ fn mass_matrix<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s
     let dof = arm.rows().len();
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
     for column in 0..dof {
-        let torques = arm.builder.accelerating(column, || recursion(&still));
+        let torques = arm.builder.accelerating(column, || recursion(&still, algorithm));
         for (row, torque) in torques.into_iter().take(column + 1).enumerate() {
             rows[row].push(torque);
         }

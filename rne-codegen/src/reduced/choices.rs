@@ -272,7 +272,8 @@ impl FromStr for Scale {
         };
         scale.ok_or_else(|| {
             format!(
-                "`{text}` is no scale; there are `default`, `one`, `a2`, `d2`, `h2_x` and `m2` for any joint number"
+                "`{text}` is not a valid scale; the valid words are `default`, `one`, `a2`, `d2`, `h2_x` and `m2` for \
+                 any joint number"
             )
         })
     }

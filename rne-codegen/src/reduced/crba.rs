@@ -20,22 +20,25 @@ use crate::reduced::{Arm, FirstMoment, Inward, PseudoInertia, Symmetric, Turned,
 pub(crate) use crate::reduced::inward::ExpressedIn;
 
 use crate::ir::Axis::{self, X, Y, Z};
-use crate::ir::{Builder, Name, Number, Quantity, Symbol, Vector, WithRespectTo};
+use crate::ir::{Builder, Name, Quantity, Symbol, Vector, WithRespectTo};
 
-/// The matter of all links from one on. Its mass is a number.
+/// The matter of all links from one on.
 #[derive(Clone, Copy)]
 pub(crate) struct Composite<'s> {
-    mass: Number,
-    h: Vector<'s>,
-    s: Symmetric<'s>,
+    pub(crate) mass: Symbol<'s>,
+    pub(crate) h: Vector<'s>,
+    pub(crate) s: Symmetric<'s>,
     /// S11 + S22, which a turn about z leaves alone, where it has been turned so.
-    around: Option<Symbol<'s>>,
+    pub(crate) around: Option<Symbol<'s>>,
 }
 
 impl<'s> Composite<'s> {
-    pub(crate) fn of(builder: &'s Builder, matter: &PseudoInertia) -> Self {
+    /// The matter of a link; of the last one with its payload.
+    pub(crate) fn of_link(arm: &Arm<'_, 's>, index: usize, matter: &PseudoInertia) -> Self {
+        let builder = arm.builder;
         let s = matter.second_moments().map(|x| builder.number(x));
-        Self { mass: matter.mass, h: builder.vector(matter.h), s, around: None }
+        let own = Self { mass: builder.number(matter.mass), h: builder.vector(matter.h), s, around: None };
+        arm.payload_on(index).map_or(own, |payload| own.plus(payload.matter(arm)))
     }
 
     pub(crate) fn plus(self, other: Self) -> Self {
@@ -62,7 +65,7 @@ impl<'s> Composite<'s> {
     }
 
     /// The wrench that gives its points the accelerations b + e × r.
-    pub(crate) fn carried(&self, builder: &'s Builder, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
+    pub(crate) fn carried(&self, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
         let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
         // J = tr(S) 1 - S
         let momentum = Vector([
@@ -70,7 +73,7 @@ impl<'s> Composite<'s> {
             (xx + zz) * y - (xy * x + yz * z),
             self.around() * z - (xz * x + yz * y),
         ]);
-        Wrench { force: b * builder.number(self.mass) + e.cross(self.h), moment: momentum + self.h.cross(b) }
+        Wrench { force: b * self.mass + e.cross(self.h), moment: momentum + self.h.cross(b) }
     }
 
     /// The wrench that accelerates it about the z axis with 1 rad/s².
@@ -80,8 +83,8 @@ impl<'s> Composite<'s> {
     }
 
     /// The wrench that accelerates it along u with 1 m/s².
-    pub(crate) fn sliding(&self, u: Vector<'s>, builder: &'s Builder) -> Wrench<'s> {
-        Wrench { force: u * builder.number(self.mass), moment: self.h.cross(u) }
+    pub(crate) fn sliding(&self, u: Vector<'s>) -> Wrench<'s> {
+        Wrench { force: u * self.mass, moment: self.h.cross(u) }
     }
 }
 
@@ -96,7 +99,7 @@ impl<'s> Inward<'s> for Composite<'s> {
     /// The same matter about a point from which the old one is at t.
     fn moved(self, t: Vector<'s>) -> Self {
         let ([hx, hy, hz], [x, y, z]) = (self.h.0, t.0);
-        let m = x.builder.number(self.mass);
+        let m = self.mass;
         let [xx, yy, zz, xy, xz, yz] = self.s;
         let ([mx, my, mz], twice) = ([x * m, y * m, z * m], |a: Symbol<'s>| a + a);
         let (dx, dy) = (x * (twice(hx) + mx), y * (twice(hy) + my));
@@ -160,7 +163,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
             carried.columns.push((index, Wrench { force: builder.no_vector(), moment }));
             continue;
         }
-        let own = Composite::of(builder, &arm.parameters.links[index]);
+        let own = Composite::of_link(arm, index, &arm.parameters.links[index]);
         let u = builder.vector(row.axis);
         // what the joint feels of a wrench
         let along = |wrench: &Wrench<'s>| match row.kind {
@@ -184,7 +187,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
         };
         let column = match row.kind {
             Revolute => whole.turning(builder),
-            Prismatic => whole.sliding(u, builder),
+            Prismatic => whole.sliding(u),
         };
         matrix[index][index] = along(&column);
         columns.push((index, column));
@@ -227,25 +230,27 @@ pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
     }
     let mut torques = vec![builder.zero(); dof];
     // what is behind, in the axes of link i or in its frame N
-    let mut behind = FirstMoment { mass: Number::ZERO, h: builder.no_vector() };
+    let mut behind = FirstMoment { mass: builder.zero(), h: builder.no_vector() };
     let mut unturned = false;
     for (index, (row, matter)) in rows.iter().zip(&arm.parameters.links).enumerate().rev() {
         builder.at(Quantity::ReducedMoment, index + 1);
         if arm.is_spin(index) {
             continue;
         }
-        let (own, h, field) = (builder.vector(matter.h), behind.h, fields[index]);
-        behind.mass = behind.mass + matter.mass;
+        let own = FirstMoment { mass: builder.number(matter.mass), h: builder.vector(matter.h) };
+        let own = arm.payload_on(index).map_or(own, |payload| own.plus(payload.first_moment(arm)));
+        let (h, field) = (behind.h, fields[index]);
+        behind.mass = behind.mass + own.mass;
         let torque = match row.kind {
             Revolute => {
                 let turn = arm.turn_of_group(index);
-                behind.h = if unturned { h + turn.about_z(own) } else { turn.about_z(h + own) };
+                behind.h = if unturned { h + turn.about_z(own.h) } else { turn.about_z(h + own.h) };
                 let ([hx, hy, _], [ax, ay, _]) = (behind.h.0, field.0);
                 hx * ay - hy * ax
             }
             Prismatic => {
-                behind.h = h + own;
-                builder.vector(row.axis).dot(field) * builder.number(behind.mass)
+                behind.h = h + own.h;
+                builder.vector(row.axis).dot(field) * behind.mass
             }
         };
         behind = arm.inward(index, behind);

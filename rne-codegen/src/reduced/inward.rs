@@ -69,8 +69,14 @@ pub(crate) trait Inward<'s>: Sized {
 /// Matter without its second moments.
 #[derive(Clone, Copy)]
 pub(crate) struct FirstMoment<'s> {
-    pub(crate) mass: Number,
+    pub(crate) mass: Symbol<'s>,
     pub(crate) h: Vector<'s>,
+}
+
+impl FirstMoment<'_> {
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { mass: self.mass + other.mass, h: self.h + other.h }
+    }
 }
 
 impl<'s> Inward<'s> for FirstMoment<'s> {
@@ -79,7 +85,7 @@ impl<'s> Inward<'s> for FirstMoment<'s> {
     }
 
     fn moved(self, t: Vector<'s>) -> Self {
-        Self { h: self.h + t * t.0[0].builder.number(self.mass), ..self }
+        Self { h: self.h + t * self.mass, ..self }
     }
 }
 

@@ -4,11 +4,13 @@
 //! r = R c + t        F = m (a + U r)        N = moment of (R I Rᵀ + J_n) + r × F
 //! ```
 //!
+//! Where bodies are gathered, it is matter of the last link: m, m r, and S = R (½ tr(I) 1 - I) Rᵀ + m r rᵀ.
+//!
 //! R and t lead from the tip to the frame of the last link, J_n is what regrouping has left of that link's own inertia.
 
 use crate::formulate::Payload;
 use crate::ir::{Builder, Matrix, Number, Vector};
-use crate::reduced::{Arm, Motion, Moved, PseudoInertia, SymbolicTurn, Wrench};
+use crate::reduced::{Arm, Composite, FirstMoment, Motion, Moved, PseudoInertia, SymbolicTurn, Wrench};
 
 /// A payload, and the axes in which what it asks for is written.
 #[derive(Clone, Copy)]
@@ -16,6 +18,52 @@ pub(crate) struct Load<'s> {
     pub(crate) payload: Payload<'s>,
     /// Frame N of the last joint, if that is revolute; otherwise the last link's.
     pub(crate) unturned: bool,
+}
+
+impl<'s> Arm<'_, 's> {
+    /// The payload of the function that is being written, on the last link.
+    pub(crate) fn payload_on(&self, index: usize) -> Option<Payload<'s>> {
+        let dof = self.rows().len();
+        (index + 1 == dof).then(|| Payload::argument(self.builder, dof)).flatten()
+    }
+
+    /// The payload as the recursion takes it.
+    pub(crate) fn load(&self, unturned: bool) -> Option<Load<'s>> {
+        let payload = self.payload_on(self.rows().len().checked_sub(1)?)?;
+        Some(Load { payload, unturned })
+    }
+}
+
+impl<'s> Payload<'s> {
+    /// R, and r: from the origin of the last frame to the centre of mass, in its axes.
+    fn on_link(&self, arm: &Arm<'_, 's>) -> (Matrix<'s>, Vector<'s>) {
+        let builder = arm.builder;
+        let tip = &arm.joint_frames.tip;
+        let rotation = Matrix(tip.rotation.map(|row| builder.vector(row)));
+        let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
+        let [x, y, z] = tip.translation;
+        (rotation, rotation * self.com + builder.vector([x, y, z - origin_shift]))
+    }
+
+    /// Its mass and first moment, in the axes of the last link and about the origin of its frame.
+    pub(crate) fn first_moment(&self, arm: &Arm<'_, 's>) -> FirstMoment<'s> {
+        let (_, r) = self.on_link(arm);
+        FirstMoment { mass: self.mass, h: r * self.mass }
+    }
+
+    /// Its mass, first moment and second moments, in the axes of the last link and about the origin of its frame.
+    pub(crate) fn matter(&self, arm: &Arm<'_, 's>) -> Composite<'s> {
+        let (rotation, r) = self.on_link(arm);
+        let Matrix([Vector([xx, xy, xz]), Vector([_, yy, yz]), Vector([_, _, zz])]) =
+            rotation * self.inertia * rotation.transpose();
+        let half = Number::integer(2).inverse().unwrap_or_default();
+        let trace = (xx + yy + zz).times(half);
+        let h = r * self.mass;
+        let ([x, y, z], [hx, hy, hz]) = (r.0, h.0);
+        let s = [trace - xx + hx * x, trace - yy + hy * y, trace - zz + hz * z, hx * y - xy, hx * z - xz, hy * z - yz];
+        // S11 + S22 without the halves of the trace
+        Composite { mass: self.mass, h, s, around: Some(zz + (hx * x + hy * y)) }
+    }
 }
 
 impl<'s> Load<'s> {
@@ -29,12 +77,8 @@ impl<'s> Load<'s> {
         unturned: bool,
     ) -> Wrench<'s> {
         let builder = arm.builder;
-        let Payload { mass, com, inertia } = self.payload;
-        let tip = &arm.joint_frames.tip;
-        let rotation = Matrix(tip.rotation.map(|row| builder.vector(row)));
-        let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
-        let [x, y, z] = tip.translation;
-        let r = rotation * com + builder.vector([x, y, z - origin_shift]);
+        let Payload { mass, inertia, .. } = self.payload;
+        let (rotation, r) = self.payload.on_link(arm);
         let inertia = rotation * inertia * rotation.transpose() + of_link(builder, matter);
         let (r, inertia, motion) = if unturned {
             (link.group_turn.about_z(r), turned(inertia, link.group_turn), &link.unturned)

@@ -26,9 +26,9 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::ir::{Builder, Number, Quantity, Symbol, Vector, square};
+use crate::ir::{Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::inward::Carried;
+use crate::reduced::inward::{Carried, full};
 use crate::reduced::{Arm, Composite, Gradient, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench};
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
@@ -191,7 +191,7 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     for index in (0..dof).rev() {
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
-        let own = own(builder, &matter(arm, index), &station.own);
+        let own = own(Composite::of_link(arm, index, &matter(arm, index)), &station.own);
         let turn = Turned::AboutZ(station.turn);
         // everything in frame N of this joint
         let here = if carried.unturned {
@@ -286,9 +286,8 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion
 }
 
 /// The contribution of a link alone, in its axes.
-fn own<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>) -> Behind<'s> {
-    let (h, m) = (builder.vector(matter.h), builder.number(matter.mass));
-    let s = matter.s.map(|row| row.map(|x| builder.number(x)));
+fn own<'s>(body: Composite<'s>, motion: &Motion<'s>) -> Behind<'s> {
+    let (h, m, s) = (body.h, body.mass, full(body.s));
     let ([x, y, z], [vx, vy, vz]) = (motion.twice_omega.0, motion.twice_velocity.0);
     let moment = [0, 1, 2].map(|i| {
         let [sx, sy, sz] = s[i];
@@ -297,7 +296,7 @@ fn own<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>) ->
     });
     let gradient = Gradient::new(motion.omega, motion.omega_dot);
     Behind {
-        body: Composite::of(builder, matter),
+        body,
         moment,
         around: None,
         momentum: motion.twice_velocity * m + motion.twice_omega.cross(h),
@@ -356,8 +355,8 @@ fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>, behind
     let body = &behind.body;
     let (zero, g) = (builder.zero(), &behind.moment);
     let Wrench { force, moment } = behind.wrench;
-    let by_position = body.carried(builder, twists.angular, twists.linear);
-    let by_rate = body.carried(builder, twists.rate_angular, twists.rate_linear);
+    let by_position = body.carried(twists.angular, twists.linear);
+    let by_rate = body.carried(twists.rate_angular, twists.rate_linear);
     match row.kind {
         Revolute => {
             let quarter = |v: Vector<'s>| Vector([-v.0[1], v.0[0], zero]);
@@ -378,7 +377,7 @@ fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>, behind
             let lever = Wrench { force: builder.no_vector(), moment: u.cross(force) };
             Column {
                 joint: index,
-                unit: body.sliding(u, builder),
+                unit: body.sliding(u),
                 spin: behind.momentum.cross(u),
                 by_position: by_position.plus(lever),
                 by_rate,

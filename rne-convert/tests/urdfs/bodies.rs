@@ -43,7 +43,7 @@ fn one_name_for_a_joint_and_a_link_and_a_centre_without_mass() {
 fn bodies_that_are_none() {
     let flat = pendulum("").replace("ixx=\"0.05\"", "ixx=\"0.5\"");
     let imported = plain(&flat);
-    assert!(imported.account.lints.to_string().contains("no body has this inertia"), "{}", imported.account.lints);
+    assert!(imported.account.lints.to_string().contains("no body can have this inertia"), "{}", imported.account.lints);
     let negative = pendulum("").replace("izz=\"0.001\"", "izz=\"-0.0027\"");
     let message = refused(&negative, &Options::default());
     assert!(message.contains("the joint `hinge`") && message.contains("-2.700e-3 kg m²"), "{message}");
@@ -106,7 +106,7 @@ fn the_base_may_stand_anywhere() {
     assert_eq!(imported.robot.base.xyz[2], 0.3);
     assert_eq!(imported.account.held, [("a".to_owned(), 0.0)]);
     let alone = Options { selection: Selection { lock_others: false, ..options.selection.clone() }, ..options };
-    assert!(refused(&text, &alone).contains("movable joints off the chain"));
+    assert!(refused(&text, &alone).contains("movable joints that are not on the chain"));
     let above = Options {
         selection: Selection { base: Some("tip".to_owned()), tip: Some("one".to_owned()), ..Selection::default() },
         ..Options::default()

@@ -57,7 +57,7 @@ fn joints_off_the_chain_are_held_by_name_or_refused() {
         ..Options::default()
     };
     let loose = refused(&hand, &select(&[], false));
-    assert!(loose.contains("movable joints off the chain from `base` to `tip`: `f`, `t`"), "{loose}");
+    assert!(loose.contains("movable joints that are not on the chain from `base` to `tip`: `f`, `t`"), "{loose}");
     assert!(loose.contains("each at a position of its own or all at zero; LockOthers"), "{loose}");
     let named = import(&hand, &select(&[("f", 0.2), ("t", 0.4)], false));
     assert_eq!(named.robot.joints[0].row.link.com, [-0.05, 0.0, 0.0]);
@@ -94,7 +94,7 @@ fn without_a_tip_the_leaves_are_listed() {
         joint("p", "fixed", ("right", "palm"), "", ""),
     ]);
     let message = refused(&text, &Options::default());
-    assert!(message.contains("`base` has 2 leaves"), "{message}");
+    assert!(message.contains("`base` has 2 end links"), "{message}");
     assert!(message.contains("`left` (1 joint)") && message.contains("`palm` (1 joint)"), "{message}");
     assert!(message.contains("arm.urdf:2:1"), "{message}");
 }
@@ -116,7 +116,7 @@ fn what_no_row_can_say_is_refused_with_a_reason() {
     let mimic = refused(&with("continuous", "<mimic joint=\"a\"/>"), &Options::default());
     assert!(
         mimic.contains("the joint `b` on the chain follows `a`")
-            && mimic.contains("hold it still; LockJoint { joint: \"b\" }"),
+            && mimic.contains("hold this joint still; LockJoint { joint: \"b\" }"),
         "{mimic}"
     );
     let unknown = Urdf::read("arm.urdf", &with("helical", "")).unwrap_err().to_string();

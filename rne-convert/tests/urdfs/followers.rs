@@ -32,8 +32,8 @@ fn a_follower_of_a_moving_joint_is_refused_unless_it_is_held_by_name() {
     for on in ["arm", "base"] {
         let text = with_follower(on, 2.0, mimic);
         let message = refused(&text, &select(&[], true));
-        assert!(message.contains("follow joints of the chain that move: `k` follows `j`"), "{message}");
-        assert!(message.contains("hold each of them by its name; LockJoint { joint: \"k\" }"), "{message}");
+        assert!(message.contains("follow moving joints of the chain: `k` follows `j`"), "{message}");
+        assert!(message.contains("hold each of these joints by its name; LockJoint { joint: \"k\" }"), "{message}");
         assert!(message.contains("arm.urdf:"), "{message}");
         let held = import(&text, &select(&[("k", 0.0)], true)).account;
         assert_eq!(held.remarks, ["the joint k is held still, although it follows j, which moves"]);
@@ -82,8 +82,8 @@ fn followers_of_nobody_and_of_each_other_are_refused() {
     };
     let nobody = with_follower("arm", 2.0, "<mimic joint=\"x\"/>");
     let message = refused(&nobody, &options(&[]));
-    assert!(message.contains("the joint `k` follows `x`, and there is no such joint in the file"), "{message}");
-    assert!(message.contains("hold it still; LockJoint { joint: \"k\" }"), "{message}");
+    assert!(message.contains("the joint `k` follows `x`, but the file has no such joint"), "{message}");
+    assert!(message.contains("hold the joint still; LockJoint { joint: \"k\" }"), "{message}");
     let circle = with_follower("arm", 2.0, "<mimic joint=\"l\"/>").replace(
         "</robot>",
         &format!("<link name=\"c\"/>{}</robot>", joint("l", "continuous", ("arm", "c"), "", "<mimic joint=\"k\"/>")),

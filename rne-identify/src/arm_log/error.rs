@@ -8,7 +8,7 @@ use rne_model::{JointKind, one_line};
 use crate::arm_log::remark::rounded;
 
 /// The names that a message lists at most.
-const SHOWN: usize = 16;
+pub(crate) const SHOWN: usize = 16;
 
 /// Why logs cannot be read as logs of an arm. `Display` says it without the options of any interface.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,11 +125,11 @@ impl fmt::Display for ArmLogError {
                 let advice = if (1..joints.len()).contains(&logged.len()) {
                     ALL_NEEDED
                 } else {
-                    "say which joint of the log each of them is, base to tip"
+                    "name one joint of the log for each joint of the robot, from base to tip"
                 };
                 write!(
                     f,
-                    "the list of joints names {} of the log{there}, and the robot has {}: {}; {advice}",
+                    "the list of joints names {} of the log{there}, but the robot has {}: {}; {advice}",
                     of_joints(*named),
                     of_joints(joints.len()),
                     shown(joints)
@@ -138,36 +138,37 @@ impl fmt::Display for ArmLogError {
             Self::Unmatched { logged, joints, mismatch } => {
                 write!(
                     f,
-                    "the log has {}, the robot {}: {} there and {} here",
+                    "the log has {} ({}), but the robot has {} ({})",
                     of_joints(logged.len()),
-                    joints.len(),
                     shown(logged),
+                    joints.len(),
                     shown(joints)
                 )?;
                 match mismatch {
                     Mismatch::Fewer => write!(f, "; {ALL_NEEDED}"),
                     Mismatch::More => Ok(()),
-                    Mismatch::Order { joint } => write!(f, ", and {} has another place in them", one_line(joint)),
+                    Mismatch::Order { joint } => write!(f, "; {} has another place in the two lists", one_line(joint)),
                 }
             }
             Self::Kind { joint, logged, kind, quantity } => write!(
                 f,
-                "the joint {} of the robot {}, and by the names of the log's columns the {} of its {} are not of one \
-                 that does",
+                "the joint {} of the robot {}, but by the names of the columns of the log, the {} of {} belong to a \
+                 joint of the other kind",
                 one_line(joint),
                 if *kind == JointKind::Revolute { "turns" } else { "slides" },
                 quantity.plural(),
                 one_line(logged)
             ),
             Self::NoEfforts { unread, .. } => {
-                f.write_str("the log has no efforts, and a model is compared with torques")?;
+                f.write_str("the log has no efforts, but rne must compare the model with torques")?;
                 if unread.is_empty() {
                     return Ok(());
                 }
                 let unread: Vec<String> = unread.iter().take(SHOWN).map(|name| one_line(name)).collect();
                 write!(
                     f,
-                    "; not read are {}, and names of efforts are tau1, … or effort and the joint: docs/logs.md",
+                    "; rne does not read the columns {}, because columns of efforts have names such as tau1 or \
+                     elbow/effort: see docs/logs.md",
                     unread.join(", ")
                 )
             }
@@ -175,7 +176,7 @@ impl fmt::Display for ArmLogError {
                 let names: Vec<String> = logged.iter().map(|name| one_line(name)).collect();
                 write!(
                     f,
-                    "the log has no efforts of {}, and a model is compared with the torques of every joint",
+                    "the log has no efforts of {}, but rne must compare the model with the torques of every joint",
                     names.join(", ")
                 )
             }
@@ -185,20 +186,24 @@ impl fmt::Display for ArmLogError {
                 let why = one_line(&why.collect::<Vec<_>>().join("; "));
                 write!(f, "no {record} of the log contains a state of the arm: {why}")
             }
-            Self::NoCutoff => f.write_str("no run is long enough to choose a low-pass"),
+            Self::NoCutoff => {
+                f.write_str("no run (a part of the log without gaps) is long enough to choose a low-pass filter")
+            }
             Self::Cutoff { cutoff, rate, longest, possible } => {
                 write!(
                     f,
-                    "{} Hz is not possible as a low-pass for samples at {rate:.4} Hz in runs of {} s at most",
+                    "{} Hz is not possible as a low-pass for samples at {rate:.4} Hz, because the runs (parts of the \
+                     log without gaps) have {} s at most",
                     rounded(*cutoff, 3),
                     rounded(*longest, 2)
                 )?;
                 let Some([lowest, highest]) = possible else {
-                    return f.write_str(", and neither is any other: the runs are too short");
+                    return f.write_str(", and no other cut-off is possible: the runs are too short");
                 };
                 write!(
                     f,
-                    "; the cut-off can be from {} to {} Hz here; a lower cut-off drops more of the ends of runs",
+                    "; the cut-off can be from {} to {} Hz for this log; a lower cut-off drops more samples at the \
+                     ends of runs",
                     rounded((lowest * 1e3).ceil() * 1e-3, 3),
                     rounded((highest * 1e3).floor() * 1e-3, 3)
                 )

@@ -56,7 +56,7 @@ fn matched(joints: Vec<String>, logged: &[String]) -> Result<(Vec<String>, Optio
     } else if let Some((_, joint)) = joints.iter().enumerate().find(is_elsewhere) {
         Mismatch::Order { joint: joint.clone() }
     } else {
-        return Ok((logged.to_vec(), Some(ArmLogRemark::MatchedByOrder { logged: logged.to_vec() })));
+        return Ok((logged.to_vec(), Some(ArmLogRemark::MatchedByOrder { logged: logged.to_vec(), joints })));
     };
     Err(ArmLogError::Unmatched { logged: logged.to_vec(), joints, mismatch })
 }

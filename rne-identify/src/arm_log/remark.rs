@@ -2,16 +2,20 @@
 
 use std::fmt;
 
-use crate::arm_log::error::shown;
+use rne_model::one_line;
+
+use crate::arm_log::error::SHOWN;
 
 /// A remark on the logs of an arm. `Display` says it without the options of any interface.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ArmLogRemark {
-    /// The log has other names of joints: its joints are taken for those of the robot by their order.
+    /// The log has other names of joints, or only numbers: its joints are taken for those of the robot by their order.
     MatchedByOrder {
         /// The joints of the log, base to tip.
         logged: Vec<String>,
+        /// The joints of the robot, base to tip.
+        joints: Vec<String>,
     },
     /// A remark on the log alone.
     Log(rne_logs::Remark),
@@ -31,7 +35,8 @@ impl ArmLogRemark {
     #[must_use]
     pub fn is_warning(&self) -> bool {
         match self {
-            Self::MatchedByOrder { .. } => false,
+            // another order makes numbers that look like those of a bad model
+            Self::MatchedByOrder { logged, .. } => logged.len() > 1 && are_numbers(logged),
             Self::Log(remark) => remark.is_warning(),
             Self::ConstantEffort { .. } | Self::LeftOut(_) => true,
         }
@@ -41,8 +46,17 @@ impl ArmLogRemark {
 impl fmt::Display for ArmLogRemark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::MatchedByOrder { logged } => {
-                write!(f, "joints of the log are matched by their order: {}", shown(logged))
+            Self::MatchedByOrder { logged, joints } => {
+                let column = if are_numbers(logged) { "q" } else { "" };
+                let pairs = logged.iter().zip(joints).take(SHOWN);
+                let pairs = pairs.map(|(logged, joint)| format!("{column}{} is {}", one_line(logged), one_line(joint)));
+                let more = if logged.len() > SHOWN { ", …" } else { "" };
+                let pairs = pairs.collect::<Vec<_>>().join(", ") + more;
+                if column.is_empty() {
+                    write!(f, "joints of the log are matched by their order: {pairs}")
+                } else {
+                    write!(f, "the log does not name its joints, so their order decides: {pairs}")
+                }
             }
             Self::Log(remark) => remark.fmt(f),
             Self::ConstantEffort { joint, effort } => {
@@ -51,6 +65,11 @@ impl fmt::Display for ArmLogRemark {
             Self::LeftOut(left_out) => write!(f, "left out: {left_out}"),
         }
     }
+}
+
+/// Whether joints have numbers for names, as in a table with the columns `q1`, `q2`, ….
+fn are_numbers(joints: &[String]) -> bool {
+    joints.iter().all(|joint| !joint.is_empty() && joint.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
 /// A number with some digits after the decimal point; tiny and huge ones with a power of ten.

@@ -16,7 +16,7 @@ impl<'a> Header<'a> {
     pub(crate) fn check_count(&self, found: &[&Found]) -> Result<(), LogError> {
         let Some(one) = found.first().filter(|_| found.len() > MOST_JOINTS) else { return Ok(()) };
         let what = format!(
-            "the table has {} columns of {}; at most {MOST_JOINTS} joints are read",
+            "the table has {} columns of {}; rne reads at most {MOST_JOINTS} joints",
             found.len(),
             one.named.quantity.plural()
         );
@@ -67,8 +67,8 @@ impl<'a> Header<'a> {
         {
             let all = there.iter().map(u32::to_string).collect();
             let what = format!(
-                "the columns {} are positions of joints by their numbers, and {missing} is missing; choose joints if \
-                 only these are meant",
+                "the columns {} are positions of numbered joints, but {missing} is missing; name the joints if you \
+                 want only these",
                 self.listed(positions)
             );
             return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Joints(all))));
@@ -81,8 +81,8 @@ impl<'a> Header<'a> {
             let missing = there.difference(&have).next();
             let other = have.difference(&there).next();
             let what = match (missing, other) {
-                (Some(missing), _) => format!("the position of joint {missing} and not its {}", quantity.word()),
-                (None, Some(other)) => format!("the {} of joint {other} and not its position", quantity.word()),
+                (Some(missing), _) => format!("the position of joint {missing} but not its {}", quantity.word()),
+                (None, Some(other)) => format!("the {} of joint {other} but not its position", quantity.word()),
                 (None, None) => continue,
             };
             let what = format!(
@@ -122,10 +122,13 @@ impl<'a> Header<'a> {
             };
             let turns = says([Dimension::Angle, Dimension::Torque]) || all.iter().any(is_in_degrees);
             if turns && says([Dimension::Length, Dimension::Force]) {
-                let degrees =
-                    if all.iter().any(is_in_degrees) { ", and those without a unit are in degrees" } else { "" };
+                let degrees = if all.iter().any(is_in_degrees) {
+                    ", and rne reads columns without a unit in degrees"
+                } else {
+                    ""
+                };
                 let what = format!(
-                    "the columns {} are of one joint, which either turns or slides{degrees}",
+                    "the columns {} belong to one joint, but a joint either turns or slides{degrees}",
                     self.listed(&all)
                 );
                 return Err(LogError::file(self.path, what));
@@ -140,12 +143,13 @@ impl<'a> Header<'a> {
             Some((name(found.iter().find(is_other)?), name(found.iter().find(is_unsaid)?)))
         };
         if let Some((said, unsaid)) = both(&motions).filter(|_| options.angles == Angles::Unsaid) {
-            let what = format!("the column {said} says its unit and {unsaid} does not");
+            let what = format!("the name of the column {said} gives a unit, but the name {unsaid} does not");
             return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Angles)));
         }
         if let Some((said, unsaid)) = both(efforts) {
             let what = format!(
-                "the column {said} says its unit and {unsaid} does not: write it into the name, as in tau1 [Nm]"
+                "the name of the column {said} gives a unit, but the name {unsaid} does not: write the unit into each \
+                 name, as in tau1 [Nm]"
             );
             return Err(LogError::file(self.path, what));
         }
@@ -163,7 +167,7 @@ impl<'a> Header<'a> {
         if let Some(found) = motions.iter().find(|found| found.named.unit.is_some_and(|unit| is_contrary(&unit)))
             && all_say
         {
-            let what = format!("the column {} says its unit, and so do all others", self.name(found));
+            let what = format!("the column {} gives its unit, and so do all other columns", self.name(found));
             return Err(LogError::request(self.path, what).remedy(Remedy::LeaveOut(Setting::Angles)));
         }
         let is_torque = |found: &&Found| matches!(found.dimension(), Some(Dimension::Torque | Dimension::Force));

@@ -59,7 +59,7 @@ pub(crate) fn find(path: &Path, names: &[String], column: &str) -> Result<usize,
     names.iter().position(|name| name.trim() == column.trim()).ok_or_else(|| {
         let near = instead(column, names.iter().map(String::as_str));
         let all = listed(names.iter().map(String::as_str));
-        LogError::request(path, format_args!("the table has no column `{column}`{near}; it has {all}"))
+        LogError::request(path, format_args!("the table has no column `{column}`{near}; its columns are {all}"))
     })
 }
 

@@ -62,7 +62,7 @@ impl FromStr for Target {
         let quantity = Quantity::ALL.into_iter().find(|quantity| quantity.word() == word).ok_or_else(|| {
             let words = Quantity::ALL.map(Quantity::word);
             let near = instead(word, words.into_iter());
-            format!("`{word}` is not a quantity of a joint{near}; there are {}", words.join(", "))
+            format!("`{word}` is not a quantity of a joint{near}; the quantities are {}", words.join(", "))
         })?;
         Ok(Self::Joint { joint: joint.to_owned(), quantity })
     }
@@ -95,10 +95,16 @@ impl Mapping {
         let Some(found) = found else {
             let near = instead(base, header.iter().map(String::as_str));
             let all = listed(header.iter().map(String::as_str));
-            return Err(format!("the table has no column `{}` for {}{near}; it has {all}", self.column, self.target));
+            return Err(format!(
+                "the table has no column `{}` for {}{near}; its columns are {all}",
+                self.column, self.target
+            ));
         };
         let unknown = |unit: &str, known: &str| {
-            format!("`{unit}` is not a unit for {}, the column `{}`; there are {known}", self.target, self.column)
+            format!(
+                "`{unit}` is not a unit for {}, the column `{}`; the known units are {known}",
+                self.target, self.column
+            )
         };
         let mapped = match &self.target {
             Target::Time => {
@@ -179,8 +185,8 @@ mod tests {
             (".position", "is neither `time`"),
             (
                 "elbow.positon",
-                "`positon` is not a quantity of a joint (did you mean position?); there are position, velocity, \
-                 effort, acceleration",
+                "`positon` is not a quantity of a joint (did you mean position?); the quantities are position, \
+                 velocity, effort, acceleration",
             ),
         ] {
             let error = text.parse::<Target>().unwrap_err();
@@ -205,9 +211,17 @@ mod tests {
         assert_eq!(find("a.effort", "F"), Ok((3, None)));
         for (target, column, wanted) in [
             ("a.position", "W 1", "the table has no column `W 1` for a.position (did you mean w 1?)"),
-            ("a.effort", "F [deg]", "`deg` is not a unit for a.effort, the column `F [deg]`; there are Nm, mNm"),
-            ("time", "Zeit [min]", "`min` is not a unit for time, the column `Zeit [min]`; there are s, ms, us, ns"),
-            ("a.acceleration", "F [deg/s]", "there are rad/s^2"),
+            (
+                "a.effort",
+                "F [deg]",
+                "`deg` is not a unit for a.effort, the column `F [deg]`; the known units are Nm, mNm",
+            ),
+            (
+                "time",
+                "Zeit [min]",
+                "`min` is not a unit for time, the column `Zeit [min]`; the known units are s, ms, us, ns",
+            ),
+            ("a.acceleration", "F [deg/s]", "the known units are rad/s^2"),
         ] {
             let error = find(target, column).unwrap_err();
             assert!(error.contains(wanted), "{error}");

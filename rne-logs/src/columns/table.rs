@@ -109,7 +109,7 @@ impl Columns {
 /// Remark on columns with units other than SI in their names.
 pub(crate) fn converted(names: &[String]) -> Option<String> {
     let listed = listed(names.iter().map(String::as_str));
-    (!names.is_empty()).then(|| format!("numbers are converted from the units of columns' names: {listed}"))
+    (!names.is_empty()).then(|| format!("rne converts numbers from the units in the names of columns: {listed}"))
 }
 
 /// Selects one effort for joints that have torques and currents: currents if the options have torque constants, else
@@ -195,7 +195,7 @@ impl<'a> Header<'a> {
                 Meaning::Joint(named) => header.found.push(Found { named, place }),
                 Meaning::Unknown { quantity, unit } => {
                     let what = format!(
-                        "the column {name} has {} in {unit}, which is no unit of them that is known: {}",
+                        "the column {name} has {} in {unit}, which is not a known unit; the known units are {}",
                         quantity.plural(),
                         Unit::known(quantity)
                     );
@@ -243,8 +243,8 @@ impl<'a> Header<'a> {
         let all = listed(self.names.iter().map(String::as_str));
         let of_prefix = self.prefix.map_or(String::new(), |prefix| format!(" that begins with {prefix}"));
         let what = format!(
-            "no column{of_prefix} is the position of a joint: names are q1, q2, … or position and the joint, as in \
-             elbow/position, position.elbow, elbow_position; there is {all}"
+            "no column{of_prefix} has the position of a joint: rne knows names such as q1, q2, … and elbow/position, \
+             position.elbow, elbow_position; the columns of this file are {all}"
         );
         LogError::file(self.path, what).remedy(Remedy::Give(Setting::Map(self.names.to_vec())))
     }
@@ -364,7 +364,7 @@ mod tests {
     #[test]
     fn a_table_without_positions_says_what_it_has() {
         let error = columns(&["a", "b"], &Options::default()).unwrap_err();
-        assert!(error.to_string().ends_with("there is a, b"), "{error}");
+        assert!(error.to_string().ends_with("the columns of this file are a, b"), "{error}");
     }
 
     #[test]
@@ -396,13 +396,13 @@ mod tests {
         let two = Options { joints: Some(vec!["3".into(), "1".into()]), ..Options::default() };
         let unsaid = Options::default();
         for (header, options, wanted) in [
-            (&["t", "q1", "q3"][..], &unsaid, Some("and 2 is missing; choose joints if only these are meant")),
+            (&["t", "q1", "q3"][..], &unsaid, Some("but 2 is missing; name the joints if you want only these")),
             (&["t", "q1", "q3"], &two, None),
-            (&["t", "q2", "q3"], &unsaid, Some("and 1 is missing")),
+            (&["t", "q2", "q3"], &unsaid, Some("but 1 is missing")),
             (&["t", "q0", "q1"], &unsaid, None),
-            (&["t", "q1", "q2", "tau1"], &unsaid, Some("the position of joint 2 and not its effort")),
-            (&["t", "q1", "q2", "tau0", "tau1"], &unsaid, Some("the position of joint 2 and not its effort")),
-            (&["t", "q1", "q2", "tau1", "tau2", "tau3"], &unsaid, Some("the effort of joint 3 and not its position")),
+            (&["t", "q1", "q2", "tau1"], &unsaid, Some("the position of joint 2 but not its effort")),
+            (&["t", "q1", "q2", "tau0", "tau1"], &unsaid, Some("the position of joint 2 but not its effort")),
+            (&["t", "q1", "q2", "tau1", "tau2", "tau3"], &unsaid, Some("the effort of joint 3 but not its position")),
             (
                 &["t", "q1", "q01"],
                 &unsaid,
@@ -414,29 +414,33 @@ mod tests {
             (
                 &["t", "q1 [furlong]"],
                 &unsaid,
-                Some("positions in furlong, which is no unit of them that is known: rad"),
+                Some("positions in furlong, which is not a known unit; the known units are rad"),
             ),
-            (&["t", "q1 [deg]", "q2"], &unsaid, Some("q1 [deg] says its unit and q2 does not")),
-            (&["t", "q1 [deg]", "qd1"], &unsaid, Some("q1 [deg] says its unit and qd1 does not")),
+            (&["t", "q1 [deg]", "q2"], &unsaid, Some("q1 [deg] gives a unit, but the name q2 does not")),
+            (&["t", "q1 [deg]", "qd1"], &unsaid, Some("q1 [deg] gives a unit, but the name qd1 does not")),
             (&["t", "q1 [deg]", "qd1"], &degrees, None),
             (&["t", "q1 [deg]", "qd1"], &radians, None),
             (&["t", "q1 [deg]"], &degrees, None),
-            (&["t", "q1 [deg]"], &radians, Some("q1 [deg] says its unit, and so do all others")),
-            (&["t", "q1 [rad]"], &degrees, Some("q1 [rad] says its unit, and so do all others")),
+            (&["t", "q1 [deg]"], &radians, Some("q1 [deg] gives its unit, and so do all other columns")),
+            (&["t", "q1 [rad]"], &degrees, Some("q1 [rad] gives its unit, and so do all other columns")),
             (
                 &["t", "q1 [mm]", "qd1"],
                 &degrees,
-                Some("q1 [mm], qd1 are of one joint, which either turns or slides, and those without a unit"),
+                Some("q1 [mm], qd1 belong to one joint, but a joint either turns or slides, and rne reads columns"),
             ),
-            (&["t", "q1", "qd1 [m/s]"], &degrees, Some("q1, qd1 [m/s] are of one joint")),
-            (&["t", "q1 [mm]", "qd1 [deg/s]"], &unsaid, Some("which either turns or slides")),
-            (&["t", "q1 [rad]", "tau1 [N]"], &unsaid, Some("which either turns or slides")),
-            (&["t", "q1", "q2", "tau1 [mNm]", "tau2"], &unsaid, Some("tau1 [mNm] says its unit and tau2 does not")),
+            (&["t", "q1", "qd1 [m/s]"], &degrees, Some("q1, qd1 [m/s] belong to one joint")),
+            (&["t", "q1 [mm]", "qd1 [deg/s]"], &unsaid, Some("a joint either turns or slides")),
+            (&["t", "q1 [rad]", "tau1 [N]"], &unsaid, Some("a joint either turns or slides")),
+            (
+                &["t", "q1", "q2", "tau1 [mNm]", "tau2"],
+                &unsaid,
+                Some("tau1 [mNm] gives a unit, but the name tau2 does not"),
+            ),
             (&["t", "q1", "tau1 [Nm]"], &currents, Some("tau1 [Nm] has no current")),
             (&["t", "q1", "i1 [A]"], &currents, None),
-            (&["t [s]", "q1"], &milliseconds, Some("the column t [s] has times in s, and ms was given")),
-            (&["t [min]", "q1"], &unsaid, Some("times in min, which is none of s, ms, us, ns")),
-            (&["stamp_sec", "stamp_nanosec", "q1"], &unsaid, Some("stamp_sec and stamp_nanosec are both times")),
+            (&["t [s]", "q1"], &milliseconds, Some("the column t [s] has times in s, but you gave ms")),
+            (&["t [min]", "q1"], &unsaid, Some("times in min, but the known units are s, ms, us, ns")),
+            (&["stamp_sec", "stamp_nanosec", "q1"], &unsaid, Some("stamp_sec and stamp_nanosec both contain times")),
         ] {
             match (columns(header, options), wanted) {
                 (Err(error), Some(wanted)) => assert!(error.to_string().contains(wanted), "{header:?}: {error}"),
@@ -478,7 +482,7 @@ mod tests {
         assert_eq!(read(&header("position", 1023)).unwrap().names.len(), 1024);
         for (quantity, joints, plural) in [("position", 1024, "positions"), ("effort", 1025, "efforts")] {
             let error = read(&header(quantity, joints)).unwrap_err().to_string();
-            assert!(error.contains(&format!("1025 columns of {plural}; at most 1024 joints are read")), "{error}");
+            assert!(error.contains(&format!("1025 columns of {plural}; rne reads at most 1024 joints")), "{error}");
         }
         // what is no name of a joint takes no time
         let long = "q_1_".repeat(250_000);
@@ -500,7 +504,10 @@ mod tests {
         }
         let error = columns(&["t", "left/t", "right/q1"], &right).unwrap_err();
         assert!(error.is_of_request(), "{error}");
-        assert!(error.to_string().contains("the columns t and left/t are both times, and neither begins"), "{error}");
+        assert!(
+            error.to_string().contains("the columns t and left/t both contain times, and neither begins"),
+            "{error}"
+        );
         assert_eq!(time(&["t", "stamp", "q1"], &Options::default()).unwrap(), 0);
     }
 
@@ -523,7 +530,7 @@ mod tests {
         assert_eq!(
             remarks(&["t_ms", "stamp", "q1 [deg]", "q1_ref", "wrist_effort", "qd1 [rad/s]", "tau1", "temperature"]),
             [
-                "numbers are converted from the units of columns' names: t_ms, q1 [deg]",
+                "rne converts numbers from the units in the names of columns: t_ms, q1 [deg]",
                 "columns that are not read: q1_ref, wrist_effort",
                 "other times that are not read: stamp",
             ]

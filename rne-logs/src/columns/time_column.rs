@@ -37,7 +37,7 @@ impl TimeColumn {
         let inner = within(name, options);
         let Some(unit) = time(name).or_else(|| inner.and_then(time)) else { return Ok(None) };
         let unit = unit.map_err(|text| {
-            let what = format!("the column {name} has times in {text}, which is none of s, ms, us, ns");
+            let what = format!("the column {name} has times in {text}, but the known units are s, ms, us, ns");
             LogError::file(path, what)
         })?;
         Ok(Some(Self { place, unit, is_of_group: inner.is_some(), is_mapped: false }))
@@ -54,8 +54,8 @@ impl TimeColumn {
         if of_group.is_empty() {
             if let [first, second, ..] = times {
                 let what = format!(
-                    "the columns {} and {} are both times, and neither begins with {}, as the columns of the joints \
-                     do: give the one that is meant such a name, or remove the others",
+                    "the columns {} and {} both contain times, and neither begins with {} like the columns of the \
+                     joints: rename the right one so that it begins like this, or remove the other",
                     name(first.place),
                     name(second.place),
                     options.topic.as_deref().unwrap_or_default()
@@ -69,7 +69,7 @@ impl TimeColumn {
         if let (Some(unit), Some(asked)) = (chosen.unit, options.time_unit)
             && unit != asked
         {
-            let what = format!("the column {said} has times in {}, and {} was given", unit.name(), asked.name());
+            let what = format!("the column {said} has times in {}, but you gave {}", unit.name(), asked.name());
             return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::TimeUnit)));
         }
         // stamp_sec and stamp_nanosec are one time in two columns
@@ -82,8 +82,8 @@ impl TimeColumn {
         });
         if let Some(other) = other {
             let what = format!(
-                "the columns {said} and {} are both times: if they are two parts of one, make one column of them, else \
-                 remove one",
+                "the columns {said} and {} both contain times: if they are two parts of one time, combine them in one \
+                 column, otherwise remove one",
                 name(other.place)
             );
             return Err(LogError::file(path, what));

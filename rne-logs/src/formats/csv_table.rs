@@ -73,7 +73,8 @@ impl CsvTable {
         if first.iter().take(4096).any(|byte| *byte == 0) {
             return Err(LogError::file(
                 path,
-                "neither a bag of SQLite, nor MCAP, Parquet, an array of numpy or text: it has zero bytes",
+                "the file is not a bag of SQLite, MCAP, Parquet or an array of numpy, and not text either: it contains \
+                 bytes with the value zero",
             ));
         }
         let header = first.split(|byte| *byte == b'\n').find(|line| !matches!(line.trim_ascii(), [] | [b'#', ..]));
@@ -93,17 +94,17 @@ impl CsvTable {
         if header.is_empty() {
             return Err(LogError::file(
                 path,
-                "the file is empty; its first line has the columns' names, as in time,q1,tau1",
+                "the file is empty; its first line must have the names of the columns, as in time,q1,tau1",
             ));
         }
         if let [only] = header.as_slice()
             && only.split_whitespace().count() > 2
         {
-            let what = "cells of the first line are separated by blanks: separate those of all lines by commas";
+            let what = "the cells of the first line are separated by blanks: separate the cells of all lines by commas";
             return Err(LogError::file(path, what));
         }
         if header.iter().all(|cell| cell.parse::<f64>().is_ok()) {
-            let what = "the first line has numbers; it must have the columns' names, as in time,q1,qd1,tau1";
+            let what = "the first line has numbers; it must have the names of the columns, as in time,q1,qd1,tau1";
             return Err(LogError::file(path, what));
         }
         let columns = Columns::of(path, &header, options)?;
@@ -147,7 +148,7 @@ impl CsvTable {
         }
         let number: Option<f64> = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse().ok());
         number.map(|number| number * factor).ok_or_else(|| {
-            let what = format!("{:?} is no number{}", String::from_utf8_lossy(cell), of_comma(cell));
+            let what = format!("{:?} is not a number{}", String::from_utf8_lossy(cell), of_comma(cell));
             self.wrong(what)
         })
     }
@@ -257,21 +258,23 @@ impl Source for CsvTable {
 
 /// Error for a table without times.
 pub(crate) fn no_time<'a>(path: &Path, names: impl Iterator<Item = &'a str>) -> LogError {
-    let what =
-        format!("no column has times: its name is time, t, stamp or timestamp, and the columns are {}", listed(names));
+    let what = format!(
+        "no column has times: name the column of times time, t, stamp or timestamp; the columns of this file are {}",
+        listed(names)
+    );
     LogError::request(path, what)
 }
 
 /// Error for a table with times, if a sampling rate is given.
 pub(crate) fn two_times(path: &Path, name: &str) -> LogError {
-    let what = format!("the column {name} has times, and a sampling rate is for tables without times");
+    let what = format!("the column {name} has times, but a sampling rate can be given only for tables without times");
     LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate))
 }
 
 /// Hint for a number with a decimal comma.
 fn of_comma(cell: &[u8]) -> &'static str {
     let is_like = cell.contains(&b',') && cell.iter().all(|byte| byte.is_ascii_digit() || b"+-,eE".contains(byte));
-    if is_like { ": numbers have a decimal point, no decimal comma" } else { "" }
+    if is_like { ": write a decimal point, not a decimal comma" } else { "" }
 }
 
 /// Whether a cell has a text that is no number.
@@ -289,7 +292,7 @@ fn inner(cell: &[u8]) -> &[u8] {
 fn reason(error: csv::Error) -> String {
     match error.into_kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("the line has {len} cells, the header {expected_len}")
+            format!("the line has {len} cells, but the header has {expected_len}")
         }
         csv::ErrorKind::Io(error) => error.to_string(),
         kind => csv::Error::from(io::Error::other(format!("{kind:?}"))).to_string(),

@@ -83,7 +83,7 @@ impl Format {
         if !fs::metadata(path).map_err(wrong)?.is_file() {
             return Err(LogError::file(
                 path,
-                "it is a pipe, a socket or a device; logs are read twice, from regular files",
+                "it is a pipe, a socket or a device, but rne reads a log twice and needs a regular file",
             ));
         }
         let mut first = Vec::new();
@@ -104,11 +104,13 @@ impl Format {
         };
         match promised {
             Some(format) if first.is_empty() => {
-                Err(LogError::file(path, format_args!("the file is empty, no {format}")))
+                Err(LogError::file(path, format_args!("the file is empty, so it is not {format}")))
             }
             Some(format) => Err(LogError::file(
                 path,
-                format_args!("the file does not begin as one of {format} does: it is corrupt or another format"),
+                format_args!(
+                    "the file does not begin like a file of the format {format}: it is corrupt or has another format"
+                ),
             )),
             None => Ok(Self::Csv),
         }
@@ -120,7 +122,8 @@ impl Format {
         let columns = source.label_columns();
         for (column, value) in &options.select {
             if columns.is_empty() {
-                let what = format!("rows are selected by a column of a table; the format of this file is {self}");
+                let what =
+                    format!("rows can be selected only by a column of a table, but the format of this file is {self}");
                 let (column, value) = (column.clone(), value.clone());
                 return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Select { column, value })));
             }
@@ -136,20 +139,24 @@ impl Format {
 
     fn source(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
         if self != Self::Npy && !options.columns.is_empty() {
-            let what = format!("an order of columns is for arrays of numpy; this is {self}, whose columns have names");
+            let what = format!(
+                "an order of columns can be given only for arrays of numpy, but this file is {self}, whose columns \
+                 have names"
+            );
             return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Columns)));
         }
         if !matches!(self, Self::Csv | Self::Parquet) && !options.map.is_empty() {
             let (what, setting) = if options.map.iter().all(|mapping| mapping.target == Target::Time) {
-                ("a column of times is named", Setting::TimeColumn(Vec::new()))
+                ("a column of times can be named only", Setting::TimeColumn(Vec::new()))
             } else {
-                ("a map of columns is", Setting::Map(Vec::new()))
+                ("a map of columns can be given only", Setting::Map(Vec::new()))
             };
-            let what = format!("{what} for tables; the format of this file is {self}");
+            let what = format!("{what} for tables, but the format of this file is {self}");
             return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(setting)));
         }
         if matches!(self, Self::Sqlite | Self::Mcap) && options.rate.is_some() {
-            let what = "messages have times, and a sampling rate is for tables without times";
+            let what = "a sampling rate can be given only for tables without times, but the messages of this log have \
+                        times";
             return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate)));
         }
         Ok(match self {
@@ -192,7 +199,7 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, LogError> {
             return Err(LogError::file(
                 path,
                 format_args!(
-                    "the folder has no bag of rosbag2, *.db3 or *.mcap; name other logs by their files, such as {}",
+                    "the folder has no rosbag2 bag (*.db3 or *.mcap); for other logs, name the files, such as {}",
                     example.display()
                 ),
             ));
@@ -211,7 +218,7 @@ pub(crate) fn check_once(files: &[PathBuf]) -> Result<(), LogError> {
         if let Ok(place) = fs::canonicalize(file)
             && !seen.insert(place)
         {
-            return Err(LogError::request(file, "the file is named twice, and its states would count twice"));
+            return Err(LogError::request(file, "the file is named twice, so its states would count twice"));
         }
     }
     Ok(())

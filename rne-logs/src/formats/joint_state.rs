@@ -34,7 +34,7 @@ struct Time {
 /// Reads a message, with the four bytes before it that name its encoding; the reason if it cannot be read.
 pub(crate) fn decode(bytes: &[u8], recorded: i64, sample: &mut Sample) -> Result<(), String> {
     let [_, kind, _, _, message @ ..] = bytes else {
-        return Err(format!("it has {} bytes, less than the four that name its encoding", bytes.len()));
+        return Err(format!("it has {} bytes, less than the four bytes that give its encoding", bytes.len()));
     };
     let decoded: Result<(JointState, usize), _> = match (bytes[0], kind) {
         (0, 0) => cdr_encoding::from_bytes::<_, BigEndian>(message),
@@ -44,11 +44,11 @@ pub(crate) fn decode(bytes: &[u8], recorded: i64, sample: &mut Sample) -> Result
         }
     };
     let (JointState { header, name, position, velocity, effort }, _) =
-        decoded.map_err(|error| format!("it is no {TYPE}: {error}"))?;
+        decoded.map_err(|error| format!("it is not a {TYPE}: {error}"))?;
     check_names(name.iter().map(String::as_str))?;
     for (list, numbers) in [("positions", &position), ("velocities", &velocity), ("efforts", &effort)] {
         if numbers.len() > MOST_JOINTS {
-            return Err(format!("it has {} {list}; at most {MOST_JOINTS} are read", numbers.len()));
+            return Err(format!("it has {} {list}; rne reads at most {MOST_JOINTS}", numbers.len()));
         }
     }
     sample.measured = i64::from(header.stamp.sec) * 1_000_000_000 + i64::from(header.stamp.nanosec);

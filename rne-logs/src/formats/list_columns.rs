@@ -38,7 +38,8 @@ impl ListColumns {
             let unit = unit.map_err(|text| {
                 let (quantities, known) = (quantity.plural(), Unit::known(quantity));
                 let what = format!(
-                    "the column {name} has {quantities} in {text}, which is no unit of them that is known: {known}"
+                    "the column {name} has {quantities} in {text}, which is not a known unit; the known units are \
+                     {known}"
                 );
                 LogError::file(path, what)
             })?;
@@ -65,7 +66,7 @@ impl ListColumns {
         let said = motions().find(|(.., unit)| unit.is_some_and(|unit| !unit.is_si()));
         let unsaid = motions().find(|(.., unit)| unit.is_none());
         if let (Some((_, said, _)), Some((_, unsaid, _)), Angles::Unsaid) = (said, unsaid, options.angles) {
-            let what = format!("the column {said} says its unit and {unsaid} does not");
+            let what = format!("the name of the column {said} gives a unit, but the name {unsaid} does not");
             return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Angles)));
         }
         Ok(lists)
@@ -88,8 +89,9 @@ pub(crate) fn names<'a>(
         && stem(name).ends_with(['/', '.'])
     {
         let what = format!(
-            "the column {name} has names of joints, and does not begin with {} as the positions do: whose names they \
-             are is not known; give it such a name, or one without a prefix if they are those of every arm",
+            "the column {name} has names of joints, but does not begin with {} like the columns of positions: rne does \
+             not know to which arm the names belong; rename the column so that it begins with this prefix, or with no \
+             prefix if the names are valid for every arm",
             options.topic.as_deref().unwrap_or_default()
         );
         return Err(LogError::request(path, what));
@@ -105,8 +107,8 @@ pub(crate) fn names<'a>(
         several => match several.iter().find(begins).map(|(place, _)| *place) {
             None => {
                 let what = format!(
-                    "the columns {} are all names of joints, and none has the name of {position} but for its end; \
-                     remove the others, or choose a group",
+                    "the columns {} all contain names of joints, and none has the name of {position} with another \
+                     ending; keep only one of these columns, or choose a group",
                     listed(several.iter().map(|(_, name)| *name))
                 );
                 Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Prefix)))
@@ -142,9 +144,12 @@ mod tests {
             assert_eq!(of(texts, position, options).unwrap(), place, "{texts:?}");
         }
         let error = of(&["left.name"], "right.position", &right).unwrap_err();
-        assert!(error.to_string().contains("left.name has names of joints, and does not begin with /right"), "{error}");
+        assert!(error.to_string().contains("left.name has names of joints, but does not begin with /right"), "{error}");
         let error = of(&["left.name", "centre.name"], "right.position", &right).unwrap_err();
-        assert!(error.is_of_request() && error.to_string().contains("left.name, centre.name are all names"), "{error}");
+        assert!(
+            error.is_of_request() && error.to_string().contains("left.name, centre.name all contain names of joints"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -162,7 +167,7 @@ mod tests {
         assert_eq!(found.position, Some((0, 1.0)));
         for (names, wanted) in [
             (["actual.q", "target.q"], "actual.q and target.q are both positions"),
-            (["position_deg", "velocity"], "position_deg says its unit and velocity does not"),
+            (["position_deg", "velocity"], "position_deg gives a unit, but the name velocity does not"),
             (["position [gon]", "velocity"], "positions in gon, which is no unit"),
         ] {
             let error = lists(&names).unwrap_err().to_string();

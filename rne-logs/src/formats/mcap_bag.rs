@@ -150,8 +150,8 @@ impl McapBag {
                 return Ok(());
             }
             return wrong(format!(
-                "channel {number} is defined twice, as {known} and as {channel}, so nobody can tell whose its messages \
-                 are; `mcap recover` or a new recording makes a file that can be read"
+                "channel {number} is defined twice, as {known} and as {channel}, so rne cannot know to which of the \
+                 two its messages belong; `mcap recover` or a new recording makes a file that can be read"
             ));
         }
         let is_meant = match &self.wanted {
@@ -160,7 +160,7 @@ impl McapBag {
         };
         let (name, encoding) = (channel.topic.clone(), channel.encoding.clone());
         if self.topic.as_ref() == Some(&name) && !is_joint_state(&channel.kind) {
-            return wrong(format!("the topic {name} has joint states, and has {} in channel {number}", channel.kind));
+            return wrong(format!("the topic {name} has joint states, but has {} in channel {number}", channel.kind));
         }
         self.channels.insert(number, channel);
         if !is_meant {
@@ -185,7 +185,8 @@ impl McapBag {
             return Ok(());
         }
         let what = format!(
-            "the name of a topic, its type or its encoding has {} bytes; names of at most {LONGEST_NAME} are read",
+            "the name of a topic, its type or its encoding has {} bytes; rne reads names of at most {LONGEST_NAME} \
+             bytes",
             name.len()
         );
         Err(LogError::file(&self.path, what))
@@ -199,8 +200,8 @@ impl McapBag {
         }
         let (size, count) = (self.size, self.count);
         let what = format!(
-            "the bag ends at byte {end} of {size}, behind {count} joint states, and what follows is not read: if it is \
-             another bag, take both apart, and name both files"
+            "the bag ends at byte {end} of {size}, after {count} joint states, and rne does not read the bytes after \
+             it: if they are another bag, split the file and name both files"
         );
         Err(LogError::file(&self.path, what))
     }
@@ -215,24 +216,26 @@ impl McapBag {
 
     fn wrong(&self, error: &McapError) -> LogError {
         let (given, count) = (self.given, self.count);
-        let at = format!("before byte {given} of {}, behind {count} joint states", self.size);
+        let at = format!("before byte {given} of {}, after {count} joint states", self.size);
         LogError::file(
             &self.path,
             match error {
                 McapError::UnexpectedEof if self.chunk.is_none() => {
-                    format!("the file is cut off: it ends within a record, {at}; `mcap recover` keeps what is whole")
+                    format!(
+                        "the file is cut off: it ends within a record, {at}; `mcap recover` keeps the undamaged records"
+                    )
                 }
                 McapError::RecordTooLarge { len, .. } => {
-                    format!("a record of {len} bytes, {at}: the file is corrupt, or has larger messages than are read")
+                    format!("a record of {len} bytes, {at}: the file is corrupt, or has larger messages than rne reads")
                 }
                 McapError::ChunkTooLarge(bytes) => {
                     format!(
-                        "a chunk says that it unpacks to {bytes} bytes, {at}: more than {MOST_UNPACKED} times its own \
-                         are not read"
+                        "a chunk states that it unpacks to {bytes} bytes, {at}: rne reads at most {MOST_UNPACKED} \
+                         times the size of the chunk"
                     )
                 }
                 McapError::UnsupportedCompression(name) => {
-                    format!("chunks are compressed with {name:?}: zstd and lz4 are read")
+                    format!("chunks are compressed with {name:?}: rne reads only zstd and lz4")
                 }
                 error => format!("the file is corrupt {at}: {error}"),
             },

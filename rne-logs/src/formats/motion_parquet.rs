@@ -11,7 +11,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
 use crate::limits::MOST_NUMBERS;
-use crate::{Layout, Motion};
+use crate::{Layout, Motion, RecordedState};
 
 /// Rows of a group: engines read groups in parallel.
 const ROWS: usize = 1 << 16;
@@ -24,12 +24,14 @@ const COLUMNS: [&str; 7] = ["time", "name", "q", "qd", "qdd", "tau", "run"];
 /// The columns are `time`, `name`, `q`, `qd`, `qdd`, `tau` and `run`. `name` is the list of joint names, base to tip;
 /// the following four are lists with a number per joint, in SI units; `tau` is missing where the log has no efforts.
 /// `run` is the number of the run, from 1. `time` is a time stamp in ns where the times of the log are absolute
-/// ([`Layout::origin`] is not 0), else a number of seconds. [`Log`](crate::Log) reads such a table.
+/// ([`Layout::origin`] is not 0), else a number of seconds. A table of states as they were recorded has no `qdd`, and
+/// no `qd` if the log has no velocities. [`Log`](crate::Log) reads such a table.
 pub struct MotionParquet<W: Write + Send> {
     writer: SerializedFileWriter<W>,
     joints: Vec<String>,
     is_stamped: bool,
-    has_efforts: bool,
+    /// Whether there is a column of positions, of velocities, of accelerations, of torques.
+    has: [bool; 4],
     has_label: bool,
     rows: Rows,
 }
@@ -57,12 +59,24 @@ impl<W: Write + Send> MotionParquet<W> {
     /// # Errors
     /// When the table has a column of the label's name, or the output cannot be written.
     pub fn new(out: W, layout: &Layout, label: Option<&str>) -> io::Result<Self> {
+        Self::with(out, layout, label, [true, true, true, layout.has_efforts])
+    }
+
+    /// Begins a table for the states of a log with this layout as they were recorded: [`MotionParquet::push_recorded`].
+    ///
+    /// # Errors
+    /// Those of [`MotionParquet::new`].
+    pub fn of_recorded(out: W, layout: &Layout, label: Option<&str>) -> io::Result<Self> {
+        Self::with(out, layout, label, [true, layout.has_velocities, false, layout.has_efforts])
+    }
+
+    fn with(out: W, layout: &Layout, label: Option<&str>, has: [bool; 4]) -> io::Result<Self> {
         if let Some(label) = label.filter(|label| COLUMNS.contains(label)) {
             let what = format!("the table has a column {label} of its own, so no other column can have this name");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
         }
         let is_stamped = layout.origin != 0;
-        let schema = schema(is_stamped, layout.has_efforts, label)?;
+        let schema = schema(is_stamped, has, label)?;
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_dictionary_enabled(false)
@@ -74,7 +88,7 @@ impl<W: Write + Send> MotionParquet<W> {
             writer: SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties.build()))?,
             joints: layout.joints.clone(),
             is_stamped,
-            has_efforts: layout.has_efforts,
+            has,
             has_label: label.is_some(),
             rows: Rows::default(),
         })
@@ -85,37 +99,62 @@ impl<W: Write + Send> MotionParquet<W> {
     ///
     /// # Errors
     /// When the joints are not those of the table, or the output cannot be written.
-    #[expect(clippy::cast_precision_loss, reason = "an origin that is not 0 is far from it")]
     pub fn push(&mut self, layout: &Layout, run: u64, motion: &Motion, label: &str) -> io::Result<()> {
-        if layout.joints != self.joints || layout.has_efforts != self.has_efforts {
-            let what = format!(
-                "the joints of one table must be the same in all of its rows, and so must their quantities: {} and {}",
-                self.joints.join(", "),
-                layout.joints.join(", ")
-            );
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
-        }
-        let number = i64::try_from(run).unwrap_or(i64::MAX).saturating_add(1);
-        let most = (MOST_NUMBERS / 4 / self.joints.len()).clamp(1, ROWS);
+        self.check(layout)?;
         let label = ByteArray::from(label);
         for (row, time) in motion.time.iter().enumerate() {
-            let rows = &mut self.rows;
-            if self.is_stamped {
-                rows.stamps.push(layout.origin.saturating_add(nanoseconds(*time)));
-            } else {
-                rows.seconds.push(time + layout.origin as f64 * 1e-9);
-            }
             let quantities = [&motion.q, &motion.qd, &motion.qdd, &motion.tau];
-            for (list, numbers) in rows.lists.iter_mut().zip(quantities) {
+            for (list, numbers) in self.rows.lists.iter_mut().zip(quantities) {
                 list.extend(numbers.iter().map(|of_joint| of_joint[row]));
             }
-            rows.runs.push(number);
-            if self.has_label {
-                rows.labels.push(label.clone());
-            }
-            if rows.runs.len() == most {
-                self.flush()?;
-            }
+            self.end_row(layout.origin.saturating_add(nanoseconds(*time)), *time, layout, run, &label)?;
+        }
+        Ok(())
+    }
+
+    /// Appends a state as it was recorded, with the text of its label. `layout` is that of the log.
+    ///
+    /// # Errors
+    /// Those of [`MotionParquet::push`].
+    pub fn push_recorded(&mut self, layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()> {
+        self.check(layout)?;
+        for (list, numbers) in self.rows.lists.iter_mut().zip([state.q, state.qd, &[], state.tau]) {
+            list.extend_from_slice(numbers);
+        }
+        self.end_row(state.stamp, state.time, layout, state.run, &ByteArray::from(label))
+    }
+
+    /// Refuses a log whose joints or quantities are not those of the table.
+    fn check(&self, layout: &Layout) -> io::Result<()> {
+        let [_, has_velocities, has_accelerations, has_efforts] = self.has;
+        // a filtered motion always has velocities
+        let has_others = has_accelerations || layout.has_velocities == has_velocities;
+        if layout.joints == self.joints && layout.has_efforts == has_efforts && has_others {
+            return Ok(());
+        }
+        let what = format!(
+            "the joints of one table and their quantities must be the same in all of its rows: {} and {}",
+            self.joints.join(", "),
+            layout.joints.join(", ")
+        );
+        Err(io::Error::new(io::ErrorKind::InvalidInput, what))
+    }
+
+    /// Completes a row whose lists are there: its stamp, ns, its time since the origin, s, its run and its label.
+    #[expect(clippy::cast_precision_loss, reason = "an origin that is not 0 is far from it")]
+    fn end_row(&mut self, stamp: i64, time: f64, layout: &Layout, run: u64, label: &ByteArray) -> io::Result<()> {
+        let rows = &mut self.rows;
+        if self.is_stamped {
+            rows.stamps.push(stamp);
+        } else {
+            rows.seconds.push(time + layout.origin as f64 * 1e-9);
+        }
+        rows.runs.push(i64::try_from(run).unwrap_or(i64::MAX).saturating_add(1));
+        if self.has_label {
+            rows.labels.push(label.clone());
+        }
+        if rows.runs.len() == (MOST_NUMBERS / 4 / self.joints.len()).clamp(1, ROWS) {
+            self.flush()?;
         }
         Ok(())
     }
@@ -149,7 +188,7 @@ impl<W: Write + Send> MotionParquet<W> {
             write::<DoubleType, _>(&mut group, &rows.seconds, None)?;
         }
         write::<ByteArrayType, _>(&mut group, &names, levels)?;
-        for list in rows.lists.iter().take(if self.has_efforts { 4 } else { 3 }) {
+        for (list, _) in rows.lists.iter().zip(self.has).filter(|(_, is_there)| *is_there) {
             write::<DoubleType, _>(&mut group, list, levels)?;
         }
         write::<Int64Type, _>(&mut group, &rows.runs, None)?;
@@ -182,7 +221,7 @@ fn write<T: DataType, W: Write + Send>(
     column.close()
 }
 
-fn schema(is_stamped: bool, has_efforts: bool, label: Option<&str>) -> Result<Type, ParquetError> {
+fn schema(is_stamped: bool, has: [bool; 4], label: Option<&str>) -> Result<Type, ParquetError> {
     use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as Physical};
     let leaf = |name: &str, physical: Physical, logical: Option<LogicalType>| {
         let builder = Type::primitive_type_builder(name, physical).with_repetition(Repetition::REQUIRED);
@@ -206,7 +245,7 @@ fn schema(is_stamped: bool, has_efforts: bool, label: Option<&str>) -> Result<Ty
         },
         list(COLUMNS[1], leaf(LIST[2], Physical::BYTE_ARRAY, text.clone())?)?,
     ];
-    for name in &COLUMNS[2..if has_efforts { 6 } else { 5 }] {
+    for (name, _) in COLUMNS[2..6].iter().zip(has).filter(|(_, is_there)| *is_there) {
         fields.push(list(name, leaf(LIST[2], Physical::DOUBLE, None)?)?);
     }
     fields.push(leaf(COLUMNS[6], Physical::INT64, None)?);

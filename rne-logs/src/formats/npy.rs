@@ -30,9 +30,9 @@ impl Npy {
     /// # Errors
     /// One line: when there is no array of float64 or float32, or it is in Fortran's order.
     pub fn open(mut file: impl Read + 'static) -> Result<Self, String> {
-        let (text, before) = header(&mut file).map_err(|reason| format!("no array of numpy: {reason}"))?;
+        let (text, before) = header(&mut file).map_err(|reason| format!("not an array of numpy: {reason}"))?;
         let Header { kind, is_fortran, shape } =
-            Header::parse(&text).map_err(|reason| format!("no array of numpy: {reason}"))?;
+            Header::parse(&text).map_err(|reason| format!("not an array of numpy: {reason}"))?;
         let kind = kind?;
         if is_fortran && shape.iter().filter(|&&length| length > 1).count() > 1 {
             return Err("the array is in Fortran's order; save numpy.ascontiguousarray(states)".to_owned());
@@ -140,7 +140,7 @@ fn header(file: &mut impl Read) -> Result<(Vec<u8>, u64), String> {
     let mut magic = [0; Npy::MAGIC.len()];
     take(&mut magic)?;
     if magic != Npy::MAGIC {
-        return Err("the file does not begin as one of numpy does".to_owned());
+        return Err("the file does not begin like a file of numpy".to_owned());
     }
     let mut version = [0; 2];
     take(&mut version)?;
@@ -240,7 +240,7 @@ impl<'a> Text<'a> {
             return Ok(());
         }
         let there = if self.left.is_empty() { "it ends".to_owned() } else { format!("there is {}", shown(self.left)) };
-        Err(format!("its header wants {:?}, and {there}", char::from(byte)))
+        Err(format!("its header must have {:?} here, but {there}", char::from(byte)))
     }
 
     /// A text in quotes of one kind.
@@ -277,7 +277,7 @@ impl<'a> Text<'a> {
 
     /// A tuple of decimal numbers. Their product, in which a zero counts as 1, is a number of numbers.
     fn shape(&mut self) -> Result<Vec<u64>, String> {
-        let wrong = || "its shape is too large, or none".to_owned();
+        let wrong = || "its shape is too large, or is not a shape".to_owned();
         self.expect(b'(')?;
         let (mut shape, mut product) = (Vec::new(), 1_u64);
         while !self.skip(b')') {
@@ -341,27 +341,27 @@ mod tests {
     fn other_headers_are_refused() {
         let with = |shape: &str| format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}");
         for (text, wanted) in [
-            (with("(-1, 7)"), "too large, or none"),
-            (with("(4e2, 7)"), "too large, or none"),
-            (with("(0x190, 7)"), "too large, or none"),
-            (with("(400L, 7L)"), "too large, or none"),
-            (with("(4294967296, 4294967296)"), "too large, or none"),
-            (with("(0, 4611686018427387904)"), "too large, or none"),
-            (with("(99999999999999999999, 1)"), "too large, or none"),
-            (with("(5)"), "too large, or none"),
-            (with("((5, 6), 7)"), "too large, or none"),
-            (with("(5, 6"), "wants ')'"),
+            (with("(-1, 7)"), "too large, or is not a shape"),
+            (with("(4e2, 7)"), "too large, or is not a shape"),
+            (with("(0x190, 7)"), "too large, or is not a shape"),
+            (with("(400L, 7L)"), "too large, or is not a shape"),
+            (with("(4294967296, 4294967296)"), "too large, or is not a shape"),
+            (with("(0, 4611686018427387904)"), "too large, or is not a shape"),
+            (with("(99999999999999999999, 1)"), "too large, or is not a shape"),
+            (with("(5)"), "too large, or is not a shape"),
+            (with("((5, 6), 7)"), "too large, or is not a shape"),
+            (with("(5, 6"), "must have ')' here"),
             (with("(5, 6), 'shape': (1, 1)"), "has `shape` twice"),
             (with("(5, 6), 'other': 1"), "has a key `other`"),
             (with("(5, 6)}, {"), "goes on with"),
-            (with("[5, 6]"), "wants '('"),
-            (String::new(), "wants '{', and it ends"),
+            (with("[5, 6]"), "must have '(' here"),
+            (String::new(), "must have '{' here, but"),
             ("{}".to_owned(), "no descr"),
             ("{'descr': '<f8', 'fortran_order': False}".to_owned(), "no shape"),
             ("{'descr': '<f8', 'fortran_order': 0, 'shape': ()}".to_owned(), "neither True nor False"),
             ("{'descr': '<f8".to_owned(), "does not end"),
             ("{'descr': '\\x3cf8'".to_owned(), "a backslash"),
-            ("__import__('os')".to_owned(), "wants '{'"),
+            ("__import__('os')".to_owned(), "must have '{' here"),
         ] {
             let error = parse(&text).unwrap_err();
             assert!(error.contains(wanted), "{text}: {error}");

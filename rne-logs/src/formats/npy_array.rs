@@ -36,7 +36,9 @@ impl NpyArray {
         let npy = Npy::open(file).map_err(|error| wrong(&error))?;
         let [rows, width] = npy.shape[..] else {
             let axes = npy.shape.len();
-            return Err(wrong(&format_args!("the array has {axes} axes, not 2: states, and their numbers")));
+            return Err(wrong(&format_args!(
+                "the array has {axes} axes, but it must have 2: one for the states and one for the numbers of a state"
+            )));
         };
         if size > npy.length {
             let (length, more) = (npy.length, size - npy.length);
@@ -56,7 +58,8 @@ impl NpyArray {
             (Some(_), Some(_)) => {
                 let others: Vec<&str> = asked.iter().copied().filter(|name| *name != QUANTITIES[0]).collect();
                 let what = format!(
-                    "the columns {} have times, and a sampling rate is for arrays without times, whose columns are {}",
+                    "the columns {} contain times, but a sampling rate can be given only for arrays without times, \
+                     whose columns are {}",
                     asked.join(","),
                     others.join(",")
                 );
@@ -91,7 +94,7 @@ impl Source for NpyArray {
         self.row.clear();
         while self.row.len() < width {
             let (read, rows) = (self.read, self.rows);
-            let cut = || LogError::file(&self.path, format_args!("the file is cut off behind {read} of {rows} states"));
+            let cut = || LogError::file(&self.path, format_args!("the file is cut off after {read} of {rows} states"));
             match self.numbers.next() {
                 Some(Ok(number)) => self.row.push(number),
                 None => return Err(cut()),
@@ -142,7 +145,7 @@ fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 
     let mut order = Vec::new();
     for column in columns {
         let Some(quantity) = QUANTITIES.iter().position(|name| name == column) else {
-            let what = format!("an array has no columns {column:?}: they are time, q, qd and tau");
+            let what = format!("an array has no columns {column:?}: its columns can be time, q, qd and tau");
             return Err(LogError::request(path, what));
         };
         if order.contains(&quantity) {
@@ -151,7 +154,7 @@ fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 
         order.push(quantity);
     }
     if !order.contains(&1) {
-        return Err(LogError::request(path, "an array without positions, q, is no log"));
+        return Err(LogError::request(path, "the array has no positions, q, so it is not a log"));
     }
     let of_time = usize::from(order.contains(&0));
     let each = order.len() - of_time;
@@ -159,7 +162,8 @@ fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 
     let joints = width.saturating_sub(of_time) / each;
     if joints == 0 || joints > MOST_JOINTS || joints * each + of_time != width {
         let said = columns.join(",");
-        let what = format!("the array has {width} columns, which is not {said} of some joints");
+        let what =
+            format!("the array has {width} columns, which does not fit the order {said} for any number of joints");
         return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Columns)));
     }
     let mut places = [None; 4];

@@ -168,7 +168,9 @@ impl Column {
         self.numbers.iter_mut().for_each(|number| *number *= self.factor);
         if let Some(long) = self.texts.iter().find(|text| text.len() > LONGEST_NAME) {
             let (name, length) = (&self.name, long.len());
-            let what = format!("a text of {name} has {length} bytes; names of at most {LONGEST_NAME} are read");
+            let what = format!(
+                "a text in the column {name} has {length} bytes; rne reads names of at most {LONGEST_NAME} bytes"
+            );
             return Err(Refused::error(what));
         }
         filled

@@ -81,8 +81,8 @@ pub(crate) fn column_reader(
     let compression = chunk.compression();
     if matches!(compression, Compression::BROTLI(_) | Compression::LZO) {
         let what = format!(
-            "the column {name} is compressed with {}, which is not read: write the file with zstd, snappy, gzip or \
-             lz4, in pandas to_parquet(…, compression=\"zstd\")",
+            "the column {name} is compressed with {}, which rne does not read: write the file with zstd, snappy, gzip \
+             or lz4, in pandas to_parquet(…, compression=\"zstd\")",
             compression.to_string().split('(').next().unwrap_or_default().to_lowercase()
         );
         return Err(Refused::error(what));
@@ -160,7 +160,7 @@ impl Bounds {
             _ => false,
         };
         if is_more {
-            let what = "a page unpacks to more bytes than its head says: write the file again, in pandas \
+            let what = "a page unpacks to more bytes than its header states: write the file again, in pandas \
                         to_parquet(…, compression=\"zstd\")";
             return Err(Refused::error(what));
         }
@@ -187,7 +187,7 @@ impl ChunkReader for Bounds {
     fn get_read(&self, start: u64) -> Result<Self::T> {
         let mut read = self.file.get_read(start)?;
         let Head { kind, unpacked, packed, levels } = Head::read(read.fill_buf()?)
-            .ok_or_else(|| ParquetError::General("a page does not begin as one does".to_owned()))?;
+            .ok_or_else(|| ParquetError::General("a page does not begin with a valid header".to_owned()))?;
         let size = unpacked.max(packed);
         self.unpacked.store(unpacked, Relaxed);
         self.levels.store(levels, Relaxed);
@@ -279,7 +279,7 @@ impl Pages {
         let (levels, count) = match page {
             Page::DataPage { buf, num_values, rep_level_encoding, .. } => {
                 if *rep_level_encoding != Encoding::RLE {
-                    let what = format!("the lists of {} are written in a way that is no longer in use", self.name);
+                    let what = format!("the lists of {} are written in an old way that rne does not read", self.name);
                     return Err(Refused::error(what));
                 }
                 let length = buf.first_chunk().map_or(0, |length| u32::from_le_bytes(*length)) as usize;
@@ -290,10 +290,12 @@ impl Pages {
             }
             Page::DictionaryPage { .. } => return Ok(()),
         };
-        let levels = levels.ok_or_else(|| ParquetError::General("a page is not what its head says".to_owned()))?;
+        let levels =
+            levels.ok_or_else(|| ParquetError::General("the data of a page does not match its header".to_owned()))?;
         let longest = longest_list(levels, count as usize, &mut self.length);
         if longest > MOST_JOINTS {
-            let what = format!("a list of {} has {longest} numbers or more; at most {MOST_JOINTS} are read", self.name);
+            let what =
+                format!("a list of {} has {longest} numbers or more; rne reads at most {MOST_JOINTS}", self.name);
             return Err(Refused::error(what));
         }
         Ok(())
@@ -432,7 +434,7 @@ mod tests {
         let gzip = Compression::GZIP(parquet::basic::GzipLevel::default());
         of(gzip, 5006).check_unpacked(&page).unwrap();
         let error = of(gzip, 5005).check_unpacked(&page).unwrap_err();
-        assert!(error.to_string().contains("a page unpacks to more bytes than its head says"), "{error}");
+        assert!(error.to_string().contains("a page unpacks to more bytes than its header states"), "{error}");
         // cut off, it is the library that says so
         of(gzip, 5005).check_unpacked(&page[..20]).unwrap();
         of(Compression::LZ4, 9000).check_unpacked(b"levels\x04\x22\x4D\x18").unwrap_err();

@@ -88,8 +88,8 @@ impl ParquetTable {
         let source = file.try_clone().map_err(|error| wrong(&error))?;
         if let Some(length) = footer(&source).filter(|length| *length > LONGEST_FOOTER) {
             let what = format!(
-                "the description of its columns and groups of rows has {length} bytes; at most {LONGEST_FOOTER} are \
-                 read"
+                "the description of its columns and groups of rows has {length} bytes; rne reads at most \
+                 {LONGEST_FOOTER}"
             );
             return Err(LogError::file(path, what));
         }
@@ -238,7 +238,7 @@ impl ParquetTable {
     /// Takes the next rows of all columns; false at the end.
     fn fill(&mut self) -> Result<bool, LogError> {
         let wrong = |path: &Path, read: u64, error: &ParquetError| {
-            let behind = if Refused::of(error).is_some() { String::new() } else { format!(", behind {read} rows") };
+            let behind = if Refused::of(error).is_some() { String::new() } else { format!(", after {read} rows") };
             LogError::file(path, reason(error) + &behind)
         };
         while self.left == 0 {
@@ -266,7 +266,7 @@ impl ParquetTable {
             filled.map_err(|error| wrong(&self.path, self.read, &error))?;
             if column.rows() != self.rows {
                 let (path, name, read) = (&self.path, &column.name, self.read);
-                let what = format!("the file is corrupt: the column {name} ends behind {read} rows or soon after");
+                let what = format!("the file is corrupt: the column {name} ends after {read} rows or a little later");
                 return Err(LogError::file(path, what));
             }
         }
@@ -397,7 +397,7 @@ fn footer(mut file: &File) -> Option<u32> {
 
 /// Error for an assertion that failed in the library.
 fn corrupt() -> ParquetError {
-    ParquetError::General("a page is not what its head says".to_owned())
+    ParquetError::General("the data of a page does not match its header".to_owned())
 }
 
 /// Message of the library as a sentence.

@@ -95,7 +95,7 @@ impl SqliteBag {
         self.batch.clear();
         let before = self.count;
         let wrong = |error: rusqlite::Error| {
-            LogError::file(&self.path, format_args!("{}, behind {before} messages or more", reason(&error)))
+            LogError::file(&self.path, format_args!("{}, after {before} messages or more", reason(&error)))
         };
         let mut statement = self.connection.prepare(self.query).map_err(wrong)?;
         let mut rows =
@@ -167,7 +167,7 @@ fn head(path: &Path) -> Result<[u8; 100], LogError> {
     if file.read_exact(&mut head).is_err() {
         return Err(LogError::file(
             path,
-            format_args!("the bag is cut off: it has {length} bytes, less than its head"),
+            format_args!("the bag is cut off: it has {length} bytes, less than its header"),
         ));
     }
     let number = |at: usize| u64::from(u32::from_be_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
@@ -187,8 +187,8 @@ fn head(path: &Path) -> Result<[u8; 100], LogError> {
         && next == MAGIC
     {
         let what = format!(
-            "the bag ends at byte {wanted} of {length}, and another one follows, which is not read: take both apart, \
-             and name both files"
+            "the bag ends at byte {wanted} of {length}, and another bag follows, which rne does not read: split the \
+             file and name both files"
         );
         return Err(LogError::file(path, what));
     }
@@ -262,7 +262,7 @@ fn topics(path: &Path, connection: &Connection) -> Result<Vec<(i64, String, Stri
     let tables = "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('topics', 'messages')";
     let count: i64 = connection.query_row(tables, [], |row| row.get(0)).map_err(wrong)?;
     if count < 2 {
-        let what = "the SQLite file has no tables `topics` and `messages`: it is no bag of ROS 2";
+        let what = "the SQLite file has no tables `topics` and `messages`: it is not a bag of ROS 2";
         return Err(LogError::file(path, what));
     }
     let mut statement =
@@ -281,7 +281,7 @@ fn reason(error: &rusqlite::Error) -> String {
     use rusqlite::ErrorCode::{DatabaseCorrupt, NotADatabase, TooBig};
     match error.sqlite_error_code() {
         Some(DatabaseCorrupt) => "the bag is corrupt or cut off (SQLite: database disk image is malformed)".to_owned(),
-        Some(NotADatabase) => "the bag is corrupt: its head is that of SQLite, the rest is not".to_owned(),
+        Some(NotADatabase) => "the bag is corrupt: it begins like a SQLite file, but the rest is not SQLite".to_owned(),
         Some(TooBig) => format!("a message has more than {LONGEST_MESSAGE} bytes"),
         _ => format!("the bag cannot be read: {error}"),
     }

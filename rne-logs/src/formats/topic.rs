@@ -17,7 +17,7 @@ pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&s
         let Some(place) = topics.iter().position(|(name, _)| name == wanted) else {
             let near = instead(wanted, topics.iter().map(|(name, _)| name.as_str()));
             let there = if states.is_empty() {
-                "none has joint states".to_owned()
+                "no topic has joint states".to_owned()
             } else {
                 format!("joint states are in {}", names())
             };
@@ -35,9 +35,9 @@ pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&s
         [] => {
             let all = topics.iter().map(|(name, kind)| format!("{name} ({kind})")).collect::<Vec<_>>();
             let all = if all.is_empty() {
-                "it has no topics".to_owned()
+                "the log has no topics".to_owned()
             } else {
-                format!("it has {}", listed(all.iter().map(String::as_str)))
+                format!("the topics are {}", listed(all.iter().map(String::as_str)))
             };
             Err(LogError::file(path, format_args!("no topic has {TYPE}; {all}")))
         }

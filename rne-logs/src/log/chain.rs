@@ -44,7 +44,8 @@ impl<'a> Chain<'a> {
             let units = self.source.units();
             let differ = |(joint, units): &(&String, &JointUnits)| self.units.of(joint) != **units;
             if let Some(joint) = units.joints.iter().filter(differ).map(|(joint, _)| joint).min() {
-                let what = format!("the names of its columns say other units of {joint} than the first file says");
+                let what =
+                    format!("the names of its columns give other units for {joint} than the names in the first file");
                 return Err(LogError::file(next, what));
             }
         }
@@ -61,8 +62,10 @@ impl<'a> Chain<'a> {
                 None => self.arms.push((label.name.clone(), label.value.clone())),
                 Some((_, first)) if *first == label.value => {}
                 Some((column, first)) => {
-                    let what =
-                        format!("the column {column} names two arms, {first} and {}, and a log is of one", label.value);
+                    let what = format!(
+                        "the column {column} names two arms, {first} and {}, but a log must be of one arm",
+                        label.value
+                    );
                     let (column, value) = (column.clone(), first.clone());
                     return Err(
                         LogError::request(self.path, what).remedy(Remedy::Give(Setting::Select { column, value }))

@@ -42,7 +42,7 @@ impl Joints {
             return Ok(Self { names: by_number(names), ..Self::default() });
         };
         if let Some(twice) = twice(wanted).filter(|name| !name.trim().is_empty()) {
-            return Err(LogError::request(path, format_args!("the joint {twice} is asked for twice")));
+            return Err(LogError::request(path, format_args!("the list of joints names {twice} twice")));
         }
         let there = names(samples);
         let known: HashSet<&String> = there.iter().collect();
@@ -51,20 +51,21 @@ impl Joints {
             let joints = Self { names: wanted.to_vec(), ..Self::default() };
             let mut found = joints.clone();
             if samples.iter().all(|sample| found.find(sample) != Presence::All) {
-                let what = "the joints that are asked for are in different messages, of which none has all";
+                let what = "the joints that you named are in different messages, and no message has all of them";
                 return Err(LogError::file(path, what));
             }
             return Ok(joints);
         };
         if first.trim().is_empty() {
             let all = listed(there.iter().map(String::as_str));
-            let error = LogError::request(path, format_args!("a name of a joint is empty; the log has {all}"));
+            let error =
+                LogError::request(path, format_args!("a name of a joint is empty; the joints of the log are {all}"));
             return Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))));
         }
         let near = instead(first, there.iter().map(String::as_str));
         let all = listed(there.iter().map(String::as_str));
         let missing = listed(missing.iter().map(|name| name.as_str()));
-        let error = LogError::request(path, format_args!("the log has no joint {missing}{near}; it has {all}"));
+        let error = LogError::request(path, format_args!("the log has no joint {missing}{near}; its joints are {all}"));
         Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))))
     }
 

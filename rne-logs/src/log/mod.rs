@@ -5,6 +5,7 @@ pub(crate) mod joints;
 pub(crate) mod motion;
 pub(crate) mod motions;
 pub(crate) mod pass;
+pub(crate) mod recorded;
 pub(crate) mod remark;
 pub(crate) mod survey;
 pub(crate) mod values;
@@ -133,6 +134,8 @@ impl Log {
             size += sample.size();
             head.push(sample.clone());
         }
+        // a bag may name its topic with the first message
+        let topic = topic.or_else(|| chain.source.topic().map(str::to_owned));
         let word_columns = chain.source.word_columns();
         if head.is_empty() {
             if let [(column, value)] = options.select.as_slice() {
@@ -140,11 +143,11 @@ impl Log {
                 let there = listed(there.iter().map(|found| found.value.as_str()));
                 return Err(LogError::request(
                     path,
-                    format_args!("no row has {value} in the column {column}; it has {there}"),
+                    format_args!("no row has {value} in the column {column}; the column has {there}"),
                 ));
             }
             let of_topic = topic.map_or(String::new(), |topic| format!(" on {topic}"));
-            return Err(LogError::file(path, format_args!("there are no joint states{of_topic}")));
+            return Err(LogError::file(path, format_args!("the log has no joint states{of_topic}")));
         }
         let mut joints = Joints::of(path, &head, options.joints.as_deref())?;
         if joints.names.is_empty() {
@@ -185,7 +188,7 @@ impl Log {
         }
         if step >= SLOW && !is_time_unit_known {
             notes.push(format!(
-                "times have no unit and are read as seconds unless another unit is given: samples are at {}",
+                "the times have no unit, so rne reads them as seconds unless you give another unit: samples are at {}",
                 rates(step)
             ));
         }
@@ -294,8 +297,8 @@ fn median_step(times: &[i64]) -> Option<f64> {
 /// Message for times whose unit is not known.
 fn unknown_unit(step: f64) -> String {
     format!(
-        "the unit of the times is not known: they are {} apart, and samples are at {}; if the times only count rows, \
-         remove their column and give the sampling rate",
+        "the unit of the times is not known: the times are {} apart, so samples are at {}; if the times only count \
+         rows, remove their column and give the sampling rate",
         short(step),
         rates(step)
     )
@@ -324,7 +327,7 @@ fn rates(step: f64) -> String {
 fn no_step(path: &Path, times: &[i64]) -> LogError {
     match times.len() {
         1 => LogError::file(path, "the log has one joint state; a motion needs many"),
-        count => LogError::file(path, format_args!("the times of the first {count} joint states do not grow")),
+        count => LogError::file(path, format_args!("the times of the first {count} joint states do not increase")),
     }
 }
 
@@ -338,7 +341,7 @@ fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -
     let plural = if slides.len() == 1 { ("slides", "is") } else { ("slide", "are") };
     (!slides.is_empty()).then(|| {
         let names = listed(slides.into_iter());
-        format!("degrees are for joints that turn: {names} {}, and {} taken for m and m/s", plural.0, plural.1)
+        format!("degrees are only for joints that turn: {names} {}, and {} read in m and m/s", plural.0, plural.1)
     })
 }
 
@@ -351,15 +354,19 @@ fn check(path: &Path, options: &Options) -> Result<(), LogError> {
         }
     }
     if !(options.gap >= 1.5 && options.gap.is_finite()) {
-        return Err(LogError::request(path, "a gap is at least 1.5 steps, or intervals that jitter are gaps"));
+        return Err(LogError::request(
+            path,
+            "the limit of gaps must be at least 1.5 steps, because otherwise intervals with jitter count as gaps",
+        ));
     }
     if options.gap > LONGEST_GAP {
-        let what =
-            format!("a gap is at most {LONGEST_GAP} steps: missing rows of a shorter one are interpolated, row by row");
+        let what = format!(
+            "the limit of gaps must be at most {LONGEST_GAP} steps: rne interpolates each missing row of a shorter gap"
+        );
         return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Gap)));
     }
     if options.torque_constants.iter().any(|constant| !constant.is_finite() || *constant == 0.0) {
-        return Err(LogError::request(path, "a torque constant is zero or no number"));
+        return Err(LogError::request(path, "a torque constant is zero or not a number"));
     }
     Ok(())
 }

@@ -67,20 +67,10 @@ pub struct Motions<'a> {
 
 impl<'a> Motions<'a> {
     pub(crate) fn of(log: &'a Log, survey: &Survey) -> Result<Self, LogError> {
-        if let Some((joint, range)) = survey.may_be_degrees(log) {
-            let what = format!(
-                "positions of {} range over {range:.1}, more than 4π: they may be degrees",
-                log.layout.joints[joint]
-            );
-            return Err(log.request(what).remedy(Remedy::Give(Setting::Angles)));
-        }
-        let currents = log.unsaid_currents();
-        if !currents.is_empty() {
-            let what = format!("efforts of {} are currents, by the names of columns", listed(currents.into_iter()));
-            return Err(log.request(what).remedy(Remedy::Give(Setting::TorqueConstants)));
-        }
+        check_units(log, survey)?;
         let Some(hertz) = survey.cutoff.hertz() else {
-            let what = "no run is long enough for a spectrum, a second and 64 states, to choose the filter";
+            let what = "rne cannot choose the filter: it needs a run (a part of the log without gaps) of at least a \
+                        second and 64 states";
             return Err(log.request(what).remedy(Remedy::Give(Setting::Cutoff)));
         };
         if survey.longest <= survey.dropped.saturating_mul(2) as u64 {
@@ -94,8 +84,8 @@ impl<'a> Motions<'a> {
         let dropped = log.dropped(kernel.half());
         if dropped.saturating_mul(2).saturating_mul(columns) > MOST_NUMBERS {
             let what = format!(
-                "at {} Hz a cut-off of {} Hz holds {} states at once, too many for {columns} columns: a higher cut-off \
-                 holds fewer, and so do fewer joints",
+                "at {} Hz a cut-off of {} Hz needs {} states in memory at once, too many for {columns} columns: use a \
+                 higher cut-off or fewer joints",
                 short(1.0 / layout.step),
                 short(hertz),
                 2 * dropped
@@ -258,14 +248,31 @@ impl<'a> Motions<'a> {
     }
 }
 
+/// Refuses a log whose positions may be degrees and nobody said, or whose efforts are currents without a factor.
+pub(crate) fn check_units(log: &Log, survey: &Survey) -> Result<(), LogError> {
+    if let Some((joint, range)) = survey.may_be_degrees(log) {
+        let what = format!(
+            "positions of {} range over {range:.1}, more than 4π: they may be degrees",
+            log.layout.joints[joint]
+        );
+        return Err(log.request(what).remedy(Remedy::Give(Setting::Angles)));
+    }
+    let currents = log.unsaid_currents();
+    if !currents.is_empty() {
+        let what = format!("the names of columns say that efforts of {} are currents", listed(currents.into_iter()));
+        return Err(log.request(what).remedy(Remedy::Give(Setting::TorqueConstants)));
+    }
+    Ok(())
+}
+
 /// Why a cut-off leaves nothing of any run: of the request, where another one would leave something.
 fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
     let (longest, step) = (usize::try_from(survey.longest).unwrap_or(usize::MAX), log.layout.step);
     let half = (longest.saturating_sub(1) / 2).saturating_sub(log.of_differences());
     let lowest = Kernel::lowest_of(half, step);
     let what = format!(
-        "no run is longer than the two ends that the filter drops: at {} Hz a cut-off of {} Hz drops {} states each, \
-         and the longest run has {longest}",
+        "no run (a part of the log without gaps) is long enough for the filter: at {} Hz a cut-off of {} Hz drops {} \
+         states at each end, and the longest run has {longest}",
         short(1.0 / step),
         short(hertz),
         survey.dropped
@@ -273,10 +280,10 @@ fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
     if lowest <= HIGHEST / step {
         // rounded up
         let lowest = (lowest * 1e3).ceil() / 1e3;
-        let what = format!("{what}; a higher cut-off drops less, from {lowest} Hz on something is left");
+        let what = format!("{what}; a higher cut-off drops fewer states: from {lowest} Hz on, some states are left");
         log.request(what).remedy(Remedy::Give(Setting::Cutoff))
     } else {
-        LogError::file(&log.files[0], format_args!("{what}; no cut-off that the rate allows leaves anything"))
+        LogError::file(&log.files[0], format_args!("{what}; at this sampling rate, every cut-off drops all states"))
     }
 }
 

@@ -101,7 +101,7 @@ impl fmt::Display for Remark {
             ),
             Self::VelocitiesDerived => f.write_str("velocities are derived from positions"),
             Self::Currents(names) => {
-                write!(f, "efforts of {} are currents, by the names of columns", names.join(", "))
+                write!(f, "the names of columns say that efforts of {} are currents", names.join(", "))
             }
             Self::Spikes { count, joint, effort, time } => write!(
                 f,

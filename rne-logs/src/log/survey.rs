@@ -175,8 +175,8 @@ impl Survey {
             });
             if rows > FEW_ROWS && rows / MOST_FILLED > count {
                 let what = format!(
-                    "more than {MOST_FILLED} states are filled in for each of the first {count}, up to {} s of the \
-                     log: a lower limit of gaps leaves long intervals out",
+                    "more than {MOST_FILLED} states would be interpolated for each of the first {count} states, up to \
+                     {} s of the log: with a lower limit of gaps, rne leaves long intervals out",
                     short(log.seconds(state.time))
                 );
                 return Err(log.request(what).remedy(Remedy::Give(Setting::Gap)));
@@ -190,7 +190,7 @@ impl Survey {
             Some(hertz) if hertz <= HIGHEST * rate => Cutoff::Given { hertz },
             Some(hertz) => {
                 let what = format!(
-                    "a cut-off of {} Hz is too high for samples at {rate:.4} Hz: at most {:.4} Hz",
+                    "a cut-off of {} Hz is too high for samples at {rate:.4} Hz: it can be at most {:.4} Hz",
                     short(hertz),
                     HIGHEST * rate
                 );

@@ -40,7 +40,7 @@ impl Log {
             let mut source = format.open(path, &options)?;
             let columns = source.label_columns();
             if columns.is_empty() {
-                let what = format!("a column of a table is asked for; the format of this file is {format}");
+                let what = format!("you named a column of a table, but the format of this file is {format}");
                 return Err(LogError::request(path, what));
             }
             source.hold(label::find(path, &columns, column)?, None);
@@ -56,7 +56,8 @@ impl Log {
                     found[*place].rows += 1;
                 } else if found.len() == label::MOST_VALUES {
                     let what = format!(
-                        "the column {column} has more than {} texts; name one that says of which arm or part a row is",
+                        "the column {column} has more than {} different texts; name a column that gives the arm or the \
+                         part for each row",
                         label::MOST_VALUES
                     );
                     return Err(LogError::request(path, what));

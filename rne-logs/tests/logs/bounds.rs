@@ -81,7 +81,10 @@ fn lists_of_parquet_are_as_long_as_joints_are_many() {
                 lengths[place] = 1025;
                 let (_folder, path) = file("log.parquet", lists(&lengths, None, properties.clone()));
                 let error = refused(path, Options::default());
-                assert!(error.contains("a list of position has 1025 numbers or more; at most 1024"), "{error}");
+                assert!(
+                    error.contains("a list of position has 1025 numbers or more; rne reads at most 1024"),
+                    "{error}"
+                );
                 assert!(!error.contains("corrupt"), "{error}");
                 lengths[place] = 1024;
             }
@@ -117,11 +120,11 @@ fn names_are_of_some_length() {
     assert_eq!(log.layout().joints, [long(256), "1".to_owned()]);
     let (_folder, path) = file("log.parquet", lists(&[2; 80], Some(&long(257)), plain()));
     let error = refused(path, Options::default());
-    assert!(error.contains("has 257 bytes; names of at most 256 are read"), "{error}");
+    assert!(error.contains("has 257 bytes; rne reads names of at most 256 bytes"), "{error}");
 
     for (names, wanted) in [
         (vec![long(257)], "message 1 of /joint_states cannot be read: the name of a joint has 257 bytes"),
-        ((0..1025).map(|i| i.to_string()).collect(), "it names 1025 joints; at most 1024 are read"),
+        ((0..1025).map(|i| i.to_string()).collect(), "it names 1025 joints; rne reads at most 1024"),
     ] {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let message = joint_state(10_000_000, &names, [&vec![0.0; names.len()], &[], &[]], true);
@@ -152,7 +155,7 @@ fn lists_of_messages_are_as_long_as_joints_are_many() {
     let (_folder, path) = sqlite(&[], true, true);
     let bag = rusqlite::Connection::open(&path).unwrap();
     bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (2, 1, ?1)", (message,)).unwrap();
-    assert!(refused(path, Options::default()).contains("it has 1025 positions; at most 1024 are read"));
+    assert!(refused(path, Options::default()).contains("it has 1025 positions; rne reads at most 1024"));
 }
 
 /// Of two files in one, or two arrays, the second would not be read.
@@ -189,8 +192,8 @@ fn text(text: &str) -> Vec<u8> {
 fn chunks_unpack_to_what_logs_are_packed_from() {
     let header = record(1, &[&text("ros2"), &text("test")]);
     for (unpacked, wanted) in [
-        (1_u64 << 32, "a chunk says that it unpacks to 4294967296 bytes"),
-        (256 * 8192 + 256, "a chunk says that it unpacks to 2097408 bytes"),
+        (1_u64 << 32, "a chunk states that it unpacks to 4294967296 bytes"),
+        (256 * 8192 + 256, "a chunk states that it unpacks to 2097408 bytes"),
         (256 * 8192, "the file is corrupt"),
         (1 << 20, "the file is corrupt"),
     ] {
@@ -238,9 +241,9 @@ fn a_channel_is_defined_once() {
         (channel(2, 1, "/a", "json"), Some("the topic /a is encoded as \"json\", not as cdr")),
         (
             [schema(2, image), channel(2, 2, "/a", "cdr")].concat(),
-            Some("the topic /a has joint states, and has sensor_msgs/msg/Image in channel 2"),
+            Some("the topic /a has joint states, but has sensor_msgs/msg/Image in channel 2"),
         ),
-        (channel(2, 1, &"t".repeat(257), "cdr"), Some("has 257 bytes; names of at most 256 are read")),
+        (channel(2, 1, &"t".repeat(257), "cdr"), Some("has 257 bytes; rne reads names of at most 256 bytes")),
     ] {
         let (_folder, path) = file("bag.mcap", bag(&second));
         match (survey(&[path], Options::default()), wanted) {

@@ -60,14 +60,14 @@ fn joints_are_by_their_numbers_in_any_order_of_columns() {
 
 #[test]
 fn a_table_with_a_gap_or_twice_a_joint_is_refused() {
-    assert!(refused(&eleven(&[1, 3]), options()).contains("q1, q3 are positions of joints by their numbers, and 2 is"));
+    assert!(refused(&eleven(&[1, 3]), options()).contains("q1, q3 are positions of numbered joints, but 2 is"));
     assert!(
         refused(&eleven(&[1, 2, 1]), options()).contains("q1 and q1, 2 and 4 of the table, are both positions of 1")
     );
     let twice = eleven(&[1, 2]).replace("tau1,tau2", "tau1,torque1");
     assert!(refused(&twice, options()).contains("tau1 and torque1, 4 and 5 of the table, are both efforts of 1"));
     let other = eleven(&[1, 2]).replace("tau1,tau2", "tau1,tau3");
-    assert!(refused(&other, options()).contains("the position of joint 2 and not its effort"));
+    assert!(refused(&other, options()).contains("the position of joint 2 but not its effort"));
 }
 
 /// A table with other units, its numbers divided as its header says.
@@ -127,13 +127,13 @@ fn units_of_names_are_converted() {
         assert!(is_near(&found, &plain), "{joints:?}");
         let (_folder, path) = file("log.csv", &of_metres);
         let (log, _) = survey(&[path], slide(&joints, &slides)).unwrap();
-        let note = "degrees are for joints that turn: 1 slides, and is taken for m and m/s".to_owned();
+        let note = "degrees are only for joints that turn: 1 slides, and is read in m and m/s".to_owned();
         assert_eq!(log.layout().notes, [note]);
     }
     // the option is of what says none
     let partly = text.replace("q1,q2,qd1,qd2", "q1 [deg],q2 [deg],qd1,qd2");
     assert_eq!(motion(&partly, asked.clone()), motion(&text, asked));
-    assert!(refused(&partly, options()).contains("q1 [deg] says its unit and qd1 does not"));
+    assert!(refused(&partly, options()).contains("q1 [deg] gives a unit, but the name qd1 does not"));
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn currents_need_a_constant() {
     let (log, _) = survey(&[path], options()).unwrap();
     assert_eq!((log.unsaid_currents(), log.layout().units[0].effort), (vec!["1", "2"], Some(Dimension::Current)));
     let error = refused(&text, options());
-    assert!(error.contains("efforts of 1, 2 are currents, by the names of columns"), "{error}");
+    assert!(error.contains("the names of columns say that efforts of 1, 2 are currents"), "{error}");
     assert!(refused(&csv(&times()).replace("tau", "current_"), options()).contains("are currents"));
     let said = motion(&text, Options { torque_constants: vec![200.0, 0.3], ..options() });
     let plain = motion(&csv(&times()), options());
@@ -186,7 +186,7 @@ fn tables_of_other_programs_are_the_same() {
         assert_eq!(motion(&text, options()), expected, "{what}");
     }
     for (text, wanted) in [
-        (format!("{header}\n"), "there are no joint states"),
+        (format!("{header}\n"), "the log has no joint states"),
         (plain.replace(',', ";").replace('.', ","), "decimal comma"),
         (plain.replace(',', " "), "separated by blanks"),
         (csv(&times()[..1]), "the log has one joint state"),
@@ -206,5 +206,5 @@ fn files_of_one_log_have_one_unit() {
     let (_b, second) = file("b.csv", csv(&times()));
     let radians = Options { angles: Angles::Radians, ..options() };
     let error = runs(&[first, second], radians, 1000).map(|runs| runs.len()).unwrap_err().to_string();
-    assert!(error.contains("b.csv: the names of its columns say other units of 1"), "{error}");
+    assert!(error.contains("b.csv: the names of its columns give other units for 1"), "{error}");
 }

@@ -211,7 +211,7 @@ fn a_cutoff_that_leaves_nothing_is_refused() {
     let (_folder, path) = file("five.csv", csv(&times(5, 100.0)));
     let options = Options { cutoff: Some(10.0), ..Options::default() };
     let error = runs(&[path], options, 100_000).unwrap_err();
-    assert!(!error.is_of_request() && error.to_string().contains("no cut-off"), "{error}");
+    assert!(!error.is_of_request() && error.to_string().contains("every cut-off drops all states"), "{error}");
 }
 
 /// A spike is found before a filter spreads it; left out, the motion is that of the log without it.

@@ -331,7 +331,7 @@ fn topics_are_named_where_there_are_several() {
 
     let (_folder, path) = file("none.mcap", mcap(&times(), None, &[]));
     let asked = error(path, Options::default());
-    assert!(asked.to_string().contains("no topic has sensor_msgs/msg/JointState; it has"), "{asked}");
+    assert!(asked.to_string().contains("no topic has sensor_msgs/msg/JointState; the topics are"), "{asked}");
 }
 
 /// An option that a format has no use for, or that says what the log says too, is refused.
@@ -341,7 +341,10 @@ fn options_that_count_for_nothing_are_refused() {
     let rate = Options { rate: Some(125.0), ..options() };
     let columns = Options { columns: ["time", "q", "tau"].map(str::to_owned).to_vec(), ..options() };
     let plain = || WriterProperties::builder().build();
-    let (has, names) = ("and a sampling rate is for", "an order of columns is for arrays of numpy; this is");
+    let (has, names) = (
+        "but a sampling rate can be given only for",
+        "an order of columns can be given only for arrays of numpy, but this file is",
+    );
     for (name, bytes) in [
         ("log.csv", csv(&times()).into_bytes()),
         ("log.npy", npy(&times(), true, "<f8")),
@@ -388,23 +391,24 @@ fn other_schemas_are_told() {
     );
     for (name, bytes, wanted) in [
         ("text.parquet", text, "the column q1 has texts, not numbers"),
-        ("sales.parquet", sales, "no column is the position of a joint"),
-        ("empty.db3", Vec::new(), "the file is empty, no rosbag2, SQLite"),
-        ("text.mcap", b"hello".to_vec(), "does not begin as one of rosbag2, MCAP does"),
+        ("sales.parquet", sales, "no column has the position of a joint"),
+        ("empty.db3", Vec::new(), "the file is empty, so it is not rosbag2, SQLite"),
+        ("text.mcap", b"hello".to_vec(), "does not begin like a file of the format rosbag2, MCAP"),
         ("old.bag", b"#ROSBAG V2.0\n".to_vec(), "a bag of ROS 1"),
         ("empty.csv", Vec::new(), "the file is empty"),
         ("numbers.csv", b"0,1,2\n3,4,5\n".to_vec(), "the first line has numbers"),
         (
             "no_time.csv",
             b"Zeit,q1,q2\n3,4,5\n".to_vec(),
-            "no column has times: its name is time, t, stamp or timestamp, and the columns are Zeit, q1, q2",
+            "no column has times: name the column of times time, t, stamp or timestamp; the columns of this file are \
+             Zeit, q1, q2",
         ),
-        ("words.csv", b"time,q1\n0,1\n0.1,two\n".to_vec(), "line 3: \"two\" is no number"),
-        ("short.csv", b"time,q1,q2\n0,1,2\n0.1,2\n".to_vec(), "line 3: the line has 2 cells, the header 3"),
-        ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not grow"),
-        ("binary.csv", vec![1, 0, 2, 0], "zero bytes"),
+        ("words.csv", b"time,q1\n0,1\n0.1,two\n".to_vec(), "line 3: \"two\" is not a number"),
+        ("short.csv", b"time,q1,q2\n0,1,2\n0.1,2\n".to_vec(), "line 3: the line has 2 cells, but the header has 3"),
+        ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not increase"),
+        ("binary.csv", vec![1, 0, 2, 0], "bytes with the value zero"),
         ("ints.npy", npy(&times()[..3], true, "<i8"), "the numbers are"),
-        ("wide.npy", npy(&times()[..3], false, "<f8"), "which is not time,q,qd,tau of some joints"),
+        ("wide.npy", npy(&times()[..3], false, "<f8"), "which does not fit the order time,q,qd,tau"),
     ] {
         let (_folder, path) = file(name, bytes);
         let error = error(path, Options::default()).to_string();

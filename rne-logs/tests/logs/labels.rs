@@ -79,7 +79,10 @@ fn texts_of_a_column_are_counted_in_their_order() {
     let found: Vec<_> = values("cell").unwrap().into_iter().map(|found| (found.value, found.rows)).collect();
     assert_eq!(found, [("b".to_owned(), 500), ("a".to_owned(), 500)]);
     let error = values("sell").unwrap_err().to_string();
-    assert!(error.contains("the table has no column `sell` (did you mean cell?); it has cell, time, q1"), "{error}");
+    assert!(
+        error.contains("the table has no column `sell` (did you mean cell?); its columns are cell, time, q1"),
+        "{error}"
+    );
     // each time is a text of its own
     let many = |count: i32| {
         let (_folder, path) = log(csv(&(0..count).map(|i| f64::from(i) * 0.01).collect::<Vec<_>>()));
@@ -87,7 +90,7 @@ fn texts_of_a_column_are_counted_in_their_order() {
     };
     assert_eq!(many(1000).unwrap().len(), 1000);
     let error = many(1001).unwrap_err();
-    assert!(error.is_of_request() && error.to_string().contains("time has more than 1000 texts"), "{error}");
+    assert!(error.is_of_request() && error.to_string().contains("time has more than 1000 different texts"), "{error}");
 }
 
 #[test]
@@ -118,7 +121,7 @@ fn a_second_arm_is_refused_with_the_option_that_selects_one() {
     assert_eq!(survey(&[path], Options::default()).unwrap().1.counts.states, 500);
     let error = refused(std::slice::from_ref(&both), options("robot_id", "r3"));
     assert!(error.is_of_request() && error.to_string().contains("no row has r3"), "{error}");
-    assert!(error.to_string().ends_with("it has r1, r2"), "{error}");
+    assert!(error.to_string().ends_with("the column has r1, r2"), "{error}");
 }
 
 /// A log of one arm, with its name.
@@ -157,7 +160,7 @@ fn other_formats_have_no_rows_to_select() {
     let error = refused(std::slice::from_ref(&path), options("robot_id", "r1"));
     let remedy = Setting::Select { column: "robot_id".to_owned(), value: "r1".to_owned() };
     assert_eq!(error.remedies(), [Remedy::LeaveOut(remedy)]);
-    assert!(error.to_string().contains("selected by a column of a table"), "{error}");
+    assert!(error.to_string().contains("selected only by a column of a table"), "{error}");
     let time = Mapping { target: Target::Time, column: "clock".to_owned() };
     let error = refused(&[path], Options { map: vec![time], ..Options::default() });
     assert_eq!(error.remedies(), [Remedy::LeaveOut(Setting::TimeColumn(Vec::new()))]);
@@ -277,6 +280,6 @@ mod in_parquet {
             (Format::Parquet, &["cell".to_owned()][..])
         );
         let error = refused(&[lists], Options { map: vec![run], ..Options::default() });
-        assert!(error.to_string().contains("do not grow"), "{error}");
+        assert!(error.to_string().contains("do not increase"), "{error}");
     }
 }

@@ -20,9 +20,10 @@ mod filtered;
 #[cfg(feature = "full")]
 mod formats;
 mod labels;
-#[cfg(not(feature = "full"))]
+#[cfg(not(any(feature = "bags", feature = "parquet")))]
 mod left_out;
 mod mapped;
+mod recorded;
 mod runs;
 #[cfg(feature = "full")]
 mod tables;

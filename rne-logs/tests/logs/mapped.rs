@@ -93,7 +93,7 @@ fn units_of_a_map_convert() {
     assert!(is_near(&found.qd[1], &expected.qd[1]) && found.q == expected.q);
     // brackets of the column's own name say the unit, too
     let error = read(&with("Zeit,w1 [deg],w2,W1,W2,M1,M2"), all_but("1.position", "w1 [deg]"), Options::default());
-    assert!(error.unwrap_err().to_string().contains("w1 [deg] says its unit and w2 does not"));
+    assert!(error.unwrap_err().to_string().contains("w1 [deg] gives a unit, but the name w2 does not"));
 }
 
 /// Accelerations are those of the log, through the same filter as all else.
@@ -115,7 +115,7 @@ fn accelerations_are_read_by_a_map_alone() {
     assert!(found.qdd[1].iter().all(|number| (number + 1.5).abs() < 1e-12), "{:?}", &found.qdd[1][..3]);
     assert_eq!((&found.q, &found.qd, &found.tau), (&derived.q, &derived.qd, &derived.tau));
     let error = read(&with("qdd"), map(&[("1.acceleration", "qdd1")]), Options::default()).unwrap_err().to_string();
-    assert!(error.contains("the position of joint 2 and not its acceleration"), "{error}");
+    assert!(error.contains("the position of joint 2 but not its acceleration"), "{error}");
     let (_folder, path) = file("log.csv", with("qdd").replace(",-1.5\n", ",1e13\n"));
     let of_map = map(&[("1.acceleration", "qdd1"), ("2.acceleration", "qdd2")]);
     let (_, survey) = survey(&[path], Options { map: of_map, ..Options::default() }).unwrap();
@@ -135,19 +135,22 @@ fn a_wrong_map_is_refused() {
         map(&all)
     };
     for (mappings, wanted) in [
-        (changed(1, ("1.position", "w3")), "no column `w3` for 1.position (did you mean w1?); it has Zeit, w1, w2"),
+        (
+            changed(1, ("1.position", "w3")),
+            "no column `w3` for 1.position (did you mean w1?); its columns are Zeit, w1, w2",
+        ),
         (changed(2, ("1.position", "w2")), "1.position is mapped twice"),
         (changed(2, ("2.position", "w1")), "the column `w1` is mapped twice"),
         (
             changed(2, ("2.position", "w2 [Nm]")),
-            "`Nm` is not a unit for 2.position, the column `w2 [Nm]`; there are rad",
+            "`Nm` is not a unit for 2.position, the column `w2 [Nm]`; the known units are rad",
         ),
         (
             changed(0, ("time", "Zeit [h]")),
-            "`h` is not a unit for time, the column `Zeit [h]`; there are s, ms, us, ns",
+            "`h` is not a unit for time, the column `Zeit [h]`; the known units are s, ms, us, ns",
         ),
         (map(&ALL[1..]), "no column has times"),
-        (map(&ALL[..6]), "the position of joint 2 and not its effort"),
+        (map(&ALL[..6]), "the position of joint 2 but not its effort"),
     ] {
         let error = read(&strange, mappings, Options::default()).unwrap_err();
         assert!(error.to_string().contains(wanted), "{error}");
@@ -156,7 +159,7 @@ fn a_wrong_map_is_refused() {
     let npy = b"\x93NUMPY\x01\x00";
     let (_folder, path) = file("log.npy", npy);
     let error = survey(&[path], Options { map: map(&ALL), ..Options::default() }).err().unwrap();
-    assert!(error.to_string().contains("for tables; the format of this file is array of numpy"), "{error}");
+    assert!(error.to_string().contains("for tables, but the format of this file is array of numpy"), "{error}");
 }
 
 /// The suggestion for a table that is refused reads it, once its blanks are filled.

@@ -170,7 +170,7 @@ fn joints_are_found_by_name_and_in_the_order_asked_for() {
     };
     let error: LogError = wrong(&["a", "bb"]);
     assert!(
-        error.is_of_request() && error.to_string().contains("no joint bb (did you mean b?); it has a, b"),
+        error.is_of_request() && error.to_string().contains("no joint bb (did you mean b?); its joints are a, b"),
         "{error}"
     );
     assert!(wrong(&["a", "a"]).to_string().contains("twice"));
@@ -217,7 +217,7 @@ fn times_that_may_be_in_any_unit_are_asked_for_theirs() {
     for step in [0.5, 1.0, 2.0, 8.0, 1e6] {
         let error = open(&table(step, "t"), Options::default()).unwrap_err();
         assert!(error.is_of_request(), "{error}");
-        assert!(error.to_string().contains("the unit of the times is not known: they are "), "{error}");
+        assert!(error.to_string().contains("the unit of the times is not known: the times are "), "{error}");
         assert!(error.to_string().contains("if the times only count rows"), "{error}");
         // who says it is believed
         assert!((open(&table(step, "t"), unit(TimeUnit::Seconds)).unwrap() / step - 1.0).abs() < 1e-12);
@@ -226,13 +226,14 @@ fn times_that_may_be_in_any_unit_are_asked_for_theirs() {
         assert!((open(&table(step, "t [ms]"), Options::default()).unwrap() / step - 1e-3).abs() < 1e-12);
     }
     let error = open(&table(1.0, "t"), Options::default()).unwrap_err().to_string();
-    assert!(error.contains("1 apart, and samples are at 1 Hz in s, 1 kHz in ms, 1 MHz in us, 1 GHz in ns"), "{error}");
+    assert!(error.contains("1 apart, so samples are at 1 Hz in s, 1 kHz in ms, 1 MHz in us, 1 GHz in ns"), "{error}");
     assert_eq!(open(&table(0.4, "t"), Options::default()).unwrap(), 0.4);
     // ms of a log at 4 kHz look like that: it is read, and said
     for (step, name, is_said) in [(0.25, "t", true), (0.1, "t", true), (0.25, "t_s", false), (0.05, "t", false)] {
         let (_folder, path) = file("log.csv", table(step, name));
         let (log, _) = survey(&[path], Options::default()).unwrap();
-        let said = log.layout().notes.iter().any(|note| note.contains("times have no unit and are read as seconds"));
+        let said =
+            log.layout().notes.iter().any(|note| note.contains("the times have no unit, so rne reads them as seconds"));
         assert_eq!(said, is_said, "{name} {step}: {:?}", log.layout().notes);
     }
 }
@@ -250,7 +251,7 @@ fn a_table_of_a_thousand_joints_is_read() {
     assert_eq!((log.layout().joints.len(), found.counts.states), (1024, 100));
     let (_folder, path) = file("log.csv", table(1025));
     let error = survey(&[path], Options::default()).err().unwrap().to_string();
-    assert!(error.contains("the table has 1025 columns of positions; at most 1024 joints are read"), "{error}");
+    assert!(error.contains("the table has 1025 columns of positions; rne reads at most 1024 joints"), "{error}");
 }
 
 /// A small log with long intervals would be a long one that nobody measured.
@@ -262,7 +263,7 @@ fn what_is_filled_in_is_bounded() {
     let with = |gap| Options { gap, ..Options::default() };
     let error = survey(std::slice::from_ref(&path), with(1000.0)).err().unwrap();
     assert!(error.is_of_request(), "{error}");
-    assert!(error.to_string().contains("more than 20 states are filled in for each of the first"), "{error}");
+    assert!(error.to_string().contains("more than 20 states would be interpolated for each of the first"), "{error}");
     survey(&[path], with(100.0)).unwrap();
 }
 
@@ -272,9 +273,9 @@ fn a_gap_has_a_limit() {
     let with = |gap| Options { gap, ..Options::default() };
     for gap in [1000.5, 1e7, 1e15, f64::INFINITY, f64::NAN] {
         let error = survey(std::slice::from_ref(&path), with(gap)).err().unwrap();
-        assert!(error.is_of_request() && error.to_string().contains("a gap is at "), "{gap}: {error}");
+        assert!(error.is_of_request() && error.to_string().contains("the limit of gaps must be at "), "{gap}: {error}");
     }
     let error = survey(std::slice::from_ref(&path), with(1e7)).err().unwrap().to_string();
-    assert!(error.contains("a gap is at most 1000 steps"), "{error}");
+    assert!(error.contains("the limit of gaps must be at most 1000 steps"), "{error}");
     assert!(survey(&[path], with(1000.0)).is_ok());
 }

@@ -107,7 +107,7 @@ fn names_and_times_are_those_of_the_arm_that_is_read() {
     // a name that says no unit of the option, of lists as of single columns
     let said = [Column::Numbers("t_ms", times(10.0)), Column::Lists("position", positions())];
     let seconds = Options { time_unit: Some(TimeUnit::Seconds), ..Options::default() };
-    assert!(refused(&said, seconds).contains("the column t_ms has times in ms, and s was given"));
+    assert!(refused(&said, seconds).contains("the column t_ms has times in ms, but you gave s"));
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn what_may_be_of_either_arm_is_refused() {
         Column::Lists("right.position", positions()),
     ];
     let error = refused(&names, of("right"));
-    assert!(error.contains("the columns left.name, centre.name are all names of joints"), "{error}");
+    assert!(error.contains("the columns left.name, centre.name all contain names of joints"), "{error}");
 }
 
 /// Counters of controllers go on beyond the half of what they hold.
@@ -186,6 +186,6 @@ fn integers_without_a_sign_have_none() {
 fn a_compression_that_is_not_read_is_named() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/brotli.parquet");
     let error = survey(&[path], Options::default()).err().unwrap().to_string();
-    assert!(error.contains("compressed with brotli, which is not read: write the file with zstd"), "{error}");
+    assert!(error.contains("compressed with brotli, which rne does not read: write the file with zstd"), "{error}");
     assert!(!error.contains("corrupt"), "{error}");
 }

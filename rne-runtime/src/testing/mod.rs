@@ -37,8 +37,8 @@ pub use robot_file::RobotFile;
 pub use torques::{
     actuator_torques_are_those_of_the_runtime, batches_are_those_of_the_runtime, derivatives_are_those_of_the_runtime,
     gravity_and_bias_are_torques_without_motion, joint_wrenches_are_those_of_the_runtime,
-    regressor_is_that_of_the_runtime, torques_are_linear_in_accelerations, torques_are_those_of_the_runtime,
-    torques_on_a_moving_base_are_those_of_the_runtime,
+    payload_dynamics_are_those_of_the_runtime, regressor_is_that_of_the_runtime, torques_are_linear_in_accelerations,
+    torques_are_those_of_the_runtime, torques_on_a_moving_base_are_those_of_the_runtime,
 };
 
 /// The tests themselves, where there is a runtime to compare with.

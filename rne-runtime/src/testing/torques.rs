@@ -3,11 +3,11 @@
 use core::array;
 
 use super::RobotFile;
-use super::comparison::{Allowed, compare, largest};
+use super::comparison::{Allowed, are_finite, compare, largest};
 use super::state::{State, states};
 use crate::{
     Actuation, Arm, BatchInverseDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, MovingBase,
-    Regressor, Wrench,
+    PayloadDynamics, Regressor, Wrench,
 };
 
 /// Torques that vanish but for rounding are measured by this part of the forces and moments at the joints.
@@ -167,5 +167,51 @@ pub fn actuator_torques_are_those_of_the_runtime<const DOF: usize, R: Actuation<
         let State { qd, qdd, .. } = &state;
         let (found, expected) = (robot.actuator_torques(qd, qdd), arm.actuator_torques(qd, qdd));
         compare("actuator_torques", &state, file.same_operations(0.0), &found, &expected);
+    }
+}
+
+/// The methods of `PayloadDynamics`. Accelerations are compared by the torques that they need.
+pub fn payload_dynamics_are_those_of_the_runtime<const DOF: usize, R: PayloadDynamics<DOF>>(
+    robot: &R,
+    file: &RobotFile,
+) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, qdd, tau, payload, .. } = &state;
+        let torques = arm.inverse_dynamics_with_payload(q, qd, qdd, payload);
+        let scale = scale(&arm, &state).max(largest(&torques));
+        let compare = |what, found: &[f64], expected: &[f64]| {
+            compare(what, &state, file.same_operations(scale), found, expected);
+        };
+        let (found, expected) =
+            (robot.gravity_torques_with_payload(q, payload), arm.gravity_torques_with_payload(q, payload));
+        compare("gravity_torques_with_payload", &found, &expected);
+        let (found, expected) =
+            (robot.bias_torques_with_payload(q, qd, payload), arm.bias_torques_with_payload(q, qd, payload));
+        compare("bias_torques_with_payload", &found, &expected);
+        let (found, expected) = (robot.mass_matrix_with_payload(q, payload), arm.mass_matrix_with_payload(q, payload));
+        compare("mass_matrix_with_payload", found.as_flattened(), expected.as_flattened());
+        let found = robot.inverse_dynamics_derivatives_with_payload(q, qd, qdd, payload);
+        let expected = arm.inverse_dynamics_derivatives_with_payload(q, qd, qdd, payload);
+        compare("∂τ/∂q with payload", found.dq.as_flattened(), expected.dq.as_flattened());
+        compare("∂τ/∂q̇ with payload", found.dqd.as_flattened(), expected.dqd.as_flattened());
+        let found = robot.momentum_and_rate_with_payload(q, qd, tau, payload);
+        let expected = arm.momentum_and_rate_with_payload(q, qd, tau, payload);
+        compare("momentum with payload", &found.momentum, &expected.momentum);
+        let scale = scale.max(largest(tau)).max(largest(&expected.rate));
+        super::comparison::compare(
+            "its rate with payload",
+            &state,
+            Allowed::Rounding { scale },
+            &found.rate,
+            &expected.rate,
+        );
+        let accelerations = robot.forward_dynamics_with_payload(q, qd, tau, payload);
+        if are_finite(&arm.forward_dynamics_with_payload(q, qd, tau, payload)) {
+            let found = arm.inverse_dynamics_with_payload(q, qd, &accelerations, payload);
+            let terms = largest(arm.mass_matrix_with_payload(q, payload).as_flattened()) * largest(&accelerations);
+            let allowed = Allowed::Rounding { scale: terms.max(scale) };
+            super::comparison::compare("torques of forward_dynamics_with_payload", &state, allowed, &found, tau);
+        }
     }
 }

@@ -58,9 +58,9 @@ impl FromStr for Fingerprint {
     fn from_str(text: &str) -> Result<Self, String> {
         let number = u64::from_str_radix(text, 16).ok().map(Self);
         // the same digits, and nothing else: no sign, no capitals
-        number
-            .filter(|number| number.to_string() == text)
-            .ok_or_else(|| format!("`{}` is no fingerprint, which has 16 hexadecimal digits", text.escape_debug()))
+        number.filter(|number| number.to_string() == text).ok_or_else(|| {
+            format!("`{}` is not a fingerprint; a fingerprint has 16 hexadecimal digits", text.escape_debug())
+        })
     }
 }
 
@@ -142,7 +142,7 @@ impl PlanFile {
         for (mut keys, plan) in std::iter::once((vec!["reduced"], &self.reduced.plan)).chain(rewritten) {
             let count = plan.joints.len();
             if count != robot.dof() {
-                let message = format!("this plan has {count} joints, `{}` has {}", robot.name, robot.dof());
+                let message = format!("this plan has {count} joints, but `{}` has {}", robot.name, robot.dof());
                 keys.extend(["plan", "joints"]);
                 return Err(Mistake::new(place(root, &keys), message));
             }
@@ -154,14 +154,14 @@ impl PlanFile {
                     (None, format!("`{function}` has no reduced form that could be rewritten"))
                 }
                 _ if divides_by_zero(robot, *function) => {
-                    (None, format!("`{function}` divides by zero for every q: it has the seven steps only"))
+                    (None, format!("`{function}` divides by zero for every q, so its only form is seven_steps"))
                 }
                 Some(_) if known.is_empty() => {
-                    (Some("plan"), format!("the choices of a plan do not touch `{function}`"))
+                    (Some("plan"), format!("the choices of a plan have no effect on `{function}`"))
                 }
                 Some(_) if !known.contains(&rewritten.algorithm) => {
                     let names: Vec<String> = known.iter().map(|one| format!("`{}`", one.name())).collect();
-                    (Some("algorithm"), format!("`{function}` is written by {}", names.join(", ")))
+                    (Some("algorithm"), format!("the algorithms of `{function}` are {}", names.join(", ")))
                 }
                 _ => continue,
             };
@@ -208,7 +208,7 @@ impl PlanFile {
             return Ok(());
         }
         let message = format!(
-            "the file says {} products, {} sums and {} angles; the code that its plan gives has {}, {} and {}",
+            "the file states {} products, {} sums and {} angles; the code from its plan has {}, {} and {}",
             written.mul, written.add, written.sincos, counted.mul, counted.add, counted.sincos
         );
         let keys: &[&str] = if rewritten.is_some() {

@@ -39,13 +39,15 @@ fn belongs_to(root: &Node, robot: &Robot) -> Result<(), Mistake> {
     if let Some(node) = root.get("robot")
         && text(node)? != robot.name
     {
-        return refuse(node, format!("this plan is of `{}`, not of `{}`", text(node)?.escape_debug(), robot.name));
+        return refuse(node, format!("this plan is for `{}`, not for `{}`", text(node)?.escape_debug(), robot.name));
     }
     if let Some(node) = root.get("fingerprint")
         && parsed::<Fingerprint>(node)? != fingerprint(robot)
     {
-        let message =
-            format!("this plan is not of `{}` as it is now: the numbers of its robot file have changed", robot.name);
+        let message = format!(
+            "this plan is not for the present robot file of `{}`: numbers of the robot file have changed",
+            robot.name
+        );
         return refuse(node, message);
     }
     Ok(())
@@ -106,7 +108,10 @@ fn difference(node: &Node) -> Result<f64, Mistake> {
     if difference.is_finite() && difference >= 0.0 {
         return Ok(difference);
     }
-    Err(Mistake::new(node.span.clone(), format!("`{difference}` is no accuracy, which is a number from 0 on")))
+    Err(Mistake::new(
+        node.span.clone(),
+        format!("`{difference}` is not an accuracy; an accuracy is a number of 0 or more"),
+    ))
 }
 
 fn plan(node: &Node) -> Result<Plan, Mistake> {
@@ -130,9 +135,7 @@ fn joint(node: &Node) -> Result<JointPlan, Mistake> {
     let shift = |node: &Node| word(node, "origin shift", &named(OriginShift::ALL, OriginShift::name));
     let side = |node: &Node| word(node, "side", &named(Side::ALL, Side::name));
     let inward = |node: &Node| match side(node)? {
-        Side::Joint => {
-            Err(Mistake::new(node.span.clone(), "on the way back an offset acts in `link` or `parent`, not in `joint`"))
-        }
+        Side::Joint => Err(Mistake::new(node.span.clone(), "`inward_offset` must be `link` or `parent`, not `joint`")),
         side => Ok(side),
     };
     let moment = |node: &Node| word(node, "moment", &named(Moment::ALL, Moment::name));

@@ -107,7 +107,8 @@ pub(super) fn word<T: Copy>(node: &Node, what: &str, words: &[(T, &str)]) -> Res
     let word = text(node)?;
     words.iter().find(|(_, name)| *name == word).map(|(value, _)| *value).ok_or_else(|| {
         let names: Vec<&str> = words.iter().map(|(_, name)| *name).collect();
-        let message = format!("`{}` is no {what}; there are `{}`", word.escape_debug(), names.join("`, `"));
+        let message =
+            format!("`{}` is not a valid {what}; the valid words are `{}`", word.escape_debug(), names.join("`, `"));
         Mistake::unknown(node.span.clone(), message, word, &names)
     })
 }

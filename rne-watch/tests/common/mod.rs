@@ -65,6 +65,8 @@ pub(crate) fn split(motion: &Motion, fraction: f64, is_reversed: bool) -> [Motio
 pub(crate) enum Fault {
     /// More Coulomb friction of a joint, N m; it gives way over three milliradians, as no model here does.
     Coulomb(usize, f64),
+    /// More viscous friction of a joint, N m s/rad.
+    Viscous(usize, f64),
     /// A payload, kg, with its centre of mass 7 cm from the last frame.
     Payload(f64),
     /// A channel of efforts that shows so many times the torque of its joint: 0 if it is dead.
@@ -83,6 +85,7 @@ pub(crate) fn torques(robot: &Robot, motion: &Motion, fault: Fault) -> Vec<Vec<f
                 *torque = size * sign.next(motion.q[joint][at], motion.qd[joint][at]);
             }
         }
+        Fault::Viscous(joint, size) => torques[joint] = motion.qd[joint].iter().map(|qd| size * qd).collect(),
         Fault::Gain(joint, gain) => {
             torques[joint] = motion.tau[joint].iter().map(|torque| (gain - 1.0) * torque).collect();
         }

@@ -31,7 +31,7 @@ const BY_RUSTC: [(&str, &[&str]); 5] = [
     ("crate_is_elsewhere", &["error[E0433]", "crate_is_elsewhere.rs:4:48", "`dynamics`"]),
     (
         "field_of_text",
-        &["error[E0277]", "field_of_text.rs:6:5", "`String` can be no run-time parameter", "`#[robot(skip)]`"],
+        &["error[E0277]", "field_of_text.rs:6:5", "`String` cannot be a run-time parameter", "`#[robot(skip)]`"],
     ),
     ("without_the_trait", &["error[E0599]", "without_the_trait.rs:6:29", "`inverse_dynamics`", "InverseDynamics"]),
 ];

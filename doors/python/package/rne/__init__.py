@@ -78,14 +78,14 @@ robots = _Robots()
 
 
 def payload(mass, com=(0.0, 0.0, 0.0), inertia=None):
-    """What `Arm.inverse_dynamics_with_payload` takes, shape (10,).
+    """The argument `payload` of the functions of an `Arm`, shape (10,).
 
     mass: kg. com: centre of mass (m) from the origin of the tip frame, in its axes. inertia: about the centre of mass
     (kg m²), the symmetric tensor of shape (3, 3), or None for a point mass.
     """
     for name, value in (("mass", mass), ("com", com), ("inertia", inertia)):
         if _numpy.ma.is_masked(value):
-            raise ValueError(f"`{name}`: there are masked elements, which are no numbers: drop or fill them before")
+            raise ValueError(f"`{name}`: there are masked elements, which are not numbers: drop or fill them before")
     if mass < 0:
         said = _numpy.format_float_positional(mass, trim="-")
         raise ValueError(f"the payload's mass is {said} kg: no body has less than 0")

@@ -64,7 +64,7 @@ class Arm:
     # <!-- begin: stubs, of the list of functions; written by: RNE_WRITE_DOCUMENTS=1 cargo test --test documents -->
     def inverse_dynamics(
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip."""
     def inverse_dynamics_with_wrench(
@@ -84,17 +84,17 @@ class Arm:
         """Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone."""
     def gravity_torques(
         self, q: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques that hold the arm still against gravity, τ(q, 0, 0)."""
     def bias_torques(
         self, q: ArrayLike, qd: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Coriolis, centrifugal and gravity torques, τ(q, q̇, 0)."""
     def mass_matrix(
         self, q: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest."""
     def coriolis_matrix(
@@ -104,7 +104,7 @@ class Arm:
         """The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇."""
     def forward_dynamics(
         self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip."""
     def forward_kinematics(
@@ -154,7 +154,7 @@ class Arm:
         """Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)."""
     def inverse_dynamics_derivatives(
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i."""
     def joint_wrenches(
@@ -164,7 +164,7 @@ class Arm:
         """Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i."""
     def momentum_and_rate(
         self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """The momentum of the joints, M(q) q̇, and the rate it would have without external torques."""
     def inverse_dynamics_on_moving_base(
@@ -184,6 +184,36 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The inverse of the mass matrix, M(q)⁻¹, symmetric: column j holds the accelerations for τ = e_j."""
+    def gravity_torques_with_payload(
+        self, q: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques that hold the arm and a payload at its tip still against gravity."""
+    def bias_torques_with_payload(
+        self, q: ArrayLike, qd: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Coriolis, centrifugal and gravity torques of the arm with a payload at its tip."""
+    def mass_matrix_with_payload(
+        self, q: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The mass matrix of the arm with a payload at its tip, symmetric."""
+    def forward_dynamics_with_payload(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Accelerations for positions `q`, velocities `qd` and torques `tau` with a payload at the tip."""
+    def inverse_dynamics_derivatives_with_payload(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_payload`; row i is torque i."""
+    def momentum_and_rate_with_payload(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """The momentum of the joints with a payload at the tip, and its rate without external torques."""
     # <!-- end -->
     def inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
@@ -231,7 +261,7 @@ def load(
     """Return the arm of a robot file (YAML), a URDF, the text of either, or the name of a built-in robot."""
 
 def payload(mass: float, com: ArrayLike = ..., inertia: ArrayLike | None = ...) -> Floats:
-    """What `Arm.inverse_dynamics_with_payload` takes, shape (10,)."""
+    """The argument `payload` of the functions of an `Arm`, shape (10,)."""
 
 Path = str | PathLike[str]
 Source = Any
@@ -276,6 +306,7 @@ class Verdict:
     frictions: int
     excited_frictions: int
     not_excited_friction: list[str]
+    not_excited_offset: list[str]
 
 class Identification:
     """A model that was identified from logs."""
@@ -327,7 +358,11 @@ class Baseline:
     def save(self, path: Path) -> None: ...
 
 class Watch:
-    """What was found in logs."""
+    """What was found in logs.
+
+    An event has `since_time`, `until_time`, `not_before_time` and `not_after_time` (`str`, RFC 3339 in UTC, or `None`),
+    and `rivals` (`list[str]`), beside the other keys of `rne watch --json`.
+    """
 
     robot: str
     compared_with: str

@@ -6,7 +6,7 @@ Columns of several chunks are joined, which copies. Null is no number: it is ref
 """
 
 
-NULLS = "there are nulls, which are no numbers: drop or fill them before"
+NULLS = "there are nulls, which are not numbers: drop or fill them before"
 
 
 def views(value, elements, name):

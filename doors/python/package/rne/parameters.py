@@ -20,7 +20,7 @@ def in_order(values, names):
         if array.dtype.kind not in "fiub" or array.ndim > 1:
             raise TypeError(f"`parameters`: `{name}` is no real number and no array (N,) of real numbers")
         if numpy.ma.is_masked(array):
-            raise ValueError(f"`parameters`, `{name}`: there are masked elements, which are no numbers: drop or fill them before")
+            raise ValueError(f"`parameters`, `{name}`: there are masked elements, which are not numbers: drop or fill them before")
         if not isinstance(value, (int, float)):
             values[at] = numpy.asarray(value)
     lengths = {len(value) for value in values if numpy.ndim(value)}

@@ -116,7 +116,7 @@ def _write(table, path):
     names, arrays, has_dates = [], [], False
     for name, value in _columns(table):
         if np.ma.is_masked(value):
-            raise ValueError(f"column {name!r} has masked elements, which are no numbers: drop or fill them before")
+            raise ValueError(f"column {name!r} has masked elements, which are not numbers: drop or fill them before")
         array = np.asarray(value)
         if array.dtype.kind == "M":
             array, has_dates = array.astype("datetime64[ns]").astype(np.int64), True

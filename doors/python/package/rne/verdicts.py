@@ -7,7 +7,7 @@ class Verdict:
     The fields are those of `verdict` in `rne identify --json`: `errors_on` (`fitted` or `held_out`), `limit` (the largest
     error of a joint that counts as predicted, in parts of the deviation of its effort), `predicted` and `not_predicted`
     (names of joints), `base_parameters`, `excited_base_parameters`, `not_excited_base_parameters`, `frictions`,
-    `excited_frictions` and `not_excited_friction`. `lines` are the sentences, and `str` joins them.
+    `excited_frictions`, `not_excited_friction` and `not_excited_offset`. `lines` are the sentences, and `str` joins them.
     """
 
     def __init__(self, reply):
@@ -47,17 +47,14 @@ def _reason(doubt, joint, rows):
     if reason == "outliers":
         return f"{doubt['rows']} of {rows} rows are outliers, the first at {doubt['first']:.1f} s"
     if reason == "standstill":
-        part = _percent(doubt["part_of_squared_error"])
-        return (
-            f"it stands still from {doubt['from']:.1f} to {doubt['until']:.1f} s, and its friction at rest is not known "
-            f"({part} of its squared error arises at rest)"
-        )
+        said = f"it stands still from {doubt['from']:.1f} to {doubt['until']:.1f} s, where static friction is not known"
+        moving = doubt["error_in_motion"]
+        return said if moving is None else f"{said}; in motion, its error is {_percent(moving)}"
     if reason == "held_out_error_grown":
-        fitted = joint["fitted"]["error"]
-        return f"its error is {doubt['factor']:.1f} times the error on the fitted part ({_percent(fitted)})"
+        return f"its error on the fitted part is {_percent(joint['fitted']['error'])}"
     return {
         "unexplained": "no model of this arm explains its efforts",
-        "not_excited": "its torque in this log is mostly noise",
+        "not_excited": "most of its unfiltered torque is noise",
         "friction_not_excited": "the log does not excite its friction",
         "without_friction": "the robot file has no friction for it",
     }.get(reason)
@@ -73,13 +70,13 @@ def _lines(reply):
         return joint[verdict["errors_on"]]["error"]
 
     predicted = [joint for joint in joints if joint["predicted"]]
-    first = f"The model {does} {_counted(len(predicted), len(joints), 'joint')} on {data}"
+    first = f"The model {does} the torque of {_counted(len(predicted), len(joints), 'joint')} on {data}"
     errors = [error(joint) for joint in predicted if error(joint) is not None]
     if errors:
         least, most = _percent(min(errors)), _percent(max(errors))
         words = least if least == most else f"{least.removesuffix(' %')} to {most}"
-        noun = "an error" if len(errors) == 1 else "errors"
-        first += f", with {noun} of {words} of the standard deviation of the measured torque"
+        noun = "an RMS error" if len(errors) == 1 else "RMS errors"
+        first += f", with {noun} of {words} of its standard deviation (limit: {_percent(verdict['limit'])})"
     lines = [first + "."]
     if is_fitted:
         lines.append("hold_out=0.3 computes errors on data that the model was not fitted to.")
@@ -102,9 +99,16 @@ def _excited(verdict):
     unknown = [f"{name}" for name in verdict["not_excited_base_parameters"]]
     if verdict["not_excited_friction"]:
         unknown.append(f"the friction of {_enumerated(verdict['not_excited_friction'])}")
+    offsets = []
+    if verdict["not_excited_offset"]:
+        offsets = [
+            f"The log does not determine the offset of {_enumerated(verdict['not_excited_offset'])}: gravity hides it. The "
+            "ratio of the Coulomb friction in both directions stays that of the robot file, or 1 if it has no friction."
+        ]
     if not unknown:
-        return [said + "."]
+        return [said + ".", *offsets]
     return [
-        f"{said}. It does not excite {_enumerated(unknown)}.",
-        "To excite more, record the motion that rne.excite(robot) designs.",
+        *offsets,
+        f"{said}, but not {_enumerated(unknown)}: the model holds for similar motions only.",
+        "rne.excite(robot) designs a better motion.",
     ]

@@ -31,7 +31,7 @@ class Watch:
 
     `events` is a list of dicts with the keys of `rne watch --json`: cause (friction, payload, contact, sensor or model),
     joint (from 1), name, parameter, value ± deviation in `unit`, file_value, baseline_value, threshold, since and until
-    (s). `parameters` has all other parameters with their thresholds, `joints` the errors of the model. With `by`,
+    (s), since_time, until_time, not_before_time and not_after_time (RFC 3339, UTC, or None), rivals. `parameters` has all other parameters with their thresholds, `joints` the errors of the model. With `by`,
     `trend` has a dict for each log (log, events, payload, payload_deviation, joints), `csv` its table, `left_out` the
     logs that cannot be compared, each with the reason, and `events` those of all logs, each with the key `log`;
     `parameters` and `joints` are empty then. `baseline` is that of the quiet logs,
@@ -70,13 +70,26 @@ def _sentence(event):
     where = f"{event['log']}: " if "log" in event else ""
     deviation = "" if event["deviation"] is None else f" ± {event['deviation']:.3g}"
     size = f"{event['parameter']} {event['value']:.4g}{deviation} {event['unit']}, before {event['baseline_value']:.4g}"
+    others = [f"; {of} friction would explain it almost as well" for of in event["rivals"] if of in _FRICTION]
+    return f"{where}{event['cause']}{place}: {size}{''.join(others)}; {_when(event)}"
+
+
+#: The parameters of friction that can be rivals of each other.
+_FRICTION = ("coulomb", "viscous")
+
+
+def _when(event):
+    """The times of an event in words, with dates where the log has them."""
+    since, until, before, after = (event[f"{key}_time"] for key in ("since", "until", "not_before", "not_after"))
     if event["whole"]:
-        when = "in the whole log"
-    elif event["lasts"]:
-        when = f"since {event['since']:.2f} s"
-    else:
-        when = f"{event['since']:.2f} s to {event['until']:.2f} s"
-    return f"{where}{event['cause']}{place}: {size}; {when}"
+        bound = "" if before is None else f", not there at {before}"
+        bound += "" if after is None else f", not there at {after}"
+        dates = "" if since is None else f", {since} to {until}"
+        return f"in the whole log{dates}{bound}"
+    date = "" if since is None else f" ({since})"
+    if event["lasts"]:
+        return f"since {event['since']:.2f} s{date}"
+    return f"{event['since']:.2f} s to {event['until']:.2f} s{date}"
 
 
 def watch(

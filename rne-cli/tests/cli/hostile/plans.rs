@@ -28,7 +28,7 @@ pub(super) fn cases(folder: &Path) -> Vec<Case> {
         ("a byte order mark", [b"\xEF\xBB\xBF", plan.as_bytes()].concat(), ""),
         ("lines of DOS", plan.replace('\n', "\r\n").into_bytes(), ""),
         ("zeros", vec![0; 1 << 20], "x.plan.yaml"),
-        ("ones", vec![0xFF; 1 << 20], "x.plan.yaml is no text in UTF-8"),
+        ("ones", vec![0xFF; 1 << 20], "x.plan.yaml is not text in UTF-8"),
         ("1 MiB and 1", format!("{plan}#{}", "x".repeat(1 << 20)).into_bytes(), "more than 1048576 bytes"),
         ("a word", b"plan".into(), "x.plan.yaml:1"),
         ("a list", b"[1, 2]".into(), "x.plan.yaml:1"),

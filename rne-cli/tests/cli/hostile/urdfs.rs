@@ -71,7 +71,7 @@ fn texts() -> Vec<(&'static str, String, &'static str)> {
         ("Latin-1 by its word", with("version=\"1.0\"", "version=\"1.0\" encoding=\"ISO-8859-1\""), ""),
         ("nothing in it", "<robot name=\"r\"/>".into(), "x.urdf:1"),
         ("two robots", format!("{TWO_LINKS}<robot/>"), "a second element"),
-        ("words behind it", format!("{TWO_LINKS}words"), "text behind the element `robot`"),
+        ("words behind it", format!("{TWO_LINKS}words"), "text after the element `robot`"),
         // entities
         ("billions of laughs", entities("ha", &laughs), "a document type"),
         ("a file from elsewhere", entities("x", "<!ENTITY e9 SYSTEM \"file:///etc/passwd\">"), "a document type"),
@@ -87,7 +87,11 @@ fn texts() -> Vec<(&'static str, String, &'static str)> {
         ("zero by its number", with("name=\"j\"", "name=\"&#0;\""), "x.urdf:6"),
         ("a stylesheet", with("<robot", "<?xml-stylesheet href=\"http://localhost\"?><robot"), ""),
         // depth and length
-        ("a million deep", format!("<robot>{}", "<a>".repeat(1_000_000)), "elements more than 64 deep"),
+        (
+            "a million deep",
+            format!("<robot>{}", "<a>".repeat(1_000_000)),
+            "elements are nested more than 64 levels deep",
+        ),
         ("a million ends", format!("<robot>{}", "</a>".repeat(1_000_000)), "x.urdf:1"),
         ("open tags", "<".repeat(1 << 20), "x.urdf:1"),
         ("an open comment", with("<link name=\"a\"/>", "<!-- "), "x.urdf"),
@@ -102,7 +106,7 @@ fn texts() -> Vec<(&'static str, String, &'static str)> {
             with("name=\"j\"", &format!("name=\"j\"{}", lines(100_000, |i| format!(" a{i}=\"1\"")))),
             "more than 1000 names",
         ),
-        ("an attribute twice", with("name=\"j\"", "name=\"j\" name=\"k\""), "stands there twice"),
+        ("an attribute twice", with("name=\"j\"", "name=\"j\" name=\"k\""), "occurs twice"),
         (
             "an attribute of 4 MB",
             with("name=\"j\"", &format!("name=\"{}\"", "j".repeat(4 << 20))),

@@ -1,0 +1,103 @@
+//! Bounds that leave the axes: what is shown of them, and what is written at the edge.
+
+use crate::chart::Curve;
+use crate::scale::significant;
+
+/// The axes are at most this many times as long as the curves need, so that bounds that are near are seen.
+const ROOM: f64 = 2.0;
+
+/// The values for which axes have room: those of the curves, and those of the bounds that are not too far from them.
+pub(crate) fn room(curves: impl Iterator<Item = f64>, bounds: impl Iterator<Item = f64>) -> Vec<f64> {
+    let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+    let (low, high) = curves.filter(|value| value.is_finite()).fold((0.0, 0.0), ends);
+    let more = (ROOM - 1.0) / 2.0 * (high - low);
+    let (least, most) = bounds.filter(|value| value.is_finite()).fold((low, high), ends);
+    // curves that are all zero leave the axes to the bounds
+    if more > 0.0 { vec![least.max(low - more), most.min(high + more)] } else { vec![least, most] }
+}
+
+/// The parts of a curve between two values, each with its times; a part begins and ends where the curve crosses an end.
+pub(crate) fn clipped(time: &[f64], values: &[f64], [low, high]: [f64; 2]) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let mut parts: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+    let mut is_open = false;
+    let points: Vec<(f64, f64)> = time.iter().copied().zip(values.iter().copied()).collect();
+    for pair in points.windows(2) {
+        let [(t0, v0), (t1, v1)] = [pair[0], pair[1]];
+        // the part of the way from one point to the next at which a value is crossed
+        let at = |value: f64| (value - v0) / (v1 - v0);
+        let (from, to) = match (v0 == v1, v1 > v0) {
+            (true, _) if (low..=high).contains(&v0) => (0.0, 1.0),
+            (true, _) => (1.0, 0.0),
+            (_, true) => (f64::max(0.0, at(low)), f64::min(1.0, at(high))),
+            (_, false) => (f64::max(0.0, at(high)), f64::min(1.0, at(low))),
+        };
+        // what is no number is nowhere
+        if !(from <= to && v0.is_finite() && v1.is_finite()) {
+            is_open = false;
+            continue;
+        }
+        let point = |part: f64| (t0 + part * (t1 - t0), (v0 + part * (v1 - v0)).clamp(low, high));
+        if !is_open || from > 0.0 {
+            let (time, value) = point(from);
+            parts.push((vec![time], vec![value]));
+        }
+        if let Some((times, values)) = parts.last_mut() {
+            let (time, value) = point(to);
+            times.push(time);
+            values.push(value);
+        }
+        is_open = to == 1.0;
+    }
+    parts
+}
+
+/// Words for the edges beyond which bounds are: whether it is the upper edge, and how far they are.
+pub(crate) fn edges(bounds: &[Curve<'_>], [low, high]: [f64; 2]) -> Vec<(bool, String)> {
+    let farthest = |is_above: bool| {
+        let values = |bound: &Curve<'_>| {
+            let of = bound.values.iter().copied().filter(|value| value.is_finite());
+            of.reduce(if is_above { f64::max } else { f64::min })
+        };
+        let each = bounds.iter().filter_map(|bound| Some((bound.name, values(bound)?)));
+        let beyond = each.filter(|(_, value)| if is_above { *value > high } else { *value < low });
+        beyond.reduce(|a, b| if (a.1 < b.1) == is_above { b } else { a })
+    };
+    let said = |is_above: bool| {
+        let (name, value) = farthest(is_above)?;
+        let way = if is_above { "up" } else { "down" };
+        Some((is_above, format!("{name} {way} to {}", significant(value, 3))))
+    };
+    [true, false].into_iter().filter_map(said).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_is_cut_where_it_leaves_the_axes() {
+        let time = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let whole = clipped(&time, &[1.0, -1.0, 0.0, 0.5, 1.0], [-2.0, 2.0]);
+        assert_eq!(whole, [(time.to_vec(), vec![1.0, -1.0, 0.0, 0.5, 1.0])]);
+        // up to 4 and back: it crosses 2 in the middle of its ways
+        let cut = clipped(&time, &[0.0, 4.0, 0.0, 0.0, 0.0], [-2.0, 2.0]);
+        assert_eq!(cut, [(vec![0.0, 0.5], vec![0.0, 2.0]), (vec![1.5, 2.0, 3.0, 4.0], vec![2.0, 0.0, 0.0, 0.0])]);
+        // from below to above within a step
+        assert_eq!(clipped(&[0.0, 1.0], &[-4.0, 4.0], [-2.0, 2.0]), [(vec![0.25, 0.75], vec![-2.0, 2.0])]);
+        assert_eq!(clipped(&time, &[9.0; 5], [-2.0, 2.0]), []);
+        let torn = clipped(&time, &[0.0, 1.0, f64::NAN, 1.0, 0.0], [-2.0, 2.0]);
+        assert_eq!(torn, [(vec![0.0, 1.0], vec![0.0, 1.0]), (vec![3.0, 4.0], vec![1.0, 0.0])]);
+    }
+
+    #[test]
+    fn axes_have_room_for_near_bounds_only() {
+        let near = room([-1.0, 3.0].into_iter(), [4.0, -2.5].into_iter());
+        assert_eq!(near, [-2.5, 4.0]);
+        let far = room([-1.0, 3.0].into_iter(), [80.0, -80.0].into_iter());
+        assert_eq!(far, [-3.0, 5.0]);
+        assert_eq!(room([0.0].into_iter(), [80.0, -80.0].into_iter()), [-80.0, 80.0]);
+        let bound = |values: Vec<f64>| Curve { name: "threshold", colour: "", dash: "", width: 1.0, values };
+        let bounds = [bound(vec![2.0, 80.0]), bound(vec![-2.0, -2.0])];
+        assert_eq!(edges(&bounds, [-4.0, 6.0]), [(true, "threshold up to 80".to_owned())]);
+    }
+}
