@@ -126,6 +126,12 @@ pub struct Link<S = f64> {
 }
 
 impl Link {
+    /// Whether the table has nothing about the body: no mass, centre of mass, first moment or inertia.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Whether it has a first moment that no mass accounts for: a base parameter, and no body.
     #[must_use]
     pub fn has_first_moment(&self) -> bool {

@@ -19,6 +19,21 @@ fn a_centre_of_mass_has_a_mass() {
     assert!(said.diagnostics.iter().all(|diagnostic| !diagnostic.message.contains("no mass")), "{said}");
 }
 
+/// A file without any link is one warning, not one for each joint.
+#[test]
+fn geometry_alone_is_told_once() {
+    let joint = "  - {type: revolute, dh: {theta: 0, d: 0.1, a: 0.3, alpha: 0}}\n";
+    let head = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+    let said = found(&format!("{head}{}", joint.repeat(6)));
+    let [warning] = &said.diagnostics[..] else { panic!("{said}") };
+    assert_eq!(warning.message, "no link has a mass or an inertia: the file has the geometry only");
+    let with_rotor = joint.replace("}}", "}, motor: {inertia: 1e-4, gear_ratio: 100}}");
+    let said = found(&format!("{head}{joint}{with_rotor}"));
+    assert!(said.diagnostics.iter().all(|diagnostic| diagnostic.message.contains("resist")), "{said}");
+    let one = joint.replace("}}", "}, link: {mass: 1, com: [-0.1, 0, 0]}}");
+    assert!(!found(&format!("{head}{joint}{one}")).to_string().contains("geometry only"));
+}
+
 /// Three or more links that are the same ball are an exporter's; two, or links that differ, are not.
 #[test]
 fn placeholders_are_told() {

@@ -228,7 +228,7 @@ fn every_failure_of_reading_has_its_status() {
         let wrong = path("wrong.yaml");
         refused(|arm| rne_arm_load_file(wrong.as_ptr(), arm), Status::InvalidFile, "wrong.yaml:7:");
         refused(|arm| rne_arm_load_text(c"name: [".as_ptr(), arm), Status::InvalidFile, "robot file:1:");
-        refused(|arm| rne_arm_load_text(c"\xff".as_ptr(), arm), Status::NotUtf8, "`yaml` is no text");
+        refused(|arm| rne_arm_load_text(c"\xff".as_ptr(), arm), Status::NotUtf8, "`yaml` is not text");
         refused(|arm| rne_arm_load_text(null(), arm), Status::NullPointer, "`yaml` is NULL");
         refused(|arm| rne_arm_load_file(null(), arm), Status::NullPointer, "`path` is NULL");
         refused(|arm| rne_arm_builtin(null(), arm), Status::NullPointer, "`name` is NULL");
@@ -282,7 +282,7 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
     check(2, &[input(c"q", &q[..5], 0, 1), good[1]], 12, Status::WrongSize, "`q` has 6 elements");
     check(2, &[input(c"q", &q, usize::MAX, 1), good[1]], 12, Status::WrongSize, "more than memory");
     check(usize::MAX, &[input(c"q", &q, 2, 1), good[1]], 12, Status::WrongSize, "more than memory");
-    check(2, &[input(c"p", &q, 0, 1), good[1]], 12, Status::UnknownName, "no argument `p`; there are q, qd");
+    check(2, &[input(c"p", &q, 0, 1), good[1]], 12, Status::UnknownName, "no argument `p`; the arguments are q, qd");
     check(2, &[input(c"\xff", &q, 0, 1), good[1]], 12, Status::NotUtf8, "input 0");
     check(2, &[Input { data: null(), ..good[0] }, good[1]], 12, Status::NullPointer, "`q` is NULL");
     check(2, &[good[0], Input { name: null(), ..good[0] }], 12, Status::NullPointer, "input 1: `name");

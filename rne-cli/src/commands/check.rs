@@ -106,7 +106,9 @@ fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
 fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
     /// An arm of more joints would keep people waiting; `rne show` tells of one function.
     const MOST_JOINTS: usize = 8;
-    if robot.dof() > MOST_JOINTS {
+    // of geometry alone a warning tells, and why accelerations cannot be computed
+    let has_links = robot.joints.iter().any(|joint| !joint.row.link.is_empty());
+    if robot.dof() > MOST_JOINTS || !has_links {
         return Ok(Vec::new());
     }
     let compiler = Compiler::new(path, robot);
