@@ -36,7 +36,7 @@ fn days_are_dates() {
     assert!(text.contains("2026-11-23") && text.contains("2024-02-29") && text.contains("no events"), "{text}");
 }
 
-/// A change within a log has the date of its start; the dates survive a Parquet file. A log without dates has none.
+/// A change within a log has the date of its start. A log without dates has none.
 #[test]
 fn events_have_dates() {
     let folder = folder("watch_dates");
@@ -52,12 +52,6 @@ fn events_have_dates() {
     assert!(event["not_before_time"].is_null() && event["not_after_time"].is_null(), "{event}");
     let text = rne(&["watch", ARM, &worn, "--quiet", QUIET]).out;
     assert!(words(&text).contains("; since 8.0 s (2026-11-27 08:00:08 UTC)"), "{text}");
-    let parquet = folder.join("worn.parquet");
-    let parquet = parquet.to_str().expect("UTF-8");
-    assert_eq!(rne(&["log", &worn, "-o", parquet]).status, 0);
-    let reply = json(&[parquet, "--quiet", QUIET], 1);
-    let since = events(&reply)[0]["since_time"].as_str().expect("a date").to_owned();
-    assert!(since.starts_with("2026-11-27T08:00:0"), "{since}");
     // times that begin at zero are no dates
     let reply = json(&[WORN, "--quiet", QUIET], 1);
     let event = &events(&reply)[0];
@@ -66,6 +60,20 @@ fn events_have_dates() {
     }
     // speeds of this motion are not alike: viscous friction explains less of it
     assert_eq!(event["rivals"], serde_json::json!(["temperature", "speed"]));
+}
+
+/// Dates survive a Parquet file.
+#[cfg(feature = "parquet")]
+#[test]
+fn events_of_parquet_have_dates() {
+    let folder = folder("watch_dates_parquet");
+    let worn = dated(&folder, WORN, "worn.csv", FRIDAY);
+    let parquet = folder.join("worn.parquet");
+    let parquet = parquet.to_str().expect("UTF-8");
+    assert_eq!(rne(&["log", &worn, "-o", parquet]).status, 0);
+    let reply = json(&[parquet, "--quiet", QUIET], 1);
+    let since = events(&reply)[0]["since_time"].as_str().expect("a date").to_owned();
+    assert!(since.starts_with("2026-11-27T08:00:0"), "{since}");
 }
 
 /// A change that the whole log has began between the quiet log and the log.
