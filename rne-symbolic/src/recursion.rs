@@ -44,7 +44,7 @@ const BACKWARD: [Formula; 4] = [
         ["np,i", r"n_{p,i}"],
         [
             "ni + Rk ni,k + di × fp,i + ri × Rk fi,k",
-            r"n_i + R_k n_{i,k} + d_i \times f_{p,i} + \mathbf r_i \times R_k f_{i,k}",
+            r"n_i + R_k n_{i,k} + \mathbf d_i \times f_{p,i} + \mathbf r_i \times R_k f_{i,k}",
         ],
     ),
     (["τi", r"\tau_i"], ["e · np,i", r"e \cdot n_{p,i}"]),
