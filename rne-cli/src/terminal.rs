@@ -1,7 +1,7 @@
 //! The terminal: its width, and writing to a reader that may have gone away.
 
 use std::env;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -42,6 +42,12 @@ pub(crate) fn show(outcome: &Outcome) -> ExitCode {
         Ok(()) => {}
     }
     if outcome.at_fault { INPUT.into() } else { ExitCode::SUCCESS }
+}
+
+/// Prints a note at once, before the command has a result.
+pub(crate) fn remark(what: fmt::Arguments<'_>) {
+    // where a note finds no reader, the result still may
+    let _ = write(AutoStream::auto(io::stderr().lock()), &what.to_string());
 }
 
 /// Prints why a command could not do its work.

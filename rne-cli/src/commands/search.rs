@@ -80,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
              {name}.yaml{TYPED:#}"
         )));
     }
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = robot_file::robot_in_yaml(&arguments.file)?;
     let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
     let known = plan_file::known(&arguments.file, &robot, arguments.fresh)?;
     let path = plan_of(&arguments.file);
@@ -138,7 +138,7 @@ impl Searched<'_> {
     /// Whether what was found is of the robot as its file has it now; comments and names may have changed.
     fn is_unchanged(&self, found: &PlanFile) -> Result<(), Failure> {
         let is_same = |now: Robot| now.name == found.robot && rne_search::fingerprint(&now) == found.fingerprint;
-        if robot_file::robot(self.file).is_ok_and(is_same) {
+        if robot_file::robot_in_yaml(self.file).is_ok_and(is_same) {
             return Ok(());
         }
         Err(Failure::input(format_args!(
@@ -296,7 +296,7 @@ mod tests {
             let shipped = rne_robots::find("scara_cobra600").expect("shipped");
             let file = folder.path().join("arm.yaml");
             fs::write(&file, shipped.yaml).expect("written");
-            let robot = robot_file::robot(&file).unwrap_or_else(|failure| panic!("{}", failure.text));
+            let robot = robot_file::robot_in_yaml(&file).unwrap_or_else(|failure| panic!("{}", failure.text));
             let plan = PlanFile::read("plan", shipped.plan.expect("a plan"), &robot).expect("of the robot");
             Self { folder, robot, plan }
         }

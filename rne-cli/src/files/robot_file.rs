@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use rne_convert::{Description, OpenError};
+use rne_convert::{Account, Description, OpenError, Options};
 use rne_model::{Checked, Reader, Robot};
 
 use crate::files::input_file;
 use crate::outcome::Failure;
-use crate::palette::TYPED;
+use crate::palette::{TITLE, TYPED};
+use crate::terminal::remark;
 
 /// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
@@ -25,29 +26,60 @@ pub(crate) fn read_with_run_time(path: &Path, names: &[&str]) -> Result<(Checked
 }
 
 fn read_by(path: &Path, settings: &[(&str, f64)], run_time: &[&str]) -> Result<(Checked, Vec<u8>), Failure> {
-    let read = |name: &str, bytes: &[u8]| {
-        let reader = Reader::new(name).run_time(run_time);
-        let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));
-        reader.read(bytes).map_err(|report| {
-            // the file is at fault, unless it is in order by itself and has no such parameter
-            let names: Vec<&str> = settings.iter().map(|(parameter, _)| *parameter).chain(run_time.to_vec()).collect();
-            let alone = if names.is_empty() { None } else { Reader::new(name).read(bytes).ok() };
-            let has = |alone: &Checked, name: &str| alone.robot.parameters.iter().any(|(known, _)| known == name);
-            match alone {
-                Some(alone) if !names.iter().all(|name| has(&alone, name)) => Failure::unknown_name(&report),
-                _ => Failure::from(&report),
-            }
-        })
+    let (name, bytes) = match open(path)? {
+        Opened::RobotFile(name, bytes) => (name, bytes),
+        Opened::Urdf(name, text) => (format!("{name} (imported)"), imported(&name, &text)?.into_bytes()),
     };
-    let (name, bytes) = match Description::open_by(path, input_file::open) {
-        Ok(Description::Shipped(robot)) => (format!("{} (shipped)", robot.name), robot.yaml.as_bytes().to_vec()),
-        // a URDF is refused with the command that imports it
-        Ok(Description::RobotFile(bytes) | Description::Urdf(bytes)) => (input_file::name(path), bytes),
-        Ok(_) => return Err(Failure::input(format_args!("{} is no robot file", path.display()))),
-        Err(error) => return Err(not_opened(&error)),
-    };
-    let checked = read(&name, &bytes)?;
+    let checked = checked(&name, &bytes, settings, run_time)?;
     Ok((checked, bytes))
+}
+
+/// A robot by what its file is, with the name that messages call it.
+enum Opened {
+    RobotFile(String, Vec<u8>),
+    Urdf(String, String),
+}
+
+fn open(path: &Path) -> Result<Opened, Failure> {
+    match Description::open_by(path, input_file::open) {
+        Ok(Description::Shipped(robot)) => {
+            Ok(Opened::RobotFile(format!("{} (shipped)", robot.name), robot.yaml.as_bytes().to_vec()))
+        }
+        Ok(Description::RobotFile(bytes)) => Ok(Opened::RobotFile(input_file::name(path), bytes)),
+        Ok(Description::Urdf(bytes)) => match String::from_utf8(bytes) {
+            Ok(text) => Ok(Opened::Urdf(input_file::name(path), text)),
+            // which is refused as a robot file is
+            Err(error) => Ok(Opened::RobotFile(input_file::name(path), error.into_bytes())),
+        },
+        Ok(_) => Err(Failure::input(format_args!("{} is no robot file", path.display()))),
+        Err(error) => Err(not_opened(&error)),
+    }
+}
+
+/// The robot file of the one arm of a URDF, as `rne import` makes it; a note names its ends, for another arm may be meant.
+fn imported(name: &str, text: &str) -> Result<String, Failure> {
+    let imported = rne_convert::import(name, text, &Options::default()).map_err(|report| Failure::from(&report))?;
+    let Account { base, tip, .. } = &imported.account;
+    remark(format_args!(
+        "{TITLE}note{TITLE:#}: {name} is a URDF, and the arm is from {base} to {tip}\n      {TYPED}rne import \
+         {name}{TYPED:#} prints its robot file and every assumption\n"
+    ));
+    Ok(imported.text.clone())
+}
+
+fn checked(name: &str, bytes: &[u8], settings: &[(&str, f64)], run_time: &[&str]) -> Result<Checked, Failure> {
+    let reader = Reader::new(name).run_time(run_time);
+    let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));
+    reader.read(bytes).map_err(|report| {
+        // the file is at fault, unless it is in order by itself and has no such parameter
+        let names: Vec<&str> = settings.iter().map(|(parameter, _)| *parameter).chain(run_time.to_vec()).collect();
+        let alone = if names.is_empty() { None } else { Reader::new(name).read(bytes).ok() };
+        let has = |alone: &Checked, name: &str| alone.robot.parameters.iter().any(|(known, _)| known == name);
+        match alone {
+            Some(alone) if !names.iter().all(|name| has(&alone, name)) => Failure::unknown_name(&report),
+            _ => Failure::from(&report),
+        }
+    })
 }
 
 /// Why there is no robot file.
@@ -64,6 +96,15 @@ pub(crate) fn not_opened(error: &OpenError) -> Failure {
 /// A valid robot. `rne check` tells of its lints, the other commands do not.
 pub(crate) fn robot(path: &Path) -> Result<Robot, Failure> {
     Ok(read(path)?.robot)
+}
+
+/// A valid robot of a robot file, beside which something is written: a URDF is refused with the command that imports it.
+pub(crate) fn robot_in_yaml(path: &Path) -> Result<Robot, Failure> {
+    let (name, bytes) = match open(path)? {
+        Opened::RobotFile(name, bytes) => (name, bytes),
+        Opened::Urdf(name, text) => (name, text.into_bytes()),
+    };
+    Ok(checked(&name, &bytes, &[], &[])?.robot)
 }
 
 /// A path as a shell reads it back.

@@ -111,13 +111,32 @@ fn a_robot_file_that_is_there_stays() {
 }
 
 #[test]
-fn a_urdf_where_a_robot_file_is_needed_is_told_about_import() {
-    let folder = folder("import_told");
-    let urdf = folder.join("arm.urdf");
+fn every_command_takes_a_urdf_with_one_arm() {
+    let folder = folder("import_at_once");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let (urdf, yaml, plan) = (path("puma.urdf"), path("puma.yaml"), path("puma.plan.yaml"));
+    fine(&["export", "puma560", "--urdf", "-o", &urdf]);
+    fine(&["import", &urdf, "-o", &yaml]);
+    for command in [&["eval", "--q", "1,1,1,1,1,1"][..], &["ops"], &["emit"], &["show", "--joint", "2"]] {
+        let [of_urdf, of_yaml] = [&urdf, &yaml].map(|file| rne(&[command, &[file.as_str()]].concat()));
+        assert_eq!((of_urdf.status, &of_urdf.out), (0, &of_yaml.out), "{command:?}: {of_urdf:?}");
+        assert!(of_urdf.err.contains("is a URDF, and the arm is from world to "), "{of_urdf:?}");
+        assert!(of_urdf.err.contains(&format!("rne import {urdf}")), "{of_urdf:?}");
+    }
+    assert!(fine(&["check", &urdf]).starts_with("ok "));
+    // a plan is of a robot file
+    fails(1, &["search", &urdf, "--seconds", "0"], &["this is URDF", "rne import"]);
+    assert!(!fs::exists(plan).expect("a folder"));
+}
+
+/// What is not clear in a URDF is said as by `rne import`, which has the options to choose.
+#[test]
+fn a_urdf_with_two_ends_names_the_command_that_chooses() {
+    let urdf = folder("import_told").join("arm.urdf");
     fs::write(&urdf, URDF).expect("written");
     let urdf = urdf.to_str().expect("UTF-8");
     for command in [&["eval", urdf, "--q", "0,0"][..], &["ops", urdf], &["emit", urdf]] {
-        fails(1, command, &["this is URDF", "rne import"]);
+        fails(1, command, &["`base` has 2 end links", "rne import", "--tip"]);
     }
     let called = rne(&["check", urdf]);
     assert!(called.status == 1 && called.out.contains("rne import"), "{called:?}");
