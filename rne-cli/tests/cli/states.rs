@@ -270,9 +270,12 @@ fn mistakes_in_csv_have_a_line() {
         ("q1,q2,of\n1,2,\"a\nb\"\n1,x,\"a\nb\"\n", ":4: `q2` is `x`, which is not a number"),
         ("q1,q2\n1,\n", ":2: `q2` is empty"),
         ("q1,q2\n1,2\u{1b}[31m\n", ":2: `q2` is `2\\u{1b}[31m`, which is not a number"),
-        ("q1,q2\n1,2\n1,2,3\n", ":3: 3 cells where the header has 2"),
-        ("q1,q2\n1\n", ":2: 1 cell where the header has 2"),
-        ("q1,q2\n\"1,2\n3,4\n", ":2: 1 cell where the header has 2; a quote in it is not closed on its line"),
+        ("q1,q2\n1,2\n1,2,3\n", ":3: the line has 3 cells, but the header has 2"),
+        ("q1,q2\n1\n", ":2: the line has 1 cell, but the header has 2"),
+        (
+            "q1,q2\n\"1,2\n3,4\n",
+            ":2: the line has 1 cell, but the header has 2; a quote in it is not closed on its line",
+        ),
     ] {
         let found = gravity(states);
         assert!(found.status == 1 && found.out.is_empty(), "{states:?}: {found:?}");
