@@ -25,7 +25,7 @@ mod error;
 mod formats;
 mod limits;
 mod log;
-mod number;
+pub mod number;
 mod options;
 mod remedy;
 mod signal;

@@ -1,7 +1,8 @@
 //! Numbers in messages.
 
 /// Four digits; three with a power of ten where a number is tiny or huge.
-pub(crate) fn short(number: f64) -> String {
+#[must_use]
+pub fn short(number: f64) -> String {
     if number == 0.0 || !number.is_finite() {
         return format!("{number}");
     }
@@ -13,6 +14,19 @@ pub(crate) fn short(number: f64) -> String {
     let digits = (3.0 - magnitude).max(0.0) as usize;
     let text = format!("{number:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A number for a table: `digits` digits after the decimal point, an exact zero as 0, very small and very large numbers
+/// with a power of ten.
+#[must_use]
+pub fn rounded(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if value.abs() < 1e-4 || value.abs() >= 1e6 {
+        format!("{value:.2e}")
+    } else {
+        format!("{value:.digits$}")
+    }
 }
 
 #[cfg(test)]

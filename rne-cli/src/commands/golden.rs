@@ -1,7 +1,8 @@
 //! Golden values: what the runtime, which knows nothing of generated code, computes at states that are the same in each
 //! run.
 
-use rne::{BaseMotion, DynArm, Payload, Scalar, Wrench};
+use rne::testing::{JOINTS, Random};
+use rne::{BaseMotion, DynArm, Scalar, Wrench};
 use rne_codegen::{Function, Program};
 use rne_emit::{Golden, Precision};
 use rne_model::{GoldenFile, Robot, exact_digits};
@@ -16,13 +17,14 @@ const STATES: usize = 4;
 /// The states at which emitted code is tested, with what its functions return there. The parameters that are known at
 /// run time have other values than in the file.
 pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precision) -> Result<Vec<Golden>, Failure> {
-    let mut random = Random::new(precision);
+    let rounded = rounding(precision);
+    let mut random = Random::new(rounded);
     let in_file = robot.run_time.values(robot);
     (0..STATES)
         .map(|_| {
-            let state = random.state(robot.dof());
+            let state = state(&mut random, robot.dof());
             let parameters: Vec<f64> =
-                in_file.iter().map(|value| random.rounded(value * (1.25 + random.number(0.5)))).collect();
+                in_file.iter().map(|value| rounded(value * (1.25 + random.number(0.5)))).collect();
             let arm = robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
             let arm = DynArm::from_robot(&arm);
             let results = programs.iter().map(|program| {
@@ -99,7 +101,7 @@ pub(crate) fn states(text: &str) -> Result<u16, String> {
 /// A golden file: torques of a robot at `states` states; its heading lists the settings that differ from the robot
 /// file.
 pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<String, Failure> {
-    let (mut random, arm) = (Random::new(Precision::Double), DynArm::from_robot(robot));
+    let (mut random, arm) = (Random::new(rounding(Precision::Double)), DynArm::from_robot(robot));
     let rotors = if robot.has_rotors() { ", with its rotors" } else { "" };
     let with = if settings.is_empty() { String::new() } else { format!(" with {}", settings.join(", ")) };
     let mut text = format!(
@@ -110,7 +112,7 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
         GoldenFile::header(robot.dof()).join(",")
     );
     for _ in 0..states {
-        let state = random.state(robot.dof());
+        let state = state(&mut random, robot.dof());
         let torques = state.numbers(&arm).map_err(Failure::usage)?;
         let numbers = [&state.q, &state.qd, &state.qdd, &torques].into_iter().flatten();
         let numbers: Vec<String> = numbers.copied().map(exact_digits).collect();
@@ -123,61 +125,18 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
     Ok(text)
 }
 
-/// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.
-pub(crate) struct Random {
-    state: std::cell::Cell<u64>,
-    precision: Precision,
+/// A state of an arm, and what acts on it: rad, m, kg, N.
+fn state(random: &mut Random, dof: usize) -> State {
+    let [q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect());
+    let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
+    State { function: Function::InverseDynamics, q, qd, qdd, tau, wrench, payload, base: random.base() }
 }
 
-impl Random {
-    /// Numbers that this number type holds.
-    pub(crate) const fn new(precision: Precision) -> Self {
-        Self { state: std::cell::Cell::new(0x5EED), precision }
-    }
-
-    /// Between `-limit` and `limit`.
-    fn number(&self, limit: f64) -> f64 {
-        let next = self.state.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        self.state.set(next);
-        // the upper bits are the random ones
-        let [a, b, c, d, ..] = next.to_be_bytes();
-        self.rounded(limit * (2.0 * f64::from(u32::from_be_bytes([a, b, c, d])) / f64::from(u32::MAX) - 1.0))
-    }
-
-    #[allow(clippy::cast_possible_truncation)] // rounded
-    fn rounded(&self, number: f64) -> f64 {
-        match self.precision {
-            Precision::Single => f64::from(number as f32),
-            Precision::Double => number,
-        }
-    }
-
-    fn vector(&self, limit: f64) -> [f64; 3] {
-        [0; 3].map(|_| self.number(limit))
-    }
-
-    /// A state of an arm, and what acts on it: rad, m, kg, N.
-    pub(crate) fn state(&mut self, dof: usize) -> State {
-        let joints = |limit| (0..dof).map(|_| self.number(limit)).collect();
-        State {
-            function: Function::InverseDynamics,
-            q: joints(3.0),
-            qd: joints(2.0),
-            qdd: joints(5.0),
-            tau: joints(20.0),
-            wrench: Some(Wrench { force: self.vector(10.0), moment: self.vector(10.0) }),
-            payload: Some(Payload {
-                mass: self.rounded(1.5 + self.number(1.0)),
-                com: self.vector(0.1),
-                ..Payload::default()
-            }),
-            base: BaseMotion {
-                omega: self.vector(1.0),
-                omega_dot: self.vector(2.0),
-                velocity: [0.0; 3],
-                acceleration: self.vector(5.0),
-                gravity: self.vector(10.0),
-            },
-        }
+/// The number of a number type that is nearest.
+#[allow(clippy::cast_possible_truncation)] // rounded
+const fn rounding(precision: Precision) -> fn(f64) -> f64 {
+    match precision {
+        Precision::Single => |number| f64::from(number as f32),
+        Precision::Double => |number| number,
     }
 }

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
+use rne_logs::number::short;
 use rne_model::one_line;
 use serde::Serialize;
 
 use crate::outcome::Failure;
 use crate::palette::{QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, columns};
-use crate::render::log_report::{self, Described, push_remark, short, titled};
+use crate::render::log_report::{self, Described, push_remark, titled};
 
 /// The rows of one text.
 pub(crate) struct Group {

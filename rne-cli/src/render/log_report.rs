@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rne_identify::ArmLogRemark;
+use rne_logs::number::short;
 use rne_logs::{Cutoff, Format, Interruption, LeftOut, Log, Remark, Run, Survey};
 use rne_model::one_line;
 use serde::Serialize;
@@ -359,19 +360,4 @@ fn ends(survey: &Survey) -> Option<&Vec<f64>> {
         Cutoff::Spectrum { ends, .. } => Some(ends),
         _ => None,
     }
-}
-
-/// Four digits.
-pub(crate) fn short(number: f64) -> String {
-    if number == 0.0 {
-        return "0".to_owned();
-    }
-    let magnitude = number.abs().log10().floor();
-    if !(-4.0..7.0).contains(&magnitude) {
-        return format!("{number:.2e}");
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
-    let digits = (3.0 - magnitude).max(0.0) as usize;
-    let text = format!("{number:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

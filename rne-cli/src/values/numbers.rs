@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+pub(crate) use rne_logs::number::rounded;
+
 /// A comma-separated list of finite numbers, as `--q` takes it. Each is written as in a robot file: `pi/2`, `deg(30)`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct List(pub(crate) Vec<f64>);
@@ -52,18 +54,6 @@ pub(crate) fn fixed(value: f64) -> String {
         return format!("{value:>WIDTH$.4e}");
     }
     format!("{value:>WIDTH$.DIGITS$}")
-}
-
-/// A number for a table: `digits` digits after the decimal point, an exact zero as 0, very small and very large numbers
-/// with a power of ten.
-pub(crate) fn rounded(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else if value.abs() < 1e-4 || value.abs() >= 1e6 {
-        format!("{value:.2e}")
-    } else {
-        format!("{value:.digits$}")
-    }
 }
 
 /// A value with its deviation, both with the digits that the deviation leaves: `0.454 ± 0.011`.

@@ -2,10 +2,9 @@
 
 use std::fmt;
 
+use rne_logs::number::rounded;
 use rne_logs::{LeftOut, LogError, Quantity};
 use rne_model::{JointKind, one_line};
-
-use crate::arm_log::remark::rounded;
 
 /// The names that a message lists at most.
 pub(crate) const SHOWN: usize = 16;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use rne_logs::number::rounded;
 use rne_model::one_line;
 
 use crate::arm_log::error::SHOWN;
@@ -70,15 +71,4 @@ impl fmt::Display for ArmLogRemark {
 /// Whether joints have numbers for names, as in a table with the columns `q1`, `q2`, ….
 fn are_numbers(joints: &[String]) -> bool {
     joints.iter().all(|joint| !joint.is_empty() && joint.bytes().all(|byte| byte.is_ascii_digit()))
-}
-
-/// A number with some digits after the decimal point; tiny and huge ones with a power of ten.
-pub(crate) fn rounded(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else if value.abs() < 1e-4 || value.abs() >= 1e6 {
-        format!("{value:.2e}")
-    } else {
-        format!("{value:.digits$}")
-    }
 }

@@ -345,7 +345,7 @@ fn options_that_count_for_nothing_are_refused() {
     let columns = Options { columns: ["time", "q", "tau"].map(str::to_owned).to_vec(), ..options() };
     let plain = || WriterProperties::builder().build();
     let (has, names) = (
-        "but a sampling rate can be given only for",
+        "a sampling rate can be given only for",
         "an order of columns can be given only for arrays of numpy, but this file is",
     );
     for (name, bytes) in [

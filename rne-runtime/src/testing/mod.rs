@@ -34,6 +34,8 @@ pub use motion::{
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use robot_file::RobotFile;
 #[cfg(all(feature = "arm", feature = "std"))]
+pub use state::{JOINTS, Random};
+#[cfg(all(feature = "arm", feature = "std"))]
 pub use torques::{
     actuator_torques_are_those_of_the_runtime, batches_are_those_of_the_runtime, derivatives_are_those_of_the_runtime,
     gravity_and_bias_are_torques_without_motion, joint_wrenches_are_those_of_the_runtime,

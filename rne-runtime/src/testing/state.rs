@@ -27,37 +27,61 @@ impl<const DOF: usize> fmt::Display for State<DOF> {
 
 /// The states, seeded.
 pub(super) fn states<const DOF: usize>() -> impl Iterator<Item = State<DOF>> {
-    let mut random = Random(0x5EED);
-    (0..STATES).map(move |_| State {
-        q: random.array(3.0),
-        qd: random.array(2.0),
-        qdd: random.array(5.0),
-        tau: random.array(20.0),
-        wrench: Wrench { force: random.array(10.0), moment: random.array(10.0) },
-        payload: Payload { mass: 1.0 + random.number(1.0), com: random.array(0.1), ..Payload::default() },
-        base: BaseMotion {
-            omega: random.array(1.0),
-            omega_dot: random.array(2.0),
-            velocity: random.array(1.0),
-            acceleration: random.array(5.0),
-            gravity: random.array(10.0),
-        },
+    let mut random = Random::new(|number| number);
+    (0..STATES).map(move |_| {
+        let [q, qd, qdd, tau] = JOINTS.map(|limit| random.array(limit));
+        let (wrench, payload) = (random.wrench(), random.payload());
+        State { q, qd, qdd, tau, wrench, payload, base: BaseMotion { velocity: random.array(1.0), ..random.base() } }
     })
 }
 
-/// A linear congruential generator, with Knuth's constants.
-struct Random(u64);
+/// The largest positions, velocities, accelerations and torques of a joint: rad or m, N m or N.
+pub const JOINTS: [f64; 4] = [3.0, 2.0, 5.0, 20.0];
+
+/// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.
+pub struct Random {
+    seed: u64,
+    rounded: fn(f64) -> f64,
+}
 
 impl Random {
-    /// Between `-limit` and `limit`.
-    fn number(&mut self, limit: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        // the upper bits are the random ones
-        let [a, b, c, d, ..] = self.0.to_be_bytes();
-        limit * (2.0 * f64::from(u32::from_be_bytes([a, b, c, d])) / f64::from(u32::MAX) - 1.0)
+    /// Numbers that `rounded` rounds, each.
+    #[must_use]
+    pub const fn new(rounded: fn(f64) -> f64) -> Self {
+        Self { seed: 0x5EED, rounded }
     }
 
-    fn array<const N: usize>(&mut self, limit: f64) -> [f64; N] {
+    /// Between `-limit` and `limit`.
+    pub fn number(&mut self, limit: f64) -> f64 {
+        self.seed = self.seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        // the upper bits are the random ones
+        let [a, b, c, d, ..] = self.seed.to_be_bytes();
+        (self.rounded)(limit * (2.0 * f64::from(u32::from_be_bytes([a, b, c, d])) / f64::from(u32::MAX) - 1.0))
+    }
+
+    /// Each between `-limit` and `limit`.
+    pub fn array<const N: usize>(&mut self, limit: f64) -> [f64; N] {
         array::from_fn(|_| self.number(limit))
+    }
+
+    /// N and N m.
+    pub fn wrench(&mut self) -> Wrench<f64> {
+        Wrench { force: self.array(10.0), moment: self.array(10.0) }
+    }
+
+    /// A point mass, kg and m.
+    pub fn payload(&mut self) -> Payload<f64> {
+        Payload { mass: (self.rounded)(1.5 + self.number(1.0)), com: self.array(0.1), ..Payload::default() }
+    }
+
+    /// A base without a velocity of its origin, which no torque depends on.
+    pub fn base(&mut self) -> BaseMotion<f64> {
+        BaseMotion {
+            omega: self.array(1.0),
+            omega_dot: self.array(2.0),
+            velocity: [0.0; 3],
+            acceleration: self.array(5.0),
+            gravity: self.array(10.0),
+        }
     }
 }
