@@ -39,6 +39,7 @@ pub(super) fn states<const DOF: usize>() -> impl Iterator<Item = State<DOF>> {
 pub const JOINTS: [f64; 4] = [3.0, 2.0, 5.0, 20.0];
 
 /// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.
+#[derive(Clone, Debug)]
 pub struct Random {
     seed: u64,
     rounded: fn(f64) -> f64,
