@@ -136,7 +136,7 @@ pub(crate) fn extract(
         let message = format!("joints outside the chain follow moving joints of the chain: {}", some(each));
         let help =
             "these joints carry mass, and no row of the table can describe that this mass moves along; if the mass may \
-             stand still, hold each of these joints by its name".to_owned();
+             stand still, lock each of these joints by its name".to_owned();
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
     walk.told.snapped = walk.snapping.found;
@@ -187,7 +187,7 @@ fn joint(urdf: &Urdf, name: &str) -> Result<usize, Report> {
     urdf.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
         let movable = urdf.joints.iter().filter(|joint| joint.kind.has_one_freedom());
         let movable: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
-        let message = format!("there is no joint {} to be locked", quoted(name));
+        let message = format!("there is no joint {}, so it cannot be locked", quoted(name));
         let known = format!("the movable joints are {}", names(&movable));
         urdf.source.error(&(0..0), message, meant(name, movable) + &known)
     })
@@ -331,7 +331,7 @@ fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
     if is_position {
         return Ok(());
     }
-    let message = format!("the joint {} cannot be held at {value}", quoted(&joint.name));
+    let message = format!("the joint {} cannot be locked at {value}", quoted(&joint.name));
     let help = if is_angle {
         format!("an angle is a number below {LARGEST_ANGLE} rad")
     } else {
@@ -383,7 +383,7 @@ impl Walk<'_> {
         if let Some((lower, upper)) = joint.limits.position.filter(|(lower, upper)| !is_within(value, *lower, *upper)) {
             let name = one_line(&joint.name);
             self.told.remarks.push(format!(
-                "the joint {name} is held at {value}, which is outside of its limits, from {lower} to {upper}"
+                "the joint {name} is locked at {value}, which is outside of its limits, from {lower} to {upper}"
             ));
         }
         let moved = match joint.kind {
@@ -429,7 +429,8 @@ impl Walk<'_> {
         if (followed - value).abs() > 1e-9 * followed.abs().max(1.0) {
             let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
             self.told.remarks.push(format!(
-                "the joint {name} is held at {value}, although it follows {leader}, which holds it at {followed}"
+                "the joint {name} is locked at {value}, although it follows {leader}, whose position would put it at \
+                 {followed}"
             ));
         }
     }
@@ -442,7 +443,7 @@ impl Walk<'_> {
         while let Some(mimic) = joints[leader].mimic.as_ref().filter(|_| !self.locks.contains_key(&leader)) {
             let joint = &joints[leader];
             let error = |message: String| {
-                let help = "correct the `mimic` of this joint, or hold the joint still".to_owned();
+                let help = "correct the `mimic` of this joint, or lock the joint".to_owned();
                 self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name))
             };
             leader = mimic.leader.ok_or_else(|| {
@@ -452,7 +453,9 @@ impl Walk<'_> {
             mimics.push(mimic);
             if mimics.len() > joints.len() {
                 let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
-                return Err(error(format!("the joint {follower} follows {leader}, which follows it in a circle")));
+                return Err(error(format!(
+                    "the joint {follower} follows {leader}, and the `mimic` elements form a circle"
+                )));
             }
         }
         Ok((mimics, leader))
@@ -478,11 +481,9 @@ impl Walk<'_> {
         }
         let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
         self.told.remarks.push(if is_locked {
-            format!("the joint {name} is held still, although it follows {leader}, which moves")
+            format!("the joint {name} is locked, although it follows {leader}, which moves")
         } else {
-            format!(
-                "the joint {name} follows {leader}, which moves; nothing that it carries has mass, so it is held still"
-            )
+            format!("the joint {name} follows {leader}, which moves; no link after it has mass, so rne locks it")
         });
     }
 
@@ -557,11 +558,12 @@ impl Walk<'_> {
         chain.tip = pose;
         if chain.joints.is_empty() {
             let message =
-                format!("no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
+                format!("there is no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
             return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
         }
         if chain.joints.len() > MAX_JOINTS {
-            let message = format!("{} movable joints; a robot file has at most {MAX_JOINTS}", chain.joints.len());
+            let message =
+                format!("the chain has {} movable joints; a robot file has at most {MAX_JOINTS}", chain.joints.len());
             return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
         }
         Ok(())
@@ -580,7 +582,7 @@ impl Walk<'_> {
         if let Some(mimic) = &joint.mimic {
             let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
             let help = "its torque acts on the joint that it follows, and no row of the table can describe this; end \
-                        the chain before this joint, or hold this joint still"
+                        the chain before this joint, or lock this joint"
                 .to_owned();
             return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
         }
@@ -603,11 +605,11 @@ impl Walk<'_> {
         }
         if let Some((lower, upper)) = joint.crossed {
             self.told.remarks.push(format!(
-                "the joint {name} has a lower limit, {lower}, that is above its upper one, {upper}; both are left out"
+                "the joint {name} has a lower limit, {lower}, above its upper limit, {upper}; rne ignores both limits"
             ));
         }
         for (limit, value) in &joint.negative {
-            let what = format!("the joint {name} has a limit of {limit} below zero, {value}; it is left out");
+            let what = format!("the joint {name} has a negative limit of {limit}, {value}; rne ignores it");
             self.told.remarks.push(what);
         }
     }

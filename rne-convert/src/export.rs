@@ -142,7 +142,7 @@ fn of_motors(robot: &Robot) -> Vec<String> {
     let motors = || robot.joints.iter().filter_map(|joint| Some((one_line(&joint.name), joint.motor?)));
     if motors().any(|(_, motor)| motor.inertia != 0.0 || motor.gear_ratio != 1.0) {
         let and =
-            if motors().any(|(_, motor)| Friction::of(&motor).is_some()) { ", but for their friction" } else { "" };
+            if motors().any(|(_, motor)| Friction::of(&motor).is_some()) { ", except their friction" } else { "" };
         remarks.push(format!("motors are left out{and}: a URDF has no place for gears and rotors"));
     }
     let named = |is_so: fn(&Motor) -> bool| {
@@ -166,7 +166,9 @@ fn of_motors(robot: &Robot) -> Vec<String> {
         ));
     }
     if let Some(names) = named(|motor| Friction::at_joint(motor).is_none()) {
-        remarks.push(format!("friction that is too large for a number is left out: {names}"));
+        remarks.push(format!(
+            "the friction of these joints is left out, because it is too large for a 64-bit float: {names}"
+        ));
     }
     remarks
 }

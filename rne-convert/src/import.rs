@@ -246,7 +246,7 @@ fn printable(text: &str) -> String {
 fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     let mut notes = Vec::new();
     for (joint, value) in &told.held {
-        notes.push(format!("- the joint {} is held at {}", printable(joint), rne_model::exact_digits(*value)));
+        notes.push(format!("- the joint {} is locked at {}", printable(joint), rne_model::exact_digits(*value)));
     }
     notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
     if let Some(Difference { position, torque, .. }) = change {
@@ -286,7 +286,8 @@ impl Urdf {
                 ));
             }
             if let Some(length) = xyz.into_iter().find(|length| length.abs() > FAR) {
-                remarks.push(format!("{what} {name} stands {length} m away: lengths in a URDF are metres"));
+                remarks
+                    .push(format!("{what} {name} has an origin that is {length} m away: lengths in a URDF are metres"));
             }
         }
         remarks
@@ -298,8 +299,8 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
     let mut remarks = Vec::new();
     for (joint, tilt) in &table.levelled {
         remarks.push(format!(
-            "the axes of joints {joint} and {} are {tilt:.1e} rad off parallel and are taken as parallel: their common \
-             normal is too far away for a table",
+            "the axes of joints {joint} and {} are {tilt:.1e} rad off parallel, and rne takes them as parallel: their \
+             common normal is too far away for a table",
             joint + 1
         ));
     }
@@ -307,8 +308,11 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
         if row.dh.d.abs() > FAR || row.dh.a.abs() > FAR {
             let (row, d, a, tilt) = (index + 1, row.dh.d, row.dh.a, row.dh.alpha.sin.abs());
             let is_nearly_parallel = tilt != 0.0 && tilt < NEARLY_PARALLEL;
-            let why =
-                if is_nearly_parallel { ", since two axes are nearly parallel; digits are lost there" } else { "" };
+            let why = if is_nearly_parallel {
+                ", because two axes are nearly parallel; so large numbers lose digits"
+            } else {
+                ""
+            };
             remarks.push(format!("row {row} has d = {d:.0} m and a = {a:.0} m{why}"));
         }
     }

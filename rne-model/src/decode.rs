@@ -458,8 +458,8 @@ fn no_joint(what: &str, word: &str) -> Option<String> {
     (what == "joint type").then_some(())?;
     Some(match word.to_lowercase().as_str() {
         "fixed" => {
-            "a fixed joint has no row: add the mass, com and inertia of its link to the link before it; after the last \
-             joint, write its offset as `tool`"
+            "a robot file has no row for a fixed joint: add the mass, com and inertia of its link to the link before \
+             it; after the last joint, write its offset as `tool`"
                 .to_owned()
         }
         "floating" | "planar" | "spherical" | "ball" | "universal" | "cylindrical" | "screw" => {

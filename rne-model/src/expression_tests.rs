@@ -154,7 +154,7 @@ fn what_is_no_number_says_why_and_where() {
         ("1.2.3", 1, 5, "two decimal points", "delete one"),
         (".", 1, 1, "written in digits", "leave out"),
         ("0,5", 2, 2, "`,` is not part of a number", "point"),
-        ("1 2", 3, 3, "`2` stands where an operator is needed", "a finite decimal"),
+        ("1 2", 3, 3, "found `2` where an operator is needed", "a finite decimal"),
     ] {
         let found = mistake(text);
         assert_eq!((found.0, found.1), (from, to), "{text}: {}", found.2);
@@ -170,7 +170,7 @@ fn mistakes_in_expressions_point_at_their_column() {
         ("2*lenght", 3, 8, "unknown name `lenght`", "did you mean `length`?"),
         ("2*PI", 3, 4, "unknown name `PI`", "did you mean `pi`?"),
         ("1 + later", 5, 9, "has no value yet", "above it"),
-        ("2*(m+)/3", 6, 6, "`)` stands where a number or a name is needed", ""),
+        ("2*(m+)/3", 6, 6, "found `)` where a number or a name is needed", ""),
         ("1 +", 3, 3, "the expression ends where", ""),
         ("(1 + 2", 1, 1, "this `(` is never closed", "add a `)`"),
         ("2*(1 + 2", 3, 3, "this `(` is never closed", "add a `)`"),
@@ -180,9 +180,9 @@ fn mistakes_in_expressions_point_at_their_column() {
         ("sin(1, 2)", 6, 6, "`,` is not part", ""),
         ("atan(1)", 1, 4, "unknown function `atan`", "sqrt sin cos tan deg"),
         ("a(1)", 1, 1, "unknown function `a`", "`*`"),
-        ("pi(2)", 3, 3, "`(` stands where an operator is needed", ""),
+        ("pi(2)", 3, 3, "found `(` where an operator is needed", ""),
         ("m**2", 2, 3, "`**` is not an operator", "`^`"),
-        ("2 % 3", 3, 3, "`%` stands where an operator is needed", ""),
+        ("2 % 3", 3, 3, "found `%` where an operator is needed", ""),
         ("* 3", 1, 1, "`*` stands where a number", ""),
         ("1 + 1/0", 5, 7, "`1/0` is infinite", "division by zero"),
         ("0^-1", 1, 4, "`0^-1` is infinite", "division by zero"),

@@ -153,7 +153,7 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
         // the first that is too many, or the last that is there
         let place = cells.get(names.len()).or(cells.last()).map_or(0..0, |(_, place)| place.clone());
         let columns = if cells.len() == 1 { "column" } else { "columns" };
-        let message = format!("{} {columns}, but the header has {}", cells.len(), names.len());
+        let message = format!("the line has {} {columns}, but the header has {}", cells.len(), names.len());
         problems.push(
             Diagnostic::error(place, message).help("write one number per column, with commas between the numbers"),
         );

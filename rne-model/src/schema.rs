@@ -479,8 +479,8 @@ fn angle(cx: &Context, node: &Node) -> Option<f64> {
     if value.abs() >= LARGEST_ANGLE {
         let shown = cx.shown(node, value);
         let message = format!(
-            "the angle {shown} rad is too large; angles must be below {LARGEST_ANGLE} rad, because larger neighbouring \
-             numbers are more than 1e-9 rad apart"
+            "the angle {shown} rad is too large; angles must be below {LARGEST_ANGLE} rad, because a 64-bit float \
+             stores larger angles in steps of more than 1e-9 rad"
         );
         return cx.refuse(Diagnostic::error(node.span.clone(), message).help("subtract whole turns from the angle"));
     }

@@ -213,7 +213,7 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.with_sin_cos && arguments.lang == Language::C {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always brings its sine and cosine. Leave it out"
+            "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always contains its sine and cosine. Leave it out"
         )));
     }
     let options = [("--real", arguments.real.is_some()), ("--prefix", arguments.prefix.is_some())];
@@ -268,7 +268,7 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u
     let origin = Origin::of(if is_stream(&arguments.file) { "on standard input" } else { &name }, bytes);
     let code = rne_emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
-        Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))
+        Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} can store this number"))
     })?;
     if !arguments.tests {
         return Ok(code);
@@ -398,7 +398,7 @@ fn first_difference(found: &str, expected: &str) -> String {
             (a, b) => {
                 let quote =
                     |line: Option<&str>| line.map_or("the end of the file".to_owned(), |line| format!("`{line}`"));
-                return format!("line {number} is {}, but would be {}", quote(a), quote(b));
+                return format!("line {number} is {}, but rne would write {}", quote(a), quote(b));
             }
         }
     }

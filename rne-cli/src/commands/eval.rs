@@ -167,7 +167,8 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.trace && !function.returns_torques() {
         let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
         return Err(Failure::usage(format_args!(
-            "--trace is the worksheet of torques, and {function} has none; these have one: {}",
+            "--trace prints the steps that compute torques, but {function} does not compute torques; use one of these \
+             functions: {}",
             with.join(", ")
         )));
     }

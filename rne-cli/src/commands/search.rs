@@ -152,7 +152,7 @@ impl Searched<'_> {
 /// Why nothing is written in the place of a plan that has appeared or changed during the search.
 fn meanwhile(path: &Path, failure: &Failure) -> Failure {
     let text = format!(
-        "{}\n\n{} has changed during the search and is kept; the result is not written",
+        "{}\n\n{} has changed during the search; rne does not overwrite it and does not write the result",
         failure.text.trim_end(),
         path.display()
     );
@@ -255,7 +255,8 @@ fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], pa
         let lost = lost.join(",");
         let _ = writeln!(
             text,
-            "{QUIET}left out, because it was not proved; `--rewrite --function {lost}` rewrites it again{QUIET:#}"
+            "{QUIET}the rewritten code is left out, because the proof failed; `--rewrite --function {lost}` rewrites \
+             it again{QUIET:#}"
         );
     }
     let state = match (written, known) {

@@ -100,7 +100,7 @@ impl ChosenArm {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
-                "`{shown}` stands where FILE, the robot, is expected; write the numbers of a list with commas and \
+                "found `{shown}` where FILE, the robot, is expected; write the numbers of a list with commas and \
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }

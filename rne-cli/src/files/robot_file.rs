@@ -51,7 +51,7 @@ fn open(path: &Path) -> Result<Opened, Failure> {
             // which is refused as a robot file is
             Err(error) => Ok(Opened::RobotFile(input_file::name(path), error.into_bytes())),
         },
-        Ok(_) => Err(Failure::input(format_args!("{} is no robot file", path.display()))),
+        Ok(_) => Err(Failure::input(format_args!("{} is not a robot file", path.display()))),
         Err(error) => Err(not_opened(&error)),
     }
 }

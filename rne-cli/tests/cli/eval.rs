@@ -40,8 +40,8 @@ fn close(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn a_number_is_no_file() {
-    fails(2, &["eval", "--q", "0.5", "0.3"], &["`0.3` stands where FILE, the robot, is expected", "--q 0.5,0.3"]);
-    fails(2, &["eval", "--q", "0.5", "pi/2"], &["`pi/2` stands where FILE, the robot, is expected"]);
+    fails(2, &["eval", "--q", "0.5", "0.3"], &["found `0.3` where FILE, the robot, is expected", "--q 0.5,0.3"]);
+    fails(2, &["eval", "--q", "0.5", "pi/2"], &["found `pi/2` where FILE, the robot, is expected"]);
     fails(1, &["eval", "nowhere", "--q", "1"], &["there is no robot file nowhere"]);
 }
 

@@ -67,7 +67,7 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
     for part in [
         "two_links: 2 joints",
         "from base to tip",
-        "grip is held at 0.05",
+        "grip is locked at 0.05",
         "joint elbow, roll: 1.5708 is pi/2",
         "over 1,000 states",
     ] {

@@ -104,9 +104,12 @@ fn one_step_of_a_prismatic_joint() {
 fn velocities_are_shown_when_step_3_is() {
     let robot = "robots/planar2.yaml";
     let usual = fine(&["show", robot]);
-    assert!(!usual.contains("let dc2_x") && !usual.contains("kept for reading"));
+    assert!(!usual.contains("let dc2_x") && !usual.contains("also computed"));
     let asked = fine(&["show", robot, "--step", "3"]);
-    assert!(asked.contains("let dc2_x = ") && asked.contains("kept for reading, and counted: velocities"), "{asked}");
+    assert!(
+        asked.contains("let dc2_x = ") && asked.contains("also computed, and counted above: velocities"),
+        "{asked}"
+    );
     assert!(!asked.contains("step 4"), "only step 3: {asked}");
     let kept = fine(&["show", robot, "--keep", "velocity,inertia_force"]);
     assert!(kept.contains("let dc2_x = ") && kept.contains("let f2_x = "), "{kept}");
@@ -187,7 +190,7 @@ fn other_functions_for_reading() {
     }
     assert!(with(&[]).contains("// returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇\n"));
     let nothing = fine(&["show", robot, "--function", "jacobian", "--step", "7"]);
-    assert!(nothing.contains("no code of jacobian is there"), "{nothing}");
+    assert!(nothing.contains("jacobian has no code in this selection"), "{nothing}");
     assert!(fine(&["show", robot, "--function", "actuator_torques"]).contains("// returned\n    [zero, zero]"));
     assert!(fine(&["show", "robots/puma560.yaml", "--function", "actuator_torques"]).contains("// motor 6: G² Jm q̈"));
 }

@@ -204,7 +204,7 @@ impl Header {
             }
         }
         if text.next().is_some() {
-            return Err(format!("its header goes on with {}", shown(text.left)));
+            return Err(format!("its header continues after its end with {}", shown(text.left)));
         }
         let missing = |key: &str| format!("its header has no {key}");
         Ok(Self {
@@ -248,10 +248,10 @@ impl<'a> Text<'a> {
         let quote = if self.next() == Some(b'"') { b'"' } else { b'\'' };
         self.expect(quote)?;
         let Some(end) = self.left.iter().position(|byte| *byte == quote || *byte == b'\\') else {
-            return Err("a text of its header does not end".to_owned());
+            return Err("a text in its header has no closing quote".to_owned());
         };
         if self.left[end] == b'\\' {
-            return Err("a text of its header has a backslash".to_owned());
+            return Err("a text in its header has a backslash".to_owned());
         }
         let text = &self.left[..end];
         self.left = &self.left[end + 1..];
@@ -277,7 +277,7 @@ impl<'a> Text<'a> {
 
     /// A tuple of decimal numbers. Their product, in which a zero counts as 1, is a number of numbers.
     fn shape(&mut self) -> Result<Vec<u64>, String> {
-        let wrong = || "its shape is too large, or is not a shape".to_owned();
+        let wrong = || "its shape is too large, or is not a list of numbers".to_owned();
         self.expect(b'(')?;
         let (mut shape, mut product) = (Vec::new(), 1_u64);
         while !self.skip(b')') {
