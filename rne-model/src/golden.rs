@@ -229,9 +229,9 @@ mod tests {
         for (found, expected) in [
             (said(&format!("# tolerence: 1e-1\n{HEADER}")), "1:3: error: `tolerence: 1e-1` sets no tolerance"),
             (said(&format!("# Tolerance = 1e-1\n{HEADER}")), "1:3: error: `Tolerance = 1e-1` sets no tolerance"),
-            (state("1;2;3;4;5;6;7;8"), "3:1: error: 1 column, but the header has 8"),
-            (state("1,2,3,4,5,6,7"), "3:13: error: 7 columns, but the header has 8"),
-            (state("1,2,3,4,5,6,7,8, 9"), "3:18: error: 9 columns, but the header has 8"),
+            (state("1;2;3;4;5;6;7;8"), "3:1: error: the line has 1 column, but the header has 8"),
+            (state("1,2,3,4,5,6,7"), "3:13: error: the line has 7 columns, but the header has 8"),
+            (state("1,2,3,4,5,6,7,8, 9"), "3:18: error: the line has 9 columns, but the header has 8"),
             (state("1,2,3,4,5,6,7,8x"), "3:15: error: `8x` of tau2 is not a number"),
             (state("1,,3,4,5,6,7,8"), "3:3: error: the number of q2 is missing"),
             (state("1,2,3,4,inf,6,7,8"), "3:9: error: `inf` of qdd1 is not a number"),

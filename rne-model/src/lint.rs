@@ -333,7 +333,7 @@ fn centre_without_mass(cx: &Context, item: &Node, index: usize, joint: &Joint) -
     let Some(com) = link.get("com") else { return false };
     cx.report(
         Diagnostic::lint(com.head(), format!("link {} has a centre of mass but no mass", index + 1))
-            .label("of what mass?")
+            .label("the mass is missing")
             .help("add the `mass` in kg; if the link is without mass, write `mass: 0`"),
     );
     true

@@ -223,8 +223,8 @@ fn payload(
     let is_lost = found.is_there() && with.is_none();
     if !found.mass.is_excited || is_lost {
         let why = if is_lost {
-            "by the log, the last link with the payload has a negative mass, so FILE and the log are not from the same \
-             arm"
+            "according to the log, the last link and the payload together have a negative mass, so FILE and the log \
+             are not from the same arm"
         } else {
             "the log does not determine the mass of a payload: record a motion in which gravity or accelerations load \
              the joints"

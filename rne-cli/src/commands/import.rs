@@ -119,7 +119,7 @@ fn told(account: &Account) -> String {
         let _ = writeln!(text, "  {joint} moves {} as one body", links.join(", "));
     }
     for (joint, value) in account.held.iter().take(SHOWN) {
-        let _ = writeln!(text, "  {joint} is held at {value}");
+        let _ = writeln!(text, "  {joint} is locked at {value}");
     }
     if account.held.len() > SHOWN {
         let _ = writeln!(text, "  and {} more", account.held.len() - SHOWN);

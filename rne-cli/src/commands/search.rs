@@ -370,7 +370,7 @@ mod tests {
             arm.write(notes);
             let (status, said) = refused(arm.keep(arm.plan.clone(), || ()));
             assert_eq!(status, INPUT);
-            assert!(said.contains("arm.plan.yaml has changed during the search and is kept"), "{said}");
+            assert!(said.contains("arm.plan.yaml has changed during the search; rne does not overwrite it"), "{said}");
             assert_eq!(arm.written().as_deref(), Some(notes));
         }
         // a fresh search replaces a plan that cannot be read, and nothing else
@@ -393,7 +393,7 @@ mod tests {
         arm.write(&wrong);
         let (_, said) = refused(arm.keep(arm.found(Function::ForwardDynamics), || ()));
         assert!(
-            said.contains("does not compute the same as the seven steps") && said.contains("and is kept"),
+            said.contains("does not compute the same as the seven steps") && said.contains("rne does not overwrite it"),
             "{said}"
         );
         assert_eq!(arm.written().as_deref(), Some(wrong.as_str()));

@@ -164,7 +164,7 @@ fn a_file_brings_its_own_sine_and_cosine() {
     let torques: Vec<f64> = torques.lines().map(|line| line.parse().expect("a number")).collect();
     assert_eq!(torques, evaluated(&eval), "in every bit");
 
-    fails(2, &["emit", ROBOT, "--lang", "c", "--with-sin-cos"], &["--with-sin-cos", "always brings its sine"]);
+    fails(2, &["emit", ROBOT, "--lang", "c", "--with-sin-cos"], &["--with-sin-cos", "always contains its sine"]);
     let out = path(&folder, "arm.rs");
     fails(1, &[&emit[..], &["--check", &out]].concat(), &["actuator_torques --with-sin-cos -o "]);
 }

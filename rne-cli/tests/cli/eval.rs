@@ -346,7 +346,12 @@ fn functions_take_their_arguments_and_no_others() {
         &[q, qd, ["--tau", "1,2"]].concat(),
         &["takes no --tau; forward_dynamics and momentum_and_rate do"],
     );
-    call(2, "jacobian", &[&q[..], &["--trace"]].concat(), &["--trace", "jacobian has none", "gravity_torques"]);
+    call(
+        2,
+        "jacobian",
+        &[&q[..], &["--trace"]].concat(),
+        &["--trace", "jacobian does not compute torques", "gravity_torques"],
+    );
     call(1, "kinetic_energy", &[q, ["--qd", "1e200,1"]].concat(), &["kinetic_energy overflows"]);
     fails(2, &["eval", PUMA, "--function", "actuator_torques", "--q", "1"], &["actuator_torques takes no --q"]);
 }

@@ -247,7 +247,7 @@ fn a_negative_mass_of_a_payload_is_refused() {
     let shape = format!("(20001, {})", names.len());
     fs::write(&path, npy("<f8", "False", &shape, &bytes(&numbers))).expect("a file");
     let [path, output] = [&path, &out].map(|path| path.display().to_string());
-    let said = format!("{path}: state 20000: column {} is a mass, -0.25 kg", place + 1);
+    let said = format!("{path}: state 20000: the mass in column {} is -0.25 kg", place + 1);
     fails(1, &[&arguments[..5], &[path.as_str(), "-o", &output]].concat(), &[&said]);
     assert!(!out.exists(), "a file is whole or not there");
 }

@@ -211,7 +211,7 @@ fn files_that_are_no_worksheets() {
     for number in ["nan", "inf", "1e999", "O.5", "1/0"] {
         row(&format!("1,2,omega_dot,x,{number},rad/s²,link"), &[":3:17", "is not a number"]);
     }
-    row("1,2,omega_dot,x,0,5,rad/s²,link", &["8 cells, but 7 columns", "decimal point"]);
+    row("1,2,omega_dot,x,0,5,rad/s²,link", &["the line has 8 cells, but the header has 7 columns", "decimal point"]);
     row("1,2,\"omega_dot,x,0", &["this quote is not closed"]);
     row("1,0,orientation,xx,1,,", &["a worksheet in link axes has no orientation"]);
     bad("# rne worksheet, format 2, robot planar2\njoint,quantity,value\n1,tau,1\n", &[":1:1", "reads format 1"]);
