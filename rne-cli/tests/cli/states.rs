@@ -326,10 +326,10 @@ fn mistakes_in_arrays_are_told() {
             "<f8",
             "False",
             "(0, 0xffffffffffffffff, 2)",
-            "not an array of numpy: its shape is too large, or is not a list of numbers",
+            "not an array of numpy: its shape is too large, or is not a tuple of whole numbers",
         ),
         ("<f8", "False", "(0, 9999999999, 9999999999, 2)", "not an array of numpy: its shape is too large"),
-        ("<f8", "False", "(-3, 2)", "not an array of numpy: its shape is too large, or is not a list of numbers"),
+        ("<f8", "False", "(-3, 2)", "not an array of numpy: its shape is too large, or is not a tuple of whole numbers"),
         ("<f8", "False", "3, 2)", "not an array of numpy: its header must have '(' here, but there is `3, 2)"),
     ] {
         let found = reading(&npy(kind, fortran, shape, &six));

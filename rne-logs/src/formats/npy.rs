@@ -277,7 +277,7 @@ impl<'a> Text<'a> {
 
     /// A tuple of decimal numbers. Their product, in which a zero counts as 1, is a number of numbers.
     fn shape(&mut self) -> Result<Vec<u64>, String> {
-        let wrong = || "its shape is too large, or is not a list of numbers".to_owned();
+        let wrong = || "its shape is too large, or is not a tuple of whole numbers".to_owned();
         self.expect(b'(')?;
         let (mut shape, mut product) = (Vec::new(), 1_u64);
         while !self.skip(b')') {
@@ -341,15 +341,15 @@ mod tests {
     fn other_headers_are_refused() {
         let with = |shape: &str| format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}");
         for (text, wanted) in [
-            (with("(-1, 7)"), "too large, or is not a list of numbers"),
-            (with("(4e2, 7)"), "too large, or is not a list of numbers"),
-            (with("(0x190, 7)"), "too large, or is not a list of numbers"),
-            (with("(400L, 7L)"), "too large, or is not a list of numbers"),
-            (with("(4294967296, 4294967296)"), "too large, or is not a list of numbers"),
-            (with("(0, 4611686018427387904)"), "too large, or is not a list of numbers"),
-            (with("(99999999999999999999, 1)"), "too large, or is not a list of numbers"),
-            (with("(5)"), "too large, or is not a list of numbers"),
-            (with("((5, 6), 7)"), "too large, or is not a list of numbers"),
+            (with("(-1, 7)"), "too large, or is not a tuple of whole numbers"),
+            (with("(4e2, 7)"), "too large, or is not a tuple of whole numbers"),
+            (with("(0x190, 7)"), "too large, or is not a tuple of whole numbers"),
+            (with("(400L, 7L)"), "too large, or is not a tuple of whole numbers"),
+            (with("(4294967296, 4294967296)"), "too large, or is not a tuple of whole numbers"),
+            (with("(0, 4611686018427387904)"), "too large, or is not a tuple of whole numbers"),
+            (with("(99999999999999999999, 1)"), "too large, or is not a tuple of whole numbers"),
+            (with("(5)"), "too large, or is not a tuple of whole numbers"),
+            (with("((5, 6), 7)"), "too large, or is not a tuple of whole numbers"),
             (with("(5, 6"), "must have ')' here"),
             (with("(5, 6), 'shape': (1, 1)"), "has `shape` twice"),
             (with("(5, 6), 'other': 1"), "has a key `other`"),
