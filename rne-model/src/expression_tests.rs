@@ -134,7 +134,7 @@ fn what_is_no_number_says_why_and_where() {
         ("true", 1, 4, "unknown name `true`", "a finite decimal"),
         ("", 1, 0, "a number is missing", "a finite decimal"),
         ("  ", 1, 2, "a number is missing", "a finite decimal"),
-        ("~", 1, 1, "`~` is not part of an expression", "leave the key out"),
+        ("~", 1, 1, "`~` is not part of an expression", "delete the key"),
         ("1e999", 1, 5, "too large", "exponent"),
         ("1e-999", 1, 6, "too small", "exponent"),
         ("2m", 2, 2, "the number `2` has the unit `m`", "write `2` alone; a product is written `2*m`"),
