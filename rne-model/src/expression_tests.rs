@@ -150,7 +150,7 @@ fn what_is_no_number_says_why_and_where() {
         ("250 kg mm²", 5, 11, "has the unit `kg mm²`", "write `250*1e-6`"),
         ("30 rpm", 4, 6, "has the unit `rpm`", "write `30*2*pi/60`"),
         ("1,98", 2, 2, "`,` is not part of a number", "write `1.98`"),
-        ("1e", 1, 2, "cut short", "`*`"),
+        ("1e", 1, 2, "incomplete", "`*`"),
         ("1.2.3", 1, 5, "two decimal points", "delete one"),
         (".", 1, 1, "written in digits", "delete a limit"),
         ("0,5", 2, 2, "`,` is not part of a number", "point"),

@@ -254,7 +254,7 @@ fn every_unknown_name_is_listed() {
         report.short(),
         "robots/x.yaml:1:1: error: the robot file has no parameter `length` for run time; under `parameters` there are \
          none\nrobots/x.yaml:1:1: error: the robot file has no parameter `payload` for run time; under `parameters` \
-         there are none"
+         there is nothing"
     );
     let many = (0..20).fold(String::new(), |mut many, i| {
         let _ = write!(many, "p{i:02}: {i}, ");

@@ -179,8 +179,6 @@ const RULES: &[Rule] = &[
     anywhere(r"\bstands? where\b", "found … where … is needed", "`)` stands where a number is needed"),
     anywhere(r"\bheld still\b", "locked", "the joint is held still"),
     anywhere(r"\bcut short\b", "incomplete", "the number is cut short"),
-    anywhere(r"\bbut for (its|their)\b", "except", "motors are left out, but for their friction"),
-    anywhere(r"\bgo(es)? on with\b", "continues with", "its header goes on with a word"),
     anywhere(r"\bunless given\b", "[default: …]", "the low-pass; by the spectrum, unless given"),
 ];
 

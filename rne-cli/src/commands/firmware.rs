@@ -105,7 +105,7 @@ fn robot_of(arguments: &Arguments) -> PathBuf {
     arguments.robot.clone().unwrap_or_else(|| shipped.into())
 }
 
-/// Whether nothing stands where the folder is to be.
+/// Whether nothing exists where the folder is to be.
 fn is_free(folder: &Path) -> Result<(), Failure> {
     let shown = folder.display();
     if is_standard_output(folder) {

@@ -18,7 +18,7 @@ pub(crate) fn worded(report: &Report) -> Report {
             Remedy::NameTip => "name the tip with --tip LINK".to_owned(),
             Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE locks `{joint}` at this value"),
             Remedy::LockOthers => {
-                "--lock JOINT=VALUE locks one joint at this value, --lock-others locks all of them at zero".to_owned()
+                "--lock JOINT=VALUE locks one joint at this value, --lock-others locks all others at zero".to_owned()
             }
             Remedy::KeepUnphysical => "--keep-unphysical imports the inertia without a change".to_owned(),
         })
