@@ -159,9 +159,9 @@ fn headline() -> String {
          | ns, best peer, native build | {} |\n\
          | ns, Pinocchio | {} |\n\
          | instructions on a Cortex-M4F, `f32`, current version | {} |\n\n\
-         The operations and the nanoseconds (ns) of rne are for the same program, from an earlier version. The current\n\
-         version also rewrites the program by rules of algebra: it then has {rewritten_puma} and {rewritten_panda}\n\
-         operations. Only the row of instructions is for the rewritten program.\n",
+         The operations and the nanoseconds (ns) of rne are for the same program, from an earlier version. The\n\
+         current version also rewrites the program by rules of algebra: it then has {rewritten_puma} and\n\
+         {rewritten_panda} operations. Only the row of instructions is for the rewritten program.\n",
         of(&operations, "rne, planned"),
         best(&operations).join(" | "),
         of(&times, "rne_reduced_native"),
