@@ -154,14 +154,14 @@ fn headline() -> String {
         "| one call, form `reduced` | PUMA 560 | Franka Panda |\n|---|---:|---:|\n\
          | operations | {} |\n\
          | operations, best peer | {} |\n\
-         | ns, native build | {} |\n\
-         | ns, default build | {} |\n\
-         | ns, best peer, native build | {} |\n\
-         | ns, Pinocchio | {} |\n\
+         | time in ns, native build | {} |\n\
+         | time in ns, default build | {} |\n\
+         | time in ns, best peer, native build | {} |\n\
+         | time in ns, Pinocchio | {} |\n\
          | instructions on a Cortex-M4F, `f32`, current version | {} |\n\n\
-         The times are older than the last optimization, which rewrites a program by rules of algebra, so the\n\
-         operations exclude it, too. With it they are {rewritten_puma} and {rewritten_panda}. The instructions\n\
-         include it.\n",
+         Operations and times of rne are for the same program of an earlier version. The current version also\n\
+         rewrites it by rules of algebra ({rewritten_puma} and {rewritten_panda} operations); the instructions are for \
+         this version.\n",
         of(&operations, "rne, planned"),
         best(&operations).join(" | "),
         of(&times, "rne_reduced_native"),
