@@ -205,6 +205,8 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         tool: transform(table.tool),
         parameters: Vec::new(),
         joints: joints.collect(),
+        frames: Vec::new(),
+        at: None,
         run_time: RunTime::default(),
         rotors: false,
     }

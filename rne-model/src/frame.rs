@@ -49,13 +49,7 @@ pub struct UnknownFrame {
 
 impl fmt::Display for UnknownFrame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let listed = |names: &[String]| names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
-        write!(f, "{} has no frame {}; ", self.robot, quoted(&self.name))?;
-        match self.frames.as_slice() {
-            [] => f.write_str("its file has no list `frames`, ")?,
-            frames => write!(f, "its frames are {}, ", listed(frames))?,
-        }
-        write!(f, "and each joint names its link frame: {}", listed(&self.joints))?;
+        write!(f, "{} has no frame {}: {}", self.robot, quoted(&self.name), self.known())?;
         let known: Vec<&str> = self.frames.iter().chain(&self.joints).map(String::as_str).collect();
         match nearest_name(&self.name, &known) {
             Some(meant) => write!(f, "; did you mean {}?", quoted(meant)),
@@ -65,6 +59,19 @@ impl fmt::Display for UnknownFrame {
 }
 
 impl std::error::Error for UnknownFrame {}
+
+impl UnknownFrame {
+    /// The names that there are, in words.
+    #[must_use]
+    pub fn known(&self) -> String {
+        let listed = |names: &[String]| names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
+        let frames = match self.frames.as_slice() {
+            [] => "its file has no list `frames`".to_owned(),
+            frames => format!("its frames are {}", listed(frames)),
+        };
+        format!("{frames}, and each joint names its link frame: {}", listed(&self.joints))
+    }
+}
 
 impl Robot {
     /// The frame with this name: a frame of the list `frames`, or the link frame of the joint with this name.

@@ -162,6 +162,25 @@ pub trait AtFrame<const DOF: usize, const FRAME: usize> {
     fn wrench_torques_at_frame<T: Scalar>(&self, q: &[T; DOF], wrench: &Wrench<T>) -> [T; DOF];
 }
 
+/// The place of a name in a list: the function `frame` of `#[derive(FrameKinematics)]`.
+#[doc(hidden)]
+#[must_use]
+pub const fn frame_index(names: &[&str], name: &str) -> Option<usize> {
+    let mut index = 0;
+    while index < names.len() {
+        let (known, asked) = (names[index].as_bytes(), name.as_bytes());
+        let mut at = 0;
+        while at < known.len() && at < asked.len() && known[at] == asked[at] {
+            at += 1;
+        }
+        if at == known.len() && at == asked.len() {
+            return Some(index);
+        }
+        index += 1;
+    }
+    None
+}
+
 /// Pose, Jacobian, J̇q̇ and torques of a wrench at the named frames of the robot file and at the link frames.
 /// World axes, as in [`Kinematics`].
 ///

@@ -90,7 +90,7 @@ pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, AtFrame, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, FrameKinematics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TorqueDerivatives,
+    PayloadDynamics, Regressor, TorqueDerivatives, frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

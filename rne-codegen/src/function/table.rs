@@ -140,6 +140,10 @@ macro_rules! functions {
             ) -> MomentumAndRate:
                 "The momentum of the joints with a payload at the tip, and its rate without external torques.",
                 "momentum, rate: as in momentum_and_rate. payload: as in inverse_dynamics_with_payload.";
+            WrenchTorques = wrench_torques(q: Positions, wrench: Wrench) -> Vector:
+                "Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes.",
+                "force (N), moment (N m): as in inverse_dynamics_with_wrench. tau: its torques minus those of \
+                 inverse_dynamics.";
         }
     };
 }
@@ -305,6 +309,7 @@ pub(crate) const TABLE: &[Entry] = &[
         output: "tip",
         listed: "returned: the rows of the rotation, then the translation",
         answer: Answer::Poses,
+        of_frame: Some("pose"),
         ..Entry::of(Function::ForwardKinematics, Capability::Kinematics)
     },
     Entry {
@@ -325,6 +330,7 @@ pub(crate) const TABLE: &[Entry] = &[
             Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
             Labels::Joints,
         )]),
+        of_frame: Some("jacobian"),
         ..Entry::of(Function::Jacobian, Capability::Kinematics)
     },
     Entry {
@@ -335,6 +341,7 @@ pub(crate) const TABLE: &[Entry] = &[
             Labels::Names(&["linear, m/s²", "angular, rad/s²"]),
             AXES,
         )]),
+        of_frame: Some("jacobian_rate_times_velocity"),
         ..Entry::of(Function::JacobianRateTimesVelocity, Capability::Kinematics)
     },
     Entry {
@@ -486,6 +493,11 @@ pub(crate) const TABLE: &[Entry] = &[
         capability: Capability::PayloadDynamics,
         own: &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..MOMENTUM_AND_RATE
+    },
+    Entry {
+        output: "tau",
+        of_frame: Some("wrench_torques"),
+        ..Entry::of(Function::WrenchTorques, Capability::Kinematics)
     },
 ];
 
