@@ -229,7 +229,7 @@ impl Target<'_> {
 
     /// A method of the trait `AtFrame`, as [`Self::signature`].
     pub(crate) fn signature_at_frame(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
-        let name = format!("{}_at_frame", function.entry().of_frame.unwrap_or_default());
+        let name = format!("{}_at_frame", function.of_frame().unwrap_or_default());
         self.signature_named(&name, function, dof, body)
     }
 

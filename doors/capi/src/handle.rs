@@ -91,6 +91,12 @@ impl Arm {
         }))
     }
 
+    /// The arm with a frame in the place of the tip.
+    pub(crate) fn at_frame(&self, frame: &str) -> Result<Self, Failure> {
+        let arm = self.compiled.at_frame(frame);
+        Ok(Self::new(arm.map_err(|unknown| Failure::new(Status::UnknownName, unknown.to_string()))?))
+    }
+
     /// What computes.
     pub(crate) fn compiled(&self) -> &CompiledArm {
         &self.compiled

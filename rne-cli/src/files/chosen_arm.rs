@@ -52,7 +52,7 @@ impl AtFrame {
 
     /// Whether a function can be taken at the frame.
     pub(crate) fn check(&self, function: Function) -> Result<(), Failure> {
-        if self.frame.is_none() || function.entry().of_frame.is_some() {
+        if self.frame.is_none() || function.of_frame().is_some() {
             return Ok(());
         }
         let with: Vec<&str> = Function::of_frames().map(Function::name).collect();

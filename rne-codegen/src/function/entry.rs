@@ -15,6 +15,8 @@ pub(super) struct Signature {
     pub(super) arguments: &'static [Argument],
     /// Its result.
     pub(super) returned: Returned,
+    /// The beginning of its name at a frame, for a function that can be taken there.
+    pub(super) of_frame: Option<&'static str>,
 }
 
 /// Properties of a function.
@@ -44,9 +46,6 @@ pub struct Entry {
     pub is_irreducible: bool,
     /// Whether it solves by the mass matrix, so that its numbers are worth nothing where that is nearly singular.
     pub inverts_mass: bool,
-    /// The beginning of its name at a frame, `jacobian` of `jacobian_of_camera`, for a function of the tip that can be
-    /// taken at any frame of a link instead.
-    pub of_frame: Option<&'static str>,
     /// The meaning of numbers that are not finite, for a function that divides.
     pub divides: Option<&'static str>,
 }
@@ -77,7 +76,6 @@ impl Entry {
             feels_rotors: false,
             is_irreducible: false,
             inverts_mass: false,
-            of_frame: None,
             divides: None,
         }
     }
