@@ -15,6 +15,8 @@ pub(crate) struct Dynamics {
     gravity: Vector3<f64>,
     joints: Vec<Joint>,
     tip: (Matrix3<f64>, Vector3<f64>),
+    /// Each named frame, and how many joints move it.
+    frames: Vec<(usize, (Matrix3<f64>, Vector3<f64>))>,
 }
 
 struct Joint {
@@ -56,6 +58,11 @@ impl Dynamics {
             gravity: vector(chain.gravity),
             joints: joints.collect(),
             tip: numbers(chain.tip),
+            frames: chain
+                .frames
+                .iter()
+                .map(|frame| (frame.on.map_or(0, |joint| joint + 1), numbers(frame.place)))
+                .collect(),
         }
     }
 
@@ -89,7 +96,18 @@ impl Dynamics {
 
     /// Rotation and translation of the tip frame in the world.
     pub(crate) fn tip(&self, q: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
-        let places = self.joints.iter().zip(q).map(|(joint, &q)| Self::place(joint, q)).chain([self.tip]);
+        self.carried(self.joints.len(), self.tip, q)
+    }
+
+    /// The named frames in the world, as [`Self::tip`].
+    pub(crate) fn frames(&self, q: &[f64]) -> Vec<(Matrix3<f64>, Vector3<f64>)> {
+        self.frames.iter().map(|(joints, place)| self.carried(*joints, *place, q)).collect()
+    }
+
+    /// A place that is moved by so many joints, in the world.
+    fn carried(&self, joints: usize, place: (Matrix3<f64>, Vector3<f64>), q: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
+        let joints = self.joints.iter().zip(q).take(joints);
+        let places = joints.map(|(joint, &q)| Self::place(joint, q)).chain([place]);
         places.fold(self.base, |(r, p), (rotation, translation)| (r * rotation, r * translation + p))
     }
 

@@ -74,7 +74,7 @@ impl Arm {
         };
         let text = String::from_utf8(bytes)
             .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is not text in UTF-8")))?;
-        let options = Options { selection, snap: false, ..Options::default() };
+        let options = Options { selection, snap: false, frames: true, ..Options::default() };
         let imported = rne_convert::import(path, &text, &options)?;
         Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))
     }
