@@ -3,10 +3,11 @@
 use fastrand::Rng;
 use rne::{BaseMotion, Payload, Wrench};
 use rne_codegen::{Compiler, Form, Function};
-use rne_model::{Angle, FixedFrame, Frame, Robot, Transform};
+use rne_model::{Angle, FixedFrame, Frame, FrameId, Robot, Transform};
 
 use crate::arm::{Arm, Given, Maker};
 use crate::arms;
+use crate::check::{json, numbers, wrench};
 use crate::equality;
 
 /// An arm with a frame on the base, one on the first link and one on another link, of which some angles are right ones.
@@ -64,6 +65,45 @@ fn of_random_arms(form: Form, arms: u64, tolerance: f64) {
         }
     }
     println!("{form}: {worst:e}");
+}
+
+#[test]
+fn frames_of_twenty_arms_are_those_of_pinocchio() {
+    let reference = json("tests/reference/frames.json");
+    let arms = reference["arms"].as_array().expect("arms");
+    assert_eq!(arms.len(), 20);
+    let mut compared = 0;
+    for expected in arms {
+        let text = expected["robot"].as_str().expect("a robot file");
+        let robot = Robot::from_yaml(text).unwrap_or_else(|report| panic!("{report}"));
+        let array = |key: &str| numbers(&expected["state"][key]);
+        let (q, qd, zeros) = (array("q"), array("qd"), vec![0.0; robot.dof()]);
+        let wrench = wrench(array("wrench").try_into().expect("six numbers"));
+        let given = Given { wrench, ..Given::of_joints(&q, &qd, &zeros) };
+        let frames = expected["frames"].as_array().expect("frames");
+        assert_eq!(frames.len(), robot.frames.len());
+        for (index, expected) in frames.iter().enumerate() {
+            let at = robot.clone().at_frame(FrameId::Named(index));
+            for maker in Maker::ALL {
+                let arm = Arm::by_no_choice(&at, maker);
+                for function in Function::of_frames() {
+                    let (found, expected) = (arm.numbers(function, &given), numbers(&expected[function.name()]));
+                    assert_eq!(found.len(), expected.len());
+                    for (found, expected) in found.iter().zip(expected) {
+                        let error = (found - expected).abs() / expected.abs().max(1.0);
+                        assert!(
+                            error < 1e-12,
+                            "{maker}, {function} of {}: {found} {expected}",
+                            robot.frames[index].name
+                        );
+                        compared += 1;
+                    }
+                }
+            }
+        }
+    }
+    println!("{compared} numbers");
+    assert!(compared > 10_000, "{compared}");
 }
 
 #[test]
