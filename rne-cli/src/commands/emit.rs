@@ -56,8 +56,7 @@ pub(crate) struct Arguments {
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
-    /// Frames to write kinematic functions for instead of the tip, NAME,NAME,…: names of the list `frames` in FILE, or
-    /// joints for their link frames [default: the tip and the list `frames`]
+    /// Frames or joints whose kinematics are written
     #[arg(long = "frame", value_name = "NAMES", value_delimiter = ',')]
     frames: Vec<String>,
     /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations)

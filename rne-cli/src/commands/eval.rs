@@ -33,7 +33,6 @@ use crate::values::state::{Given, State};
 Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
-  rne eval docs/desk_arm_frames.yaml --q 0.1,0.5,-0.3,0 --frame camera
   rne eval robots/planar2.yaml --states docs/states.csv -o torques.csv")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
@@ -41,7 +40,7 @@ pub(crate) struct Arguments {
     arm: ChosenArm,
     #[command(flatten)]
     at: AtFrame,
-    /// Function to compute [default: inverse_dynamics; with --frame forward_kinematics]; see `rne explain functions`
+    /// Function to compute; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true)]
     function: Option<Function>,
     /// Joint positions, base to tip, rad or m
@@ -68,7 +67,7 @@ pub(crate) struct Arguments {
     /// Acceleration of a moving base, x,y,z, m/s², without gravity
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
-    /// Gravity in the moving frame 0, x,y,z, m/s² [default: gravity of the robot file]
+    /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
     /// Print torques at N random states, as a file of expected values for tests (NAME.golden.csv)

@@ -37,8 +37,7 @@ impl Rotors {
 /// The frame that stands in the place of the tip.
 #[derive(Args, Clone)]
 pub(crate) struct AtFrame {
-    /// Take pose, jacobian, jacobian_rate_times_velocity and wrench_torques at this frame instead of the tip: a name of
-    /// the list `frames` in FILE, or a joint's name for its link frame
+    /// Take it at this frame or joint, not at the tip
     #[arg(long, value_name = "NAME")]
     pub(crate) frame: Option<String>,
 }
