@@ -1,5 +1,6 @@
 //! The functions of the class `Arm`: arrays in, arrays out. They are those of the compiler's list.
 
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use rne_codegen::{Argument, Function};
