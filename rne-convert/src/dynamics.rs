@@ -9,6 +9,9 @@ use rne_model::Limits;
 use crate::chain::Chain;
 use crate::geometry::{Pose, Vector};
 
+/// A rotation and a translation.
+type Place = (Matrix3<f64>, Vector3<f64>);
+
 /// A chain in numbers of single length.
 pub(crate) struct Dynamics {
     base: (Matrix3<f64>, Vector3<f64>),
@@ -16,7 +19,7 @@ pub(crate) struct Dynamics {
     joints: Vec<Joint>,
     tip: (Matrix3<f64>, Vector3<f64>),
     /// Each named frame, and how many joints move it.
-    frames: Vec<(usize, (Matrix3<f64>, Vector3<f64>))>,
+    frames: Vec<(usize, Place)>,
 }
 
 struct Joint {
@@ -95,17 +98,17 @@ impl Dynamics {
     }
 
     /// Rotation and translation of the tip frame in the world.
-    pub(crate) fn tip(&self, q: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
+    pub(crate) fn tip(&self, q: &[f64]) -> Place {
         self.carried(self.joints.len(), self.tip, q)
     }
 
     /// The named frames in the world, as [`Self::tip`].
-    pub(crate) fn frames(&self, q: &[f64]) -> Vec<(Matrix3<f64>, Vector3<f64>)> {
+    pub(crate) fn frames(&self, q: &[f64]) -> Vec<Place> {
         self.frames.iter().map(|(joints, place)| self.carried(*joints, *place, q)).collect()
     }
 
     /// A place that is moved by so many joints, in the world.
-    fn carried(&self, joints: usize, place: (Matrix3<f64>, Vector3<f64>), q: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
+    fn carried(&self, joints: usize, place: Place, q: &[f64]) -> Place {
         let joints = self.joints.iter().zip(q).take(joints);
         let places = joints.map(|(joint, &q)| Self::place(joint, q)).chain([place]);
         places.fold(self.base, |(r, p), (rotation, translation)| (r * rotation, r * translation + p))

@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote;
 use rne_codegen::{Compiler, Form, Function, Program};
-use rne_model::{FrameId, Robot};
+use rne_model::Robot;
 
 use crate::description;
 use crate::error::{Errors, not_compiled};
@@ -49,11 +49,8 @@ impl Target<'_> {
         });
         let number = self.number();
         let (listed, described) = (&names[..count], description::values(&names[..count]));
-        let unknown = match robot.frame(&String::new()) {
-            // no name is empty
-            Ok(FrameId::Named(_) | FrameId::Link(_)) => String::new(),
-            Err(unknown) => unknown.known(),
-        };
+        // no name is empty
+        let unknown = robot.frame("").err().map_or_else(String::new, |unknown| unknown.known());
         let unknown = format!("{} has no frame of this name: {unknown}", robot.name);
         let (about, about_names) = (
             "The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`: of a frame in the list \
