@@ -64,6 +64,7 @@ fn placement(numbers: &mut Numbers) -> Transform {
 }
 
 /// An arm of 1 to 9 joints of both kinds, some of its angles right ones.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small positive number
 fn random_robot(numbers: &mut Numbers) -> Robot {
     let text = "{format: 1, name: r, source: t, convention: standard, gravity: [0, 0, -9.81], joints: [
         {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}}]}";
