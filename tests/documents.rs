@@ -291,8 +291,8 @@ fn stubs() -> String {
         for name in [Some(function.name()), other].into_iter().flatten() {
             let _ = writeln!(
                 text,
-                "    def {name}(\n        self, {joints}*,\n        {base}{frame}{payload}parameters: Parameters = ..., \
-                 out: Floats | None = ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
+                "    def {name}(\n        self, {joints}*,\n        {base}{frame}{payload}\
+                 parameters: Parameters = ..., out: Floats | None = ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
             );
         }
     };

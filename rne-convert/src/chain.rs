@@ -662,7 +662,8 @@ impl Walk<'_> {
         Ok(body)
     }
 
-    /// The link and all that is fixed to it by fixed joints, but for what hangs on the joint `next`: frames on the base.
+    /// Collects the frames on the base: the link and all links that fixed joints fix to it, but for what hangs on the
+    /// joint `next`.
     fn frames_of_base(&mut self, link: usize, pose: Pose, next: Option<usize>) {
         // what is snapped beside the arm changes no torque, and is not told
         let mut snapping = Snapping { is_on: self.snapping.is_on, ..Snapping::default() };

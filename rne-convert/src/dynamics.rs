@@ -107,7 +107,7 @@ impl Dynamics {
         self.frames.iter().map(|(joints, place)| self.carried(*joints, *place, q)).collect()
     }
 
-    /// A place that is moved by so many joints, in the world.
+    /// A place in the world that the first `joints` joints move.
     fn carried(&self, joints: usize, place: Place, q: &[f64]) -> Place {
         let joints = self.joints.iter().zip(q).take(joints);
         let places = joints.map(|(joint, &q)| Self::place(joint, q)).chain([place]);

@@ -18,8 +18,8 @@ pub(crate) fn named_frames(chain: &Chain, table: &Table) -> Vec<Frame> {
     chain.frames.iter().map(frame).collect()
 }
 
-/// Gives frames names that a robot file takes: identifiers, none of which is `base`, the name of a joint, or the name of
-/// another frame.
+/// Gives frames names that a robot file takes: identifiers, none of which is `base`, the name of a joint, or the name
+/// of another frame.
 pub(crate) fn as_identifiers(frames: Vec<ChainFrame>, robot: &Robot) -> Vec<ChainFrame> {
     let is_reserved = |name: &str| name == "base" || robot.joints.iter().any(|joint| joint.name == name);
     let mut taken = BTreeSet::new();

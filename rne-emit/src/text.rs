@@ -205,7 +205,7 @@ pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
 }
 
-/// What stands in the place of the tip, if something does.
+/// Describes the frame that stands in the place of the tip; `None` for a program of the tip.
 pub(super) fn about_frame(program: &Program) -> Option<String> {
     let frame = program.frame.as_ref()?;
     Some(format!("The frame {frame} stands in the place of the tip, and its link in the place of the last link."))

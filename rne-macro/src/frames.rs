@@ -11,7 +11,7 @@ use crate::implementation::Target;
 use crate::parameters::Parameters;
 
 impl Target<'_> {
-    /// Everything for the frames of a robot; `None` where a program cannot be compiled, which is said.
+    /// Everything for the frames of a robot; `None`, and an error in `errors`, where a program cannot be compiled.
     pub(crate) fn frames(
         &self,
         robot: &Robot,
@@ -53,9 +53,10 @@ impl Target<'_> {
         let unknown = robot.frame("").err().map_or_else(String::new, |unknown| unknown.known());
         let unknown = format!("{} has no frame of this name: {unknown}", robot.name);
         let (about, about_names) = (
-            "The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`: of a frame in the list \
-             `frames` of the robot file, or of the link frame of a joint. Write it as a constant, `{ Self::frame(…) }`; \
-             an unknown name is a compile error then.\n\n# Panics\n\nWhere the robot file has no frame of this name.",
+            "The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`. The name is that of a \
+             frame in the list `frames` of the robot file, or that of a joint for its link frame. In a constant, \
+             `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\nWhere the robot file has no \
+             frame of this name.",
             format!("Names of the list `frames`, in the order of `frame_poses`.{described}"),
         );
         let (vis, length) = (self.visibility(), Literal::usize_unsuffixed(count));
@@ -65,7 +66,10 @@ impl Target<'_> {
 
             #[automatically_derived]
             impl #impl_generics #krate::FrameKinematics<#dof, #length> for #ident #type_generics #where_clause {
-                fn frame_poses<#number: #krate::Scalar>(&self, q: &[#number; #dof]) -> [#krate::Pose<#number>; #length] {
+                fn frame_poses<#number: #krate::Scalar>(
+                    &self,
+                    q: &[#number; #dof],
+                ) -> [#krate::Pose<#number>; #length] {
                     let _ = q;
                     [#(#of_list),*]
                 }

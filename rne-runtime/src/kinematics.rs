@@ -151,8 +151,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.per_joint.of(|i| links.as_ref()[i].pose())
     }
 
-    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0; of a joint that does not move
-    /// the frame: 0, 0.
+    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0; of a joint that does not
+    /// move the frame: 0, 0.
     pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
         let base = Placement::constant(self.base);
         let links = self.placements(base, q);

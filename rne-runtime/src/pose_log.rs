@@ -39,7 +39,8 @@ impl<T: Scalar + Float> Pose<T> {
     /// The logarithm of the pose, se(3): linear (m), then angular (rad). The constant twist that leads from the world
     /// to this frame in one unit of time, in the axes of this frame or of the world, which are the same to it.
     ///
-    /// linear = t - ½ φ × t + c φ × (φ × t) with c = (1 - (θ/2) cot(θ/2)) / θ² (Lynch and Park, Modern Robotics, 3.3.3).
+    /// linear = t - ½ φ × t + c φ × (φ × t) with c = (1 - (θ/2) cot(θ/2)) / θ² (Lynch and Park, Modern Robotics,
+    /// 3.3.3).
     #[must_use]
     pub fn log(&self) -> [T; 6] {
         let (vector, scale, cos) = half_turn(&self.rotation);
@@ -63,8 +64,8 @@ impl<T: Scalar + Float> Pose<T> {
         [linear[0], linear[1], linear[2], phi[0], phi[1], phi[2]]
     }
 
-    /// How far this pose is from `target`, in world axes, in the order of the rows of a Jacobian: p_target - p (m), then
-    /// the logarithm of R_target Rᵀ (rad). A motion with J q̇ = k · error leads to the target.
+    /// How far this pose is from `target`, in world axes, in the order of the rows of a Jacobian: p_target - p (m),
+    /// then the logarithm of R_target Rᵀ (rad). A motion with J q̇ = k · error leads to the target.
     #[must_use]
     pub fn error_to(&self, target: &Self) -> [T; 6] {
         let back = Self { translation: [T::zero(); 3], rotation: transposed(&self.rotation) };

@@ -205,8 +205,8 @@ macro_rules! at_frame {
             ///
             $(#[doc = details!($returned, $details)]
             #[doc = ""])?
-            /// frame: the name of a frame that stands in the place of the tip: a frame in the list `frames` of the robot
-            /// file, or a joint for its link frame. None is the tip.
+            /// frame: the name of a frame that stands in the place of the tip: a frame in the list `frames` of the
+            /// robot file, or a joint for its link frame. None is the tip.
             #[doc = concat!($(about!($kind),)* "Returns ", returned!($returned))]
             #[pyo3(signature = ($($argument,)* *, frame=None, parameters=None, out=None))]
             fn $name<'py>(
