@@ -292,7 +292,8 @@ fn stubs() -> String {
             let _ = writeln!(
                 text,
                 "    def {name}(\n        self, {joints}*,\n        {base}{frame}{payload}\
-                 parameters: Parameters = ..., out: Floats | None = ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
+                 parameters: Parameters = ..., out: Floats | None = ...,\n    \
+                 ) -> {returned}:\n        \"\"\"{summary}\"\"\""
             );
         }
     };

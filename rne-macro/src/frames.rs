@@ -55,8 +55,8 @@ impl Target<'_> {
         let (about, about_names) = (
             "The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`. The name is that of a \
              frame in the list `frames` of the robot file, or that of a joint for its link frame. In a constant, \
-             `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\nWhere the robot file has no \
-             frame of this name.",
+             `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\n\
+             Where the robot file has no frame of this name.",
             format!("Names of the list `frames`, in the order of `frame_poses`.{described}"),
         );
         let (vis, length) = (self.visibility(), Literal::usize_unsuffixed(count));

@@ -11,8 +11,8 @@ pub struct RunTime {
     /// The names of the run-time parameters, in the order in which they were asked for. Each stands in
     /// [`Robot::parameters`] too, with its value in the file.
     pub names: Vec<String>,
-    /// The numbers of the table that depend on them, each once: gravity, base, tool, frames, then joint by joint. None of
-    /// them is zero in the table. Of a file no angle and no limit is among them; a program may put sines and cosines
+    /// The numbers of the table that depend on them, each once: gravity, base, tool, frames, then joint by joint. None
+    /// of them is zero in the table. Of a file no angle and no limit is among them; a program may put sines and cosines
     /// there.
     pub entries: Vec<(Entry, Formula)>,
     /// The elements of [`Joint::written_inertia`](crate::Joint::written_inertia) that depend on them, with the joint

@@ -105,8 +105,8 @@ impl Function {
         robot.at.filter(|_| self.of_frame().is_some())
     }
 
-    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's name that
-    /// is no letter, digit or `_` becomes `_`.
+    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's
+    /// name that is no letter, digit or `_` becomes `_`.
     #[must_use]
     pub fn name_for(self, robot: &Robot) -> String {
         match (self.of_frame(), robot.at) {
