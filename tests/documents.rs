@@ -23,7 +23,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/firmware.md", &["torque", "config", "embedded"]),
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
-    ("docs/robot-file.md", &["two_bars", "desk_arm", "every_key"]),
+    ("docs/robot-file.md", &["frames", "two_bars", "desk_arm", "every_key"]),
     ("docs/teaching.md", &["code"]),
     ("robots/README.md", &["sources", "robots"]),
 ];
@@ -69,6 +69,12 @@ fn block(name: &str) -> String {
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }
         "desk_arm" => format!("```yaml\n{}```\n", read(&root().join("docs/desk_arm.yaml"))),
+        "frames" => {
+            let file = read(&root().join("docs/desk_arm_frames.yaml"));
+            let list = file.lines().skip_while(|line| !line.starts_with("frames:"));
+            let list: Vec<&str> = list.take_while(|line| !line.starts_with("joints:")).collect();
+            format!("```yaml\n{}\n```\n", list.join("\n"))
+        }
         "two_bars" => format!("```yaml\n{}```\n", read(&root().join("docs/two_bars.yaml"))),
         "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),
         "headline" => headline(),
@@ -269,7 +275,7 @@ fn stubs() -> String {
         ";
     let mut text = String::new();
     let mut stub = |function: Function, arguments: &[(&str, Argument)], returned: Returned, summary: &str| {
-        let name = function.name();
+        let frame = if function.of_frame().is_some() { "frame: str | None = ..., " } else { "" };
         let payload = if function.with_payload().is_some() { "payload: ArrayLike | None = ..., " } else { "" };
         let joints = arguments.iter().filter(|(_, kind)| *kind != Argument::Base);
         let joints: Vec<String> = joints.map(|(name, _)| format!("{name}: ArrayLike, ")).collect();
@@ -280,15 +286,20 @@ fn stubs() -> String {
             Returned::TorqueDerivatives | Returned::MomentumAndRate => "tuple[Floats, Floats]",
             _ => "Floats",
         };
-        let _ = writeln!(
-            text,
-            "    def {name}(\n        self, {joints}*,\n        {base}{payload}parameters: Parameters = ..., \
-             out: Floats | None = ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
-        );
+        // a pose of the tip has the name that it has at a frame, too
+        let other = function.of_frame().filter(|_| function == Function::ForwardKinematics);
+        for name in [Some(function.name()), other].into_iter().flatten() {
+            let _ = writeln!(
+                text,
+                "    def {name}(\n        self, {joints}*,\n        {base}{frame}{payload}\
+                 parameters: Parameters = ..., out: Floats | None = ...,\n    \
+                 ) -> {returned}:\n        \"\"\"{summary}\"\"\""
+            );
+        }
     };
     macro_rules! methods {
         ($(
-            $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+            $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
                 $summary:literal $(, $details:literal)?;
         )*) => {
             $(stub(

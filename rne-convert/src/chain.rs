@@ -41,6 +41,18 @@ pub(crate) struct Chain {
     pub(crate) joints: Vec<ChainJoint>,
     /// Frame of the last moved link → tip frame.
     pub(crate) tip: Pose,
+    /// Other frames that are fixed to its links, or to the base.
+    pub(crate) frames: Vec<ChainFrame>,
+}
+
+/// A frame that is fixed to a link of a chain.
+#[derive(Clone, Debug)]
+pub(crate) struct ChainFrame {
+    pub(crate) name: String,
+    /// The joint that moves the link, from 0; `None` for the base.
+    pub(crate) on: Option<usize>,
+    /// Frame of the moved link, or of the base → this frame.
+    pub(crate) place: Pose,
 }
 
 /// A joint and the link that it moves, whose frame is at the joint.
@@ -106,14 +118,20 @@ pub(crate) fn extract(
         snapping: Snapping { is_on: snap, ..Snapping::default() },
         loose: Vec::new(),
         followers: Vec::new(),
+        frames: Vec::new(),
         told: Extracted {
             base: urdf.links[base].name.clone(),
             tip: urdf.links[tip].name.clone(),
             ..Extracted::default()
         },
     };
-    let mut chain =
-        Chain { base: walk.base(base)?, gravity: Vector::decimal(gravity), joints: Vec::new(), tip: Pose::identity() };
+    let mut chain = Chain {
+        base: walk.base(base)?,
+        gravity: Vector::decimal(gravity),
+        joints: Vec::new(),
+        tip: Pose::identity(),
+        frames: Vec::new(),
+    };
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;
     walk.along(base, &path, &mut chain)?;
     if !walk.loose.is_empty() {
@@ -139,6 +157,7 @@ pub(crate) fn extract(
              stand still, lock each of these joints by its name".to_owned();
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
+    chain.frames = walk.frames;
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
         let others = names(others.iter().map(|&link| &urdf.links[link].name));
@@ -352,6 +371,8 @@ struct Walk<'a> {
     loose: Vec<usize>,
     /// Joints off the chain that follow one of it, and which.
     followers: Vec<(usize, usize)>,
+    /// The links, where they are fixed to the chain.
+    frames: Vec<ChainFrame>,
     told: Extracted,
 }
 
@@ -514,6 +535,7 @@ impl Walk<'_> {
         // The frame of the current link in that of the last one that moves.
         let mut pose = Pose::identity();
         self.aside(base, path.first().copied());
+        self.frames_of_base(base, pose, path.first().copied());
         for (i, &index) in path.iter().enumerate() {
             let next = path.get(i + 1).copied();
             let joint = &self.urdf.joints[index];
@@ -548,9 +570,10 @@ impl Walk<'_> {
             }
             if chain.joints.is_empty() {
                 self.aside(joint.child, next);
+                self.frames_of_base(joint.child, pose, next);
                 continue;
             }
-            let body = self.lump(joint.child, pose, next)?;
+            let body = self.lump(joint.child, (chain.joints.len() - 1, pose), next)?;
             if let Some(last) = chain.joints.last_mut() {
                 last.body = last.body + body;
             }
@@ -616,12 +639,14 @@ impl Walk<'_> {
 
     /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the
     /// link stands at `pose`.
-    fn lump(&mut self, link: usize, pose: Pose, next: Option<usize>) -> Result<Body, Report> {
+    /// `on` is the joint that moves them.
+    fn lump(&mut self, link: usize, (on, pose): (usize, Pose), next: Option<usize>) -> Result<Body, Report> {
         let mut body = Body::NONE;
         let mut open = vec![(link, pose)];
         while let Some((index, pose)) = open.pop() {
             let link = &self.urdf.links[index];
             self.told.links.insert(index);
+            self.frames.push(ChainFrame { name: link.name.clone(), on: Some(on), place: pose });
             if has_mass(link) {
                 let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
                 let own = Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia);
@@ -637,6 +662,25 @@ impl Walk<'_> {
             open.extend(below.into_iter().rev());
         }
         Ok(body)
+    }
+
+    /// Collects the frames on the base: the link and all links that fixed joints fix to it, but for what hangs on the
+    /// joint `next`.
+    fn frames_of_base(&mut self, link: usize, pose: Pose, next: Option<usize>) {
+        // what is snapped beside the arm changes no torque, and is not told
+        let mut snapping = Snapping { is_on: self.snapping.is_on, ..Snapping::default() };
+        let mut open = vec![(link, pose)];
+        while let Some((index, pose)) = open.pop() {
+            let link = &self.urdf.links[index];
+            self.frames.push(ChainFrame { name: link.name.clone(), on: None, place: pose });
+            for &index in link.children.iter().rev().filter(|&&joint| Some(joint) != next) {
+                let joint = &self.urdf.joints[index];
+                if joint.kind == crate::urdf::Kind::Fixed {
+                    let rpy = snapping.rpy(&joint.name, joint.rpy);
+                    open.push((joint.child, pose * Pose::new(joint.xyz, rpy)));
+                }
+            }
+        }
     }
 
     /// A joint on a link that stands still moves by itself, unless it follows a joint of the chain.

@@ -10,6 +10,7 @@ use rne_model::{
 use crate::chain::{Chain, Extracted, Selection, extract};
 use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
+use crate::frames::{as_identifiers, named_frames};
 use crate::geometry::{Pose, Vector};
 use crate::robot_file;
 use crate::snap::Snapped;
@@ -30,6 +31,8 @@ pub struct Options {
     pub keep_unphysical: bool,
     /// The acceleration of gravity in the axes of the root link, m/s².
     pub gravity: [f64; 3],
+    /// Whether the links of the chain, and the links that are fixed to them, become named frames.
+    pub frames: bool,
     /// The name of the robot, `[a-z][a-z0-9_]*` [default: made of that of the URDF].
     pub name: Option<String>,
 }
@@ -42,6 +45,7 @@ impl Default for Options {
             snap: true,
             keep_unphysical: false,
             gravity: [0.0, 0.0, -9.81],
+            frames: false,
             name: None,
         }
     }
@@ -71,6 +75,8 @@ pub struct Account {
     pub held: Vec<(String, f64)>,
     /// Movable joints on fixed links, which do not belong to the arm.
     pub aside: Vec<String>,
+    /// Links that are frames of the robot file, or that could be, each with its name there.
+    pub frames: Vec<(String, String)>,
     /// Per joint the links with mass that were lumped into one body.
     pub lumped: Vec<(String, Vec<String>)>,
     /// Angles and axes that were taken for what they round.
@@ -116,6 +122,12 @@ impl Urdf {
         let mut robot = robot(&chain, &table, options.convention);
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
         robot.title = title(&self.name);
+        let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
+        let chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };
+        let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
+        if options.frames {
+            robot.frames = named_frames(&chain, &table);
+        }
         robot.source = format!(
             "{}, from {} to {}; imported by rne {}",
             printable(self.source.file_name()),
@@ -144,6 +156,7 @@ impl Urdf {
             base: told.base,
             tip: told.tip,
             held: told.held,
+            frames,
             aside: told.aside,
             snapped: told.snapped,
             change,
@@ -205,13 +218,15 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         tool: transform(table.tool),
         parameters: Vec::new(),
         joints: joints.collect(),
+        frames: Vec::new(),
+        at: None,
         run_time: RunTime::default(),
         rotors: false,
     }
 }
 
 /// A placement of the robot file.
-fn transform(pose: Pose) -> Transform {
+pub(crate) fn transform(pose: Pose) -> Transform {
     let size = |v: Vector| v.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
     let xyz = pose.translation.rounded(size(pose.translation)).map(|x| if x.abs() < 1e-15 { 0.0 } else { x });
     Transform { xyz, rpy: pose.rotation.to_rpy().map(Angle::new) }

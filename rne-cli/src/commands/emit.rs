@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use rne_codegen::{Form, Function, Program};
 use rne_emit::{CCode, Origin, Precision, Prefix};
-use rne_model::Robot;
+use rne_model::{FrameId, Robot};
 
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
@@ -56,6 +56,9 @@ pub(crate) struct Arguments {
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
+    /// Frames or joints whose kinematics are written
+    #[arg(long = "frame", value_name = "NAMES", value_delimiter = ',')]
+    frames: Vec<String>,
     /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations)
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true)]
@@ -293,6 +296,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         return choice::functions_of(robot).collect();
     }
     let is_asked = |function: &Function| match asked.as_slice() {
+        [] if !arguments.frames.is_empty() => function.of_frame().is_some(),
         [] => Function::TORQUES.contains(function),
         asked => asked.contains(&FunctionOrAll::One(*function)),
     };
@@ -302,7 +306,35 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     let compiler = Compiler::new(&arguments.file, robot);
     let functions = functions(arguments, robot);
-    functions.into_iter().map(|function| compiler.compile(function, arguments.form)).collect()
+    let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|it| it.of_frame().is_some());
+    let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
+    let mut programs: Vec<Program> =
+        of_tip.iter().map(|&function| compiler.compile(function, arguments.form)).collect::<Result<_, _>>()?;
+    for frame in frames(arguments, robot)? {
+        let robot = robot.clone().at_frame(frame);
+        let compiler = Compiler::new(&arguments.file, &robot);
+        for &function in &of_frames {
+            let program = compiler.compile(function, arguments.form)?;
+            if let Some(other) = programs.iter().find(|other| other.name == program.name) {
+                return Err(Failure::usage(format_args!(
+                    "the frames {} and {} both give the name {}; write them to two files",
+                    other.frame.as_deref().unwrap_or("tip"),
+                    robot.frame_name(frame),
+                    program.name
+                )));
+            }
+            programs.push(program);
+        }
+    }
+    Ok(programs)
+}
+
+/// The frames asked for, or those of the list `frames`.
+fn frames(arguments: &Arguments, robot: &Robot) -> Result<Vec<FrameId>, Failure> {
+    if arguments.frames.is_empty() {
+        return Ok((0..robot.frames.len()).map(FrameId::Named).collect());
+    }
+    arguments.frames.iter().map(|name| robot.frame(name).map_err(Failure::usage)).collect()
 }
 
 /// The title before the mark may take several lines.
@@ -415,6 +447,9 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     }
     for function in &arguments.functions {
         let _ = write!(command, " --function {function}");
+    }
+    if !arguments.frames.is_empty() {
+        let _ = write!(command, " --frame {}", arguments.frames.join(","));
     }
     if arguments.rotors.rotors {
         command.push_str(" --rotors");
