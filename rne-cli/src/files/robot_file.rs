@@ -58,7 +58,16 @@ fn open(path: &Path) -> Result<Opened, Failure> {
 
 /// The robot file of the one arm of a URDF, as `rne import` makes it; a note names its ends, for another arm may be meant.
 fn imported(name: &str, text: &str) -> Result<String, Failure> {
-    let imported = rne_convert::import(name, text, &Options::default()).map_err(|report| Failure::from(&report))?;
+    let imported = rne_convert::import(name, text, &Options::default()).map_err(|report| {
+        // the options that the help names are those of `rne import`
+        let mut failure = Failure::from(&report);
+        failure.text = format!(
+            "{}\n\n{name} is a URDF. `{TYPED}rne import {name} -o FILE.yaml{TYPED:#}` and its options write a robot file \
+             of one arm; give that file to this command",
+            failure.text.trim_end()
+        );
+        failure
+    })?;
     let Account { base, tip, .. } = &imported.account;
     remark(format_args!(
         "{TITLE}note{TITLE:#}: {name} is a URDF, and the arm is from {base} to {tip}\n      {TYPED}rne import \
