@@ -34,6 +34,7 @@ struct Recent {
     foreign: u64,
     used: u64,
     external: u64,
+    begun: u64,
     lost: u64,
     fault: Option<String>,
     lacking: Option<String>,
@@ -67,6 +68,8 @@ impl Report {
                 self.count(lacking.key(), 1);
                 if *lacking != Lacking::First {
                     self.recent.lacking = Some(lacking.to_string());
+                } else if self.counts[lacking.key()] > 1 {
+                    self.recent.begun += 1;
                 }
             }
         }
@@ -188,9 +191,13 @@ impl Report {
             let without = recent.used - recent.external;
             return (WARN, format!("{without} of {} messages give no external torques: {lacking}", recent.used));
         }
-        if recent.external == 0 {
-            let message = "the observer began anew at each message: the time between two stamps is longer than --gap";
-            return (WARN, message.to_owned());
+        if recent.begun > 0 {
+            let message = format!(
+                "the observer began anew {} times, because the time between two stamps is longer than --gap or something \
+                 was missing before",
+                recent.begun
+            );
+            return (WARN, message);
         }
         (OK, format!("external torques of {} messages", recent.external))
     }

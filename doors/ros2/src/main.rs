@@ -116,6 +116,14 @@ mod tests {
     use super::Arguments;
 
     #[test]
+    fn the_document_has_every_option() {
+        let document = include_str!("../../../docs/ros2.md");
+        for option in Arguments::command().get_arguments().filter_map(|argument| argument.get_long()) {
+            assert!(document.contains(&format!("`--{option}")), "docs/ros2.md lacks --{option}");
+        }
+    }
+
+    #[test]
     fn the_help_has_examples_that_are_read() {
         let help = Arguments::command().render_long_help().to_string();
         let examples: Vec<&str> = help.lines().filter(|line| line.starts_with("  rne-ros2 ")).collect();

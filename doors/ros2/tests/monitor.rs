@@ -108,7 +108,8 @@ fn joints_are_matched_by_name_in_any_order_and_among_others() {
             other.effort[place] = take(&in_order.effort);
         }
         // the numbers of other joints may be anything
-        let [a, b] = [sent(&mut straight, &in_order), sent(&mut mixed, &other)].map(|torques| torques.expect("matched"));
+        let [a, b] =
+            [sent(&mut straight, &in_order), sent(&mut mixed, &other)].map(|torques| torques.expect("matched"));
         assert_eq!((&a.gravity.name, &a), (&JOINTS.map(str::to_owned).to_vec(), &b));
     }
     // a message of another part of the robot is no fault
@@ -172,7 +173,9 @@ fn names_that_are_given_are_those_of_the_messages() {
     positions.reverse();
     assert_eq!(torques.gravity.effort, puma().gravity_torques(&positions).unwrap());
     assert_eq!(sent(&mut named, &message(&JOINTS, 1)), Err(Fault::Foreign));
-    for (joints, why) in [(&names[..5], "--joints has 5 names, but puma560 has 6"), (&[names[0].clone(), names[0].clone()], "2")] {
+    for (joints, why) in
+        [(&names[..5], "--joints has 5 names, but puma560 has 6"), (&[names[0].clone(), names[0].clone()], "2")]
+    {
         let error = Monitor::new(puma(), settings(joints)).expect_err("wrong names");
         assert!(error.contains(why), "{error}");
     }
@@ -269,13 +272,18 @@ fn stamps_must_be_of_now_and_later_than_the_last() {
     let mut monitor = monitor(Settings::default());
     let at = |monitor: &mut Monitor, stamp: i64, clock: i64| {
         let message = message(&JOINTS, stamp);
-        monitor.update(&message, Time::of_nanoseconds(BEGIN + clock * 1_000_000)).map(|torques| torques.external.is_ok())
+        monitor
+            .update(&message, Time::of_nanoseconds(BEGIN + clock * 1_000_000))
+            .map(|torques| torques.external.is_ok())
     };
     assert_eq!(at(&mut monitor, 0, 500), Ok(false));
     assert_eq!(at(&mut monitor, 10, 10), Ok(true));
     for earlier in [10, 9, 0] {
         let fault = at(&mut monitor, earlier, 10).expect_err("not later");
-        assert!(matches!(fault, Fault::NotLater { by } if (by - 1e-3 * (10 - earlier) as f64).abs() < 1e-12), "{fault}");
+        assert!(
+            matches!(fault, Fault::NotLater { by } if (by - 1e-3 * (10 - earlier) as f64).abs() < 1e-12),
+            "{fault}"
+        );
     }
     let old = at(&mut monitor, 20, 521).expect_err("old").to_string();
     assert!(old.starts_with("header.stamp of the message is 0.501 s old, more than 0.5 s;"), "{old}");
@@ -292,12 +300,14 @@ fn stamps_must_be_of_now_and_later_than_the_last() {
     let keys = ["rejected: stamp not later", "rejected: stale stamp", "rejected: no stamp"];
     assert_eq!(keys.map(|key| count(&states, key)), [3, 2, 1]);
     assert_eq!(count(&external, "beginnings of the observer"), 2);
+    assert!(external.level == WARN && external.message.starts_with("the observer began anew 1 times"), "{external:?}");
     // a bag or a simulation, from its beginning once more
     let mut simulated = self::monitor(Settings { stale_after: 0.0, ..Settings::default() });
     let begin = |simulated: &mut Monitor, stamp| at(simulated, stamp, 1_000_000_000);
-    assert_eq!([0, 1, 5000, 5001, 0, 1].map(|stamp| begin(&mut simulated, stamp).unwrap()), [
-        false, true, false, true, false, true
-    ]);
+    assert_eq!(
+        [0, 1, 5000, 5001, 0, 1].map(|stamp| begin(&mut simulated, stamp).unwrap()),
+        [false, true, false, true, false, true]
+    );
 }
 
 #[test]
@@ -305,14 +315,20 @@ fn silence_is_told_with_its_reason() {
     let mut monitor = monitor(Settings::default());
     let [states, external] = diagnostics(&mut monitor, 0);
     assert_eq!((states.level, external.level), (STALE, STALE));
-    assert_eq!(states.message, "no message on /joint_states since the node began; a publisher is connected and sends nothing");
+    assert_eq!(
+        states.message,
+        "no message on /joint_states since the node began; a publisher is connected and sends nothing"
+    );
     sent(&mut monitor, &message(&JOINTS, 0)).expect("a good message");
     diagnostics(&mut monitor, 100);
     let source = Source { node: "rne", topic: "/joint_states", publishers: 0 };
     let later = Time::of_nanoseconds(BEGIN + 2_345_000_000);
     let written = monitor.diagnostics(later, &source);
     let states = &written.status[0];
-    assert!(states.message.starts_with("no message on /joint_states for 2.345 s; no publisher is connected"), "{states:?}");
+    assert!(
+        states.message.starts_with("no message on /joint_states for 2.345 s; no publisher is connected"),
+        "{states:?}"
+    );
     assert_eq!((states.name.as_str(), states.hardware_id.as_str()), ("rne: joint states", "puma560"));
     assert_eq!(written.header.stamp, later);
     // lost messages, and those that cannot be read or published
@@ -363,7 +379,11 @@ fn any_message_is_survived() {
                         continue;
                     }
                 };
-                if draw(3) == 0 { list.truncate(place) } else if let Some(element) = list.get_mut(place) { *element = number }
+                if draw(3) == 0 {
+                    list.truncate(place)
+                } else if let Some(element) = list.get_mut(place) {
+                    *element = number
+                }
             }
             let now = Time::of_nanoseconds(BEGIN + ms * 1_000_000);
             if let Ok(torques) = monitor.update(&message, now) {
