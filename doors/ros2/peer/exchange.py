@@ -149,7 +149,9 @@ def evaluated(rne, folder, function, columns, *options):
     states, results = folder / f"{function}.states.npy", folder / f"{function}.npy"
     np.save(states, np.hstack(columns))
     command = [rne, "eval", "puma560", *options, "--function", function, "--states", states, "-o", results]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"rne eval failed: {done.stderr}")
     return np.load(results)
 
 

@@ -21,8 +21,6 @@ pub struct Source<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     counts: BTreeMap<&'static str, u64>,
-    is_matched: bool,
-    is_by_order: bool,
     last_received: Option<Time>,
     recent: Recent,
 }
@@ -94,25 +92,20 @@ impl Report {
         self.recent.failure = Some(why);
     }
 
-    pub(crate) fn matched(&mut self) {
-        self.is_matched = true;
-    }
-
-    pub(crate) fn is_matched(&self) -> bool {
-        self.is_matched
-    }
-
-    pub(crate) fn matched_by_order(&mut self) {
-        self.is_by_order = true;
-    }
-
     fn count(&mut self, key: &'static str, by: u64) {
         *self.counts.entry(key).or_default() += by;
     }
 
     /// The diagnostics, after which the next ones begin.
-    pub(crate) fn written(&mut self, now: Time, source: &Source<'_>, robot: &str, joints: &str) -> DiagnosticArray {
-        let (states, external) = (self.joint_states(now, source), self.external_torques());
+    pub(crate) fn written(
+        &mut self,
+        now: Time,
+        source: &Source<'_>,
+        robot: &str,
+        joints: &str,
+        is_by_order: bool,
+    ) -> DiagnosticArray {
+        let (states, external) = (self.joint_states(now, source, is_by_order), self.external_torques());
         let is_of_external = |key: &str| {
             [EXTERNAL, "beginnings of the observer", "without velocities", "without efforts"].contains(&key)
                 || ["wrong number of velocities or efforts", "velocity or effort not finite"].contains(&key)
@@ -140,7 +133,7 @@ impl Report {
         DiagnosticArray { header: Header { stamp: now, frame_id: String::new() }, status }
     }
 
-    fn joint_states(&self, now: Time, source: &Source<'_>) -> (u8, String) {
+    fn joint_states(&self, now: Time, source: &Source<'_>, is_by_order: bool) -> (u8, String) {
         let recent = &self.recent;
         if recent.received == 0 {
             let since = match self.last_received {
@@ -174,7 +167,7 @@ impl Report {
         if recent.lost > 0 {
             return (WARN, format!("{} messages were lost before the node", recent.lost));
         }
-        if self.is_by_order {
+        if is_by_order {
             let message = "the messages have other names than the robot file, so their joints are taken in their order; \
                            name them, base to tip, by --joints";
             return (WARN, message.to_owned());

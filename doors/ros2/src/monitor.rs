@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use rne_identify::{JointMatch, match_joints};
+use rne_identify::{JointMatch, Mismatch, match_joints};
 use rne_machine::{CompiledArm, EvaluationError};
 use rne_model::Friction;
 use rne_runtime::DynObserverState;
@@ -54,6 +54,9 @@ pub struct Monitor {
     settings: Settings,
     /// The names that messages must have, base to tip.
     joints: Vec<String>,
+    /// Whether a message had the joints, and whether they are taken in its order.
+    is_matched: bool,
+    is_by_order: bool,
     /// The names of the last message, and where the joints are in it.
     places: (Vec<String>, Result<Vec<usize>, Fault>),
     observer: DynObserverState<f64>,
@@ -82,7 +85,7 @@ impl Monitor {
             }
         }
         let robot = arm.robot();
-        let of_robot: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+        let of_robot = names_of(&arm);
         if let Some(joints) = &settings.joints {
             if joints.len() != of_robot.len() {
                 return Err(format!(
@@ -103,6 +106,8 @@ impl Monitor {
         compiled.map_err(|error| error.to_string())?;
         Ok(Self {
             joints: settings.joints.clone().unwrap_or(of_robot),
+            is_matched: false,
+            is_by_order: false,
             places: (Vec::new(), Err(Fault::Foreign)),
             observer: DynObserverState::new(arm.dof(), settings.gain, 0.0),
             friction: arm.robot().joints.iter().map(Friction::of).collect(),
@@ -141,20 +146,19 @@ impl Monitor {
     /// The diagnostics since the last call.
     pub fn diagnostics(&mut self, now: Time, source: &Source<'_>) -> DiagnosticArray {
         let robot = self.arm.robot();
-        let of_robot: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+        let of_robot = names_of(&self.arm);
         let matched = if self.joints == of_robot {
             listed(&self.joints)
         } else {
             let pairs: Vec<String> = self.joints.iter().zip(&of_robot).map(|(a, b)| format!("{a} = {b}")).collect();
             listed(&pairs)
         };
-        self.report.written(now, source, &robot.name, &matched)
+        self.report.written(now, source, &robot.name, &matched, self.is_by_order)
     }
 
     fn torques(&mut self, message: &JointState, now: Time) -> Result<Torques, Fault> {
         let (names, numbers) = (message.name.len(), message.position.len());
-        self.find(&message.name)?;
-        let places = self.places.1.clone()?;
+        let places = self.places(&message.name)?;
         if names != numbers {
             return Err(Fault::Positions { names, positions: numbers });
         }
@@ -181,45 +185,51 @@ impl Monitor {
         Ok(Torques { gravity, external })
     }
 
-    /// Finds the joints of the arm among the names of a message.
-    fn find(&mut self, names: &[String]) -> Result<(), Fault> {
-        if !names.is_empty() && self.places.0 == names {
-            return Ok(());
+    /// The places of the joints of the arm among the names of a message.
+    fn places(&mut self, names: &[String]) -> Result<Vec<usize>, Fault> {
+        if self.places.0 != names {
+            self.places = (names.to_vec(), self.matched(names));
         }
+        self.places.1.clone()
+    }
+
+    /// The places, by the rule of the logs.
+    fn matched(&mut self, names: &[String]) -> Result<Vec<usize>, Fault> {
         let mut places: HashMap<&str, usize> = HashMap::with_capacity(names.len());
         for (place, name) in names.iter().enumerate() {
             places.entry(name).or_insert(place);
         }
-        let is_there = |joint: &String| places.contains_key(joint.as_str());
-        // names that were given or found in a message are not matched by order once more
-        let is_known = self.settings.joints.is_some() || self.report.is_matched();
-        let found = match match_joints(&self.joints, names) {
-            Ok(JointMatch::ByName) => Ok(()),
-            _ if names.is_empty() => Err(Fault::Foreign),
-            Ok(JointMatch::ByOrder) if !is_known && places.len() == names.len() => {
-                self.joints = names.to_vec();
-                self.report.matched_by_order();
-                Ok(())
+        // the names of the robot are better than an order
+        if self.is_by_order {
+            let of_robot = names_of(&self.arm);
+            if match_joints(&of_robot, names) == Ok(JointMatch::ByName) {
+                (self.joints, self.is_by_order) = (of_robot, false);
+                self.begin();
             }
-            _ if is_known && !self.joints.iter().any(is_there) => Err(Fault::Foreign),
-            Err(mismatch) if !is_known && !self.joints.iter().any(is_there) => {
-                Err(Fault::Unmatched { measured: names.to_vec(), joints: self.joints.clone(), mismatch })
-            }
-            Err(mismatch @ rne_identify::Mismatch::Order { .. }) if !is_known => {
-                Err(Fault::Unmatched { measured: names.to_vec(), joints: self.joints.clone(), mismatch })
-            }
-            _ => {
-                let missing = self.joints.iter().find(|joint| !is_there(joint)).cloned().unwrap_or_default();
-                Err(Fault::Incomplete { joint: missing })
-            }
-        };
-        if found.is_ok() {
-            self.report.matched();
         }
-        let places =
-            found.map(|()| self.joints.iter().filter_map(|joint| places.get(joint.as_str()).copied()).collect());
-        self.places = (names.to_vec(), places);
-        Ok(())
+        // names that were given or found in a message are not matched by order once more
+        let is_known = self.settings.joints.is_some() || self.is_matched;
+        match match_joints(&self.joints, names) {
+            Ok(JointMatch::ByName) => {}
+            Ok(JointMatch::ByOrder) if !is_known && places.len() == names.len() => {
+                (self.joints, self.is_by_order) = (names.to_vec(), true);
+            }
+            rule => {
+                let has_some = self.joints.iter().any(|joint| places.contains_key(joint.as_str()));
+                return Err(match rule {
+                    _ if names.is_empty() || is_known && !has_some => Fault::Foreign,
+                    Err(mismatch) if !is_known && (!has_some || matches!(mismatch, Mismatch::Order { .. })) => {
+                        Fault::Unmatched { measured: names.to_vec(), joints: self.joints.clone(), mismatch }
+                    }
+                    _ => {
+                        let is_missing = |joint: &&String| !places.contains_key(joint.as_str());
+                        Fault::Incomplete { joint: self.joints.iter().find(is_missing).cloned().unwrap_or_default() }
+                    }
+                });
+            }
+        }
+        self.is_matched = true;
+        Ok(self.joints.iter().filter_map(|joint| places.get(joint.as_str()).copied()).collect())
     }
 
     /// The stamp of a message, ns, if it is one that follows the last.
@@ -271,7 +281,8 @@ impl Monitor {
         let states = q.iter().zip(qd).zip(effort);
         let friction = self.friction.iter_mut().zip(states);
         let tau: Vec<f64> = friction.map(|(friction, ((q, qd), effort))| effort - friction.next(*q, *qd)).collect();
-        let [momentum, rate] = self.arm.momentum_and_rate(q, qd, &tau).map_err(said).map_err(Lacking::Torques)?;
+        let [momentum, rate] =
+            self.arm.momentum_and_rate(q, qd, &tau).map_err(|error| Lacking::Torques(error.to_string()))?;
         let seen = self.observer.advance(period.unwrap_or(0.0), momentum, rate);
         let seen = seen.map_err(|error| Lacking::Torques(error.to_string()))?;
         self.observed = Some(stamp);
@@ -295,13 +306,14 @@ fn seconds(from: i64, to: i64) -> f64 {
     to.saturating_sub(from) as f64 * 1e-9
 }
 
-fn said(error: EvaluationError) -> String {
-    error.to_string()
+/// The names of the joints of the robot file, base to tip.
+fn names_of(arm: &CompiledArm) -> Vec<String> {
+    arm.robot().joints.iter().map(|joint| joint.name.clone()).collect()
 }
 
 /// Torques, if all of them are finite.
 fn finite(torques: Result<Vec<f64>, EvaluationError>) -> Result<Vec<f64>, String> {
-    let torques = torques.map_err(said)?;
+    let torques = torques.map_err(|error| error.to_string())?;
     match torques.iter().position(|torque| !torque.is_finite()) {
         Some(joint) => Err(format!("the torque of joint {} is {}", joint + 1, torques[joint])),
         None => Ok(torques),

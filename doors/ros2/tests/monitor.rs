@@ -45,6 +45,9 @@ fn message(names: &[&str], ms: i64) -> JointState {
     }
 }
 
+/// What is done to a good message.
+type Change = fn(&mut JointState);
+
 const JOINTS: [&str; 6] = ["j1", "j2", "j3", "j4", "j5", "j6"];
 
 fn sent(monitor: &mut Monitor, message: &JointState) -> Result<rne_ros2::Torques, Fault> {
@@ -140,8 +143,15 @@ fn other_names_are_taken_in_their_order_with_a_warning() {
     let [states, _] = diagnostics(&mut monitor, 1);
     assert!(states.level == WARN && states.message.contains("--joints"), "{states:?}");
     assert!(states.values.iter().any(|pair| pair.value.starts_with("shoulder_pan = j1, ")), "{states:?}");
-    // and other six are of another arm
-    assert_eq!(sent(&mut monitor, &message(&JOINTS, 2)), Err(Fault::Foreign));
+    // other six are of another arm, such as a hand
+    assert_eq!(sent(&mut monitor, &message(&["a", "b", "c", "d", "e", "f"], 2)), Err(Fault::Foreign));
+    // until a message has the names of the robot: the first one was of another arm
+    let torques = sent(&mut monitor, &message(&JOINTS, 3)).expect("the names of the robot");
+    assert_eq!((torques.gravity.name, torques.external), (JOINTS.map(str::to_owned).to_vec(), Err(Lacking::First)));
+    diagnostics(&mut monitor, 3);
+    assert_eq!(sent(&mut monitor, &message(&urdf, 4)), Err(Fault::Foreign));
+    assert!(sent(&mut monitor, &message(&JOINTS, 5)).expect("the names of the robot").external.is_ok());
+    assert_eq!(diagnostics(&mut monitor, 5).map(|status| status.level), [OK, OK]);
 }
 
 #[test]
@@ -203,7 +213,7 @@ fn settings_are_numbers_that_are_possible() {
 fn missing_velocities_and_efforts_leave_gravity_torques() {
     let mut monitor = monitor(Settings::default());
     let mut ms = 0;
-    let mut next = |monitor: &mut Monitor, change: fn(&mut JointState)| {
+    let mut next = |monitor: &mut Monitor, change: Change| {
         ms += 1;
         let mut message = message(&JOINTS, ms);
         change(&mut message);
@@ -212,7 +222,7 @@ fn missing_velocities_and_efforts_leave_gravity_torques() {
         (torques.external.map(|_| ()), ms)
     };
     let length = |what, found| Lacking::Length { what, names: 6, found };
-    let changes: [(fn(&mut JointState), Lacking); 6] = [
+    let changes: [(Change, Lacking); 6] = [
         (|message| message.velocity.clear(), Lacking::Missing { what: "velocities" }),
         (|message| message.effort.clear(), Lacking::Missing { what: "efforts" }),
         (|message| message.velocity.truncate(5), length("velocities", 5)),
@@ -278,12 +288,9 @@ fn stamps_must_be_of_now_and_later_than_the_last() {
     };
     assert_eq!(at(&mut monitor, 0, 500), Ok(false));
     assert_eq!(at(&mut monitor, 10, 10), Ok(true));
-    for earlier in [10, 9, 0] {
+    for (earlier, seconds) in [(10, 0.0), (9, 1e-3), (0, 1e-2)] {
         let fault = at(&mut monitor, earlier, 10).expect_err("not later");
-        assert!(
-            matches!(fault, Fault::NotLater { by } if (by - 1e-3 * (10 - earlier) as f64).abs() < 1e-12),
-            "{fault}"
-        );
+        assert!(matches!(fault, Fault::NotLater { by } if (by - seconds).abs() < 1e-12), "{fault}");
     }
     let old = at(&mut monitor, 20, 521).expect_err("old").to_string();
     assert!(old.starts_with("header.stamp of the message is 0.501 s old, more than 0.5 s;"), "{old}");
@@ -380,9 +387,9 @@ fn any_message_is_survived() {
                     }
                 };
                 if draw(3) == 0 {
-                    list.truncate(place)
+                    list.truncate(place);
                 } else if let Some(element) = list.get_mut(place) {
-                    *element = number
+                    *element = number;
                 }
             }
             let now = Time::of_nanoseconds(BEGIN + ms * 1_000_000);
