@@ -62,8 +62,8 @@ pub(crate) fn without_flags(command: Cmd<'_>) -> Cmd<'_> {
     ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "LD_LIBRARY_PATH"].into_iter().fold(command, Cmd::env_remove)
 }
 
-/// Downloads the crates of a workspace of its own. A lock file that is not that of its manifest is a fault, and crates that
-/// cannot be downloaded are missing.
+/// Downloads the crates of a workspace of its own. A lock file that is not that of its manifest is a fault, and crates
+/// that cannot be downloaded are missing.
 pub(crate) fn fetch(shell: &Shell, manifest: &str) -> Result<()> {
     let fetched = cmd!(shell, "cargo fetch --quiet --locked --manifest-path {manifest}").quiet().ignore_status();
     let fetched = fetched.output()?;

@@ -8,7 +8,7 @@ use crate::Verdict;
 use crate::machine::{self, Missing};
 use crate::python::Place;
 
-/// What the other side of the node needs.
+/// Packages of the other side of the node.
 const REQUIREMENTS: &str = "doors/ros2/peer/requirements.txt";
 
 /// Tests the ROS 2 node, alone and against Eclipse Cyclone DDS

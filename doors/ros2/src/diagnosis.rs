@@ -168,8 +168,8 @@ impl Report {
             return (WARN, format!("{} messages were lost before the node", recent.lost));
         }
         if is_by_order {
-            let message = "the messages have other names than the robot file, so their joints are taken in their order; \
-                           name them, base to tip, by --joints";
+            let message = "the messages have other names than the robot file, so their joints are taken in their \
+                           order; name them, base to tip, by --joints";
             return (WARN, message.to_owned());
         }
         (OK, format!("{} messages are used", recent.used))
@@ -186,8 +186,8 @@ impl Report {
         }
         if recent.begun > 0 {
             let message = format!(
-                "the observer began anew {} times, because the time between two stamps is longer than --gap or something \
-                 was missing before",
+                "the observer began anew {} times, because the time between two stamps is longer than --gap or \
+                 something was missing before",
                 recent.begun
             );
             return (WARN, message);

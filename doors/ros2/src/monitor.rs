@@ -37,8 +37,8 @@ impl Default for Settings {
     }
 }
 
-/// The torques of one message: joint states with efforts only, with the header and the joint names of the message, base to
-/// tip. N m, or N of a joint that slides.
+/// The torques of one message: joint states with efforts only, with the header and the joint names of the message, base
+/// to tip. N m, or N of a joint that slides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torques {
     /// The torques of the actuators that hold the arm still in this position.

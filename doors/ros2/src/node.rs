@@ -135,8 +135,9 @@ fn publish<M: Serialize>(publisher: &Publisher<M>, message: M, monitor: &mut Mon
 }
 
 fn node(options: &Options) -> Result<Node, String> {
-    let name = NodeName::new("/", &options.name)
-        .map_err(|error| format!("--name {} is no name of a ROS node: {error}", options.name))?;
+    let name = NodeName::new("/", &options.name).map_err(|_| {
+        format!("--name {} is not a node name: use letters, digits and _, but no digit first", options.name)
+    })?;
     if options.domain > 232 {
         return Err(format!("--domain is {}; it must be 0 to 232", options.domain));
     }
@@ -156,7 +157,11 @@ fn topics(node: &mut Node, options: &Options, [gravity, external]: &[String; 2])
     let reliable = QosProfile::publisher_default().reliability_reliable(WhenFull::Fail).history(history);
     let own = if options.best_effort { reliable.clone().reliability_best_effort() } else { reliable.clone() };
     let topic = |node: &Node, name: &str, package: &str, kind: &str, qos: &QosProfile| {
-        let parsed = Name::parse(name).map_err(|error| format!("{name} is no name of a ROS topic: {error}"))?;
+        let parsed = Name::parse(name).map_err(|_| {
+            format!(
+                "{name} is not a topic name: use names of letters, digits and _, each after a /, as /arm/joint_states"
+            )
+        })?;
         let created = node.create_topic(&parsed, MessageTypeName::new(package, kind), qos);
         created.map_err(|error| format!("there is no topic {name}: {error}"))
     };

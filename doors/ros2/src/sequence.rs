@@ -13,8 +13,8 @@ const MOST: usize = 64;
 pub struct Sequences(HashMap<Publisher, i64>);
 
 impl Sequences {
-    /// The number of messages between the last message of a publisher and this one, which were lost. The first message of
-    /// a publisher has none before it.
+    /// The number of messages between the last message of a publisher and this one, which were lost. The first message
+    /// of a publisher has none before it.
     pub fn lost(&mut self, publisher: Publisher, number: i64) -> u64 {
         if self.0.len() >= MOST && !self.0.contains_key(&publisher) {
             self.0.clear();

@@ -62,8 +62,8 @@ pub enum JointMatch {
     ByOrder,
 }
 
-/// Matches the joints of measurements, by their names, with the joints of a robot, base to tip: the one rule for logs and
-/// for messages.
+/// Matches the joints of measurements, by their names, with the joints of a robot, base to tip: the one rule for logs
+/// and for messages.
 ///
 /// # Errors
 /// When the joints cannot be matched.
