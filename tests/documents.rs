@@ -23,6 +23,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/firmware.md", &["torque", "config", "embedded"]),
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
+    ("docs/ros2.md", &["ros2_controller"]),
     ("docs/robot-file.md", &["frames", "two_bars", "desk_arm", "every_key"]),
     ("docs/teaching.md", &["code"]),
     ("robots/README.md", &["sources", "robots"]),
@@ -61,6 +62,9 @@ fn robot_files() -> Vec<PathBuf> {
 fn block(name: &str) -> String {
     match name {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
+        "ros2_controller" => {
+            format!("```cpp\n{}```\n", read(&root().join("doors/capi/examples/ros2_control/gravity_controller.cpp")))
+        }
         "controller" => format!("```c\n{}```\n", read(&root().join("doors/capi/examples/controller.c"))),
         "torque" => format!("```rust\n{}```\n", read(&root().join("rne-cli/src/commands/firmware/main.rs"))),
         "config" => {

@@ -57,6 +57,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/python.md",
     "docs/reduced-form.md",
     "docs/robot-file.md",
+    "docs/ros2.md",
     "docs/run-time.md",
     "docs/teaching.md",
     "docs/urdf.md",
