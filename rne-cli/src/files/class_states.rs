@@ -29,7 +29,7 @@ impl Chosen {
     pub(crate) fn read(&self, robot: &Robot) -> Result<ClassStates, Failure> {
         match (&self.states, self.seed) {
             (Some(path), _) => read(path, robot),
-            (None, seed) => Ok(ClassStates::OfSeed(seed.unwrap_or_default())),
+            (None, seed) => Ok(ClassStates::Seed(seed.unwrap_or_default())),
         }
     }
 }
@@ -37,19 +37,19 @@ impl Chosen {
 /// Who has which state.
 #[derive(Debug)]
 pub(crate) enum ClassStates {
-    OfEverybody(Situation),
+    Everybody(Box<Situation>),
     /// By the students' names; with the name of the file.
-    OfEach(BTreeMap<String, Situation>, String),
-    OfSeed(u64),
+    Each(BTreeMap<String, Situation>, String),
+    Seed(u64),
 }
 
 impl ClassStates {
     /// The state of a student.
     pub(crate) fn of(&self, student: &str, robot: &Robot) -> Result<Situation, Failure> {
         match self {
-            Self::OfEverybody(state) => Ok(state.clone()),
-            Self::OfSeed(seed) => Ok(by_seed(robot, *seed, student)),
-            Self::OfEach(states, file) => states.get(student).cloned().ok_or_else(|| {
+            Self::Everybody(state) => Ok(Situation::clone(state)),
+            Self::Seed(seed) => Ok(by_seed(robot, *seed, student)),
+            Self::Each(states, file) => states.get(student).cloned().ok_or_else(|| {
                 let near = did_you_mean(student, states.keys().map(String::as_str));
                 let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
                 Failure::input(format_args!("{file} has no row for the student {}{near}", quoted(student)))
@@ -60,7 +60,7 @@ impl ClassStates {
     /// The students that the file of states names.
     pub(crate) fn students(&self) -> Vec<String> {
         match self {
-            Self::OfEach(states, _) => states.keys().cloned().collect(),
+            Self::Each(states, _) => states.keys().cloned().collect(),
             _ => Vec::new(),
         }
     }
@@ -140,7 +140,7 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
     );
     let Some((header, rows)) = rows.split_first() else {
         mistakes.push(0..0, "the file is empty: there is no header", Some(&help));
-        return mistakes.finish(ClassStates::OfSeed(0));
+        return mistakes.finish(ClassStates::Seed(0));
     };
     let columns = columns(header, dof, &help, &mut mistakes);
     if rows.is_empty() && !mistakes.are_there() {
@@ -175,8 +175,8 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
             mistakes.push(row.span.clone(), format!("the student {} occurs twice", quoted(&student)), None);
         }
     }
-    let of_everybody = states.get("").cloned().filter(|_| !has_names);
-    mistakes.finish(of_everybody.map_or_else(|| ClassStates::OfEach(states, name.clone()), ClassStates::OfEverybody))
+    let of_everybody = states.get("").cloned().filter(|_| !has_names).map(Box::new);
+    mistakes.finish(of_everybody.map_or_else(|| ClassStates::Each(states, name.clone()), ClassStates::Everybody))
 }
 
 /// The columns of a header; none if it has mistakes.
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn states_of_a_seed() {
-        let robot = rne_robots::find("stanford").map(|shipped| Robot::from_yaml(shipped.text));
+        let robot = rne_robots::find("stanford").map(|shipped| Robot::from_yaml(shipped.yaml));
         let robot = robot.expect("a shipped robot").unwrap_or_else(|report| panic!("{report}"));
         let ada = by_seed(&robot, 7, "ada");
         assert_eq!(ada, by_seed(&robot, 7, "ada"));
