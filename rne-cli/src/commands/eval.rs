@@ -103,13 +103,15 @@ pub(crate) struct Arguments {
     /// Print the values of --trace as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// With --trace: compare the values in your file (CSV or JSON, named as --trace prints them), and print the first
-    /// wrong one
+    /// With --trace: print the first wrong value of your worksheet (CSV or JSON)
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
     /// Significant digits for --compare [default: 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=15), requires = "compare")]
     digits: Option<u8>,
+    /// With --compare: do not print the right values
+    #[arg(long, requires = "compare")]
+    hint: bool,
     /// Print JSON, {"result": …}; --trace adds "trace"
     #[arg(long)]
     json: bool,
@@ -117,8 +119,8 @@ pub(crate) struct Arguments {
     letters: Letters,
 }
 
-/// Digits to which a hand computes.
-const DIGITS_BY_HAND: u8 = 4;
+/// Significant digits to which a hand computes.
+pub(crate) const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let outcome = computed(arguments)?;
@@ -201,7 +203,8 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let situation = worksheet::situation(&state, robot.dof());
     if let Some(path) = &arguments.compare {
-        let manner = Manner { digits: arguments.digits.unwrap_or(DIGITS_BY_HAND), json: arguments.json };
+        let digits = arguments.digits.unwrap_or(DIGITS_BY_HAND);
+        let manner = Manner { digits, json: arguments.json, hint: arguments.hint };
         return compare::run(path, &robot, &situation, arguments.axes, manner);
     }
     let narrowed = Narrowed { joint: arguments.joint, step: arguments.step };
