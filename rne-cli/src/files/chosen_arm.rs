@@ -56,7 +56,7 @@ impl AtFrame {
         }
         let with: Vec<&str> = Function::of_frames().map(Function::name).collect();
         Err(Failure::usage(format_args!(
-            "{TYPED}--frame{TYPED:#} is for functions of a frame, and {function} is none; these are: {}",
+            "{TYPED}--frame{TYPED:#} is for functions of a frame, and {function} is not one of them; these are: {}",
             with.join(", ")
         )))
     }

@@ -56,8 +56,8 @@ fn open(path: &Path) -> Result<Opened, Failure> {
     }
 }
 
-/// The robot file of the one arm of a URDF, as `rne import` makes it. A note names the ends of the arm, because the user
-/// may mean another arm.
+/// The robot file of the one arm of a URDF, as `rne import` makes it. A note names the ends of the arm, because the
+/// user may mean another arm.
 fn imported(name: &str, text: &str) -> Result<String, Failure> {
     let imported = rne_convert::import(name, text, &Options::default()).map_err(|report| {
         // the options that the help names are those of `rne import`

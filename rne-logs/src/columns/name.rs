@@ -96,7 +96,12 @@ enum Form {
 }
 
 /// How a name says its joint, the texts between and after the word and the joint, and who writes such names.
-struct Pattern(Form, &'static str, &'static str, &'static str);
+struct Pattern(
+    Form,
+    &'static str,
+    &'static str,
+    #[cfg_attr(not(test), expect(dead_code, reason = "the test of the table in docs/logs.md reads it"))] &'static str,
+);
 
 impl Pattern {
     /// The column of a name without a unit at its end.
@@ -228,6 +233,8 @@ fn is_time(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
 
     fn joint(name: &str) -> Option<(Quantity, String, Option<f64>)> {
@@ -310,14 +317,14 @@ mod tests {
             for example in &examples {
                 assert!(matches!(meaning(example.trim_matches('`')), Meaning::Joint(_)), "{example}");
             }
-            table += &format!("| {} | {} | {from} |\n", names("{quantity}", joint), examples.join(", "));
+            let _ = writeln!(table, "| {} | {} | {from} |", names("{quantity}", joint), examples.join(", "));
         }
         table += "\n| `{quantity}` | words |\n|---|---|\n";
         for (quantity, is_current, words) in WORDS {
             let what = if is_current { "current" } else { quantity.word() };
-            table += &format!("| {what} | `{}` |\n", words.join("`, `"));
+            let _ = writeln!(table, "| {what} | `{}` |", words.join("`, `"));
         }
-        table += &format!("| time | `{}` |\n", TIMES.join("`, `"));
+        let _ = writeln!(table, "| time | `{}` |", TIMES.join("`, `"));
         assert!(text.contains(&table), "docs/logs.md has another table than\n{table}");
     }
 

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::path::Path;
 
-use crate::{LogError, TimeUnit};
 use crate::columns::quantity::Quantity;
+use crate::{LogError, TimeUnit};
 
 /// Dimension of a joint's quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -101,7 +101,8 @@ fn lists_of_parquet_are_as_long_as_joints_are_many() {
 #[test]
 fn the_end_of_parquet_has_a_limit() {
     let bytes = lists(&[2; 80], None, plain());
-    for (length, wanted) in [(20_000_000_u32, "has 20000000 bytes; rne reads at most 16777216"), (10_000_000, "cut off")]
+    for (length, wanted) in
+        [(20_000_000_u32, "has 20000000 bytes; rne reads at most 16777216"), (10_000_000, "cut off")]
     {
         let mut bytes = bytes.clone();
         let place = bytes.len() - 8;
