@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use crate::ClosedForm;
-use crate::document::{Item, Section, sections};
+use crate::document::{Item, sections};
 use crate::notation::{Script, latex_text};
 
 /// What a text in LaTeX is for.
@@ -59,7 +59,11 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
                 let parts: Vec<&[Item]> =
                     if is_torques { section.items.chunks(1).collect() } else { vec![section.items.as_slice()] };
                 for items in parts {
-                    frame(&mut text, section, items);
+                    let title = match items {
+                        [Item::Formula { left, .. }] if is_torques => format!("Torque, ${left}$"),
+                        _ => mixed(&section.title),
+                    };
+                    frame(&mut text, &title, items);
                 }
             }
             text
@@ -67,17 +71,13 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
     }
 }
 
-/// A slide with the formulas of a section; long ones go on behind it.
-fn frame(text: &mut String, section: &Section, items: &[Item]) {
+/// A slide with formulas of a section; long ones go on behind it.
+fn frame(text: &mut String, title: &str, items: &[Item]) {
     let mut rows = rows(items, COLUMNS_OF_SLIDE);
     if rows.is_empty() {
         return;
     }
-    let _ = writeln!(
-        text,
-        "\n\\begin{{frame}}[allowframebreaks]{{{}}}\n\\small\\allowdisplaybreaks",
-        mixed(&section.title)
-    );
+    let _ = writeln!(text, "\n\\begin{{frame}}[allowframebreaks]{{{title}}}\n\\small\\allowdisplaybreaks");
     aligned(text, &mut rows);
     text.push_str("\\end{frame}\n");
 }

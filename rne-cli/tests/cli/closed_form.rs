@@ -65,7 +65,7 @@ fn equations_for_a_document_and_for_slides() {
     let slides = of("planar2", "--latex=beamer");
     // two torques, M, h and γ
     assert_eq!(slides.matches("\\begin{frame}").count(), 5, "{slides}");
-    assert_eq!(slides.matches("{Torques, ").count(), 2, "{slides}");
+    assert_eq!(slides.matches("{Torque, $\\tau").count(), 2, "{slides}");
     fails(2, &["show", "planar2", "--latex=word"], &["article", "body", "beamer"]);
 }
 

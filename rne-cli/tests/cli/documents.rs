@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 23] = [
+const DOCUMENTS: [&str; 24] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/c-library.md",
@@ -21,6 +21,7 @@ const DOCUMENTS: [&str; 23] = [
     "docs/inspection.md",
     "docs/lecture/README.md",
     "docs/lecture/errata.md",
+    "docs/lecture/answers.md",
     "docs/lecture/exercises.md",
     "docs/lecture/folding.md",
     "docs/lecture/frames.md",
@@ -86,7 +87,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
 pub(crate) fn copy(name: &str) -> PathBuf {
     let folder = folder(name).join("clone");
     fs::create_dir(&folder).expect("a folder");
-    for part in ["robots", "docs", "docs/lecture", "docs/lecture/answers"] {
+    for part in ["robots", "docs", "docs/lecture", "docs/lecture/answers", "docs/lecture/class"] {
         fs::create_dir(folder.join(part)).expect("a folder");
         for entry in fs::read_dir(Path::new(ROOT).join(part)).expect("a folder") {
             let path = entry.expect("an entry").path();
