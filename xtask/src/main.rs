@@ -27,6 +27,7 @@ mod playground;
 mod prose;
 mod python;
 mod single_calls;
+mod site;
 mod tool;
 mod urdf;
 mod verify;
@@ -81,6 +82,7 @@ enum Task {
     Capi(capi::Capi),
     Page(page::Page),
     Playground(playground::Playground),
+    Site(site::Site),
 }
 
 /// Result of a task.
@@ -124,6 +126,7 @@ impl Task {
             Self::Capi(task) => ("capi", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),
             Self::Playground(task) => ("playground", task.install, task.run()),
+            Self::Site(task) => ("site", task.install, task.run()),
         }
     }
 }

@@ -56,6 +56,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
     ("cargo xtask tool", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"deny\""),
     ("cargo xtask tool book", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"book\""),
+    ("cargo xtask site", "xtask/src/verify.rs", "\"xtask\", \"site\", \"--install\""),
     ("cargo xtask python", "xtask/src/verify.rs", "\"xtask\", \"python\", \"--install\""),
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
     // with the flags of pkg-config, below the prefix that it was given
