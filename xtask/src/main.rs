@@ -26,6 +26,7 @@ mod plain_build;
 mod playground;
 mod prose;
 mod python;
+mod ros2;
 mod single_calls;
 mod site;
 mod tool;
@@ -79,6 +80,7 @@ enum Task {
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
     Python(python::Python),
+    Ros2(ros2::Ros2),
     Capi(capi::Capi),
     Page(page::Page),
     Playground(playground::Playground),
@@ -123,6 +125,7 @@ impl Task {
             Self::Features(features) => ("features", false, features.run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
             Self::Python(task) => ("python", task.install, task.run()),
+            Self::Ros2(task) => ("ros2", task.install, task.run()),
             Self::Capi(task) => ("capi", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),
             Self::Playground(task) => ("playground", task.install, task.run()),

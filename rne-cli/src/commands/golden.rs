@@ -1,6 +1,8 @@
 //! Golden values: what the runtime, which knows nothing of generated code, computes at states that are the same in each
 //! run.
 
+use std::borrow::Cow;
+
 use rne::{BaseMotion, DynArm, Scalar, Wrench};
 use rne_codegen::{Function, Program};
 use rne_emit::{Golden, Precision};
@@ -24,14 +26,15 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
             let state = random.state(robot.dof());
             let parameters: Vec<f64> =
                 in_file.iter().map(|value| random.rounded(value * (1.25 + random.number(0.5)))).collect();
-            let arm = robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
-            let arm = DynArm::from_robot(&arm);
+            let robot = &robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
+            let arm = DynArm::from_robot(robot);
             let results = programs.iter().map(|program| {
-                let numbers = state.of(program.function).numbers(&arm).map_err(Failure::usage)?;
+                let arm = &at_frame(robot, program, &arm);
+                let numbers = state.of(program.function).numbers(arm).map_err(Failure::usage)?;
                 let is_finite = numbers.iter().all(|number| number.is_finite());
                 let is_left_out = program.function.inverts_mass()
                     && precision == Precision::Single
-                    && !is_well_conditioned(&state, &arm);
+                    && !is_well_conditioned(&state, arm);
                 Ok(if is_finite && !is_left_out { numbers } else { Vec::new() })
             });
             let results = results.collect::<Result<_, Failure>>()?;
@@ -40,6 +43,15 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
             Ok(Golden { arguments: arguments(&state, parameters), results, sizes })
         })
         .collect()
+}
+
+/// The arm with the frame of a program in the place of the tip, if the program has one.
+fn at_frame<'a>(robot: &Robot, program: &Program, arm: &'a DynArm) -> Cow<'a, DynArm> {
+    let frame = program.frame.as_deref().and_then(|name| robot.frame(name).ok());
+    match frame.and_then(|frame| arm.clone().at_frame(robot.fixed_frame(frame))) {
+        Some(at) => Cow::Owned(at),
+        None => Cow::Borrowed(arm),
+    }
 }
 
 /// How large the terms of a function are: lengths and directions are about one, dynamics has the torques on a base that

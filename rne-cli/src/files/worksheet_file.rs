@@ -186,7 +186,7 @@ fn csv_rows<'a>(
             }
         }
     }
-    let header = format!("the header is `{}`; each line below it has a value", COLUMNS.join(","));
+    let header = format!("the header is `{}`; each line below it contains one value", COLUMNS.join(","));
     let Some((first, rest)) = lines.split_first() else {
         if !mistakes.are_there() {
             mistakes.push(0..0, "the file is empty: there is no header", Some(&header));
@@ -218,7 +218,8 @@ fn csv_rows<'a>(
     let mut rows = Vec::new();
     for row in rest {
         if row.cells.len() > columns.len() {
-            let message = format!("{} cells, but {} columns in the header", row.cells.len(), columns.len());
+            let message =
+                format!("the line has {} cells, but the header has {} columns", row.cells.len(), columns.len());
             let help = "write numbers with a decimal point, or separate the columns with semicolons; put a text with a \
                         comma in quotes";
             mistakes.push(row.span.clone(), message, Some(help));
@@ -472,10 +473,10 @@ impl Reading<'_> {
             let span = cell.map_or_else(|| span.clone(), |cell| cell.span.clone());
             let message = match cell {
                 Some(cell) => format!("{quantity} has no component {}", quoted(&cell.text)),
-                None => format!("which component of {quantity} is this?"),
+                None => format!("the component of {quantity} is missing"),
             };
             let help = match names {
-                [_] => "it is one number: leave the component empty".to_owned(),
+                [_] => "{quantity} is one number: leave the component empty".to_owned(),
                 names => format!("its components are {}", names.join(", ")),
             };
             self.mistakes.push(span, message, Some(&help));

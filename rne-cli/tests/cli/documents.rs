@@ -73,6 +73,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
     // it fetches Pinocchio
     ("cargo xtask urdf", "xtask/src/main.rs", "Urdf(urdf::Urdf)"),
+    // it fetches Cyclone DDS, and measures for a minute
+    ("cargo xtask ros2", "xtask/src/main.rs", "Ros2(ros2::Ros2)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
     // in a firmware that rne has written
     ("rustup target add thumbv7em-none-eabihf", "firmware/example/run", "rustup target add $target"),
