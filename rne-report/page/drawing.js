@@ -3,6 +3,13 @@
 /** Digits of a length in the figure. */
 const lengthText = (value) => minus(String(Number(value.toPrecision(3))));
 
+/** About where a text of 14 pixels stands. */
+function boxOf({ x, y }, anchor, text) {
+  const wide = text.length * 7.5;
+  const left = anchor === "start" ? x : anchor === "end" ? x - wide : x - wide / 2;
+  return { left, right: left + wide, top: y - 13, bottom: y + 4 };
+}
+
 class Drawing {
   constructor(arm, root) {
     this.arm = arm;
@@ -18,13 +25,15 @@ class Drawing {
   }
 
   draw(pose, q, isShown) {
-    this.marks.forEach((mark, index) => {
-      mark.node.toggleAttribute("hidden", !isShown);
-      if (isShown) this.drawJoint(mark, pose, q, index + 1);
-    });
+    // the boxes of words, so that none is written on another
+    this.boxes = [];
+    for (const mark of this.marks) mark.node.toggleAttribute("hidden", !isShown);
+    if (!isShown) return;
+    this.marks.forEach((mark, index) => this.drawAngle(mark, pose, q, index + 1));
+    this.marks.forEach((mark, index) => this.drawLengths(mark, pose, index + 1));
   }
 
-  drawJoint(mark, pose, q, joint) {
+  drawAngle(mark, pose, q, joint) {
     const { inspection, size } = this.arm;
     const row = inspection.robot.joints[joint - 1];
     const project = (point) => this.arm.project(point);
@@ -54,6 +63,12 @@ class Drawing {
       const side = word.x >= here.x ? 1 : -1;
       this.write(mark.angleText, { x: word.x + 6 * side, y: word.y + 4 }, side > 0 ? "start" : "end");
     }
+  }
+
+  drawLengths(mark, pose, joint) {
+    const { inspection } = this.arm;
+    const row = inspection.robot.joints[joint - 1];
+    const at = pose.joints[joint];
     const length = Math.abs(row.a);
     const name = inspection.robot.convention === "modified" ? null : `a${joint}`;
     this.dimension(mark.size, mark.lengthText, at, pose.joints[joint + 1], -40, name && length > 0 ? `${name} = ${lengthText(row.a)} m` : null);
@@ -64,11 +79,28 @@ class Drawing {
   /** A line beside a length, with its ends and its words; away to the left for a positive offset, in pixels. */
   dimension(line, words, from, to, offset, text) {
     const [a, b] = [this.arm.project(from), this.arm.project(to)];
-    const { x, y, length } = direction(a, b);
+    const { length } = direction(a, b);
     const isThere = text !== null && length > 20;
     line.toggleAttribute("hidden", !isThere);
     words.toggleAttribute("hidden", !isThere);
     if (!isThere) return;
+    const sides = [offset, -offset].map((of) => this.beside(a, b, of, text));
+    const isFree = ({ box }) => this.boxes.every((other) => box.right < other.left || other.right < box.left || box.bottom < other.top || other.bottom < box.top);
+    this.dimensionAt(line, words, [a, b], sides.find(isFree) || sides[0], text);
+  }
+
+  /** Where the words of a dimension stand that is so far to the left of the way, in pixels. */
+  beside(a, b, offset, text) {
+    const { x, y } = direction(a, b);
+    const way = { x: y * Math.sign(offset), y: -x * Math.sign(offset) };
+    const far = Math.abs(offset) + 8;
+    const middle = { x: (a.x + b.x) / 2 + way.x * far, y: (a.y + b.y) / 2 + way.y * far + 4 };
+    const anchor = way.x > 0.3 ? "start" : way.x < -0.3 ? "end" : "middle";
+    return { offset, middle, anchor, box: boxOf(middle, anchor, text) };
+  }
+
+  dimensionAt(line, words, [a, b], { offset, middle, anchor }, text) {
+    const { x, y } = direction(a, b);
     // to the left of the way on the screen, whose y points down
     const [nx, ny] = [y * offset, -x * offset];
     const beside = (end, share) => ({ x: end.x + nx * share, y: end.y + ny * share });
@@ -76,12 +108,11 @@ class Drawing {
     const tick = (end) => segment({ x: end.x - x * 3 - nx / Math.abs(offset) * 3, y: end.y - y * 3 - ny / Math.abs(offset) * 3 }, { x: end.x + x * 3 + nx / Math.abs(offset) * 3, y: end.y + y * 3 + ny / Math.abs(offset) * 3 });
     line.setAttribute("d", segment(beside(a, 0.3), beside(a, 1.15)) + segment(beside(b, 0.3), beside(b, 1.15)) + segment(c, d) + tick(c) + tick(d));
     words.textContent = text;
-    const way = { x: nx / Math.abs(offset), y: ny / Math.abs(offset) };
-    const middle = { x: (c.x + d.x) / 2 + way.x * 8, y: (c.y + d.y) / 2 + way.y * 8 + 4 };
-    this.write(words, middle, way.x > 0.3 ? "start" : way.x < -0.3 ? "end" : "middle");
+    this.write(words, middle, anchor);
   }
 
   write(words, { x, y }, anchor) {
+    this.boxes.push(boxOf({ x, y }, anchor, words.textContent));
     words.setAttribute("x", round(x));
     words.setAttribute("y", round(y));
     words.setAttribute("text-anchor", anchor);

@@ -28,6 +28,7 @@ mod prose;
 mod python;
 mod ros2;
 mod single_calls;
+mod site;
 mod tool;
 mod urdf;
 mod verify;
@@ -83,6 +84,7 @@ enum Task {
     Capi(capi::Capi),
     Page(page::Page),
     Playground(playground::Playground),
+    Site(site::Site),
 }
 
 /// Result of a task.
@@ -127,6 +129,7 @@ impl Task {
             Self::Capi(task) => ("capi", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),
             Self::Playground(task) => ("playground", task.install, task.run()),
+            Self::Site(task) => ("site", task.install, task.run()),
         }
     }
 }

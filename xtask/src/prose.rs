@@ -44,6 +44,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/inspection.md",
     "docs/lecture/README.md",
     "docs/lecture/errata.md",
+    "docs/lecture/answers.md",
     "docs/lecture/exercises.md",
     "docs/lecture/folding.md",
     "docs/lecture/frames.md",
