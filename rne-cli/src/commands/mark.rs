@@ -49,7 +49,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, hide_possible_values = true)]
     axes: Option<Axes>,
     /// Significant digits that count
-    #[arg(long, value_name = "N", default_value_t = DIGITS_BY_HAND, value_parser = clap::value_parser!(u8).range(1..=15))]
+    #[arg(long, value_name = "N", default_value_t = DIGITS_BY_HAND,
+        value_parser = clap::value_parser!(u8).range(1..=15))]
     digits: u8,
     /// Do not print the right values
     #[arg(long)]

@@ -120,8 +120,8 @@ fn students(arguments: &Arguments, of_states: Vec<String>) -> Result<Vec<String>
             && student.len() <= 100;
         if !is_file_name {
             return Err(Failure::usage(format_args!(
-                "{} cannot be the name of a worksheet; a name has letters, digits, `_`, `-`, `.` and blanks, begins and \
-                 ends with a letter, a digit or `_`, and has at most 100 bytes",
+                "{} cannot be the name of a worksheet; a name has letters, digits, `_`, `-`, `.` and blanks, begins \
+                 and ends with a letter, a digit or `_`, and has at most 100 bytes",
                 quoted(student)
             )));
         }

@@ -106,7 +106,7 @@ fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
 /// More than a file of states for a class has, in bytes.
 const LONGEST: usize = 4 << 20;
 
-/// What a column of the file holds.
+/// The contents of a column of the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Column {
     Name,
@@ -135,8 +135,8 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
     }
     let dof = robot.dof();
     let help = format!(
-        "the columns are q1 to q{dof}, qd1 to qd{dof} and qdd1 to qdd{dof}, and name if each student has a row; without \
-         qd or qdd these numbers are 0"
+        "the columns are q1 to q{dof}, qd1 to qd{dof} and qdd1 to qdd{dof}, and name if each student has a row; \
+         without qd or qdd these numbers are 0"
     );
     let Some((header, rows)) = rows.split_first() else {
         mistakes.push(0..0, "the file is empty: there is no header", Some(&help));

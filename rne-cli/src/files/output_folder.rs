@@ -9,7 +9,7 @@ use crate::files::output_file::{is_standard_output, unreadable};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// Whether nothing stands where a folder is to be that holds `what`.
+/// Checks that the folder for `what` is empty or does not exist.
 pub(crate) fn is_free(folder: &Path, what: &str) -> Result<(), Failure> {
     let shown = folder.display();
     if is_standard_output(folder) {
