@@ -1,7 +1,8 @@
 //! Golden values: what the runtime, which knows nothing of generated code, computes at states that are the same in each
 //! run.
 
-use rne::testing::{JOINTS, Random};
+use std::borrow::Cow;
+
 use rne::{BaseMotion, DynArm, Scalar, Wrench};
 use rne_codegen::{Function, Program};
 use rne_emit::{Golden, Precision};
@@ -9,6 +10,7 @@ use rne_model::{GoldenFile, Robot, exact_digits};
 
 use crate::outcome::Failure;
 use crate::render::physics;
+use crate::values::random::{self, rounding};
 use crate::values::state::State;
 
 /// Number of states with which emitted code is compared.
@@ -17,22 +19,22 @@ const STATES: usize = 4;
 /// The states at which emitted code is tested, with what its functions return there. The parameters that are known at
 /// run time have other values than in the file.
 pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precision) -> Result<Vec<Golden>, Failure> {
-    let rounded = rounding(precision);
-    let mut random = Random::new(rounded);
+    let (random, rounded) = (random::of(precision), rounding(precision));
     let in_file = robot.run_time.values(robot);
     (0..STATES)
         .map(|_| {
-            let state = state(&mut random, robot.dof());
+            let state = random::state(&random, robot.dof());
             let parameters: Vec<f64> =
                 in_file.iter().map(|value| rounded(value * (1.25 + random.number(0.5)))).collect();
-            let arm = robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
-            let arm = DynArm::from_robot(&arm);
+            let robot = &robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
+            let arm = DynArm::from_robot(robot);
             let results = programs.iter().map(|program| {
-                let numbers = state.of(program.function).numbers(&arm).map_err(Failure::usage)?;
+                let arm = &at_frame(robot, program, &arm);
+                let numbers = state.of(program.function).numbers(arm).map_err(Failure::usage)?;
                 let is_finite = numbers.iter().all(|number| number.is_finite());
                 let is_left_out = program.function.inverts_mass()
                     && precision == Precision::Single
-                    && !is_well_conditioned(&state, &arm);
+                    && !is_well_conditioned(&state, arm);
                 Ok(if is_finite && !is_left_out { numbers } else { Vec::new() })
             });
             let results = results.collect::<Result<_, Failure>>()?;
@@ -41,6 +43,15 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
             Ok(Golden { arguments: arguments(&state, parameters), results, sizes })
         })
         .collect()
+}
+
+/// The arm with the frame of a program in the place of the tip, if the program has one.
+fn at_frame<'a>(robot: &Robot, program: &Program, arm: &'a DynArm) -> Cow<'a, DynArm> {
+    let frame = program.frame.as_deref().and_then(|name| robot.frame(name).ok());
+    match frame.and_then(|frame| arm.clone().at_frame(robot.fixed_frame(frame))) {
+        Some(at) => Cow::Owned(at),
+        None => Cow::Borrowed(arm),
+    }
 }
 
 /// How large the terms of a function are: lengths and directions are about one, dynamics has the torques on a base that
@@ -101,7 +112,7 @@ pub(crate) fn states(text: &str) -> Result<u16, String> {
 /// A golden file: torques of a robot at `states` states; its heading lists the settings that differ from the robot
 /// file.
 pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<String, Failure> {
-    let (mut random, arm) = (Random::new(rounding(Precision::Double)), DynArm::from_robot(robot));
+    let (random, arm) = (random::of(Precision::Double), DynArm::from_robot(robot));
     let rotors = if robot.has_rotors() { ", with its rotors" } else { "" };
     let with = if settings.is_empty() { String::new() } else { format!(" with {}", settings.join(", ")) };
     let mut text = format!(
@@ -112,7 +123,7 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
         GoldenFile::header(robot.dof()).join(",")
     );
     for _ in 0..states {
-        let state = state(&mut random, robot.dof());
+        let state = random::state(&random, robot.dof());
         let torques = state.numbers(&arm).map_err(Failure::usage)?;
         let numbers = [&state.q, &state.qd, &state.qdd, &torques].into_iter().flatten();
         let numbers: Vec<String> = numbers.copied().map(exact_digits).collect();
@@ -123,20 +134,4 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
         text.push('\n');
     }
     Ok(text)
-}
-
-/// A state of an arm, and what acts on it: rad, m, kg, N.
-fn state(random: &mut Random, dof: usize) -> State {
-    let [q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect());
-    let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
-    State { function: Function::InverseDynamics, q, qd, qdd, tau, wrench, payload, base: random.base() }
-}
-
-/// The number of a number type that is nearest.
-#[allow(clippy::cast_possible_truncation)] // rounded
-const fn rounding(precision: Precision) -> fn(f64) -> f64 {
-    match precision {
-        Precision::Single => |number| f64::from(number as f32),
-        Precision::Double => |number| number,
-    }
 }

@@ -22,6 +22,7 @@ mod import;
 mod list;
 mod log;
 mod man;
+mod mark;
 mod new;
 mod ops;
 mod plot;
@@ -32,6 +33,7 @@ mod search;
 mod show;
 mod tour;
 mod watch;
+mod worksheet;
 
 use clap::{Parser, Subcommand};
 
@@ -99,6 +101,8 @@ commands! {
     Ops ops,
     Report report,
     Eval eval,
+    Worksheet worksheet,
+    Mark mark,
     Diagnose diagnose,
     Plot plot,
     Log log,

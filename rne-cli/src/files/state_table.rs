@@ -152,7 +152,7 @@ impl Table {
                     if let Some(negative) = negative(&rows[begin..]) {
                         let (line, column) = (table.line(), &columns[mass.unwrap_or_default()].1);
                         return Err(Failure::input(format_args!(
-                            "{name}:{line}: `{column}` is a mass, {negative} kg: no body has less than 0"
+                            "{name}:{line}: the mass `{column}` is {negative} kg; a mass is zero or positive"
                         )));
                     }
                     count += 1;
@@ -177,7 +177,8 @@ impl Table {
                     if let Some(negative) = negative(row) {
                         let column = mass.unwrap_or_default() + 1;
                         return Err(Failure::input(format_args!(
-                            "{name}: state {read}: column {column} is a mass, {negative} kg: no body has less than 0"
+                            "{name}: state {read}: the mass in column {column} is {negative} kg; a mass is zero or \
+                             positive"
                         )));
                     }
                 }

@@ -17,7 +17,7 @@ pub struct CsvRows {
 struct Bounded {
     file: Box<dyn BufRead>,
     given: u64,
-    /// What may be given at most.
+    /// Largest number of bytes that may be given.
     end: u64,
     quoting: bool,
     /// Whether what was given ends with a line: the last one may have no end, and is given one.
@@ -91,7 +91,7 @@ impl CsvRows {
         self.reader.position().line().saturating_sub(1 + inner as u64).max(1)
     }
 
-    /// A cell of the row that was just read, without blanks and quotes around it; empty where there is none.
+    /// A cell of the row that was just read, without blanks and quotes around it. A missing cell is empty.
     #[must_use]
     pub fn cell(&self, place: usize) -> &[u8] {
         inner(self.record.get(place).unwrap_or_default())

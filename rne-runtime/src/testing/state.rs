@@ -1,5 +1,6 @@
 //! States at which tests compare: the same ones in each run.
 
+use core::cell::Cell;
 use core::{array, fmt};
 
 use crate::{BaseMotion, Payload, Wrench};
@@ -27,7 +28,7 @@ impl<const DOF: usize> fmt::Display for State<DOF> {
 
 /// The states, seeded.
 pub(super) fn states<const DOF: usize>() -> impl Iterator<Item = State<DOF>> {
-    let mut random = Random::new(|number| number);
+    let random = Random::new(0x5EED, |number| number);
     (0..STATES).map(move |_| {
         let [q, qd, qdd, tau] = JOINTS.map(|limit| random.array(limit));
         let (wrench, payload) = (random.wrench(), random.payload());
@@ -41,42 +42,48 @@ pub const JOINTS: [f64; 4] = [3.0, 2.0, 5.0, 20.0];
 /// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.
 #[derive(Clone, Debug)]
 pub struct Random {
-    seed: u64,
+    state: Cell<u64>,
     rounded: fn(f64) -> f64,
 }
 
 impl Random {
-    /// Numbers that `rounded` rounds, each.
+    /// Numbers that depend on a seed, and that `rounded` rounds, each.
     #[must_use]
-    pub const fn new(rounded: fn(f64) -> f64) -> Self {
-        Self { seed: 0x5EED, rounded }
+    pub const fn new(seed: u64, rounded: fn(f64) -> f64) -> Self {
+        Self { state: Cell::new(seed), rounded }
     }
 
     /// Between `-limit` and `limit`.
-    pub fn number(&mut self, limit: f64) -> f64 {
-        self.seed = self.seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    #[must_use]
+    pub fn number(&self, limit: f64) -> f64 {
+        let next = self.state.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.state.set(next);
         // the upper bits are the random ones
-        let [a, b, c, d, ..] = self.seed.to_be_bytes();
+        let [a, b, c, d, ..] = next.to_be_bytes();
         (self.rounded)(limit * (2.0 * f64::from(u32::from_be_bytes([a, b, c, d])) / f64::from(u32::MAX) - 1.0))
     }
 
     /// Each between `-limit` and `limit`.
-    pub fn array<const N: usize>(&mut self, limit: f64) -> [f64; N] {
+    #[must_use]
+    pub fn array<const N: usize>(&self, limit: f64) -> [f64; N] {
         array::from_fn(|_| self.number(limit))
     }
 
     /// N and N m.
-    pub fn wrench(&mut self) -> Wrench<f64> {
+    #[must_use]
+    pub fn wrench(&self) -> Wrench<f64> {
         Wrench { force: self.array(10.0), moment: self.array(10.0) }
     }
 
     /// A point mass, kg and m.
-    pub fn payload(&mut self) -> Payload<f64> {
+    #[must_use]
+    pub fn payload(&self) -> Payload<f64> {
         Payload { mass: (self.rounded)(1.5 + self.number(1.0)), com: self.array(0.1), ..Payload::default() }
     }
 
     /// A base without a velocity of its origin, which no torque depends on.
-    pub fn base(&mut self) -> BaseMotion<f64> {
+    #[must_use]
+    pub fn base(&self) -> BaseMotion<f64> {
         BaseMotion {
             omega: self.array(1.0),
             omega_dot: self.array(2.0),
