@@ -408,6 +408,14 @@ fn other_schemas_are_told() {
         ),
         ("words.csv", b"time,q1\n0,1\n0.1,two\n".to_vec(), "line 3: \"two\" is not a number"),
         ("short.csv", b"time,q1,q2\n0,1,2\n0.1,2\n".to_vec(), "line 3: the line has 2 cells, but the header has 3"),
+        // a last line without an end, and a line without one
+        ("cut.csv", b"time,q1,q2\n0,1,2\n0.1,2".to_vec(), "line 3: the line has 2 cells, but the header has 3"),
+        ("one.csv", b"time,q1,q2\n0,1,2\n0.1".to_vec(), "line 3: the line has 1 cell, but the header has 3"),
+        (
+            "long.csv",
+            [&b"time,q1,q2\n0,1,2\n"[..], &[b'1'; 1 << 21]].concat(),
+            "line 3: a line has more than a million bytes",
+        ),
         ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not increase"),
         ("binary.csv", vec![1, 0, 2, 0], "bytes with the value zero"),
         ("ints.npy", npy(&times()[..3], true, "<i8"), "the numbers are"),
