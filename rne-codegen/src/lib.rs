@@ -56,7 +56,7 @@ pub use ir::{
 };
 pub use named::UnknownName;
 pub use pipeline::Target;
-pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, SineCosine, Statement};
+pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, Scales, SineCosine, Statement};
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};

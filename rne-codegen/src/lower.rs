@@ -69,6 +69,7 @@ pub(crate) fn lower(
         fold_report: written.trace.fold_report,
         algorithm: Algorithm::default(),
         is_rewritten: false,
+        scales: None,
         choices: Vec::new(),
         proof: None,
         refusals: Vec::new(),

@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 
 use crate::functions::{self, Method, Robot};
-use crate::image::{Figures, Image};
-use crate::listing::Fault;
+use crate::image::{self, Figures, Image};
+use rne_certify::listing::Fault;
 use crate::log::{Agreement, Log};
 use crate::table::Row;
 use crate::tools::{self, Build};
@@ -48,7 +48,7 @@ impl Board<'_> {
             arguments: &arguments,
         };
         let elf = build.run(workspace)?.join("board");
-        let image = Image::read(&elf)?;
+        let image = image::read(&elf)?;
         let log = Log::read(&tools::qemu(self.machine, &elf)?)?;
         let examined = Examined { image, log };
         examined.gate_closes()?;
