@@ -5,8 +5,14 @@
 //! one page. Nothing here starts a program or opens a file: callers run compilers and pass what these print.
 #![forbid(unsafe_code)]
 
+pub mod accuracy;
+pub mod board;
+pub mod certificate;
+pub mod cycles;
 pub mod image;
+pub mod interval;
 pub mod listing;
+pub mod misra;
 
 use std::fmt::Write as _;
 

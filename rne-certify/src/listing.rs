@@ -165,8 +165,15 @@ impl Line {
         (writes_pc && !self.is_return()).then(|| Fault::Branches(text()))
     }
 
+    /// Its address.
+    #[must_use]
+    pub const fn address(&self) -> u64 {
+        self.address
+    }
+
     /// Where a jump leads.
-    fn target(&self) -> Option<u64> {
+    #[must_use]
+    pub fn target(&self) -> Option<u64> {
         let target = self.operands.split(' ').next().filter(|_| self.name() == "b")?;
         u64::from_str_radix(target, 16).ok()
     }

@@ -132,8 +132,8 @@ impl Function {
             Self::Tan => libm::tan(x),
             // In this order deg(90) is pi/2 to the last bit.
             Self::Deg => x / 180.0 * PI,
-            // A quotient is the nearest number to the decimal: mm(77) is 0.077.
-            Self::Milli => x / 1000.0,
+            // The decimal is moved, because 130.2 / 1000 is not the number nearest to 0.1302.
+            Self::Milli => format!("{x}e-3").parse().unwrap_or(f64::NAN),
         }
     }
 }

@@ -3,6 +3,7 @@
 //! `tour` is what `rne` does without a command. `compare`, `closed_form`, `golden` and `residuals` are parts of
 //! commands, and `prediction_errors` is what `identify` and `watch` share.
 
+mod certify;
 mod check;
 mod closed_form;
 mod compare;
@@ -30,6 +31,7 @@ mod report;
 mod residuals;
 mod search;
 mod show;
+mod toolchain;
 mod tour;
 mod watch;
 
@@ -96,6 +98,7 @@ commands! {
     Check check,
     Show show,
     Emit emit,
+    Certify certify,
     Ops ops,
     Report report,
     Eval eval,
