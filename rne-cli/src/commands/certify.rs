@@ -15,7 +15,7 @@ use rne_codegen::{Argument, Form, Function, Interpreter, Layout, Program};
 use rne_emit::{Origin, Precision, Prefix};
 use rne_model::{JointKind, Robot};
 
-use crate::commands::toolchain;
+use crate::commands::{certify_trace, toolchain};
 use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, is_standard_output};
@@ -25,13 +25,14 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
 
-/// Certify the code of an arm for a microcontroller: cycles, stack, accuracy
+/// Certify code for a microcontroller: cycles, stack, error
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne certify docs/desk_arm.yaml --cpu cortex-m4 -o desk_arm.cert.md
   rne certify docs/desk_arm.yaml --cpu cortex-m7 --json
   rne certify docs/desk_arm.yaml --cpu cortex-m4 --check desk_arm.cert.md
+  rne certify docs/desk_arm.yaml --evidence evidence
 
 The command compiles the code that `rne emit --lang c` writes. It reads the
 instructions with objdump, runs the code in QEMU, compares the results with the
@@ -74,6 +75,9 @@ pub(crate) struct Arguments {
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Also write the C code, its header and a trace for the independent checker to this folder
+    #[arg(long, value_name = "FOLDER")]
+    evidence: Option<PathBuf>,
     /// Print the certificate as JSON
     #[arg(long)]
     json: bool,
@@ -225,6 +229,9 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         stack_of_listing: stack,
         calls: called,
     };
+    if let Some(evidence) = &arguments.evidence {
+        write_evidence(arguments, evidence, &robot, &program, &code.source, folder)?;
+    }
     let emulation = match toolchain::version_of("qemu-system-arm") {
         None => None,
         Some(version) => {
@@ -274,6 +281,55 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         misra,
         trace: trace(&code.text, &code.symbol),
     })
+}
+
+/// Writes the C code, its header and the trace of its constants.
+fn write_evidence(
+    arguments: &Arguments,
+    evidence: &Path,
+    robot: &Robot,
+    program: &Program,
+    source: &str,
+    folder: &Path,
+) -> Result<(), Failure> {
+    if arguments.lang != Language::C || arguments.function != Function::InverseDynamics || robot.has_rotors() {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--evidence{TYPED:#} is for inverse_dynamics in C without rotors: the checker computes this function"
+        )));
+    }
+    let compiler = Compiler::new(&arguments.file, robot);
+    let Some(derivation) = compiler.derivation(program)? else {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are rounded one \
+             operation after another, so they have no exact expressions"
+        )));
+    };
+    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+    let trace = certify_trace::trace(robot, program, &derivation, &prefix, Precision::Single);
+    let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
+    fs::create_dir_all(evidence)
+        .map_err(|error| Failure::input(format_args!("{} cannot be made: {error}", evidence.display())))?;
+    let read = |name: &str| fs::read_to_string(folder.join(name)).map_err(Failure::input);
+    let stem = source.trim_end_matches(".c");
+    let header = format!("{stem}.h");
+    let files = [
+        (evidence.join(source), read(source)?),
+        (evidence.join(&header), read(&header)?),
+        (evidence.join(format!("{stem}.trace.json")), trace),
+    ];
+    for (path, text) in &files {
+        let is_other = match output_file::existing(path) {
+            Existing::Nothing => false,
+            Existing::Text(found) => {
+                found != *text && !arguments.force && !found.contains(rne_emit::GENERATED) && !found.contains("\"steps\"")
+            }
+            _ => true,
+        };
+        if is_other {
+            return Err(Failure::usage(format_args!("{} is not changed: rne did not write it", path.display())));
+        }
+    }
+    output_file::replace_all(&files).map(drop)
 }
 
 fn class(of: cycles::Class) -> Class {
