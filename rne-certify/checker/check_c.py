@@ -33,10 +33,8 @@ KERNELS = {  # of the sine, by the type, with the comments removed and the prefi
     "double": "832cb059c93293dbe679defff4e5a128e7221d57220703aa1a890c25590203ef",
 }
 
-
 class Wrong(Exception):
     """Something in the C source or the trace is wrong."""
-
 
 # --- numbers with 60 digits ---------------------------------------------------------------------------------------
 
@@ -47,9 +45,7 @@ def arctan_of_inverse(n):
         power, k = power / (n * n), k + 1
     return total
 
-
 PI = 4 * (4 * arctan_of_inverse(5) - arctan_of_inverse(239))  # J. Machin
-
 
 def sine(x):
     x = x % (2 * PI)
@@ -59,10 +55,8 @@ def sine(x):
         term, k = -term * x * x / ((k + 1) * (k + 2)), k + 2
     return total
 
-
 def cosine(x):
     return sine(x + PI / 2)
-
 
 def angle_of(s, c):
     x = Decimal(math.atan2(float(s), float(c)))
@@ -70,16 +64,14 @@ def angle_of(s, c):
         x += s * cosine(x) - c * sine(x)
     return x
 
-
 def as_float(x, kind):
-    """The nearest float or double of a decimal, as a Fraction-like exact Decimal."""
+    """The nearest float or double of a decimal."""
     near = float(x)  # Python rounds a Decimal's text correctly
     if kind == "double":
         return near
     bits = struct.unpack("<I", struct.pack("<f", near))[0]
     candidates = [struct.unpack("<f", struct.pack("<I", (bits + k) & 0xFFFFFFFF))[0] for k in (-1, 0, 1) if bits + k >= 0]
     return min((y for y in candidates if y == y), key=lambda y: (abs(Decimal(y) - x), y != near))
-
 
 # --- the field of a prime -----------------------------------------------------------------------------------------
 
@@ -101,43 +93,35 @@ def is_prime(n):
             return False
     return True
 
-
 def random_prime():
     while True:
         n = random.getrandbits(127) | (1 << 126) | 3  # 3 modulo 4: roots are powers
         if is_prime(n):
             return n
 
-
 class NoRoot(Exception):
     """A number has no square root modulo this prime: another prime is taken."""
-
 
 class Field:
     def __init__(self, prime):
         self.p, self.points = prime, {}
-
     def inverse(self, x):
         if x % self.p == 0:
             raise NoRoot
         return pow(x, self.p - 2, self.p)
-
     def root(self, x):
         y = pow(x, (self.p + 1) // 4, self.p)
         if y * y % self.p != x % self.p:
             raise NoRoot
         return y
-
     def decimal(self, text):
         sign, digits, exponent = Decimal(text).as_tuple()
         value = int("".join(map(str, digits))) * (-1) ** sign
         return value * (pow(10, exponent, self.p) if exponent >= 0 else self.inverse(pow(10, -exponent, self.p))) % self.p
-
     def circle(self):
         t = random.randrange(2, self.p)
         scale = self.inverse(1 + t * t)
         return 2 * t * scale % self.p, (1 - t * t) * scale % self.p
-
     def turn(self, radians):
         """Sine and cosine of a constant angle: the same point, up to right angles and sign, for related angles."""
         x = Decimal(radians)
@@ -154,7 +138,6 @@ class Field:
             s, c = c, -s
         return s % self.p, c % self.p
 
-
 # --- the trace ----------------------------------------------------------------------------------------------------
 
 def evaluate(steps, leaf, add, multiply, negate, inverse, root):
@@ -169,12 +152,10 @@ def evaluate(steps, leaf, add, multiply, negate, inverse, root):
         values.append({"+": add, "*": multiply, "-": negate, "/": inverse, "sqrt": root}[operator](*a))
     return values
 
-
 def exact_values(steps):
     def leaf(operator, number):
         return Decimal(number) if operator == "number" else (sine if operator == "sin" else cosine)(Decimal(float(number)))
     return evaluate(steps, leaf, lambda a, b: a + b, lambda a, b: a * b, lambda a: -a, lambda a: 1 / a, Decimal.sqrt)
-
 
 def field_values(steps, field):
     def leaf(operator, number):
@@ -182,11 +163,9 @@ def field_values(steps, field):
     return evaluate(steps, leaf, lambda a, b: (a + b) % field.p, lambda a, b: a * b % field.p, lambda a: -a % field.p,
                     field.inverse, field.root)
 
-
 # --- the C source -------------------------------------------------------------------------------------------------
 
 TOKEN = re.compile(r"\s*([A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fu]?|[-+*/()\[\]{},;=&])")
-
 
 def tokens_of(text):
     tokens, at = [], 0
@@ -198,7 +177,6 @@ def tokens_of(text):
         tokens.append(match.group(1))
         at = match.end()
     return tokens
-
 
 class Source:
     def __init__(self, text, trace):
@@ -217,17 +195,14 @@ class Source:
             raise Wrong("the sine and cosine are not those of rne: " + hashlib.sha256(kernel.encode()).hexdigest())
         self.tokens, self.at, self.prefix = tokens_of(body), 0, prefix
         self.parameters = self.header()
-
     def next(self, *expected):
         token = self.tokens[self.at] if self.at < len(self.tokens) else "the end"
         if expected and token not in expected:
             raise Wrong(f"the source has {token!r} where {' or '.join(expected)} is expected")
         self.at += 1
         return token
-
     def peek(self):
         return self.tokens[self.at] if self.at < len(self.tokens) else ""
-
     def header(self):
         parameters = []
         while True:
@@ -243,7 +218,6 @@ class Source:
             if self.next(",", ")") == ")":
                 self.next("{")
                 return parameters
-
     def run(self, machine):
         """Executes the statements. `machine` gives numbers their meaning."""
         start, names = self.at, {}
@@ -292,7 +266,6 @@ class Source:
             else:
                 raise Wrong(f"the source has an unknown statement: {token}")
         self.at = start
-
     def literal(self):
         """A constant alone on the right side: its text, and whether it is negative."""
         end = self.at + (self.peek() == "-")
@@ -301,21 +274,18 @@ class Source:
             self.at = end + 1
             return text
         return None
-
     def sum(self):
         value = self.product()
         while self.peek() in ("+", "-"):
             operator, other = self.next(), self.product()
             value = self.machine.add(value, other if operator == "+" else self.machine.negative(other))
         return value
-
     def product(self):
         value = self.atom()
         while self.peek() in ("*", "/"):
             operator, other = self.next(), self.atom()
             value = (self.machine.multiply if operator == "*" else self.machine.divide)(value, other)
         return value
-
     def atom(self):
         token = self.next()
         if token == "-":
@@ -338,17 +308,14 @@ class Source:
             raise Wrong(f"{token} is used before it has a value")
         return self.names[token]
 
-
 class Machine:
     """Arithmetic of a field. A value is (number, turn); a turn is the (sine, cosine) of the value as an angle."""
-
     def __init__(self, field, table, constants, literals, kind):
         self.field, self.p, self.constants, self.literals, self.kind = field, field.p, constants, literals, kind
         n = len(table["joints"])
         self.arguments = {name: [random.randrange(self.p) for _ in range(n)] for name in ("q", "qd", "qdd")}
         self.turns = [field.circle() for _ in range(n)]
         self.outputs, self.used = {}, set()
-
     def constant(self, name, text):
         if name not in self.constants:
             raise Wrong(f"the trace does not know the constant {name}")
@@ -356,75 +323,57 @@ class Machine:
         if (text.endswith("f")) != (self.kind == "float") or as_literal(text, self.kind) != self.literals[name]:
             raise Wrong(f"{name} = {text} is not the nearest {self.kind} of its expression, {self.literals[name]!r}")
         return self.constants[name]
-
     def argument(self, name, index):
         turn = self.turns[index] if name == "q" else None
         return self.arguments[name][index], turn
-
     def number(self, text):
         if as_literal(text, self.kind) != 0.0:
             raise Wrong(f"the source has a number without a name: {text}")
         return 0, None
-
     def add(self, a, b):
         turn = None
         if a[1] and b[1]:
             (s, c), (t, d) = a[1], b[1]
             turn = (s * d + c * t) % self.p, (c * d - s * t) % self.p
         return (a[0] + b[0]) % self.p, turn
-
     def negative(self, a):
         return -a[0] % self.p, a[1] and (-a[1][0] % self.p, a[1][1])
-
     def multiply(self, a, b):
         return a[0] * b[0] % self.p, None
-
     def divide(self, a, b):
         return a[0] * self.field.inverse(b[0]) % self.p, None
-
     def sin_cos(self, angle):
         if not angle[1]:
             raise Wrong("the sine of a value that is no angle")
         return (angle[1][0], None), (angle[1][1], None)
-
     def output(self, index, value):
         if index in self.outputs:
             raise Wrong(f"output {index} is written twice")
         self.outputs[index] = value[0]
 
-
 def as_literal(text, kind):
     value = Decimal(text.rstrip("fu"))
     return as_float(value, kind)
-
 
 # --- recursive Newton-Euler in the axes of frame 0 ------------------------------------------------------------------
 
 def torques(field, table, machine):
     p = field.p
-
     def dot(a, b):
         return sum(x * y for x, y in zip(a, b)) % p
-
     def cross(a, b):
         return [(a[1] * b[2] - a[2] * b[1]) % p, (a[2] * b[0] - a[0] * b[2]) % p, (a[0] * b[1] - a[1] * b[0]) % p]
-
     def add(*vectors):
         return [sum(parts) % p for parts in zip(*vectors)]
-
     def times(k, v):
         return [k * x % p for x in v]
-
     def by(matrix, v):
         return [dot(row, v) for row in matrix]
-
     def product(a, b):
         return [[dot(row, column) for column in zip(*b)] for row in a]
-
     def about_x(turn):
         s, c = turn
         return [[1, 0, 0], [0, c, -s % p], [0, s, c]]
-
     def about_z(turn):
         s, c = turn
         return [[c, -s % p, 0], [s, c, 0], [0, 0, 1]]
@@ -487,7 +436,6 @@ def torques(field, table, machine):
         result.append(dot(axis, about_axis if is_revolute else force))
     return result[::-1]
 
-
 # --- all of it ----------------------------------------------------------------------------------------------------
 
 def check(text, trace):
@@ -524,7 +472,6 @@ def check(text, trace):
         points += 1
     return f"{source.name}: {joints} torques are those of the table at {POINTS} points; {len(literals)} constants are right"
 
-
 def main():
     if len(sys.argv) != 3:
         print(__doc__)
@@ -543,7 +490,6 @@ def main():
         print(f"wrong: {error}")
         return 1
     return 0
-
 
 if __name__ == "__main__":
     sys.exit(main())
