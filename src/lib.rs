@@ -122,18 +122,18 @@
 
 #[doc(inline)]
 pub use rne_macro::{
-    Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
-    Regressor,
+    Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
+    PayloadDynamics, Regressor,
 };
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
-    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload,
-    PayloadDynamics, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    Actuation, AtFrame, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual,
+    Energy, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
+    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
+    Payload, PayloadDynamics, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -146,7 +146,7 @@ pub use rne_runtime::{
 };
 // Derived code names them.
 #[doc(hidden)]
-pub use rne_runtime::{RunTimeParameter, batch, processor, testing};
+pub use rne_runtime::{RunTimeParameter, batch, frame_index, processor, testing};
 
 /// Any arm at run time, nearly as fast as a derived one: read, compiled to the code of a machine, and run over blocks
 /// of states on the widest vector unit.

@@ -23,7 +23,8 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/firmware.md", &["torque", "config", "embedded"]),
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
-    ("docs/robot-file.md", &["two_bars", "desk_arm", "every_key"]),
+    ("docs/ros2.md", &["ros2_controller"]),
+    ("docs/robot-file.md", &["frames", "two_bars", "desk_arm", "every_key"]),
     ("docs/teaching.md", &["code"]),
     ("robots/README.md", &["sources", "robots"]),
 ];
@@ -61,6 +62,9 @@ fn robot_files() -> Vec<PathBuf> {
 fn block(name: &str) -> String {
     match name {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
+        "ros2_controller" => {
+            format!("```cpp\n{}```\n", read(&root().join("doors/capi/examples/ros2_control/gravity_controller.cpp")))
+        }
         "controller" => format!("```c\n{}```\n", read(&root().join("doors/capi/examples/controller.c"))),
         "torque" => format!("```rust\n{}```\n", read(&root().join("rne-cli/src/commands/firmware/main.rs"))),
         "config" => {
@@ -69,6 +73,12 @@ fn block(name: &str) -> String {
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }
         "desk_arm" => format!("```yaml\n{}```\n", read(&root().join("docs/desk_arm.yaml"))),
+        "frames" => {
+            let file = read(&root().join("docs/desk_arm_frames.yaml"));
+            let list = file.lines().skip_while(|line| !line.starts_with("frames:"));
+            let list: Vec<&str> = list.take_while(|line| !line.starts_with("joints:")).collect();
+            format!("```yaml\n{}\n```\n", list.join("\n"))
+        }
         "two_bars" => format!("```yaml\n{}```\n", read(&root().join("docs/two_bars.yaml"))),
         "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),
         "headline" => headline(),
@@ -154,14 +164,14 @@ fn headline() -> String {
         "| one call, form `reduced` | PUMA 560 | Franka Panda |\n|---|---:|---:|\n\
          | operations | {} |\n\
          | operations, best peer | {} |\n\
-         | ns, native build | {} |\n\
-         | ns, default build | {} |\n\
-         | ns, best peer, native build | {} |\n\
-         | ns, Pinocchio | {} |\n\
+         | time in ns, native build | {} |\n\
+         | time in ns, default build | {} |\n\
+         | time in ns, best peer, native build | {} |\n\
+         | time in ns, Pinocchio | {} |\n\
          | instructions on a Cortex-M4F, `f32`, current version | {} |\n\n\
-         The times are older than the last optimization, which rewrites a program by rules of algebra, so the\n\
-         operations exclude it, too. With it they are {rewritten_puma} and {rewritten_panda}. The instructions\n\
-         include it.\n",
+         Operations and times of rne are for the same program of an earlier version. The current version also\n\
+         rewrites it by rules of algebra ({rewritten_puma} and {rewritten_panda} operations); the instructions are for \
+         this version.\n",
         of(&operations, "rne, planned"),
         best(&operations).join(" | "),
         of(&times, "rne_reduced_native"),
@@ -269,7 +279,7 @@ fn stubs() -> String {
         ";
     let mut text = String::new();
     let mut stub = |function: Function, arguments: &[(&str, Argument)], returned: Returned, summary: &str| {
-        let name = function.name();
+        let frame = if function.of_frame().is_some() { "frame: str | None = ..., " } else { "" };
         let payload = if function.with_payload().is_some() { "payload: ArrayLike | None = ..., " } else { "" };
         let joints = arguments.iter().filter(|(_, kind)| *kind != Argument::Base);
         let joints: Vec<String> = joints.map(|(name, _)| format!("{name}: ArrayLike, ")).collect();
@@ -280,15 +290,20 @@ fn stubs() -> String {
             Returned::TorqueDerivatives | Returned::MomentumAndRate => "tuple[Floats, Floats]",
             _ => "Floats",
         };
-        let _ = writeln!(
-            text,
-            "    def {name}(\n        self, {joints}*,\n        {base}{payload}parameters: Parameters = ..., \
-             out: Floats | None = ...,\n    ) -> {returned}:\n        \"\"\"{summary}\"\"\""
-        );
+        // a pose of the tip has the name that it has at a frame, too
+        let other = function.of_frame().filter(|_| function == Function::ForwardKinematics);
+        for name in [Some(function.name()), other].into_iter().flatten() {
+            let _ = writeln!(
+                text,
+                "    def {name}(\n        self, {joints}*,\n        {base}{frame}{payload}\
+                 parameters: Parameters = ..., out: Floats | None = ...,\n    \
+                 ) -> {returned}:\n        \"\"\"{summary}\"\"\""
+            );
+        }
     };
     macro_rules! methods {
         ($(
-            $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+            $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
                 $summary:literal $(, $details:literal)?;
         )*) => {
             $(stub(

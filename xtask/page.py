@@ -247,6 +247,135 @@ def views(driver, page):
     print("  a view comes back on another page")
 
 
+# of the pendulum with two links: an exact state, a cell and settings
+ADDRESS = "#q=0.6,1.3&qd=-0.7,0.25&qdd=1.5,0&f=3,0,-1.5&cell=2.4&look=3D&unfolded&c&joint&dark&exercise&lecture&frames&no-masses"
+
+
+def address(driver, page):
+    """An address opens the exact view, and a view has an address that opens it."""
+    def at(fragment):
+        driver.get("about:blank")
+        driver.get(page.as_uri() + fragment)
+        awaited(driver, 20, lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
+
+    at(ADDRESS)
+    view = driver.execute_script("return rne.view()")
+    right = {"state": {"q": [0.6, 1.3], "qd": [-0.7, 0.25], "qdd": [1.5, 0]}, "wrench": {"f": [3, 0, -1.5], "n": [0, 0, 0]},
+             "cell": [2, 4], "form": "unfolded", "language": "c", "axes": "joint", "theme": "dark", "exercise": True,
+             "lecture": True, "frames": True, "masses": False, "layers": ["acceleration"]}
+    for what, value in right.items():
+        check(view[what] == value, f"address: {what} is {view[what]}, and {value} is asked for")
+    check(driver.execute_script("return rne.address()") == ADDRESS, "address: a view has another one than it was opened by")
+    fields = driver.execute_script("return [...document.querySelectorAll('[data-field=q]')].map(of => of.value)")
+    check(fields == ["0.6", "1.3"], f"address: the fields of q have {fields}")
+    # typed as well as slid, in degrees too, with a comma
+    field = driver.find_element(By.CSS_SELECTOR, '[data-degrees="2"]')
+    field.clear()
+    field.send_keys("-22,5", Keys.ENTER)
+    angle = driver.execute_script("return rne.view().state.q[1]")
+    check(abs(angle + math.pi / 8) < 1e-15, f"address: -22,5 degrees are {angle} rad")
+    field = driver.find_element(By.CSS_SELECTOR, '[data-field="qd"][data-name="qd1"]')
+    for typed, value in (("nothing", -0.7), ("12.5", 12.5)):
+        field.clear()
+        field.send_keys(typed, Keys.ENTER)
+        found = driver.execute_script("return rne.view().state.qd[0]")
+        check(found == value, f"address: {typed} typed for the rate of joint 1 makes it {found}")
+    driver.execute_script("document.querySelector('[data-view=front]').click()")
+    awaited(driver, 5, lambda driver: driver.execute_script("return location.hash === rne.address()"))
+    view = driver.execute_script("return { ...rne.view(), scrolled: 0 }")
+    at(driver.execute_script("return location.hash"))
+    check(driver.execute_script("return { ...rne.view(), scrolled: 0 }") == view, "address: a view does not come back")
+    # what is wrong is said, and the rest is shown
+    at("#q=1,2,3&qd=1,x&qdd=0.5,0.25&cell=7.1&nonsense=3")
+    said, state = driver.execute_script("return [document.getElementById('address-notice').textContent, rne.view().state]")
+    for part in ("q has 3 numbers, and 2 are needed", "qd has something that is no number", "there is no cell 7.1"):
+        check(part in said, f"address: {part!r} is not said: {said!r}")
+    check(state["qdd"] == [0.5, 0.25], f"address: q̈ is {state['qdd']}")
+    quiet(driver, "address")
+    print("  an address opens the exact view")
+
+
+def teaching(driver, rne, page, folder):
+    """What a lecturer and a student use: the figure, large equations, cells that are not needed, a text to hand in."""
+    def at(fragment):
+        driver.get("about:blank")
+        driver.get(page.as_uri() + fragment)
+        awaited(driver, 20, lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
+
+    at("#q=0.6,-0.9")
+    words = driver.execute_script(
+        "return [...document.querySelectorAll('.drawn-text')].filter(of => getComputedStyle(of).display !== 'none').map(of => of.textContent)")
+    right = ["θ1 = 34.4°", "a1 = 0.5 m", "com 0.25 m", "θ2 = −51.6°", "a2 = 0.4 m", "com 0.2 m"]
+    check(sorted(words) == sorted(right), f"figure: it says {words}")
+    bent = driver.execute_script(
+        """
+        const way = (of) => of.getAttribute("d").match(/-?[0-9.]+/g).map(Number);
+        return ["1", "2"].map(joint => {
+          const arc = way(document.querySelector(`[data-drawing="${joint}"] .arc`));
+          const [x, y] = way(document.querySelector(`[data-drawing="${joint}"] .reference`));
+          const angle = (a, b) => Math.atan2(y - b, a - x);
+          return angle(...arc.slice(-2)) - angle(...arc.slice(0, 2));
+        });
+        """)
+    check(all(abs(a - b) < 0.02 for a, b in zip(bent, (0.6, -0.9))), f"figure: its arcs are {bent} rad")
+    driver.execute_script("document.querySelector('[data-view=\"3D\"]').click()")
+    check(not driver.execute_script("return getComputedStyle(document.querySelector('[data-drawing]')).display !== 'none'"), "figure: it is drawn obliquely")
+    needless = driver.execute_script(
+        "return [...document.querySelectorAll('[data-cell]')].filter(of => of.textContent === 'not needed').map(of => of.dataset.cell)")
+    check(needless == ["1-3", "2-3"], f"cells: not needed are {needless}")
+    at("#reduced&equations")
+    sides = driver.execute_script(
+        "return [...document.querySelectorAll('.listing .statement')].map(of => of.innerText.trim())")
+    check(sides and all(re.match(r"^[a-z]\w* += ", side) for side in sides), f"equations only: {sides[:2]}")
+    before = "const of = document.querySelector('.component math'); return [parseFloat(getComputedStyle(of).fontSize), " \
+             "document.getElementById('cell').clientWidth, document.getElementById('settings').open]"
+    at("#cell=2.4")
+    small = driver.execute_script(before)
+    driver.find_element(By.ID, "lecture").click()
+    large = driver.execute_script(before)
+    check(large[0] >= 1.49 * small[0], f"lecture: letters have {large[0]} pixels, before {small[0]}")
+    check(large[1] > 1.3 * small[1] and small[2] and not large[2], f"lecture: {large}, before {small}")
+    narrow(driver, "lecture")
+    # a worksheet: one answer that is right, one that is not
+    at("#q=0.6,-0.9&qd=0.5,0.8&qdd=1,-1.5&cell=2.4&exercise")
+    acceleration = driver.execute_script("return ['ddc2_x', 'ddc2_y'].map(name => rne.value(name))")
+    for name, typed in (("ddc2_x", acceleration[0]), ("ddc2_y", -acceleration[1]), ("ddc2_y", acceleration[1] + 1)):
+        field = driver.find_element(By.CSS_SELECTOR, f'[data-exercise="{name}"]')
+        field.clear()
+        field.send_keys(f"{typed:.5f}".replace(".", ","), Keys.ENTER)
+    driver.execute_script("document.getElementById('hand-in').open = true")
+    driver.find_element(By.ID, "student").send_keys("Ada, L.")
+    text = driver.execute_script("return document.getElementById('answers').value")
+    check("score: 1 of 2 right, 1 at the first attempt; attempts: 3" in text, f"exercise: the text has no score: {text!r}")
+    sheet, key = folder / "answers.csv", folder / "key.csv"
+    sheet.write_text(text)
+    key.write_text("q1,q2,qd1,qd2,qdd1,qdd2\n0.6,-0.9,0.5,0.8,1,-1.5\n")
+    marks = json.loads(subprocess.run([rne, "mark", "planar2", "--states", str(key), str(sheet), "--json"],
+                                      check=True, capture_output=True).stdout)["marks"]
+    first = marks[0].get("first_error") or {}
+    check([marks[0]["student"], marks[0].get("points"), first.get("quantity"), first.get("component")]
+          == ["Ada  L.", 1, "acceleration", "y"], f"exercise: its text is marked {marks}")
+    quiet(driver, "teaching")
+    print("  figure, lecture, cells and a text to hand in")
+
+
+def thumbs(driver, page):
+    """On a phone targets are large enough for a thumb, and settings are folded."""
+    opened(driver, page)
+    small = driver.execute_script(
+        """
+        const found = [];
+        for (const of of document.querySelectorAll("button, summary, input")) {
+          if (!of.checkVisibility()) continue;
+          const { height } = of.getBoundingClientRect();
+          if (height < 44) found.push([of.id || of.textContent || of.dataset.of || of.dataset.tip || of.tagName, height]);
+        }
+        return found;
+        """)
+    check(not small, f"{page.stem}, phone: targets below 44 pixels: {small}")
+    check(not driver.execute_script("return document.getElementById('settings').open"), f"{page.stem}, phone: settings are open")
+
+
 def touch(page):
     """Fingers turn and zoom the arm, choose what they tap, and scroll the page beside the arm."""
     driver = browser(*SCREENS["phone"])
@@ -615,6 +744,9 @@ def main():
             narrow(driver, f"{robot}, desk")
             quiet(driver, robot)
             views(driver, page)
+            if robot == "planar2":
+                address(driver, page)
+                teaching(driver, rne, page, folder)
     finally:
         driver.quit()
     touch(pages["puma560"])
@@ -627,6 +759,8 @@ def main():
                     where = f"{robot}, {screen}, {'dark' if dark else 'light'}"
                     opened(driver, pages[robot])
                     narrow(driver, where)
+                    if screen == "phone":
+                        thumbs(driver, pages[robot])
                     # the pages of two arms differ in their data alone
                     if (dark or screen == "phone") and (IS_FULL or robot == WHOLE[-1]):
                         accessible(driver, where)

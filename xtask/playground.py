@@ -204,7 +204,7 @@ def links(driver, address, heavier):
     typed(driver, odd)
     awaited(driver, 10, lambda driver: "#text=" in driver.current_url)
     link = driver.current_url
-    check(re.search(r"#text=[\w-]+$", link), f"the link has letters that are none of an address: {link[-80:]}")
+    check(re.search(r"#text=[\w-]+(&[\w=.,-]+)*$", link), f"the link has letters that are none of an address: {link[-80:]}")
     opened(driver, link)
     check(text(driver) == odd, "the text of a link is another one")
     check("Ärm" in driver.title, f"the title of a link is {driver.title!r}")
@@ -215,6 +215,13 @@ def links(driver, address, heavier):
     print(f"  a link of {len(odd)} characters has {len(link)}")
     opened(driver, address + "#robot=planar2")
     check(driver.find_element(By.ID, "robots").get_attribute("value") == "planar2", "#robot=planar2 opens another one")
+    # the view follows the robot
+    opened(driver, address + "#robot=planar2&q=0.6,1.3&qd=-0.7,0.25&cell=2.4&exercise")
+    shown = "const view = rne.view(); return [view.state.q, view.state.qd, view.cell, view.exercise]"
+    right = [[0.6, 1.3], [-0.7, 0.25], [2, 4], True]
+    awaited(driver, 10, lambda driver: inner(driver, shown) == right)
+    inner(driver, "rne.setState({ q: [0.5, -0.25] })")
+    awaited(driver, 10, lambda driver: "#robot=planar2&q=0.5,-0.25&qd=-0.7,0.25&cell=2.4&exercise" in driver.current_url)
     driver.execute_script("location.hash = '#robot=stanford'")
     awaited(driver, 30, lambda driver: "stanford" in text(driver))
     settled(driver)

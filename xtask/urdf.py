@@ -153,7 +153,7 @@ def states(joints, kinds, model):
 def main():
     rne = sys.argv[1]
     print(f"Pinocchio {pin.__version__}; torques and mass matrix relative to the largest, tip in m")
-    print(f"{'URDF':<28}{'tip':<26}{'n':>3}  {'without snapping':^28}  {'with it: torques, tip':^24}  {'told':^18}")
+    print(f"{'URDF':<28}{'tip':<26}{'n':>3}  {'without snapping':^28}  {'snapped: torques, tip':^24}  {'reported change':^18}")
     failed, seen = [], 0
     with tempfile.TemporaryDirectory() as folder:
         for name, words in ARMS:

@@ -92,7 +92,7 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
         let is_dashed = word.strip_prefix('-').is_some_and(|rest| !rest.is_empty() && !rest.starts_with('-'));
         let is_refused = is_dashed && value.is_none() && !arg.is_allow_hyphen_values_set();
         let is_refused = is_refused && !(arg.is_allow_negative_numbers_set() && word.parse::<f64>().is_ok());
-        is_refused.then(|| format!("`{word}` is not a value of {}", described(arg)))
+        is_refused.then(|| format!("`{word}` is not a valid value of {}", described(arg)))
     })
 }
 
@@ -136,9 +136,15 @@ mod tests {
     #[test]
     fn dashes_before_values() {
         let joint = said("show puma560 --joint -1").expect("refused");
-        assert!(joint.starts_with("error: `-1` is not a value of --joint <") && !joint.contains("-- -1"), "{joint}");
+        assert!(
+            joint.starts_with("error: `-1` is not a valid value of --joint <") && !joint.contains("-- -1"),
+            "{joint}"
+        );
         let set = said("eval planar2 --set -m --q 1,1").expect("refused");
-        assert!(set.contains("`-m` is not a value of --set <NAME=VALUE>: Replace the value of a parameter"), "{set}");
+        assert!(
+            set.contains("`-m` is not a valid value of --set <NAME=VALUE>: Replace the value of a parameter"),
+            "{set}"
+        );
     }
 
     #[test]

@@ -131,7 +131,7 @@ impl fmt::Display for Extreme {
         write!(
             f,
             "{what} {value:e} of link {link} is too {size} for this form: products of such numbers {beyond} in double \
-             precision. Use other units, or `form = \"seven_steps\"`, which multiplies less"
+             precision. Use other units, or `form = \"seven_steps\"`, which needs fewer products"
         )
     }
 }
@@ -188,7 +188,12 @@ impl fmt::Display for CompileError {
                 name.joint
             ),
             Self::NotIdentical { function, output, suspect } => {
-                let what = if function.returns_torques() { "the torque of joint" } else { "of its result, number" };
+                let what = if function.returns_torques() {
+                    "the torque of joint"
+                } else {
+                    "in the list of returned \
+                                                                                           numbers, number"
+                };
                 write!(
                     f,
                     "this form of `{function}` does not compute the same as the seven steps: {what} {output} differs. \
@@ -196,7 +201,7 @@ impl fmt::Display for CompileError {
                 )?;
                 suspect.advise(
                     f,
-                    "The cause may be a plan file whose graph somebody has edited",
+                    "The cause may be that somebody has edited the graph in the plan file",
                     "Please report this robot",
                 )
             }
@@ -204,7 +209,7 @@ impl fmt::Display for CompileError {
                 let what = match function {
                     _ if function.returns_torques() => "torque",
                     _ if function.returns_accelerations() => "acceleration",
-                    _ => "number that it returns",
+                    _ => "returned number",
                 };
                 write!(
                     f,
@@ -220,9 +225,8 @@ impl fmt::Display for CompileError {
             ),
             Self::TooLarge { function, dof, most } => write!(
                 f,
-                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no \
-                compiler takes in \
-                 reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
+                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler \
+                 can compile in reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
             ),
             Self::PlanDoesNotFit { robot } => {
                 write!(f, "the plan does not fit `{robot}`: one of its choices is not possible for this robot")

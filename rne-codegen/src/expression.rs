@@ -8,7 +8,7 @@ use crate::values::{Negated, Operator, Value, ValueId, Values};
 pub struct Expression<'p> {
     values: &'p Values,
     id: ValueId,
-    /// Whether it stands where it is computed; elsewhere its name stands for it.
+    /// Whether it is printed where it is computed; elsewhere its name stands for it.
     is_definition: bool,
 }
 

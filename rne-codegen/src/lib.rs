@@ -151,7 +151,10 @@ impl<'r> Compiler<'r> {
             return Ok(self.numbered(function, reference, Vec::new()));
         }
         // graphs are those of links alone
-        let of_links = self.plans.get().filter(|_| !(robot.has_rotors() && function.feels_rotors()));
+        let of_links = self
+            .plans
+            .get()
+            .filter(|_| !(robot.has_rotors() && function.feels_rotors()) && function.frame(robot).is_none());
         if let Some(rewritten) = of_links.and_then(|plans| plans.rewritten.get(&function)) {
             let program = rewritten
                 .formulation(robot, function)

@@ -60,6 +60,8 @@ pub(crate) fn lower(
         dof: heading.robot.dof(),
         parameters: heading.robot.run_time.names.len(),
         function: heading.function,
+        frame: heading.function.frame(heading.robot).map(|frame| heading.robot.frame_name(frame).to_owned()),
+        name: heading.function.name_for(heading.robot),
         form: heading.form,
         values: writing.values,
         angles,

@@ -24,6 +24,10 @@ pub struct Program {
     pub parameters: usize,
     /// The function.
     pub function: Function,
+    /// The frame that it is taken at instead of the tip: the name in the robot file.
+    pub frame: Option<String>,
+    /// The name of its code: that of the function, or at a frame `jacobian_of_camera`.
+    pub name: String,
     /// How it is computed.
     pub form: Form,
     /// All values, in the order in which they are computed: arguments, constants, angles, sines and cosines,

@@ -89,7 +89,7 @@ impl fmt::Display for Attempt {
         f.write_str(match self {
             Self::Any => "any reduced form",
             Self::Planned(LeftOut::Nothing) => "the choices of the plan",
-            Self::Planned(LeftOut::Frames) => "the choices of the plan without those of frames",
+            Self::Planned(LeftOut::Frames) => "the choices of the plan, except the choices of frames",
             Self::Planned(LeftOut::Choices) => "regrouped inertial parameters without other choices",
             Self::Planned(LeftOut::Regrouping) => "the reduced recursion without choices",
             Self::EveryValueOnce => "the plain formulas with every value computed once",
@@ -113,13 +113,13 @@ impl fmt::Display for Reason {
                 let largest = largest(function);
                 write!(
                     f,
-                    "it rounds too far from the seven steps, by {rounding:.1e} of the largest {largest}, where \
-                     {most:.0e} is allowed"
+                    "it differs too much from the seven steps by rounding: by {rounding:.1e} of the largest {largest}; \
+                     the limit is {most:.0e}"
                 )
             }
             Self::Error(error) => error.fmt(f),
             Self::Longer { operations, of_seven_steps } => {
-                write!(f, "it takes {operations} operations, and the seven steps take {of_seven_steps}")
+                write!(f, "it needs {operations} operations; the seven steps need {of_seven_steps}")
             }
         }
     }

@@ -41,6 +41,18 @@ pub(crate) struct Chain {
     pub(crate) joints: Vec<ChainJoint>,
     /// Frame of the last moved link → tip frame.
     pub(crate) tip: Pose,
+    /// Other frames that are fixed to its links, or to the base.
+    pub(crate) frames: Vec<ChainFrame>,
+}
+
+/// A frame that is fixed to a link of a chain.
+#[derive(Clone, Debug)]
+pub(crate) struct ChainFrame {
+    pub(crate) name: String,
+    /// The joint that moves the link, from 0; `None` for the base.
+    pub(crate) on: Option<usize>,
+    /// Frame of the moved link, or of the base → this frame.
+    pub(crate) place: Pose,
 }
 
 /// A joint and the link that it moves, whose frame is at the joint.
@@ -106,14 +118,20 @@ pub(crate) fn extract(
         snapping: Snapping { is_on: snap, ..Snapping::default() },
         loose: Vec::new(),
         followers: Vec::new(),
+        frames: Vec::new(),
         told: Extracted {
             base: urdf.links[base].name.clone(),
             tip: urdf.links[tip].name.clone(),
             ..Extracted::default()
         },
     };
-    let mut chain =
-        Chain { base: walk.base(base)?, gravity: Vector::decimal(gravity), joints: Vec::new(), tip: Pose::identity() };
+    let mut chain = Chain {
+        base: walk.base(base)?,
+        gravity: Vector::decimal(gravity),
+        joints: Vec::new(),
+        tip: Pose::identity(),
+        frames: Vec::new(),
+    };
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;
     walk.along(base, &path, &mut chain)?;
     if !walk.loose.is_empty() {
@@ -136,9 +154,10 @@ pub(crate) fn extract(
         let message = format!("joints outside the chain follow moving joints of the chain: {}", some(each));
         let help =
             "these joints carry mass, and no row of the table can describe that this mass moves along; if the mass may \
-             stand still, hold each of these joints by its name".to_owned();
+             stand still, lock each of these joints by its name".to_owned();
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
+    chain.frames = walk.frames;
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
         let others = names(others.iter().map(|&link| &urdf.links[link].name));
@@ -187,7 +206,7 @@ fn joint(urdf: &Urdf, name: &str) -> Result<usize, Report> {
     urdf.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
         let movable = urdf.joints.iter().filter(|joint| joint.kind.has_one_freedom());
         let movable: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
-        let message = format!("there is no joint {} to be locked", quoted(name));
+        let message = format!("there is no joint {}, so it cannot be locked", quoted(name));
         let known = format!("the movable joints are {}", names(&movable));
         urdf.source.error(&(0..0), message, meant(name, movable) + &known)
     })
@@ -331,7 +350,7 @@ fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
     if is_position {
         return Ok(());
     }
-    let message = format!("the joint {} cannot be held at {value}", quoted(&joint.name));
+    let message = format!("the joint {} cannot be locked at {value}", quoted(&joint.name));
     let help = if is_angle {
         format!("an angle is a number below {LARGEST_ANGLE} rad")
     } else {
@@ -352,6 +371,8 @@ struct Walk<'a> {
     loose: Vec<usize>,
     /// Joints off the chain that follow one of it, and which.
     followers: Vec<(usize, usize)>,
+    /// The links, where they are fixed to the chain.
+    frames: Vec<ChainFrame>,
     told: Extracted,
 }
 
@@ -383,7 +404,7 @@ impl Walk<'_> {
         if let Some((lower, upper)) = joint.limits.position.filter(|(lower, upper)| !is_within(value, *lower, *upper)) {
             let name = one_line(&joint.name);
             self.told.remarks.push(format!(
-                "the joint {name} is held at {value}, which is outside of its limits, from {lower} to {upper}"
+                "the joint {name} is locked at {value}, which is outside of its limits, from {lower} to {upper}"
             ));
         }
         let moved = match joint.kind {
@@ -429,7 +450,8 @@ impl Walk<'_> {
         if (followed - value).abs() > 1e-9 * followed.abs().max(1.0) {
             let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
             self.told.remarks.push(format!(
-                "the joint {name} is held at {value}, although it follows {leader}, which holds it at {followed}"
+                "the joint {name} is locked at {value}, although it follows {leader}, whose position would put it at \
+                 {followed}"
             ));
         }
     }
@@ -442,7 +464,7 @@ impl Walk<'_> {
         while let Some(mimic) = joints[leader].mimic.as_ref().filter(|_| !self.locks.contains_key(&leader)) {
             let joint = &joints[leader];
             let error = |message: String| {
-                let help = "correct the `mimic` of this joint, or hold the joint still".to_owned();
+                let help = "correct the `mimic` of this joint, or lock the joint".to_owned();
                 self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name))
             };
             leader = mimic.leader.ok_or_else(|| {
@@ -452,7 +474,9 @@ impl Walk<'_> {
             mimics.push(mimic);
             if mimics.len() > joints.len() {
                 let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
-                return Err(error(format!("the joint {follower} follows {leader}, which follows it in a circle")));
+                return Err(error(format!(
+                    "the joint {follower} follows {leader}, and the `mimic` elements form a circle"
+                )));
             }
         }
         Ok((mimics, leader))
@@ -478,11 +502,9 @@ impl Walk<'_> {
         }
         let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
         self.told.remarks.push(if is_locked {
-            format!("the joint {name} is held still, although it follows {leader}, which moves")
+            format!("the joint {name} is locked, although it follows {leader}, which moves")
         } else {
-            format!(
-                "the joint {name} follows {leader}, which moves; nothing that it carries has mass, so it is held still"
-            )
+            format!("the joint {name} follows {leader}, which moves; no link after it has mass, so rne locks it")
         });
     }
 
@@ -513,6 +535,7 @@ impl Walk<'_> {
         // The frame of the current link in that of the last one that moves.
         let mut pose = Pose::identity();
         self.aside(base, path.first().copied());
+        self.frames_of_base(base, pose, path.first().copied());
         for (i, &index) in path.iter().enumerate() {
             let next = path.get(i + 1).copied();
             let joint = &self.urdf.joints[index];
@@ -547,9 +570,10 @@ impl Walk<'_> {
             }
             if chain.joints.is_empty() {
                 self.aside(joint.child, next);
+                self.frames_of_base(joint.child, pose, next);
                 continue;
             }
-            let body = self.lump(joint.child, pose, next)?;
+            let body = self.lump(joint.child, (chain.joints.len() - 1, pose), next)?;
             if let Some(last) = chain.joints.last_mut() {
                 last.body = last.body + body;
             }
@@ -557,11 +581,12 @@ impl Walk<'_> {
         chain.tip = pose;
         if chain.joints.is_empty() {
             let message =
-                format!("no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
+                format!("there is no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
             return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
         }
         if chain.joints.len() > MAX_JOINTS {
-            let message = format!("{} movable joints; a robot file has at most {MAX_JOINTS}", chain.joints.len());
+            let message =
+                format!("the chain has {} movable joints; a robot file has at most {MAX_JOINTS}", chain.joints.len());
             return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
         }
         Ok(())
@@ -580,7 +605,7 @@ impl Walk<'_> {
         if let Some(mimic) = &joint.mimic {
             let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
             let help = "its torque acts on the joint that it follows, and no row of the table can describe this; end \
-                        the chain before this joint, or hold this joint still"
+                        the chain before this joint, or lock this joint"
                 .to_owned();
             return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
         }
@@ -603,23 +628,25 @@ impl Walk<'_> {
         }
         if let Some((lower, upper)) = joint.crossed {
             self.told.remarks.push(format!(
-                "the joint {name} has a lower limit, {lower}, that is above its upper one, {upper}; both are left out"
+                "the joint {name} has a lower limit, {lower}, above its upper limit, {upper}; rne ignores both limits"
             ));
         }
         for (limit, value) in &joint.negative {
-            let what = format!("the joint {name} has a limit of {limit} below zero, {value}; it is left out");
+            let what = format!("the joint {name} has a negative limit of {limit}, {value}; rne ignores it");
             self.told.remarks.push(what);
         }
     }
 
     /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the
     /// link stands at `pose`.
-    fn lump(&mut self, link: usize, pose: Pose, next: Option<usize>) -> Result<Body, Report> {
+    /// `on` is the joint that moves them.
+    fn lump(&mut self, link: usize, (on, pose): (usize, Pose), next: Option<usize>) -> Result<Body, Report> {
         let mut body = Body::NONE;
         let mut open = vec![(link, pose)];
         while let Some((index, pose)) = open.pop() {
             let link = &self.urdf.links[index];
             self.told.links.insert(index);
+            self.frames.push(ChainFrame { name: link.name.clone(), on: Some(on), place: pose });
             if has_mass(link) {
                 let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
                 let own = Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia);
@@ -635,6 +662,25 @@ impl Walk<'_> {
             open.extend(below.into_iter().rev());
         }
         Ok(body)
+    }
+
+    /// Collects the frames on the base: the link and all links that fixed joints fix to it, but for what hangs on the
+    /// joint `next`.
+    fn frames_of_base(&mut self, link: usize, pose: Pose, next: Option<usize>) {
+        // what is snapped beside the arm changes no torque, and is not told
+        let mut snapping = Snapping { is_on: self.snapping.is_on, ..Snapping::default() };
+        let mut open = vec![(link, pose)];
+        while let Some((index, pose)) = open.pop() {
+            let link = &self.urdf.links[index];
+            self.frames.push(ChainFrame { name: link.name.clone(), on: None, place: pose });
+            for &index in link.children.iter().rev().filter(|&&joint| Some(joint) != next) {
+                let joint = &self.urdf.joints[index];
+                if joint.kind == crate::urdf::Kind::Fixed {
+                    let rpy = snapping.rpy(&joint.name, joint.rpy);
+                    open.push((joint.child, pose * Pose::new(joint.xyz, rpy)));
+                }
+            }
+        }
     }
 
     /// A joint on a link that stands still moves by itself, unless it follows a joint of the chain.

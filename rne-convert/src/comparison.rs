@@ -1,7 +1,7 @@
 //! Differences between two arms, over many states.
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::Robot;
+use rne_model::{Frame, Robot};
 use rne_runtime::{DynArm, Pose};
 
 use crate::dynamics::{Dynamics, State};
@@ -14,9 +14,9 @@ pub(crate) const STATES: usize = 1000;
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Difference {
-    /// The difference of the tip's place, m.
+    /// The difference of the place of the tip or of a named frame, m.
     pub position: f64,
-    /// The difference of the tip's rotation, rad.
+    /// The difference of the rotation of the tip or of a named frame, rad.
     pub rotation: f64,
     /// The difference of a torque or force, relative to the largest of its state.
     pub torque: f64,
@@ -48,10 +48,17 @@ impl Difference {
     /// Between a chain and the table made of it, as the runtime of rne computes that.
     pub(crate) fn of_table(chain: &Dynamics, robot: &Robot) -> Self {
         let arm = DynArm::from_robot(robot);
+        let at = |frame: &Frame| arm.clone().at_frame(frame.fixed);
+        let frames: Vec<DynArm> = robot.frames.iter().filter_map(at).collect();
         let mut difference = Self::default();
         for State { q, qd, qdd } in chain.states(STATES) {
             if let Ok(tip) = arm.forward_kinematics(&q) {
                 difference.tips(chain.tip(&q), placed(&tip));
+            }
+            for (arm, expected) in frames.iter().zip(chain.frames(&q)) {
+                if let Ok(frame) = arm.forward_kinematics(&q) {
+                    difference.tips(expected, placed(&frame));
+                }
             }
             if let Ok(torques) = arm.inverse_dynamics(&q, &qd, &qdd) {
                 difference.torques(&chain.torques(&q, &qd, &qdd), &torques);

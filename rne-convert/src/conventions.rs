@@ -1,11 +1,12 @@
 //! From one convention to the other: the same arm, the same frame 0 where its z axis lies on joint 1.
 
-use rne_model::{Convention, Double, JointKind, Reader, Report, Robot, Row};
+use rne_model::{Convention, Double, Frame, JointKind, Reader, Report, Robot, Row};
 
 use crate::body::Body;
-use crate::chain::{Chain, ChainJoint};
+use crate::chain::{Chain, ChainFrame, ChainJoint};
 use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
+use crate::frames::named_frames;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::import::{remarks, robot as robot_of};
 use crate::robot_file;
@@ -35,6 +36,7 @@ pub fn convert(robot: &Robot, convention: Convention) -> Result<Converted, Repor
     let chain = of_robot(robot);
     let table = table(&chain, convention);
     let mut result = robot_of(&chain, &table, convention);
+    result.frames = named_frames(&chain, &table);
     result.name.clone_from(&robot.name);
     result.title.clone_from(&robot.title);
     result.source.clone_from(&robot.source);
@@ -50,6 +52,7 @@ pub fn convert(robot: &Robot, convention: Convention) -> Result<Converted, Repor
 pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let rows: Vec<&Row> = robot.rows().collect();
     let mut joints = Vec::with_capacity(rows.len());
+    let mut ends = Vec::with_capacity(rows.len());
     // What the row before leaves for the next joint: the end of its link.
     let mut end = Pose::identity();
     for (joint, row) in robot.joints.iter().zip(&rows) {
@@ -69,11 +72,18 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
             coulomb_width: joint.coulomb_width,
             coulomb_displacement: joint.coulomb_displacement,
         });
+        ends.push(after);
         end = after;
     }
+    let frames = robot.frames.iter().map(|Frame { name, fixed }| ChainFrame {
+        name: name.clone(),
+        on: fixed.on,
+        place: fixed.on.map_or_else(Pose::identity, |link| ends[link]) * placement(&fixed.placement),
+    });
+    let frames = frames.collect();
     let base = placement(&robot.base);
     let tip = end * placement(&robot.tool);
-    Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip }
+    Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip, frames }
 }
 
 pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {

@@ -9,12 +9,17 @@ use rne_model::Limits;
 use crate::chain::Chain;
 use crate::geometry::{Pose, Vector};
 
+/// A rotation and a translation.
+type Place = (Matrix3<f64>, Vector3<f64>);
+
 /// A chain in numbers of single length.
 pub(crate) struct Dynamics {
     base: (Matrix3<f64>, Vector3<f64>),
     gravity: Vector3<f64>,
     joints: Vec<Joint>,
     tip: (Matrix3<f64>, Vector3<f64>),
+    /// Each named frame, and how many joints move it.
+    frames: Vec<(usize, Place)>,
 }
 
 struct Joint {
@@ -56,6 +61,11 @@ impl Dynamics {
             gravity: vector(chain.gravity),
             joints: joints.collect(),
             tip: numbers(chain.tip),
+            frames: chain
+                .frames
+                .iter()
+                .map(|frame| (frame.on.map_or(0, |joint| joint + 1), numbers(frame.place)))
+                .collect(),
         }
     }
 
@@ -88,8 +98,19 @@ impl Dynamics {
     }
 
     /// Rotation and translation of the tip frame in the world.
-    pub(crate) fn tip(&self, q: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
-        let places = self.joints.iter().zip(q).map(|(joint, &q)| Self::place(joint, q)).chain([self.tip]);
+    pub(crate) fn tip(&self, q: &[f64]) -> Place {
+        self.carried(self.joints.len(), self.tip, q)
+    }
+
+    /// The named frames in the world, as [`Self::tip`].
+    pub(crate) fn frames(&self, q: &[f64]) -> Vec<Place> {
+        self.frames.iter().map(|(joints, place)| self.carried(*joints, *place, q)).collect()
+    }
+
+    /// A place in the world that the first `joints` joints move.
+    fn carried(&self, joints: usize, place: Place, q: &[f64]) -> Place {
+        let joints = self.joints.iter().zip(q).take(joints);
+        let places = joints.map(|(joint, &q)| Self::place(joint, q)).chain([place]);
         places.fold(self.base, |(r, p), (rotation, translation)| (r * rotation, r * translation + p))
     }
 

@@ -6,7 +6,7 @@ use std::fmt::{self, Write as _};
 use rne_model::{Joint, Motor, Robot, exact_digits, one_line};
 
 use crate::body::Body;
-use crate::chain::{Chain, ChainJoint};
+use crate::chain::{Chain, ChainFrame, ChainJoint};
 use crate::conventions::of_robot;
 use crate::geometry::{Pose, rounded};
 use crate::scan::LARGEST;
@@ -109,8 +109,29 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     }
     text.push_str("  <link name=\"tip\"/>\n");
     fixed(&mut text, "to_tip", (&parent, "tip"), chain.tip);
+    for frame in as_links(&chain, robot) {
+        let carrier = frame.on.map_or_else(|| "base".to_owned(), |joint| format!("link_{}", joint + 1));
+        let _ = writeln!(text, "  <link name=\"{}\"/>", frame.name);
+        fixed(&mut text, &names.unique(&format!("to_{}", frame.name)), (&carrier, &frame.name), frame.place);
+    }
     text.push_str("</robot>\n");
     Ok(Exported { text, gravity, remarks })
+}
+
+/// The named frames as links, whose names differ from those of the other links.
+fn as_links(chain: &Chain, robot: &Robot) -> Vec<ChainFrame> {
+    let is_taken = |name: &str| {
+        let number = name.strip_prefix("link_").and_then(|number| number.parse::<usize>().ok());
+        matches!(name, "world" | "tip") || number.is_some_and(|number| (1..=robot.dof()).contains(&number))
+    };
+    let named = |frame: &ChainFrame| {
+        let mut name = frame.name.clone();
+        while is_taken(&name) || name != frame.name && robot.frames.iter().any(|other| other.name == name) {
+            name.push_str("_frame");
+        }
+        ChainFrame { name, ..frame.clone() }
+    };
+    chain.frames.iter().map(named).collect()
 }
 
 /// Refuses numbers that an import would refuse.
@@ -122,6 +143,9 @@ fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
         };
     check("a coordinate of `base`".to_owned(), &chain.base.translation.to_f64())?;
     check("a coordinate of the tip".to_owned(), &chain.tip.translation.to_f64())?;
+    for frame in &chain.frames {
+        check(format!("a coordinate of the frame {}", frame.name), &frame.place.translation.to_f64())?;
+    }
     for (index, joint) in chain.joints.iter().enumerate() {
         let (link, number) = (joint.body.to_link(), index + 1);
         let i = link.inertia;
@@ -142,7 +166,7 @@ fn of_motors(robot: &Robot) -> Vec<String> {
     let motors = || robot.joints.iter().filter_map(|joint| Some((one_line(&joint.name), joint.motor?)));
     if motors().any(|(_, motor)| motor.inertia != 0.0 || motor.gear_ratio != 1.0) {
         let and =
-            if motors().any(|(_, motor)| Friction::of(&motor).is_some()) { ", but for their friction" } else { "" };
+            if motors().any(|(_, motor)| Friction::of(&motor).is_some()) { ", except their friction" } else { "" };
         remarks.push(format!("motors are left out{and}: a URDF has no place for gears and rotors"));
     }
     let named = |is_so: fn(&Motor) -> bool| {
@@ -166,7 +190,9 @@ fn of_motors(robot: &Robot) -> Vec<String> {
         ));
     }
     if let Some(names) = named(|motor| Friction::at_joint(motor).is_none()) {
-        remarks.push(format!("friction that is too large for a number is left out: {names}"));
+        remarks.push(format!(
+            "the friction of these joints is left out, because it is too large for a 64-bit float: {names}"
+        ));
     }
     remarks
 }

@@ -10,6 +10,7 @@ use rne_model::{
 use crate::chain::{Chain, Extracted, Selection, extract};
 use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
+use crate::frames::{as_identifiers, named_frames};
 use crate::geometry::{Pose, Vector};
 use crate::robot_file;
 use crate::snap::Snapped;
@@ -30,6 +31,8 @@ pub struct Options {
     pub keep_unphysical: bool,
     /// The acceleration of gravity in the axes of the root link, m/s².
     pub gravity: [f64; 3],
+    /// Whether the links of the chain, and the links that are fixed to them, become named frames.
+    pub frames: bool,
     /// The name of the robot, `[a-z][a-z0-9_]*` [default: made of that of the URDF].
     pub name: Option<String>,
 }
@@ -42,6 +45,7 @@ impl Default for Options {
             snap: true,
             keep_unphysical: false,
             gravity: [0.0, 0.0, -9.81],
+            frames: false,
             name: None,
         }
     }
@@ -71,6 +75,8 @@ pub struct Account {
     pub held: Vec<(String, f64)>,
     /// Movable joints on fixed links, which do not belong to the arm.
     pub aside: Vec<String>,
+    /// Links that are frames of the robot file, or that could be, each with its name there.
+    pub frames: Vec<(String, String)>,
     /// Per joint the links with mass that were lumped into one body.
     pub lumped: Vec<(String, Vec<String>)>,
     /// Angles and axes that were taken for what they round.
@@ -116,6 +122,12 @@ impl Urdf {
         let mut robot = robot(&chain, &table, options.convention);
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
         robot.title = title(&self.name);
+        let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
+        let chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };
+        let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
+        if options.frames {
+            robot.frames = named_frames(&chain, &table);
+        }
         robot.source = format!(
             "{}, from {} to {}; imported by rne {}",
             printable(self.source.file_name()),
@@ -144,6 +156,7 @@ impl Urdf {
             base: told.base,
             tip: told.tip,
             held: told.held,
+            frames,
             aside: told.aside,
             snapped: told.snapped,
             change,
@@ -205,13 +218,15 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         tool: transform(table.tool),
         parameters: Vec::new(),
         joints: joints.collect(),
+        frames: Vec::new(),
+        at: None,
         run_time: RunTime::default(),
         rotors: false,
     }
 }
 
 /// A placement of the robot file.
-fn transform(pose: Pose) -> Transform {
+pub(crate) fn transform(pose: Pose) -> Transform {
     let size = |v: Vector| v.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
     let xyz = pose.translation.rounded(size(pose.translation)).map(|x| if x.abs() < 1e-15 { 0.0 } else { x });
     Transform { xyz, rpy: pose.rotation.to_rpy().map(Angle::new) }
@@ -246,7 +261,7 @@ fn printable(text: &str) -> String {
 fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     let mut notes = Vec::new();
     for (joint, value) in &told.held {
-        notes.push(format!("- the joint {} is held at {}", printable(joint), rne_model::exact_digits(*value)));
+        notes.push(format!("- the joint {} is locked at {}", printable(joint), rne_model::exact_digits(*value)));
     }
     notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
     if let Some(Difference { position, torque, .. }) = change {
@@ -286,7 +301,8 @@ impl Urdf {
                 ));
             }
             if let Some(length) = xyz.into_iter().find(|length| length.abs() > FAR) {
-                remarks.push(format!("{what} {name} stands {length} m away: lengths in a URDF are metres"));
+                remarks
+                    .push(format!("{what} {name} has an origin that is {length} m away: lengths in a URDF are metres"));
             }
         }
         remarks
@@ -298,8 +314,8 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
     let mut remarks = Vec::new();
     for (joint, tilt) in &table.levelled {
         remarks.push(format!(
-            "the axes of joints {joint} and {} are {tilt:.1e} rad off parallel and are taken as parallel: their common \
-             normal is too far away for a table",
+            "the axes of joints {joint} and {} are {tilt:.1e} rad off parallel, and rne takes them as parallel: their \
+             common normal is too far away for a table",
             joint + 1
         ));
     }
@@ -307,8 +323,11 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
         if row.dh.d.abs() > FAR || row.dh.a.abs() > FAR {
             let (row, d, a, tilt) = (index + 1, row.dh.d, row.dh.a, row.dh.alpha.sin.abs());
             let is_nearly_parallel = tilt != 0.0 && tilt < NEARLY_PARALLEL;
-            let why =
-                if is_nearly_parallel { ", since two axes are nearly parallel; digits are lost there" } else { "" };
+            let why = if is_nearly_parallel {
+                ", because two axes are nearly parallel; so large numbers lose digits"
+            } else {
+                ""
+            };
             remarks.push(format!("row {row} has d = {d:.0} m and a = {a:.0} m{why}"));
         }
     }

@@ -17,6 +17,7 @@ mod conventions;
 mod description;
 mod dynamics;
 mod export;
+mod frames;
 mod geometry;
 mod import;
 mod kept;

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use rne_model::{Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform, exact_digits};
+use rne_model::{
+    FixedFrame, Frame, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform, exact_digits,
+};
 
 use crate::snap::angle_text;
 
@@ -53,6 +55,13 @@ pub fn write(robot: &Robot) -> String {
         if *placement != Transform::IDENTITY {
             noted(&mut text, &format!("{key}: {}", transform(placement)), "m, rad");
         }
+    }
+    if !robot.frames.is_empty() {
+        noted(&mut text, "frames:", "m, rad");
+    }
+    for Frame { name, fixed: FixedFrame { on, placement } } in &robot.frames {
+        let on = on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name));
+        let _ = writeln!(text, "  - {{name: {name}, on: {on}{}}}", place(placement));
     }
     text.push_str("joints:\n");
     for (index, joint) in robot.joints.iter().enumerate() {
@@ -120,6 +129,20 @@ fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
     if let Some(motor) = motor {
         let _ = writeln!(text, "    motor: {}", motor_text(motor, joint));
     }
+}
+
+/// The keys of a placement that are not zero.
+fn place(placement: &Transform) -> String {
+    let Transform { xyz, rpy } = placement;
+    let mut text = String::new();
+    if *xyz != [0.0; 3] {
+        let _ = write!(text, ", xyz: {}", list(xyz));
+    }
+    if *rpy != Transform::IDENTITY.rpy {
+        let rpy: Vec<String> = rpy.iter().map(|turn| angle(turn.radians)).collect();
+        let _ = write!(text, ", rpy: [{}]", rpy.join(", "));
+    }
+    text
 }
 
 fn transform(placement: &Transform) -> String {

@@ -183,7 +183,7 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
             Ok(Event::Text(words))
                 if scanner.has_robot && scanner.open.is_empty() && !words.trim_ascii().is_empty() =>
             {
-                let message = "text after the element `robot`; a URDF ends with </robot>";
+                let message = "there is text after the element `robot`; a URDF ends with </robot>";
                 return Err(source.error(&place, message, None));
             }
             Ok(Event::Eof) => break,
@@ -264,7 +264,7 @@ impl Scanner<'_> {
                 let message = if self.has_robot {
                     "there is a second element after `robot`, but a URDF has only one robot".to_owned()
                 } else {
-                    format!("the element {} where `robot` is needed: this is no URDF", quoted(name))
+                    format!("found the element {} where `robot` is needed: this is not a URDF", quoted(name))
                 };
                 let help = name.contains("sdf").then(|| "SDF is another format; convert it to URDF first".to_owned());
                 return Err(self.source.error(place, message, help));
@@ -328,12 +328,13 @@ impl Scanner<'_> {
         let meant = did_you_mean(name, matter.iter().chain(others).copied());
         if let Some(meant) = meant.filter(|meant| matter.contains(meant)) {
             let message = format!("there is no {what} {} {between} `{}`", quoted(name), of.name);
-            let help = format!("did you mean `{meant}`? Correct the name, or delete what it names");
+            let help = format!("did you mean `{meant}`? Correct the name, or delete the element or attribute");
             return Err(self.source.error(place, message, help));
         }
         let kind = self.scanned.unknown.len();
         if kind >= MAX_UNKNOWN {
-            let message = format!("more than {MAX_UNKNOWN} names of elements and attributes that no URDF has");
+            let message =
+                format!("the file has more than {MAX_UNKNOWN} names of elements and attributes that no URDF has");
             return Err(self.source.error(place, message, None));
         }
         self.scanned.unknown.push(format!("{what} {} {between} `{}`", quoted(name), of.name));

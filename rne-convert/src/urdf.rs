@@ -219,7 +219,8 @@ impl Urdf {
                     ));
                 };
                 links.get(link).copied().ok_or_else(|| {
-                    let message = format!("the joint {} names the link {}", quoted(name), quoted(link));
+                    let message =
+                        format!("the joint {} refers to the link {}, which does not exist", quoted(name), quoted(link));
                     self.source.error(span, message, "there is no such link in the file".to_owned())
                 })
             };
@@ -231,7 +232,11 @@ impl Urdf {
                     quoted(&self.joints[first].name),
                     quoted(name)
                 );
-                return Err(self.source.error(span, message, "a URDF is a tree: loops cannot be closed".to_owned()));
+                return Err(self.source.error(
+                    span,
+                    message,
+                    "a URDF is a tree and cannot describe closed loops".to_owned(),
+                ));
             }
             self.links[child].parent = Some(index);
             self.links[parent].children.push(index);

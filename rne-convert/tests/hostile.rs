@@ -33,7 +33,7 @@ fn every_mistake_has_its_message_and_its_place() {
         ("0 0 1", "0 0", 4, "it must be three numbers"),
         ("0 0 1", "0 zero 0 1", 4, "`xyz` of `origin` is `0 zero 0 1`; it must be three numbers"),
         ("0 0 1", "0 0 inf", 4, "it must be three numbers"),
-        ("parent link=\"a\"", "parent link=\"x\"", 4, "the joint `j` names the link `x`"),
+        ("parent link=\"a\"", "parent link=\"x\"", 4, "the joint `j` refers to the link `x`, which does not exist"),
         ("child link=\"b\"", "child link=\"a\"", 2, "the link `a` is part of a circle of joints"),
         ("<link name=\"a\"/>", "<link name=\"b\"/>", 3, "the link `b` is already defined in line 2"),
         ("<link name=\"a\"/>", "<link name=\"a\"/><link name=\"c\"/>", 2, "no joint moves the links `a`, `c`"),
@@ -123,9 +123,9 @@ fn what_is_not_known_is_noted() {
     let no_axis = remarks(&with("type=\"revolute\"", "type=\"prismatic\""));
     assert_eq!(no_axis, ["the joint j has no element `axis`, so its axis is 1 0 0"]);
     let crossed = remarks(&axis(with("effort=", "lower=\"2\" upper=\"-1\" effort=")));
-    assert_eq!(crossed, ["the joint j has a lower limit, 2, that is above its upper one, -1; both are left out"]);
+    assert_eq!(crossed, ["the joint j has a lower limit, 2, above its upper limit, -1; rne ignores both limits"]);
     let negative = remarks(&axis(with("effort=\"1\"", "effort=\"-1\"")));
-    assert_eq!(negative, ["the joint j has a limit of effort below zero, -1; it is left out"]);
+    assert_eq!(negative, ["the joint j has a negative limit of effort, -1; rne ignores it"]);
 }
 
 /// As many names as a text has room for take no time and no room of their own.

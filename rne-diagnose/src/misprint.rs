@@ -27,9 +27,9 @@ macro_rules! misprints {
 misprints! {
     E1ThirdColumn: "step 1: the third column of Qᵀ is (0, -1, -1), as printed (E1)",
         "Qᵀ has the third column (0, sin α, cos α)";
-    E2WrongQ: "step 1: Q of the link itself stands where that of the link before belongs (E2)",
+    E2WrongQ: "step 1: Q of the link itself is used in place of Q of the previous link (E2)",
         "ω_i = Q_{i-1}ᵀ ω_{i-1} + …: Q_{i-1} leads from frame i to frame i-1";
-    E3LeftSide: "step 2: ω stands on the left side instead of ω̇, as printed (E3)",
+    E3LeftSide: "step 2: the left side is ω instead of ω̇, as printed (E3)",
         "ω̇_i = Q_{i-1}ᵀ ω̇_{i-1} + …";
     E4TurnedTwice: "step 2, sliding joint: ω̇ is turned twice (E4)",
         "ω̇_i = Q_{i-1}ᵀ [ω̇_{i-1}]_{i-1}";
@@ -41,7 +41,7 @@ misprints! {
         "[r_i]_i = Q_i [r_i]_{i+1}";
     E8OffsetForD: "step 3: d is the joint offset (E8)",
         "d_i = a_i - r_i, from O_i to the centre of mass";
-    E9FramesBefore: "step 3: a is that of the frames before (E9)",
+    E9FramesBefore: "step 3: a is taken from the previous row (E9)",
         "a_i leads from O_i to O_{i+1}";
     E10ForceNotTurned: "step 6: the force of the next link is not turned into this frame (E10)",
         "[f_{i,i+1}]_i = Q_i [f_{i,i+1}]_{i+1}";
@@ -50,10 +50,10 @@ misprints! {
     E11InertiaNotTurned: "step 6: the inertia is not turned into this frame (E11)",
         "[I_i]_i = Q_i [I_i]_{i+1} Q_iᵀ";
     E13GroundFrame: "step 5: gravity is turned by the first joint (E13)",
-        "Q_0 = 1: gravity stands in the frame of joint 1";
+        "Q_0 = 1: gravity is given in the frame of joint 1";
     E17AxisX: "step 7: the joint's axis is x (E17)",
         "e = (0, 0, 1)";
-    E22NoJointRate: "step 1: ω of the link before, without the joint's own rate (E22)",
+    E22NoJointRate: "step 1: ω is that of the previous link, without the joint's own rate (E22)",
         "revolute: ω_i = Q_{i-1}ᵀ ω_{i-1} + θ̇_i e_i";
     CoriolisOnce: "step 4, sliding joint: ḃ ω × e without its factor 2",
         "c̈_i = … + 2 ḃ_i ω_i × e_i";

@@ -242,27 +242,29 @@ impl Slip {
             Convention::Modified => ["near", "far"],
         };
         match self {
-            Self::OtherConvention => format!("the rows are read as {other} ones; in the file they are {this}"),
+            Self::OtherConvention => {
+                format!("the rows are read in the {other} convention; the file has the {this} convention")
+            }
             Self::GravityReversed => "gravity points the other way".to_owned(),
             Self::NoGravity => "there is no gravity".to_owned(),
             Self::GravityAlong(axis, reversed) => {
                 let sign = if reversed { "-" } else { "" };
                 format!("gravity points along {sign}{} of frame 0", ["x", "y", "z"][axis.min(2)])
             }
-            Self::GravityInWorld => "gravity stands in the axes of the world, and the base turns it".to_owned(),
+            Self::GravityInWorld => "gravity is taken in world axes, and is rotated by `base`".to_owned(),
             Self::InertiaAboutOrigin => match reference(robot) {
                 InertiaReference::Com => {
-                    "inertias about the centre of mass are taken for those about the frame's origin"
+                    "inertias about the centre of mass are read as inertias about the frame's origin"
                 }
                 InertiaReference::Origin => "the parallel axis term is subtracted from the inertias twice",
             }
             .to_owned(),
             Self::InertiaShifted => match reference(robot) {
                 InertiaReference::Com => {
-                    "inertias about the frame's origin stand where those about the centre of mass belong"
+                    "inertias about the frame's origin are used in place of inertias about the centre of mass"
                 }
                 InertiaReference::Origin => {
-                    "inertias about the frame's origin are taken for those about the centre of mass"
+                    "inertias about the frame's origin are read as inertias about the centre of mass"
                 }
             }
             .to_owned(),
@@ -274,31 +276,34 @@ impl Slip {
                 )
             }
             Self::ComOfOtherEnd => {
-                format!("centres of mass from the {far} end of the link stand where those from its {near} end belong")
+                format!(
+                    "centres of mass measured from the {far} end of the link are used in place of those measured from \
+                     its {near} end"
+                )
             }
-            Self::PositionsAsDegrees => "the angles, which are radians, are taken for degrees".to_owned(),
-            Self::PositionsInDegrees => "the angles are taken for radians and multiplied by 180/π".to_owned(),
+            Self::PositionsAsDegrees => "the angles are in radians, but are read as degrees".to_owned(),
+            Self::PositionsInDegrees => "the angles are multiplied by 180/π, and then read as radians".to_owned(),
             Self::StateAsDegrees => {
-                "angles, speeds and accelerations, which are of radians, are taken for those of degrees".to_owned()
+                "angles, speeds and accelerations are in rad, rad/s and rad/s², but are read as degrees".to_owned()
             }
             Self::StateInDegrees => "angles, speeds and accelerations are multiplied by 180/π".to_owned(),
             Self::NoOffsets => "the constant `theta` (or `d`) of the joints' rows is left out".to_owned(),
             Self::OffsetsReversed => "the constant `theta` (or `d`) of the joints' rows has the other sign".to_owned(),
             Self::JointReversed(joint) => {
                 let name = robot.joints.get(joint).map_or("", |joint| &joint.name);
-                format!("joint {} ({name}) counts the other way", joint + 1)
+                format!("joint {} ({name}) has the opposite positive direction", joint + 1)
             }
             Self::NoVelocities => "the velocities are zero: no Coriolis and centrifugal terms".to_owned(),
             Self::NoAccelerations => "the accelerations are zero: no inertia terms".to_owned(),
-            Self::NoFirstSlide => "the acceleration of a first joint that slides is dropped".to_owned(),
+            Self::NoFirstSlide => "the acceleration of a prismatic first joint is ignored".to_owned(),
             Self::RotorInertia => "the rotors' inertia G² Jm is part of the arm".to_owned(),
             Self::MotorTorques => "the motors' inertia and friction are in the torques".to_owned(),
             Self::WrenchReversed => "the wrench is what the environment exerts on the arm".to_owned(),
             Self::NoWrench => "the wrench is left out".to_owned(),
             Self::NoTool => "the wrench acts at the last frame: the tool is left out".to_owned(),
             Self::TorquesReversed => "the torques are what the arm exerts on its motors".to_owned(),
-            Self::TorquesFromTheTip => "the torques stand from tip to base".to_owned(),
-            Self::TorquesInNmm => "the torques of turning joints are in N mm".to_owned(),
+            Self::TorquesFromTheTip => "the torques are listed from tip to base".to_owned(),
+            Self::TorquesInNmm => "the torques of revolute joints are in N mm".to_owned(),
             Self::RatesExchanged => "velocities and accelerations are exchanged".to_owned(),
             Self::Misprint(misprint) => misprint.says().to_owned(),
             Self::Typo(typo) => typo.says(robot),
@@ -337,18 +342,20 @@ impl Slip {
             Self::PositionsAsDegrees | Self::PositionsInDegrees => "q in rad: deg(30) is pi/6".to_owned(),
             Self::StateAsDegrees | Self::StateInDegrees => "q, q̇ and q̈ in rad, rad/s and rad/s²".to_owned(),
             Self::NoOffsets | Self::OffsetsReversed => {
-                "the joint's angle is theta + q, its offset d + q where it slides".to_owned()
+                "the joint angle is theta + q; the offset of a prismatic joint is d + q".to_owned()
             }
-            Self::JointReversed(_) => "q, q̇, q̈ and τ count about +z of the joint's axis".to_owned(),
+            Self::JointReversed(_) => {
+                "q, q̇, q̈ and τ are positive about (prismatic joints: along) +z of the joint".to_owned()
+            }
             Self::NoVelocities => "n = I ω̇ + ω × I ω, and c̈ with its ω × (ω × …)".to_owned(),
-            Self::NoAccelerations => "the torques of M(q) q̈ belong to it".to_owned(),
+            Self::NoAccelerations => "τ includes M(q) q̈".to_owned(),
             Self::NoFirstSlide => {
-                "known of the C code of the Robotics Toolbox for MATLAB; its MATLAB code is right".to_owned()
+                "the C code of the Robotics Toolbox for MATLAB has this mistake; its MATLAB code is right".to_owned()
             }
             Self::RotorInertia => {
-                "the file's links alone; the rotors of its motors are added only where they are asked for".to_owned()
+                "the arm consists of the links of the file; rotors are added only on request".to_owned()
             }
-            Self::MotorTorques => "the joints' torques alone; the motors' are `actuator_torques`".to_owned(),
+            Self::MotorTorques => "τ is without motors; `actuator_torques` adds their inertia and friction".to_owned(),
             Self::WrenchReversed => {
                 "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w".to_owned()
             }
@@ -356,7 +363,7 @@ impl Slip {
             Self::NoTool => "the wrench acts at the tip frame, in its axes: frame n, then `tool`".to_owned(),
             Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
             Self::TorquesFromTheTip => "lists run from base to tip".to_owned(),
-            Self::TorquesInNmm => "N m where a joint turns, N where it slides".to_owned(),
+            Self::TorquesInNmm => "N m for a revolute joint, N for a prismatic joint".to_owned(),
             Self::RatesExchanged => "q̇ before q̈: τ(q, q̇, q̈)".to_owned(),
             Self::Misprint(misprint) => misprint.right().to_owned(),
             Self::Typo(typo) => typo.right(robot),

@@ -84,6 +84,6 @@ impl Typo {
     pub fn right(self, robot: &Robot) -> String {
         let (what, value, unit) = self.number(robot);
         let value: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-        format!("in the file {what} is {value} {unit}; look at the source which of both is right")
+        format!("in the file {what} is {value} {unit}; check in the source of the numbers which sign is right")
     }
 }

@@ -116,6 +116,7 @@ fn words(entry: Entry) -> (String, &'static str) {
         Entry::Gravity(of) => (format!("{} of gravity", axis(of)), "m/s²"),
         Entry::BaseXyz(of) => (format!("{} of the base", axis(of)), "m"),
         Entry::ToolXyz(of) => (format!("{} of the tool", axis(of)), "m"),
+        Entry::FrameXyz(frame, of) => (format!("{} of frame {}", axis(of), frame + 1), "m"),
         Entry::D(joint) => (format!("d{}", joint + 1), "m"),
         Entry::A(joint) => (format!("a{}", joint + 1), "m"),
         Entry::ThetaSine(joint) => (format!("sin θ{}", joint + 1), "1"),

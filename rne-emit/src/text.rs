@@ -205,16 +205,25 @@ pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
 }
 
+/// Describes the frame that stands in the place of the tip; `None` for a program of the tip.
+pub(super) fn about_frame(program: &Program) -> Option<String> {
+    let frame = program.frame.as_ref()?;
+    Some(format!("The frame {frame} stands in the place of the tip, and its link in the place of the last link."))
+}
+
 fn function(robot: &Robot, program: &Program) -> String {
     let arrays = program.arrays_without_parameters();
     let mut text = format!("/// {}\n", program.function.summary());
+    if let Some(frame) = about_frame(program) {
+        let _ = writeln!(text, "///\n/// {}", markdown(&frame));
+    }
     text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
     let mut parameters: Vec<String> =
         arrays.iter().map(|ArgumentArray { name, elements }| format!("{name}: &[T; {}]", elements.len())).collect();
     if parameters::are_used(program) {
         parameters.push("parameters: &Parameters<T>".to_owned());
     }
-    let start = format!("pub fn {}<T: Scalar>(", program.function);
+    let start = format!("pub fn {}<T: Scalar>(", program.name);
     let end = format!(") -> {} {{", returned_type(&program.function.layout(program.dof)));
     let line = format!("{start}{}{end}\n", parameters.join(", "));
     if line.len() <= WIDTH + 1 {

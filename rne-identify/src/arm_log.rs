@@ -11,7 +11,7 @@ use rne_logs::{Log, Motion, Motions, Options, Survey, UtcTime};
 use rne_model::{Robot, one_line};
 
 pub use self::error::{ArmLogError, Mismatch, PassError};
-pub use self::joints::{check_units, joint_options};
+pub use self::joints::{JointMatch, check_units, joint_options, match_joints};
 use self::low_pass::{PART, WIDER, check_cutoff, highest};
 pub use self::remark::ArmLogRemark;
 

@@ -31,7 +31,8 @@ mod verdict;
 mod written;
 
 pub use arm_log::{
-    ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, Mismatch, Part, PassError, Purpose, check_units, joint_options,
+    ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, JointMatch, Mismatch, Part, PassError, Purpose, check_units,
+    joint_options, match_joints,
 };
 pub use excitation::{BaseExcitation, Excitation, ExcitationOptions, ExcitationProgress, JointUse, excite};
 pub use excitation_error::ExcitationError;

@@ -168,7 +168,8 @@ impl std::fmt::Display for WrongColumns {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "rows of {} columns, not {}: the rows come from another robot or another choice of friction",
+            "the rows have {} columns, but this robot needs {}: the rows come from another robot or another choice of \
+             friction",
             self.found, self.expected
         )
     }

@@ -105,7 +105,7 @@ fn head(identification: &Identification) -> String {
 fn of_link(identification: &Identification, report: &JointReport, joint: usize) -> String {
     let unit = identification.robot.joints[joint].row.kind.effort_unit();
     if let (true, Some((offset, _))) = (report.is_excited(), report.offset) {
-        format!("identified: an offset of {} {unit} is more than its Coulomb friction holds", short(offset))
+        format!("identified: its offset of {} {unit} is more than its Coulomb friction can store", short(offset))
     } else if report.is_excited() {
         format!(
             "identified: error {:.1} %, residual {} {unit}",
@@ -114,11 +114,11 @@ fn of_link(identification: &Identification, report: &JointReport, joint: usize) 
         )
     } else if report.error.as_read < 10.0 {
         format!(
-            "joint not excited: no model explains {:.0} % of its effort before the low-pass",
+            "joint not excited: no model explains {:.0} % of its effort before the low-pass filter",
             100.0 * report.error.as_read
         )
     } else {
-        "joint not excited: its effort does not change but by noise".to_owned()
+        "joint not excited: its effort changes only by noise".to_owned()
     }
 }
 

@@ -151,7 +151,7 @@ fn a_dead_channel_is_of_no_account() {
             assert!((base.value - truth).abs() < 5.0 * base.deviation + 1e-6, "{noise} {base:?} {truth}");
         }
         let text = found.robot_file("a log");
-        assert!(text.contains("joint not excited: its effort does not change but by noise"), "{text}");
+        assert!(text.contains("joint not excited: its effort changes only by noise"), "{text}");
     }
 }
 

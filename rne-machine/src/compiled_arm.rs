@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{CompileError, Compiler, Form, Function, Target};
-use rne_model::{Reader, Robot, plan_of, read_file};
+use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Target};
+use rne_model::{FrameId, Reader, Robot, UnknownFrame, plan_of, read_file};
 use rne_runtime::VectorUnit;
 use rne_runtime::machine::Destination;
 use rne_search::PlanFile;
@@ -52,6 +52,8 @@ struct Compiled {
     /// Plans of the plan file, or plans that are chosen at the first use.
     plans: OnceLock<PlanSet>,
     functions: Box<[OnceLock<Result<CompiledFunction, CompileError>>]>,
+    /// This arm at the frames that were asked for.
+    at: Mutex<Vec<(FrameId, CompiledArm)>>,
 }
 
 /// Arms that were read before, the latest last, by what was read: the same text gives the same arm, compiled.
@@ -172,7 +174,7 @@ impl CompiledArm {
     fn new(robot: Robot, form: Form, file: Option<PlanFile>, plans: Option<PlanSet>) -> Self {
         let plans = file.clone().map(PlanSet::from).or(plans).map_or_else(OnceLock::new, OnceLock::from);
         let functions = Function::ALL.iter().map(|_| OnceLock::new()).collect();
-        Self(Arc::new(Compiled { robot, form, file, plans, functions }))
+        Self(Arc::new(Compiled { robot, form, file, plans, functions, at: Mutex::default() }))
     }
 
     /// Returns this arm in another form. The default is the reduced form, with the fewest operations.
@@ -204,6 +206,25 @@ impl CompiledArm {
         Self::new(robot.clone().with_rotors(), *form, file.clone(), plans.get().cloned())
     }
 
+    /// Returns this arm with a frame in the place of the tip: the functions of a frame, such as
+    /// [`jacobian`](Self::jacobian), are those of the frame. Other functions stay those of the tip. `name` is that of a
+    /// frame in the list `frames` of the robot file, or that of a joint for its link frame. The same frame asked for
+    /// again gives the same arm, compiled.
+    ///
+    /// # Errors
+    /// When neither a frame nor a joint has this name.
+    pub fn at_frame(&self, name: &str) -> Result<Self, UnknownFrame> {
+        let Compiled { robot, form, file, plans, at, .. } = &*self.0;
+        let frame = robot.frame(name)?;
+        let mut at = at.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, arm)) = at.iter().find(|(other, _)| *other == frame) {
+            return Ok(arm.clone());
+        }
+        let arm = Self::new(robot.clone().at_frame(frame), *form, file.clone(), plans.get().cloned());
+        at.push((frame, arm.clone()));
+        Ok(arm)
+    }
+
     /// The table.
     #[must_use]
     pub fn robot(&self) -> &Robot {
@@ -227,10 +248,11 @@ impl CompiledArm {
     /// # Errors
     /// When it cannot be compiled for this robot: its numbers overflow, say.
     pub fn function(&self, function: Function) -> Result<&CompiledFunction, EvaluationError> {
-        let Compiled { robot, form, plans, functions, .. } = &*self.0;
+        let Compiled { robot, form, file, plans, functions, .. } = &*self.0;
         let compiled = functions[function as usize].get_or_init(|| {
             let mut compiler = Compiler::new(robot).for_target(Target::Throughput);
-            if *form == Form::Reduced {
+            // what has no plan does not wait until one is found
+            if *form == Form::Reduced && (file.is_some() || Algorithm::is_planned(function)) {
                 compiler = compiler.with_plans(plans.get_or_init(|| PlanSet::default_of(robot)).clone());
             }
             CompiledFunction::new(compiler.compile(function, *form)?)

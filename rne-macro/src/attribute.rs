@@ -223,7 +223,7 @@ fn string(input: ParseStream<'_>, key: &str) -> syn::Result<LitStr> {
     let start = input.fork();
     input.parse().map_err(|error: syn::Error| {
         let is_macro = start.parse::<Path>().is_ok() && start.peek(Token![!]);
-        let hint = if is_macro { "; macros are not expanded here" } else { "" };
+        let hint = if is_macro { "; rne does not expand macros in it" } else { "" };
         syn::Error::new(error.span(), format!("the value of `{key}` must be a string literal{hint}"))
     })
 }

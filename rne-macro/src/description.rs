@@ -9,7 +9,7 @@ use rne_model::Robot;
 pub(crate) fn robot(robot: &Robot) -> String {
     let rne_emit::Heading { title, source, frames, table, .. } = rne_emit::Heading::of(robot);
     let text = format!("{title}\n{source}\n\n{frames}\n\n{table}");
-    format!("The robot that this type stands for, at compile time.\n\n{}", rne_emit::verbatim(&text))
+    format!("The robot that this type represents, as a constant at compile time.\n\n{}", rne_emit::verbatim(&text))
 }
 
 /// Describes the result of folding for each program.
@@ -36,8 +36,9 @@ pub(crate) fn method(robot: &Robot, program: &Program, of_trait: &str) -> String
         format!("Its steps, for joint i, h = i - 1, j = i + 1:\n\n{}\n\n", rne_emit::verbatim(&steps.join("\n")))
     };
     format!(
-        "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} sums.\n\n\
-         {steps}What a name is computed from: `rne explain NAME FILE`. Signs and units: [`trait@{of_trait}`].",
+        "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} \
+         sums.\n\n{steps}`rne explain NAME FILE` explains how a name is computed. Signs and units: \
+         [`trait@{of_trait}`].",
         program.function.summary(),
         after.mul,
         after.add,

@@ -82,6 +82,29 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     quote!(#errors #warnings #misnamed #watched #plan #code)
 }
 
+/// The derive of `FrameKinematics`: the functions of the tip that can be taken at a frame, at each frame. No plan has a
+/// part in them.
+pub(crate) fn frame_kinematics(input: TokenStream) -> TokenStream {
+    let item: DeriveInput = match syn::parse2(input) {
+        Ok(item) => item,
+        Err(error) => return error.to_compile_error(),
+    };
+    let mut errors = Errors::default();
+    is_struct(&item, &mut errors);
+    let attribute = Attribute::parse(&item, &mut errors);
+    let parameters = Parameters::of(&item, &mut errors);
+    let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
+    let target = Target { item: &item, krate: &attribute.krate, inline: attribute.inline };
+    let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
+    let code =
+        match loaded.robot.and_then(|robot| target.frames(&robot, attribute.form, &parameters, span, &mut errors)) {
+            Some(code) => code,
+            None => target.frames_stub(),
+        };
+    let (watched, errors) = (loaded.watched, errors.into_tokens());
+    quote!(#errors #watched #code)
+}
+
 fn is_struct(item: &DeriveInput, errors: &mut Errors) {
     let (kind, span) = match &item.data {
         Data::Struct(_) => return,

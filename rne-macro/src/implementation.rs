@@ -97,7 +97,7 @@ impl Target<'_> {
         }
     }
 
-    fn method(&self, robot: &Robot, program: &Program, parameters: &Parameters) -> TokenStream {
+    pub(crate) fn method(&self, robot: &Robot, program: &Program, parameters: &Parameters) -> TokenStream {
         let krate = self.krate;
         let (scalar, library, arithmetic) = (quote!(#krate::Scalar), quote!(#krate), quote!(A));
         let is_asked = self.asks_processor(program);
@@ -128,14 +128,20 @@ impl Target<'_> {
         });
         let (count, parameters) = (parameters.names().len(), parameters.read(krate));
         let dof = Literal::usize_unsuffixed(program.dof);
-        let of_trait = format_ident!("{}", function.capability().name());
+        let of_trait = match program.frame {
+            Some(_) => format_ident!("AtFrame"),
+            None => format_ident!("{}", function.capability().name()),
+        };
         let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
         let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
         let dof = quote!(#dof);
         let body = quote!(#wrench #payload #base #body);
         let body =
             if is_asked { self.call(function, &dof, count, &parameters, &body) } else { quote!(#parameters #body) };
-        let method = self.signature(function, &dof, &body);
+        let method = match program.frame {
+            Some(_) => self.signature_at_frame(function, &dof, &body),
+            None => self.signature(function, &dof, &body),
+        };
         quote!(#[doc = #documentation] #method)
     }
 
@@ -218,7 +224,17 @@ impl Target<'_> {
 
     /// A method of the trait with the given body, in which `T` is the scalar.
     fn signature(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
-        let (krate, name) = (self.krate, format_ident!("{}", function.name()));
+        self.signature_named(function.name(), function, dof, body)
+    }
+
+    /// A method of the trait `AtFrame`, as [`Self::signature`].
+    pub(crate) fn signature_at_frame(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
+        let name = format!("{}_at_frame", function.of_frame().unwrap_or_default());
+        self.signature_named(&name, function, dof, body)
+    }
+
+    fn signature_named(&self, name: &str, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
+        let (krate, name) = (self.krate, format_ident!("{name}"));
         let (names, kinds): (Vec<_>, Vec<_>) = self.arguments(function, dof, &quote!()).into_iter().unzip();
         let returned = self.returned(function.shape(), dof);
         let method = quote! {
@@ -276,7 +292,7 @@ impl Target<'_> {
 
     /// The visibility of the type. Its `pub` counts as generated: with that of the user, so would the constants count
     /// as the user's, and the compiler would warn of each that is never used.
-    fn visibility(&self) -> Visibility {
+    pub(crate) fn visibility(&self) -> Visibility {
         let mut visibility = self.item.vis.clone();
         match &mut visibility {
             Visibility::Public(token) => token.span = Span::call_site(),

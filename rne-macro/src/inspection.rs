@@ -16,8 +16,8 @@ pub(crate) fn write(robot: &Robot, capability: Capability, form: Form, programs:
     let folder = out.join("rne");
     let file = folder.join(file_name(robot, capability, form));
     let text = format!(
-        "// What `#[derive({})]` makes of this robot, for reading: the compiler wrote it for `#[robot(inspect)]`.\n\
-         // `rne explain NAME FILE` tells of one name what it is computed from; FILE is the robot file.\n\n{}",
+        "// What `#[derive({})]` makes of this robot, for reading: the compiler wrote it for `#[robot(inspect)]`.\n// \
+         `rne explain NAME FILE` explains how one name is computed; FILE is the robot file.\n\n{}",
         capability.name(),
         rne_emit::rust_file(robot, programs)
     );

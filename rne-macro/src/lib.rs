@@ -9,6 +9,7 @@ mod batch;
 mod description;
 mod error;
 mod expand;
+mod frames;
 mod implementation;
 mod inspection;
 mod location;
@@ -69,7 +70,7 @@ pub fn derive_forward_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ForwardDynamics, input.into()).into()
 }
 
-/// Implements the trait `Kinematics` for a struct: tip pose, link poses, Jacobian and J̇ q̇.
+/// Implements the trait `Kinematics` for a struct: tip pose, link poses, Jacobian, J̇ q̇ and torques of a wrench.
 ///
 /// `base` and `tool` of the robot file included.
 ///
@@ -79,6 +80,23 @@ pub fn derive_forward_dynamics(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(Kinematics, attributes(robot))]
 pub fn derive_kinematics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Kinematics, input.into()).into()
+}
+
+/// Implements the traits `AtFrame` and `FrameKinematics` for a struct: pose, Jacobian, J̇ q̇ and torques of a wrench of
+/// every frame in the list `frames` of the robot file, and of every link frame.
+///
+/// The type gets the function `frame`, which turns a name into the constant that the methods take, and the constant
+/// `FRAME_NAMES`. A name is that of a frame, or that of a joint for its link frame:
+///
+/// ```ignore
+/// let jacobian = MyArm.jacobian_of::<{ MyArm::frame("camera") }, _>(&q);
+/// ```
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops`, `tests` and `inspect` concern other
+/// derives.
+#[proc_macro_derive(FrameKinematics, attributes(robot))]
+pub fn derive_frame_kinematics(input: TokenStream) -> TokenStream {
+    expand::frame_kinematics(input.into()).into()
 }
 
 /// Implements the trait `Energy` for a struct: kinetic and potential energy.

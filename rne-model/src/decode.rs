@@ -285,6 +285,7 @@ fn how_to_write(key: &str) -> Option<&'static str> {
              Rz(theta) Tz(d)); rne never guesses the convention"
         }
         "gravity" => "write the acceleration of gravity in frame 0 in m/s², such as `gravity: [0, 0, -9.81]`",
+        "on" => "write the name of the joint that moves the link, such as `on: joint6`, or `on: base` for frame 0",
         "type" => "write `type: revolute` or `type: prismatic`",
         "dh" | "theta" | "d" | "a" | "alpha" => {
             "all four numbers of `dh` are required, such as `dh: {theta: 0, d: 0.4, a: 0, alpha: pi/2}`"
@@ -341,7 +342,7 @@ fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
         "mass" | "com" | "first_moment" | "inertia" | "inertia_about" | "physical" => "link",
         "position" | "velocity" | "effort" => "limits",
         "gear_ratio" | "viscous" | "coulomb" | "coulomb_width" | "coulomb_displacement" => "motor",
-        "xyz" | "rpy" => "base` or `tool",
+        "xyz" | "rpy" => "base`, `tool` or an entry of `frames",
         "<<" => return Some("YAML merge keys are not part of the format; write the keys out".to_owned()),
         "offset" => return Some("write the offset of the joint as the constant in `theta` or `d`".to_owned()),
         _ => return None,
@@ -458,8 +459,8 @@ fn no_joint(what: &str, word: &str) -> Option<String> {
     (what == "joint type").then_some(())?;
     Some(match word.to_lowercase().as_str() {
         "fixed" => {
-            "a fixed joint has no row: add the mass, com and inertia of its link to the link before it; after the last \
-             joint, write its offset as `tool`"
+            "a robot file has no row for a fixed joint: add the mass, com and inertia of its link to the link before \
+             it; after the last joint, write its offset as `tool`"
                 .to_owned()
         }
         "floating" | "planar" | "spherical" | "ball" | "universal" | "cylindrical" | "screw" => {

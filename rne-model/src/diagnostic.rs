@@ -16,12 +16,12 @@ pub enum Remedy {
     },
     /// The tree of a URDF has several ends: the link at the tip must be named.
     NameTip,
-    /// A joint of a URDF can be held still by its name.
+    /// A joint of a URDF can be locked by its name.
     LockJoint {
         /// The name of the joint.
         joint: String,
     },
-    /// The movable joints off the chain can be held still, each by its name or all at zero.
+    /// The movable joints off the chain can be locked, each by its name or all at zero.
     LockOthers,
     /// A body whose inertia no physical body has can be kept.
     KeepUnphysical,

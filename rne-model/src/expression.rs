@@ -590,7 +590,7 @@ impl<'t> Parser<'t> {
                 return Err(mistake);
             }
             return Err(wrong(
-                "an operator is missing, or the number is cut short",
+                "an operator is missing, or the number is incomplete",
                 "write a product with `*`, and write no unit",
             ));
         }
@@ -631,7 +631,7 @@ impl<'t> Parser<'t> {
                 Mistake::new(place, "the expression ends where a number or a name is needed")
             }
             Some(c) => foreign(c, range.clone()).unwrap_or_else(|| {
-                Mistake::new(range, format!("{} stands where a number or a name is needed", quoted(&c.to_string())))
+                Mistake::new(range, format!("found {} where a number or a name is needed", quoted(&c.to_string())))
             }),
         }
     }
@@ -643,7 +643,7 @@ impl<'t> Parser<'t> {
             return mistake;
         }
         foreign(c, range.clone()).unwrap_or_else(|| {
-            Mistake::new(range, format!("{} stands where an operator is needed", quoted(&c.to_string())))
+            Mistake::new(range, format!("found {} where an operator is needed", quoted(&c.to_string())))
         })
     }
 
@@ -674,7 +674,7 @@ impl<'t> Parser<'t> {
 /// `.nan`, `NaN`, `.inf`: what other readers take for a number.
 fn no_digits(found: &str, range: Range<usize>) -> Mistake {
     Mistake::new(range, format!("{} is not a number here: numbers are finite and written in digits", quoted(found)))
-        .help(format!("leave out a limit that is unknown; {ALLOWED}"))
+        .help(format!("delete a limit that is unknown; {ALLOWED}"))
 }
 
 /// Characters that come with numbers copied from papers and other formats.
@@ -686,7 +686,7 @@ fn foreign(c: char, range: Range<usize>) -> Option<Mistake> {
         '°' => "write `deg(…)`",
         '²' | '³' => "write a power with `^`",
         ',' => "the decimal sign is a point",
-        '~' => "leave the key out instead",
+        '~' => "delete the key instead",
         _ => return None,
     };
     Some(Mistake::new(range, format!("{} is not part of an expression", quoted(&c.to_string()))).help(help))

@@ -153,7 +153,7 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
         // the first that is too many, or the last that is there
         let place = cells.get(names.len()).or(cells.last()).map_or(0..0, |(_, place)| place.clone());
         let columns = if cells.len() == 1 { "column" } else { "columns" };
-        let message = format!("{} {columns}, but the header has {}", cells.len(), names.len());
+        let message = format!("the line has {} {columns}, but the header has {}", cells.len(), names.len());
         problems.push(
             Diagnostic::error(place, message).help("write one number per column, with commas between the numbers"),
         );
@@ -229,9 +229,9 @@ mod tests {
         for (found, expected) in [
             (said(&format!("# tolerence: 1e-1\n{HEADER}")), "1:3: error: `tolerence: 1e-1` sets no tolerance"),
             (said(&format!("# Tolerance = 1e-1\n{HEADER}")), "1:3: error: `Tolerance = 1e-1` sets no tolerance"),
-            (state("1;2;3;4;5;6;7;8"), "3:1: error: 1 column, but the header has 8"),
-            (state("1,2,3,4,5,6,7"), "3:13: error: 7 columns, but the header has 8"),
-            (state("1,2,3,4,5,6,7,8, 9"), "3:18: error: 9 columns, but the header has 8"),
+            (state("1;2;3;4;5;6;7;8"), "3:1: error: the line has 1 column, but the header has 8"),
+            (state("1,2,3,4,5,6,7"), "3:13: error: the line has 7 columns, but the header has 8"),
+            (state("1,2,3,4,5,6,7,8, 9"), "3:18: error: the line has 9 columns, but the header has 8"),
             (state("1,2,3,4,5,6,7,8x"), "3:15: error: `8x` of tau2 is not a number"),
             (state("1,,3,4,5,6,7,8"), "3:3: error: the number of q2 is missing"),
             (state("1,2,3,4,inf,6,7,8"), "3:9: error: `inf` of qdd1 is not a number"),

@@ -41,7 +41,9 @@ mod angle;
 mod table;
 
 pub use angle::{Angle, LARGEST_ANGLE, QuarterTurns};
-pub use table::{Convention, Dh, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, Row, Transform, parent};
+pub use table::{
+    Convention, Dh, FixedFrame, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, Row, Transform, parent,
+};
 
 #[cfg(feature = "std")]
 mod check;
@@ -59,6 +61,8 @@ mod double;
 mod expression;
 #[cfg(feature = "std")]
 mod formula;
+#[cfg(feature = "std")]
+mod frame;
 #[cfg(feature = "std")]
 mod friction;
 #[cfg(feature = "std")]
@@ -104,6 +108,8 @@ pub use double::{Double, decimal_digits};
 pub use expression::number;
 #[cfg(feature = "std")]
 pub use formula::Formula;
+#[cfg(feature = "std")]
+pub use frame::{Frame, FrameId, UnknownFrame};
 #[cfg(feature = "std")]
 pub use friction::{Friction, FrictionTransition, TransitionSign};
 #[cfg(feature = "std")]

@@ -83,7 +83,7 @@ pub(crate) fn invisible(cx: &Context, node: &Node, text: &str) {
     let near: String = near.chain([hidden]).chain(behind.chars().take(10)).collect();
     let code = u32::from(hidden);
     cx.report(
-        Diagnostic::lint(span, format!("the invisible character U+{code:04X} stands in {}", quoted(&near)))
+        Diagnostic::lint(span, format!("the invisible character U+{code:04X} is in {}", quoted(&near)))
             .label("here, unseen")
             .help("delete this character: type the word again instead of pasting it"),
     );
@@ -275,7 +275,7 @@ pub(crate) fn placeholders(cx: &Context, root: &Node, joints: &[Joint]) {
             six_digits(mass),
             six_digits(moment)
         );
-        cx.report(Diagnostic::lint(place, message).label("placeholders of an exporter?").help(
+        cx.report(Diagnostic::lint(place, message).label("are these placeholders of an exporter?").help(
             "real links differ, and with placeholders the torques are not those of the arm; take masses, centres of \
              mass and inertias from the manufacturer, or identify them from a log",
         ));
@@ -333,7 +333,7 @@ fn centre_without_mass(cx: &Context, item: &Node, index: usize, joint: &Joint) -
     let Some(com) = link.get("com") else { return false };
     cx.report(
         Diagnostic::lint(com.head(), format!("link {} has a centre of mass but no mass", index + 1))
-            .label("of what mass?")
+            .label("the mass is missing")
             .help("add the `mass` in kg; if the link is without mass, write `mass: 0`"),
     );
     true

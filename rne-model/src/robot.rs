@@ -1,6 +1,6 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
-use crate::{Convention, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia};
+use crate::{Convention, Frame, FrameId, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia};
 
 /// A validated robot, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,11 @@ pub struct Robot {
     pub parameters: Vec<(String, f64)>,
     /// The joints, base to tip; 1 to 64.
     pub joints: Vec<Joint>,
+    /// The named frames of the file, in its order: places on links, beside the tip.
+    pub frames: Vec<Frame>,
+    /// The frame that the kinematic functions of the tip are taken at instead of the tip (pose, Jacobian, J̇q̇, torques
+    /// of a wrench); no file says so, [`Robot::at_frame`] does. Other functions stay those of the tip.
+    pub at: Option<FrameId>,
     /// The parameters that stay free until run time, and which numbers depend on them; empty unless asked for, by
     /// [`Reader::run_time`](crate::Reader::run_time).
     pub run_time: RunTime,

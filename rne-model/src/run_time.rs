@@ -11,8 +11,9 @@ pub struct RunTime {
     /// The names of the run-time parameters, in the order in which they were asked for. Each stands in
     /// [`Robot::parameters`] too, with its value in the file.
     pub names: Vec<String>,
-    /// The numbers of the table that depend on them, each once: gravity, base, tool, then joint by joint. None of them
-    /// is zero in the table. Of a file no angle and no limit is among them; a program may put sines and cosines there.
+    /// The numbers of the table that depend on them, each once: gravity, base, tool, frames, then joint by joint. None
+    /// of them is zero in the table. Of a file no angle and no limit is among them; a program may put sines and cosines
+    /// there.
     pub entries: Vec<(Entry, Formula)>,
     /// The elements of [`Joint::written_inertia`](crate::Joint::written_inertia) that depend on them, with the joint
     /// from 0, where a file gives the tensor about the origin. About the centre of mass it is [`Entry::Inertia`].
@@ -52,6 +53,8 @@ pub enum Entry {
     BaseXyz(usize),
     /// A component of the translation of [`Robot::tool`]: the axis.
     ToolXyz(usize),
+    /// A component of the translation of a named frame: the frame and the axis.
+    FrameXyz(usize, usize),
     /// The joint offset d: the joint.
     D(usize),
     /// The length a of the common normal: the joint.
@@ -204,6 +207,7 @@ impl Robot {
             Entry::Gravity(axis) => self.gravity.get_mut(axis),
             Entry::BaseXyz(axis) => self.base.xyz.get_mut(axis),
             Entry::ToolXyz(axis) => self.tool.xyz.get_mut(axis),
+            Entry::FrameXyz(frame, axis) => self.frames.get_mut(frame)?.fixed.placement.xyz.get_mut(axis),
             Entry::D(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.d),
             Entry::A(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.a),
             Entry::ThetaSine(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.theta.sin),

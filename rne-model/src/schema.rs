@@ -7,6 +7,7 @@ use crate::decode::{Context, Parameter, choice, list, not_negative, quantity, re
 use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, MAX_JOINTS, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
+use crate::frame::frames;
 use crate::quantity::Quantity;
 use crate::source::{is_control, is_line_break, one_line, quoted, six_digits};
 use crate::varying::{
@@ -40,6 +41,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         gravity: required "gravity" gravity,
         base: or(Transform::IDENTITY) "base" |cx, node| transform(cx, node, Entry::BaseXyz),
         tool: or(Transform::IDENTITY) "tool" |cx, node| transform(cx, node, Entry::ToolXyz),
+        frames: or(Vec::new()) "frames" |cx, list| frames(cx, list, node),
         joints: required "joints" joints,
     });
     if let Some(node) = node.get("gravity") {
@@ -64,6 +66,8 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         tool,
         parameters,
         joints,
+        frames,
+        at: None,
         run_time,
         rotors: false,
     })
@@ -184,9 +188,14 @@ fn parameter_name(cx: &Context, name: &str, span: std::ops::Range<usize>) -> Opt
 fn transform(cx: &Context, node: &Node, place: fn(usize) -> Entry) -> Option<Transform> {
     read_mapping!(cx, node, "a placement", {
         xyz: or([0.0; 3]) "xyz" |cx, node| position(cx, node, place),
-        rpy: or([0.0; 3]) "rpy" |cx, node| list(cx, node, "[roll, pitch, yaw] (rad)", |cx, node, _| angle(cx, node)),
+        rpy: or([Angle::ZERO; 3]) "rpy" roll_pitch_yaw,
     });
-    Some(Transform { xyz, rpy: rpy.map(Angle::new) })
+    Some(Transform { xyz, rpy })
+}
+
+pub(crate) fn roll_pitch_yaw(cx: &Context, node: &Node) -> Option<[Angle; 3]> {
+    let angles = list(cx, node, "[roll, pitch, yaw] (rad)", |cx, node, _| angle(cx, node))?;
+    Some(angles.map(Angle::new))
 }
 
 fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
@@ -479,8 +488,8 @@ fn angle(cx: &Context, node: &Node) -> Option<f64> {
     if value.abs() >= LARGEST_ANGLE {
         let shown = cx.shown(node, value);
         let message = format!(
-            "the angle {shown} rad is too large; angles must be below {LARGEST_ANGLE} rad, because larger neighbouring \
-             numbers are more than 1e-9 rad apart"
+            "the angle {shown} rad is too large; angles must be below {LARGEST_ANGLE} rad, because a 64-bit float \
+             stores larger angles in steps of more than 1e-9 rad"
         );
         return cx.refuse(Diagnostic::error(node.span.clone(), message).help("subtract whole turns from the angle"));
     }
@@ -497,6 +506,6 @@ fn length(place: Entry) -> impl Fn(&Context, &Node) -> Option<f64> {
 }
 
 /// A point or a displacement; `place` says where its components stand in the table.
-fn position(cx: &Context, node: &Node, place: impl Fn(usize) -> Entry) -> Option<[f64; 3]> {
+pub(crate) fn position(cx: &Context, node: &Node, place: impl Fn(usize) -> Entry) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (m)", |cx, node, axis| length(place(axis))(cx, node))
 }

@@ -177,6 +177,16 @@ impl Transform<f64> {
     pub const IDENTITY: Self = Self { xyz: [0.0; 3], rpy: [Angle::ZERO; 3] };
 }
 
+/// A frame that is fixed to a link, or to frame 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixedFrame<S = f64> {
+    /// The joint that moves the link, counted from 0; `None` for frame 0, which no joint moves.
+    pub on: Option<usize>,
+    /// Link frame of the table → frame. The link frame is at the far end of the link in a standard table, on the joint
+    /// that moves the link in a modified one.
+    pub placement: Transform<S>,
+}
+
 /// A robot with a number of joints known at compile time, without names: what dynamics needs and no more.
 ///
 /// Every field is public and plain, so a `const` can hold one. `S` is the scalar in which the constants are stored:
@@ -197,7 +207,7 @@ pub struct Model<const DOF: usize, S = f64> {
 
 #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
 mod single {
-    use super::{Dh, Inertia, Link, Model, Motor, Row, Transform};
+    use super::{Dh, FixedFrame, Inertia, Link, Model, Motor, Row, Transform};
 
     const fn vector(v: [f64; 3]) -> [f32; 3] {
         [v[0] as f32, v[1] as f32, v[2] as f32]
@@ -208,6 +218,14 @@ mod single {
         #[must_use]
         pub const fn to_f32(self) -> Transform<f32> {
             Transform { xyz: vector(self.xyz), rpy: [self.rpy[0].to_f32(), self.rpy[1].to_f32(), self.rpy[2].to_f32()] }
+        }
+    }
+
+    impl FixedFrame<f64> {
+        /// Converts the frame to single precision; each number is rounded once.
+        #[must_use]
+        pub const fn to_f32(self) -> FixedFrame<f32> {
+            FixedFrame { on: self.on, placement: self.placement.to_f32() }
         }
     }
 

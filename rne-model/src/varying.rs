@@ -170,7 +170,7 @@ fn unknown<'n>(cx: &Context, root: &Node, names: impl Iterator<Item = &'n str>, 
         }
         let mut listed = known.iter().take(MOST_LISTED).map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         match known.len() {
-            0 => "there are none".clone_into(&mut listed),
+            0 => "there is nothing".clone_into(&mut listed),
             n if n > MOST_LISTED => listed = format!("there are {listed} and {} more", n - MOST_LISTED),
             _ => listed.insert_str(0, "there are "),
         }

@@ -262,7 +262,7 @@ fn expressions_point_into_the_scalar() {
         ("d: 0.4", "d: 1_000", 11, 23, "1_000", "digits must not be grouped"),
         ("d: 0.4", "d: 012", 11, 23, "012", "leading zero"),
         ("d: 0.4", "d: true", 11, 23, "true", "unknown name `true`"),
-        ("d: 0.4", "d: 2 +* 3", 11, 26, "*", "`*` stands where a number or a name is needed"),
+        ("d: 0.4", "d: 2 +* 3", 11, 26, "*", "found `*` where a number or a name is needed"),
         ("{m: 1.5, r: 2*m}", "{r: 2*m, m: 1.5}", 7, 19, "m", "the parameter `m` has no value yet"),
         ("{m: 1.5, r: 2*m}", "{m: 1.5, r: 2*r}", 7, 27, "r", "the parameter `r` has no value yet"),
         // A faulty parameter is reported once, not at every use.

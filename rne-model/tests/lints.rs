@@ -186,7 +186,7 @@ fn invisible_characters() {
             "title: 'an \u{200B}arm'\nsource: test",
             3,
             12,
-            r"the invisible character U+200B stands in `an \u{200b}arm`",
+            r"the invisible character U+200B is in `an \u{200b}arm`",
             "delete this character",
         ),
         (
@@ -194,10 +194,10 @@ fn invisible_characters() {
             "title: \"a long title of an\\u00ADarm\"\nsource: ",
             3,
             8,
-            r"U+00AD stands in `itle of an\u{ad}arm`",
+            r"U+00AD is in `itle of an\u{ad}arm`",
             "type the word again",
         ),
-        ("name: first", "name: fi\u{2060}rst", 9, 13, r"U+2060 stands in `fi\u{2060}rst`", "delete this character"),
+        ("name: first", "name: fi\u{2060}rst", 9, 13, r"U+2060 is in `fi\u{2060}rst`", "delete this character"),
     ] {
         let lint = the_one(old, new);
         assert_eq!((lint.severity, lint.line, lint.column), (Severity::Warning, line, column), "{}", lint.message);

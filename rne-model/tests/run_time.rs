@@ -252,9 +252,9 @@ fn every_unknown_name_is_listed() {
     let report = read(&text, &["payload", "length"]).unwrap_err();
     assert_eq!(
         report.short(),
-        "robots/x.yaml:1:1: error: the robot file has no parameter `length` for run time; under `parameters` there are \
-         none\nrobots/x.yaml:1:1: error: the robot file has no parameter `payload` for run time; under `parameters` \
-         there are none"
+        "robots/x.yaml:1:1: error: the robot file has no parameter `length` for run time; under `parameters` there is \
+         nothing\nrobots/x.yaml:1:1: error: the robot file has no parameter `payload` for run time; under `parameters` \
+         there is nothing"
     );
     let many = (0..20).fold(String::new(), |mut many, i| {
         let _ = write!(many, "p{i:02}: {i}, ");

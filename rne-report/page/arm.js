@@ -35,6 +35,9 @@ const LAYERS = [
   ["torque", 7],
 ];
 
+/** From where the arm can be looked at by a button. */
+const VIEWS = ["front", "top", "3D"];
+
 class Arm {
   constructor(root, inspection, value, chosen) {
     this.root = root;
@@ -53,7 +56,7 @@ class Arm {
     this.east = unit(cross(cross(this.up, near), this.up));
     this.north = cross(this.up, this.east);
     this.groups = {};
-    for (const name of ["floor", "axes", "solids", "coms", "frames", "labels", "arrows"]) {
+    for (const name of ["floor", "axes", "solids", "coms", "drawing", "frames", "labels", "arrows"]) {
       this.groups[name] = svg("g", { class: name });
       root.append(this.groups[name]);
     }
@@ -117,6 +120,8 @@ class Arm {
     this.wrench = { f: [0, 0, 0], n: [0, 0, 0] };
     this.look = { yaw: -0.9, pitch: 0.32, zoom: 1 };
     this.home = this.look;
+    this.drawing = new Drawing(this, this.groups.drawing);
+    this.showDrawing = true;
     listenToHand(this);
   }
 
@@ -200,24 +205,60 @@ class Arm {
     const [first] = poses;
     const last = this.inspection.dof;
     const axes = first.rotations.slice(1, last + 1).map((turned) => column(turned, 2));
-    const isPlanar = axes.every(
-      (axis, joint) => !this.inspection.isPrismatic(joint + 1) && Math.abs(dot(axis, axes[0])) > 0.999,
-    );
-    if (isPlanar && Math.abs(dot(axes[0], this.up)) < 0.5) {
-      this.look = { yaw: Math.atan2(dot(axes[0], this.north), dot(axes[0], this.east)) - 0.35, pitch: 0.2, zoom: 1 };
-    } else {
-      // the arm from its side
-      const out = minusV(first.joints[last + 1], first.joints[1]);
-      const side = Math.atan2(dot(out, this.north), dot(out, this.east));
-      this.look = { yaw: Number.isFinite(side) && norm(out) > 1e-6 ? side - 1.15 : -0.9, pitch: 0.3, zoom: 1 };
-    }
-    this.home = this.look;
+    // all of whose axes are parallel, so that a figure in the plane has everything
+    this.isPlanar = axes.every((axis) => Math.abs(dot(axis, axes[0])) > 0.999);
+    const axis = axes[0];
+    const isUpright = Math.abs(dot(axis, this.up)) > 0.999;
+    // the arm from its side
+    const out = minusV(first.joints[last + 1], first.joints[1]);
+    const along = Math.atan2(dot(out, this.north), dot(out, this.east));
+    const side = Number.isFinite(along) && norm(out) > 1e-6 ? along - 1.15 : -0.9;
+    const face = Math.atan2(dot(axis, this.north), dot(axis, this.east));
+    const isFigure = this.isPlanar && !isUpright;
+    this.baseAxis = isFigure ? axis : this.up;
+    const yaw = isFigure ? face : side;
+    const tilt = isFigure ? Math.asin(Math.max(-1, Math.min(1, dot(axis, this.up)))) : 0;
+    this.views = {
+      front: { yaw, pitch: tilt, zoom: 1 },
+      // x of the base to the right
+      top: { yaw: isUpright ? this.yawOfTop(first) : yaw, pitch: Math.PI / 2, zoom: 1 },
+      "3D": { yaw: isFigure ? face - 0.35 : side, pitch: isFigure ? 0.2 : 0.3, zoom: 1 },
+    };
+    this.home = this.views[this.isPlanar ? (isUpright ? "top" : "front") : "3D"];
+    this.look = this.home;
     const points = poses.flatMap((pose) => [...pose.joints, ...pose.coms, ...pose.elbows]);
     const low = AXES.map((_, at) => Math.min(...points.map((point) => point[at])));
     const high = AXES.map((_, at) => Math.max(...points.map((point) => point[at])));
     this.centre = times(add(low, high), 0.5);
     this.size = Math.max(norm(minusV(high, low)) / 2, 0.05) * 1.05;
     this.extent = this.size;
+  }
+
+  /** The yaw with which x of frame 0 points to the right in a view from above. */
+  yawOfTop(pose) {
+    const x = column(pose.frames[0].axes, 0);
+    return Math.atan2(-dot(x, this.east), dot(x, this.north));
+  }
+
+  lookOf(name) {
+    return this.views[name];
+  }
+
+  /** The name of the view, or null for one that a hand has chosen. */
+  viewName() {
+    const { yaw, pitch, zoom } = this.look;
+    return VIEWS.find((name) => this.views[name].yaw === yaw && this.views[name].pitch === pitch && this.views[name].zoom === zoom) || null;
+  }
+
+  lookFrom(name) {
+    this.look = this.views[name];
+    this.changed();
+  }
+
+  /** Whether the arm is seen along its parallel axes, without perspective: as a figure. */
+  isFigure() {
+    if (!this.isPlanar || !this.pose) return false;
+    return Math.abs(dot(this.seenFrom().toViewer, column(this.pose.rotations[1], 2))) > 1 - 1e-9;
   }
 
   /** From where the arm is seen: the axes of the screen in the world. */
@@ -233,7 +274,7 @@ class Arm {
     const { toViewer, right, over, far } = this.view;
     const of = minusV(point, this.centre);
     const depth = dot(of, toViewer);
-    const scale = (this.pixels * far) / Math.max(far - depth, far / 10);
+    const scale = this.isFlat ? this.pixels : (this.pixels * far) / Math.max(far - depth, far / 10);
     return {
       x: this.width / 2 + dot(of, right) * scale,
       y: this.height * 0.53 - dot(of, over) * scale,
@@ -256,11 +297,15 @@ class Arm {
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
-    this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
     this.view = this.seenFrom();
+    this.isFlat = this.isFigure();
+    // a figure has no floor that needs room
+    const share = this.isFlat ? 0.47 : 0.39;
+    this.pixels = (share * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);
+    this.drawing.draw(pose, q, this.isFlat && this.showDrawing);
     this.drawArrows(pose);
     this.drawForces(pose);
   }
@@ -298,7 +343,7 @@ class Arm {
         solid.body.setAttribute("d", outline.join(""));
         solid.depth = path.reduce((sum, point) => sum + this.project(point).depth, 0) / 3;
       } else {
-        const axis = kind === "base" ? this.up : column(pose.rotations[joint], 2);
+        const axis = kind === "base" ? this.baseAxis : column(pose.rotations[joint], 2);
         const at = kind === "base" ? this.inspection.robot.base.xyz : pose.joints[joint];
         const half = kind === "base" ? radius * 0.35 : radius * 1.25;
         const wide = kind === "base" ? radius * 2.6 : radius;

@@ -267,7 +267,15 @@ class Cards {
         { "data-name": name, class: "line pick", tabindex: "-1" },
         ...this.page.set.code(text, isKnown),
       ),
-      element("span", { class: "numbers", "aria-hidden": "true" }, "= ", ...numbers, " = ", result),
+      element(
+        "span",
+        { class: "numbers", "aria-hidden": "true" },
+        element("b", { class: "left-side", "data-name": name }, `${name} `),
+        "= ",
+        ...numbers,
+        " = ",
+        result,
+      ),
     );
   }
 
@@ -322,6 +330,7 @@ class Cards {
       said.textContent = text;
       said.className = `answer ${text ? (isRight ? "right" : "wrong") : ""}`;
       input.setAttribute("aria-invalid", String(Boolean(text) && !isRight));
+      this.page.handIn.show();
       this.page.bars.update(this.page.split, (joint) => this.page.hides(`tau${joint}`));
       for (const paint of this.page.live) paint();
       this.page.reading.readout();

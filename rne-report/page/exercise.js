@@ -8,6 +8,27 @@ class Exercise {
     this.equations = equations;
     this.isOn = false;
     this.solved = new Set();
+    // what was answered last for each name, and how often, at the state
+    this.answers = new Map();
+  }
+
+  /** Forgets answers of another state or of other axes: their values are others. */
+  begin(key) {
+    if (this.key === key) return;
+    if (this.key !== undefined) {
+      this.answers.clear();
+      this.solved.clear();
+    }
+    this.key = key;
+  }
+
+  /** The score in words. */
+  score() {
+    const all = [...this.answers.values()];
+    const tries = all.reduce((sum, { tries }) => sum + tries, 0);
+    const right = all.filter(({ isRight }) => isRight).length;
+    const first = all.filter(({ isRight, tries }) => isRight && tries === 1).length;
+    return `score: ${right} of ${all.length} right, ${first} at the first attempt; attempts: ${tries}`;
   }
 
   /** Whether a value is not to be seen: one of the open cell that has not been found yet. */
@@ -31,9 +52,19 @@ class Exercise {
     return this.axes?.isOther(name) ? this.axes.component(name) : this.equations.value(name);
   }
 
-  /** What to say of an answer. */
+  /** What to say of an answer, which counts. */
   answer(name, text) {
-    const typed = Number(text.trim().replace(",", ".").replace("−", "-"));
+    const before = this.answers.get(name);
+    const said = this.judged(name, text);
+    // the same once more is no other attempt
+    const isNew = !before || (!before.isRight && before.text !== text.trim());
+    if (said.text && Number.isFinite(numberOf(text)) && isNew)
+      this.answers.set(name, { text: text.trim(), isRight: said.isRight, tries: (before?.tries || 0) + 1 });
+    return said;
+  }
+
+  judged(name, text) {
+    const typed = numberOf(text);
     if (!text.trim()) return { isRight: false, text: "" };
     if (!Number.isFinite(typed)) return { isRight: false, text: "This is no number: write it as 0.123 or 1.2e-3." };
     const right = this.right(name);

@@ -54,6 +54,22 @@ class Inspection {
     }
   }
 
+  /** Whether a torque depends on a cell, also by terms that vanish; the velocities of step 3 are for the reader. */
+  isNeeded(cell) {
+    if (!this.needed) {
+      this.needed = new Set();
+      const waiting = [...this.components.keys()].filter((name) => this.meaning(name)?.quantity === "torque");
+      while (waiting.length) {
+        const name = waiting.pop();
+        if (this.needed.has(name)) continue;
+        this.needed.add(name);
+        const component = this.components.get(name);
+        if (component) waiting.push(...namesIn(component.general));
+      }
+    }
+    return cell.components.some(({ name }) => this.needed.has(name));
+  }
+
   /** The statements that read a component or a part of it, by name, in the order of the code. */
   readersOf({ name, statements = [] }) {
     const own = new Set(statements.map((statement) => statement.name));

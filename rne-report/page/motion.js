@@ -88,7 +88,18 @@ class Sliders {
           "data-of": of,
           "aria-label": `${LETTERS[of]} of joint ${index + 1}, ${unitOf}`,
         });
-        const output = element("output", { "data-name": `${of}${index + 1}`, class: "pick", tabindex: "-1" });
+        const label = `${LETTERS[of]} of joint ${index + 1}`;
+        const set = (value) => {
+          state[of][index] = value;
+          input.value = value;
+          this.tell(state, of, index);
+          changed(of, index);
+        };
+        const field = numberField({ "data-name": `${of}${index + 1}`, "data-field": of, class: "number", "aria-label": `${label} as a number, ${unitOf}` }, set);
+        const isAngle = of === "q" && joint.kind === "revolute";
+        const degrees = isAngle
+          ? numberField({ "data-degrees": index + 1, class: "number degrees", "aria-label": `${label} in degrees` }, (value) => set((value * Math.PI) / 180))
+          : null;
         input.addEventListener("input", () => {
           state[of][index] = Number(input.value);
           this.tell(state, of, index);
@@ -103,8 +114,9 @@ class Sliders {
           input.dispatchEvent(new Event("input", { bubbles: true }));
         });
         this.inputs.set(`${of}${index}`, input);
-        this.outputs.set(`${of}${index}`, { output, unit: unitText(unitOf) });
-        row.append(element("td", {}, input, output));
+        this.outputs.set(`${of}${index}`, { field, degrees, unit: unitText(unitOf) });
+        const sign = degrees ? element("span", { class: "degree-sign", "aria-hidden": "true" }, "°") : null;
+        row.append(element("td", { class: `of-${of}` }, element("span", { class: "slid" }, input, field, degrees, sign)));
       }
       body.append(row);
     });
@@ -123,10 +135,11 @@ class Sliders {
   }
 
   tell(state, of, index) {
-    const { output, unit } = this.outputs.get(`${of}${index}`);
+    const { field, degrees, unit } = this.outputs.get(`${of}${index}`);
     const value = state[of][index];
-    output.textContent = minus(value.toFixed(2));
-    output.title = `${full(value)} ${unit}`;
+    fill(field, value);
+    field.title = `${full(value)} ${unit}`;
+    if (degrees) fill(degrees, Number(((value * 180) / Math.PI).toFixed(2)));
     this.inputs.get(`${of}${index}`).setAttribute("aria-valuetext", `${value.toFixed(3)} ${unit}`);
   }
 }

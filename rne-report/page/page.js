@@ -23,6 +23,7 @@ class Page {
     this.torques = new Torques(this.folded, new Program(data.programs.with_wrench));
     this.axes = new ChosenAxes(inspection, (name) => this.value(name), () => this.state.q);
     this.exercise = new Exercise(inspection, this.equations, this.axes);
+    this.isLecture = false;
     this.initial = {
       q: ordinaryPose(robot, [0.4, -0.6, 0.9, -0.8, 0.7, 0.5, -0.4]),
       qd: robot.joints.map((_, index) => [0.5, 0.8, -0.6][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
@@ -36,9 +37,15 @@ class Page {
     this.cards = new Cards(this);
     this.reading = new Reading(this);
     this.cell = inspection.cell(Math.min(2, inspection.dof), 1);
+    this.firstCell = [this.cell.joint, this.cell.step];
+    this.handIn = new HandIn(this);
 
     this.arm = new Arm(byId("arm"), inspection, (name) => this.equations.value(name), this.axes);
-    this.arm.changed = () => this.arm.draw(this.state.q);
+    this.arm.changed = () => {
+      this.arm.draw(this.state.q);
+      this.paintView();
+      this.address?.later();
+    };
     this.sliders = new Sliders(byId("sliders"), inspection, this.state, () => {
       this.stop();
       this.update();
@@ -49,6 +56,7 @@ class Page {
     this.describe();
     this.makeSwitches();
     this.makeLayers();
+    this.makeViews();
     this.makeStill();
     this.makeGrid();
     this.makeMotion();
@@ -62,6 +70,9 @@ class Page {
     this.retime();
     this.open(this.cell);
     this.update();
+    this.paintView();
+    this.foldSettings();
+    this.address = new Address(this);
   }
 
   poseAt(q) {
@@ -111,6 +122,9 @@ class Page {
     this.bars.update(this.split, (joint) => this.hides(`tau${joint}`));
     for (const paint of this.live) paint();
     this.reading.readout();
+    this.exercise.begin(JSON.stringify([this.state, this.axes.kind]));
+    this.handIn.show();
+    this.address?.later();
   }
 
   /** The value of a name: the code's, or that of its equation where the code has none. */
@@ -170,6 +184,7 @@ class Page {
         name === "auto"
           ? delete document.documentElement.dataset.theme
           : (document.documentElement.dataset.theme = name);
+        this.address?.later();
       },
     ];
     groups.forEach((group, index) => {
@@ -215,6 +230,7 @@ class Page {
     for (const [label, key, title] of [
       ["frames", "showFrames", `the axes of vectors that are chosen above; the frames of the table are ${ofTable}`],
       ["masses", "showComs", "centres of mass"],
+      ["dimensions", "showDrawing", "angles and lengths, where the arm is seen along parallel axes"],
     ]) {
       const button = element(
         "button",
@@ -225,9 +241,61 @@ class Page {
         this.arm[key] = !this.arm[key];
         button.setAttribute("aria-pressed", String(this.arm[key]));
         this.arm.draw(this.state.q);
+        this.address?.later();
       });
       byId("layers").append(button);
     }
+  }
+
+  /** Buttons that look at the arm from the front, from above and obliquely. */
+  makeViews() {
+    for (const name of VIEWS) {
+      const button = element("button", { type: "button", "data-view": name, "aria-pressed": "false" }, name);
+      button.addEventListener("click", () => this.arm.lookFrom(name));
+      byId("views").append(button);
+    }
+    byId("lecture").addEventListener("click", () => {
+      this.setLecture(!this.isLecture);
+      this.address.later();
+    });
+    byId("copy-link").addEventListener("click", async () => {
+      this.address.write();
+      const isCopied = await copied(location.href);
+      byId("copy-link").textContent = isCopied ? "link copied" : "the link is in the address bar";
+      setTimeout(() => {
+        byId("copy-link").textContent = "copy link";
+      }, 2000);
+    });
+    // on a phone and in a lecture the settings are folded
+    this.small = window.matchMedia("(max-width: 900px)");
+    this.small.addEventListener("change", () => this.foldSettings());
+    const forget = () => {
+      document.documentElement.dataset.helped = "1";
+    };
+    document.addEventListener("click", forget, { once: true, capture: true });
+  }
+
+  paintView() {
+    const name = this.arm.viewName();
+    for (const button of byId("views").children) button.setAttribute("aria-pressed", String(button.dataset.view === name));
+    const figure = document.querySelector('[data-shows="dimensions"]');
+    if (figure) figure.disabled = !this.arm.isFigure();
+  }
+
+  foldSettings() {
+    byId("settings").open = !(this.small.matches || this.isLecture);
+  }
+
+  /** Large letters and wide equations, for a projector. */
+  setLecture(isOn) {
+    this.isLecture = isOn;
+    document.documentElement.dataset.lecture = isOn ? "on" : "off";
+    byId("lecture").setAttribute("aria-pressed", String(isOn));
+    this.foldSettings();
+  }
+
+  layersOf(step) {
+    return LAYERS.filter(([quantity, of]) => of === step && this.layerButtons.has(quantity)).map(([quantity]) => quantity);
   }
 
   paintLayers() {
@@ -356,6 +424,7 @@ class Page {
       );
       for (let joint = 1; joint <= dof; joint++) {
         const cell = this.inspection.cell(joint, index + 1);
+        const isNeeded = !cell || this.inspection.isNeeded(cell);
         const [before, after] = cell ? [total(cell.before), total(cell.after)] : [0, 0];
         const button = element(
           "button",
@@ -365,11 +434,12 @@ class Page {
             tabindex: "-1",
             disabled: !cell,
             "aria-label": `joint ${joint}, step ${index + 1}, ${title}: ${before} operations, ${after} after folding`,
-            title: `${before} operations, ${after} after folding`,
+            title: `${before} operations, ${after} after folding${isNeeded ? "" : "; no torque needs it"}`,
           },
           element("b"),
         );
         button.counts = { unfolded: before, folded: after };
+        button.isNeeded = isNeeded;
         row.append(element("td", {}, button));
       }
       body.append(row);
@@ -413,22 +483,21 @@ class Page {
       button.setAttribute("aria-pressed", String(isOpen));
       button.tabIndex = button.dataset.cell === `${cell.joint}-${cell.step}` ? 0 : -1;
       const which = this.form === "unfolded" ? "unfolded" : "folded";
-      button.firstChild.textContent = String(button.counts[which]);
+      const isNeedless = which === "folded" && !button.isNeeded;
+      button.firstChild.textContent = isNeedless ? "not needed" : String(button.counts[which]);
+      button.firstChild.classList.toggle("not-needed", isNeedless);
       button.style.setProperty("--share", (button.counts[which] / this.most[which]).toFixed(3));
     }
     const content = this.form === "reduced" ? this.cards.reducedCode() : this.cards.cellContent(cell);
     byId("cell").replaceChildren(...content);
     if (isOther || this.arm.layers.size === 0) {
       byId("cell").scrollTop = 0;
-      this.arm.layers = new Set(
-        LAYERS.filter(([quantity, step]) => step === cell.step && this.layerButtons.has(quantity)).map(
-          ([quantity]) => quantity,
-        ),
-      );
+      this.arm.layers = new Set(this.layersOf(cell.step));
       this.paintLayers();
     }
     for (const paint of this.live) paint();
     this.reading.relight();
+    this.address?.later();
   }
 
   // ---- what is lit
@@ -445,6 +514,8 @@ window.rne = {
   select: (name) => page.reading.select(name),
   view: () => viewOf(page),
   show: (view) => showView(page, view),
+  address: () => addressOf(page),
+  showAddress: (fragment) => page.address.show(fragment),
 };
 requestAnimationFrame(() =>
   requestAnimationFrame(() => {

@@ -91,6 +91,9 @@ class Reading {
     const root = document.querySelector("[data-readout]");
     const selection = this.pointed || this.pinned;
     root.classList.toggle("chosen", Boolean(selection));
+    // away from what is pointed at
+    const cell = byId("cell").getBoundingClientRect();
+    root.dataset.at = this.pointerY > cell.top + cell.height / 2 && this.pointerY < cell.bottom ? "top" : "bottom";
     this.tell(root, selection);
     if (selection) root.append(this.letGo);
   }
@@ -305,6 +308,7 @@ class Reading {
       this.relight();
     };
     document.addEventListener("pointerover", (event) => {
+      this.pointerY = event.clientY;
       if (event.pointerType !== "touch") point(this.selectionAt(event.target));
     });
     document.documentElement.addEventListener("pointerleave", () => point(null));
@@ -321,7 +325,7 @@ class Reading {
         this.page.update();
         return;
       }
-      if (event.target.closest?.("input, summary")) return;
+      if (event.target.closest?.("input, textarea, summary")) return;
       const selection = this.selectionAt(event.target);
       if (selection) this.select(selection);
     });
@@ -339,7 +343,7 @@ class Reading {
       return;
     }
     const { target } = event;
-    if (target.matches("input")) return;
+    if (target.matches("input, textarea")) return;
     if (
       (event.key === "Enter" || event.key === " ") &&
       target.matches(".pick, [data-arrow], [data-com], [data-component]") &&

@@ -17,6 +17,7 @@ function viewOf(page) {
     language: page.language,
     axes: page.axes.kind,
     exercise: page.exercise.isOn,
+    lecture: page.isLecture,
     theme: document.documentElement.dataset.theme || "auto",
     cell: [page.cell.joint, page.cell.step],
     layers: [...page.arm.layers],
@@ -36,6 +37,7 @@ function showView(page, view) {
   };
   for (const name of [view.form, view.language, view.axes, view.exercise ? "exercise" : "shown", view.theme])
     press(document.querySelector(`[data-switch="${name}"]`));
+  if (view.lecture !== undefined) page.setLecture(view.lecture);
   for (const name of ["frames", "masses"]) press(document.querySelector(`[data-shows="${name}"]`), view[name]);
   if (view.kinds !== kindsOf(page)) return;
   const cell = page.inspection.cell(...view.cell);

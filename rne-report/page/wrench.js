@@ -10,7 +10,12 @@ class WrenchSliders {
       // a moment is as large as a fifth of the force, N, on a lever of a metre
       const most = niceAbove(of === "f" ? heaviest : heaviest / 5);
       AXES.forEach((axis, index) => {
-        const output = element("output", {});
+        const set = (value) => {
+          wrench[of][index] = value;
+          show();
+          changed();
+        };
+        const field = numberField({ class: "number", "aria-label": `${word} at the tip along ${axis} as a number, ${unitOf}` }, set);
         const input = element("input", {
           type: "range",
           min: -most,
@@ -21,7 +26,7 @@ class WrenchSliders {
           "data-tip": `${of}${axis}`,
         });
         const tell = () => {
-          output.textContent = `${short(wrench[of][index])} ${unitOf}`;
+          fill(field, wrench[of][index]);
         };
         input.addEventListener("input", () => {
           wrench[of][index] = Number(input.value);
@@ -33,7 +38,7 @@ class WrenchSliders {
           tell();
         };
         this.rows.push(show);
-        root.append(element("label", {}, `${of} ${axis}`, input, output));
+        root.append(element("label", {}, `${of} ${axis}`, input, field, unitOf));
         show();
       });
     }

@@ -29,15 +29,17 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 17] = [
+pub const SCRIPTS: [(&str, &str); 21] = [
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
     ("number.js", include_str!("../page/number.js")),
+    ("field.js", include_str!("../page/field.js")),
     ("equation.js", include_str!("../page/equation.js")),
     ("pose.js", include_str!("../page/pose.js")),
     ("axes.js", include_str!("../page/axes.js")),
     ("shape.js", include_str!("../page/shape.js")),
     ("gesture.js", include_str!("../page/gesture.js")),
+    ("drawing.js", include_str!("../page/drawing.js")),
     ("arm.js", include_str!("../page/arm.js")),
     ("torque.js", include_str!("../page/torque.js")),
     ("motion.js", include_str!("../page/motion.js")),
@@ -46,6 +48,8 @@ pub const SCRIPTS: [(&str, &str); 17] = [
     ("cell.js", include_str!("../page/cell.js")),
     ("reading.js", include_str!("../page/reading.js")),
     ("view.js", include_str!("../page/view.js")),
+    ("address.js", include_str!("../page/address.js")),
+    ("handin.js", include_str!("../page/handin.js")),
     ("page.js", include_str!("../page/page.js")),
 ];
 

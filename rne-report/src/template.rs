@@ -54,15 +54,16 @@ pub(crate) fn json(value: &serde_json::Value) -> String {
     inert
 }
 
-/// A script without the lines that are comments alone: they would be a tenth of a page. They stand in `page/`.
+/// A script without its indentation and without the lines that are comments alone: they would be a tenth of a page.
+/// They stand in `page/`. No text of a script may go over several lines.
 pub(crate) fn code(script: &str) -> String {
     let mut code = String::new();
     let mut is_inside = false;
     for line in script.lines() {
         let text = line.trim();
         is_inside |= text.starts_with("/**");
-        if !is_inside && !text.starts_with("//") {
-            code.push_str(line);
+        if !is_inside && !text.is_empty() && !text.starts_with("//") {
+            code.push_str(text);
             code.push('\n');
         }
         is_inside &= !text.ends_with("*/");
@@ -84,6 +85,16 @@ mod tests {
     fn lines_of_comments_are_left_out_alone() {
         let script = "// a\nconst a = 1; // b\n/** c */\n/**\n * d\n */\n  // e\nconst of = \"// f\";\n";
         assert_eq!(code(script), "const a = 1; // b\nconst of = \"// f\";\n");
+        assert_eq!(code("f(\n  a,\n);\n\n"), "f(\na,\n);\n");
+    }
+
+    #[test]
+    fn no_text_of_a_script_goes_over_lines() {
+        for (name, script) in crate::SCRIPTS {
+            for line in code(script).lines() {
+                assert!(line.matches('`').count() % 2 == 0, "{name}: {line}");
+            }
+        }
     }
 
     #[test]

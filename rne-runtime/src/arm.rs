@@ -2,7 +2,7 @@
 
 use core::array;
 
-use rne_model::{Model, Motor};
+use rne_model::{FixedFrame, Model, Motor};
 
 use crate::at_tip::AtTip;
 use crate::link_frame::{Chain, LinkFrame};
@@ -55,6 +55,7 @@ pub struct Arm<const DOF: usize, S = f64> {
     tip: Mount<S>,
     motors: [Option<Motor<S>>; DOF],
     rotors: bool,
+    pub(crate) at: Option<FixedFrame<S>>,
 }
 
 impl<const DOF: usize, S: Constant> Arm<DOF, S> {
@@ -64,7 +65,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         let Model { convention, tool, rows, .. } = &model;
         let links = array::from_fn(|index| LinkFrame::new(*convention, rows, index));
         let tip = Mount::of_tip(*convention, rows, tool);
-        Self { model, links, tip, motors: [None; DOF], rotors: false }
+        Self { model, links, tip, motors: [None; DOF], rotors: false, at: None }
     }
 
     /// Returns this robot with other motors, base to tip; `None` for a joint without a motor.
@@ -143,7 +144,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         let Model { convention, gravity, base, tool, rows } = &self.model;
         let chain = Chain { links: &self.links, tip: &self.tip };
         let (motors, rotors) = (&self.motors, self.rotors);
-        Mechanism { per_joint: Known, chain, convention: *convention, rows, motors, rotors, gravity, base, tool }
+        let (convention, at) = (*convention, self.at.as_ref());
+        Mechanism { per_joint: Known, chain, convention, rows, motors, rotors, gravity, base, tool, at }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The runtime robot with a number of joints known at run time.
 
-use rne_model::{Convention, Model, Motor, Robot, Row, Transform};
+use rne_model::{Convention, FixedFrame, Model, Motor, Robot, Row, Transform};
 
 use crate::at_tip::AtTip;
 use crate::link_frame::{Chain, LinkFrame};
@@ -26,6 +26,7 @@ pub struct DynArm<S = f64> {
     tip: Mount<S>,
     motors: Vec<Option<Motor<S>>>,
     rotors: bool,
+    pub(crate) at: Option<FixedFrame<S>>,
 }
 
 /// The seven steps of one state of a [`DynArm`], in the axes of form P.
@@ -36,13 +37,14 @@ pub struct DynTrace<T> {
 }
 
 impl DynArm {
-    /// The runtime robot of a robot file that has been read.
+    /// The runtime robot of a robot file that has been read, at the frame of [`Robot::at`].
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
         let motors = robot.joints.iter().map(|joint| joint.motor).collect();
         let rows = robot.rows().copied().collect();
         let rotors = robot.rotors;
-        Self { motors, rotors, ..Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, rows) }
+        let at = robot.at.map(|frame| robot.fixed_frame(frame));
+        Self { motors, rotors, at, ..Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, rows) }
     }
 }
 
@@ -64,7 +66,7 @@ impl<S: Constant> DynArm<S> {
         let links = (0..rows.len()).map(|index| LinkFrame::new(convention, &rows, index)).collect();
         let tip = Mount::of_tip(convention, &rows, &tool);
         let motors = vec![None; rows.len()];
-        Self { convention, gravity, base, tool, rows, links, tip, motors, rotors: false }
+        Self { convention, gravity, base, tool, rows, links, tip, motors, rotors: false, at: None }
     }
 
     /// Returns this robot with other motors, base to tip; `None` for a joint without a motor.
@@ -289,9 +291,9 @@ impl<S: Constant> DynArm<S> {
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Counted, S> {
-        let Self { convention, gravity, base, tool, rows, links, tip, motors, rotors } = self;
-        let (per_joint, convention, rotors) = (Counted(rows.len()), *convention, *rotors);
-        Mechanism { per_joint, chain: Chain { links, tip }, convention, rows, motors, rotors, gravity, base, tool }
+        let Self { convention, gravity, base, tool, rows, links, tip, motors, rotors, at } = self;
+        let (per_joint, convention, rotors, at) = (Counted(rows.len()), *convention, *rotors, at.as_ref());
+        Mechanism { per_joint, chain: Chain { links, tip }, convention, rows, motors, rotors, gravity, base, tool, at }
     }
 }
 
@@ -304,8 +306,13 @@ impl DynArm<f64> {
         let rows = self.rows.iter().map(|row| row.to_f32()).collect();
         let motors = self.motors.iter().map(|motor| motor.map(Motor::to_f32)).collect();
         let (base, tool) = (self.base.to_f32(), self.tool.to_f32());
-        let rotors = self.rotors;
-        DynArm { motors, rotors, ..DynArm::of_rows(self.convention, self.gravity.map(|x| x as f32), base, tool, rows) }
+        let (rotors, at) = (self.rotors, self.at.map(FixedFrame::to_f32));
+        DynArm {
+            motors,
+            rotors,
+            at,
+            ..DynArm::of_rows(self.convention, self.gravity.map(|x| x as f32), base, tool, rows)
+        }
     }
 }
 

@@ -1,4 +1,6 @@
-//! Poses, the Jacobian of the tip and what it lacks of the tip's acceleration.
+//! Poses, the Jacobian of the tip, what it lacks of the tip's acceleration, and the torques of a wrench at the tip.
+//!
+//! In place of the tip may be a frame on any link. Then the joints behind this link move nothing.
 //!
 //! Poses are accumulated from the base, row by row of the table, and not by the frames of the seven steps. The order of
 //! the operations is part of the contract; generated code repeats it:
@@ -17,14 +19,15 @@
 //! as the sum of constant and variable.
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Convention, JointKind, Row, Transform};
+use rne_model::{Convention, FixedFrame, JointKind, Row, Transform};
 
 use crate::joint::JointLaws;
 use crate::link_frame::{LinkFrame, rotation_of, rotation_x, rotation_z};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
+use crate::mount::Mount;
 use crate::per_joint::PerJoint;
-use crate::{Arm, BaseMotion, Constant, Kinematics, Pose, Scalar};
+use crate::{Arm, BaseMotion, Constant, Kinematics, Pose, Scalar, Wrench};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
@@ -113,10 +116,29 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         Some(links[i].rotation * Vector3::from(self.rows[i].link.first_moment).map(S::to))
     }
 
-    /// Returns the tip frame, after the last of `links`.
+    /// The frame that is observed: the tip, or the frame that stands in its place.
+    fn observed(self) -> FixedFrame<S> {
+        let tip = || FixedFrame { on: self.rows.len().checked_sub(1), placement: *self.tool };
+        self.at.copied().unwrap_or_else(tip)
+    }
+
+    /// Returns the observed frame, after one of `links`.
     fn tip<T: Scalar>(self, links: &[Placement<T>]) -> Placement<T> {
-        let last = links.last().copied().unwrap_or_else(|| Placement::constant(self.base));
-        last.then(&Placement::constant(self.tool))
+        let FixedFrame { on, placement } = self.observed();
+        let link = on.map_or_else(|| Placement::constant(self.base), |link| links[link]);
+        link.then(&Placement::constant(&placement))
+    }
+
+    /// Whether a joint moves the observed frame: it is the joint of its link, or of a link that carries this one.
+    fn moves_tip(self, joint: usize) -> bool {
+        let mut link = self.observed().on;
+        while let Some(index) = link {
+            if index == joint {
+                return true;
+            }
+            link = self.chain.links[index].parent;
+        }
+        false
     }
 
     pub(crate) fn forward_kinematics<T: Scalar>(self, q: &[T]) -> Pose<T> {
@@ -129,12 +151,16 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.per_joint.of(|i| links.as_ref()[i].pose())
     }
 
-    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0.
+    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0; of a joint that does not
+    /// move the frame: 0, 0.
     pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
         let base = Placement::constant(self.base);
         let links = self.placements(base, q);
         let tip = self.tip(links.as_ref());
         let columns = self.per_joint.of(|i| {
+            if !self.moves_tip(i) {
+                return (Vector3::zeros(), Vector3::zeros());
+            }
             let frame = self.joint_frame(i, base, links.as_ref());
             let axis = frame.rotation.column(2).into_owned();
             match self.rows[i].kind {
@@ -157,19 +183,28 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// - P: the same + 2 q̇_i ω_i × e_i
     ///
     /// then the last p̈ and ω̇_n turned by R_n … R_1 and by the base.
+    ///
+    /// A frame on another link than the last one stands in the place of the tip: the links behind it have no part.
     pub(crate) fn jacobian_rate_times_velocity<T: Scalar>(self, q: &[T], qd: &[T]) -> [T; 6] {
+        let frame = self.observed();
         let zeros = self.zeros();
         let weightless = BaseMotion::fixed([T::zero(); 3]);
         let motions = self.motions(JointMotions::new(q, qd, zeros.as_ref()), &weightless);
         let (mut linear, mut angular) = (Vector3::zeros(), Vector3::zeros());
-        for (i, (link, this)) in self.chain.links().zip(motions.as_ref()).enumerate() {
-            let span = link.span(q[i], &self.chain.mount_behind(i));
+        for (i, (link, this)) in
+            self.chain.links().zip(motions.as_ref()).enumerate().filter(|(i, _)| self.moves_tip(*i))
+        {
+            let mount = match self.at {
+                Some(_) if frame.on == Some(i) => Mount::of_frame(self.convention, self.rows, &frame).to(),
+                _ => self.chain.mount_behind(i),
+            };
+            let span = link.span(q[i], &mount);
             let centripetal = this.omega.cross(&this.omega.cross(&span));
             let rigid = (this.rotation.tr_mul(&linear) + this.omega_dot.cross(&span)) + centripetal;
             linear = link.kind.acceleration(rigid, &this.omega, qd[i], T::zero());
             angular = this.omega_dot;
         }
-        for motion in motions.as_ref().iter().rev() {
+        for (_, motion) in motions.as_ref().iter().enumerate().rev().filter(|(i, _)| self.moves_tip(*i)) {
             linear = motion.rotation * linear;
             angular = motion.rotation * angular;
         }
@@ -177,6 +212,29 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         linear = base * linear;
         angular = base * angular;
         [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+    }
+
+    /// Jᵀ w of a wrench at the tip, in its axes: with F = R_tip f and N = R_tip n,
+    ///
+    /// - R: z_i · (N + (p_tip - p_i) × F)
+    /// - P: z_i · F
+    pub(crate) fn wrench_torques<T: Scalar>(self, q: &[T], wrench: &Wrench<T>) -> J::Of<T> {
+        let base = Placement::constant(self.base);
+        let links = self.placements(base, q);
+        let tip = self.tip(links.as_ref());
+        let (force, moment) = wrench.vectors();
+        let (force, moment) = (tip.rotation * force, tip.rotation * moment);
+        self.per_joint.of(|i| {
+            if !self.moves_tip(i) {
+                return T::zero();
+            }
+            let frame = self.joint_frame(i, base, links.as_ref());
+            let axis = frame.rotation.column(2).into_owned();
+            match self.rows[i].kind {
+                JointKind::Revolute => axis.dot(&((tip.translation - frame.translation).cross(&force) + moment)),
+                JointKind::Prismatic => axis.dot(&force),
+            }
+        })
     }
 }
 
@@ -195,6 +253,22 @@ impl<const DOF: usize, S: Constant> Kinematics<DOF> for Arm<DOF, S> {
 
     fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; 6] {
         self.mechanism().jacobian_rate_times_velocity(q, qd)
+    }
+
+    fn wrench_torques<T: Scalar>(&self, q: &[T; DOF], wrench: &Wrench<T>) -> [T; DOF] {
+        self.mechanism().wrench_torques(q, wrench)
+    }
+}
+
+impl<const DOF: usize, S: Constant> Arm<DOF, S> {
+    /// This arm with the frame `frame` in the place of the tip: the functions of [`Kinematics`] are those of the frame,
+    /// except [`link_poses`](Kinematics::link_poses). The functions of all other traits stay those of the tip.
+    ///
+    /// `None` when `frame` is on a link that the arm does not have.
+    #[must_use]
+    pub fn at_frame(mut self, frame: FixedFrame<S>) -> Option<Self> {
+        self.at = Some(frame);
+        frame.on.is_none_or(|link| link < DOF).then_some(self)
     }
 }
 
@@ -235,5 +309,23 @@ impl<S: Constant> DynArm<S> {
         self.has_length("q", q)?;
         self.has_length("qd", qd)?;
         Ok(self.mechanism().jacobian_rate_times_velocity(q, qd))
+    }
+
+    /// As [`Kinematics::wrench_torques`]: Jᵀ w, one torque per joint.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn wrench_torques<T: Scalar>(&self, q: &[T], wrench: &Wrench<T>) -> Result<Vec<T>, WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().wrench_torques(q, wrench))
+    }
+
+    /// As [`Arm::at_frame`]: this arm with the frame `frame` in the place of the tip.
+    ///
+    /// `None` when `frame` is on a link that the arm does not have.
+    #[must_use]
+    pub fn at_frame(mut self, frame: FixedFrame<S>) -> Option<Self> {
+        self.at = Some(frame);
+        frame.on.is_none_or(|link| link < self.dof()).then_some(self)
     }
 }

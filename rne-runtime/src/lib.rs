@@ -62,6 +62,7 @@ mod payload_dynamics;
 #[cfg(feature = "arm")]
 mod per_joint;
 mod pose;
+mod pose_log;
 #[doc(hidden)]
 pub mod processor;
 mod registers;
@@ -87,9 +88,9 @@ pub use base_motion::BaseMotion;
 pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
-    Actuation, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, PayloadDynamics, Regressor,
-    TorqueDerivatives,
+    Actuation, AtFrame, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, FrameKinematics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase,
+    PayloadDynamics, Regressor, TorqueDerivatives, frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

@@ -2,7 +2,7 @@
 //! on.
 
 use nalgebra::Vector3;
-use rne_model::{Convention, Motor, Row, Transform};
+use rne_model::{Convention, FixedFrame, Motor, Row, Transform};
 
 use crate::at_tip::AtTip;
 use crate::link_frame::Chain;
@@ -24,6 +24,8 @@ pub(crate) struct Mechanism<'a, J, S> {
     pub(crate) gravity: &'a [S; 3],
     pub(crate) base: &'a Transform<S>,
     pub(crate) tool: &'a Transform<S>,
+    /// The frame that kinematic functions are taken at instead of the tip.
+    pub(crate) at: Option<&'a FixedFrame<S>>,
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {

@@ -12,7 +12,7 @@
 //! the base the rotation of a standard table is 1, and c̄_p = 0. R_t and p_t are the tool's.
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Convention, Row, Transform, parent};
+use rne_model::{Convention, FixedFrame, Row, Transform, parent};
 
 use crate::link_frame::{rotation_of, rotation_x, turned_com};
 use crate::{Constant, Scalar};
@@ -45,15 +45,21 @@ impl<S: Constant> Mount<S> {
 
     /// Returns the mount of the tip frame, on the last link.
     pub(crate) fn of_tip(convention: Convention, rows: &[Row<S>], tool: &Transform<S>) -> Self {
-        let (last, rotation, lever) = (rows.last(), rotation_of(tool), Vector3::from(tool.xyz));
-        let (rotation, lever) = match (convention, last) {
-            (Convention::Standard, Some(last)) => {
-                let twist = rotation_x(&last.dh.alpha);
+        Self::of_frame(convention, rows, &FixedFrame { on: rows.len().checked_sub(1), placement: *tool })
+    }
+
+    /// Returns the mount of a frame that is fixed to a link.
+    pub(crate) fn of_frame(convention: Convention, rows: &[Row<S>], frame: &FixedFrame<S>) -> Self {
+        let FixedFrame { on, placement } = frame;
+        let (carrier, rotation, lever) = (on.map(|on| &rows[on]), rotation_of(placement), Vector3::from(placement.xyz));
+        let (rotation, lever) = match (convention, carrier) {
+            (Convention::Standard, Some(carrier)) => {
+                let twist = rotation_x(&carrier.dh.alpha);
                 (twist * rotation, twist * lever)
             }
             _ => (rotation, lever),
         };
-        Self { rotation, lever, r: from_com(convention, last, lever) }
+        Self { rotation, lever, r: from_com(convention, carrier, lever) }
     }
 
     /// Converts the constants to the scalar of a computation.

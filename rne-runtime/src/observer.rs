@@ -65,20 +65,8 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     #[must_use]
     pub fn new(gain: f64, period: f64) -> Self {
         let zeros = [T::zero(); DOF];
-        // of a shorter tick the frequency is not finite, in single precision at least
-        let (weight, frequency) = if period >= SHORTEST_PERIOD {
-            (weight(core::f64::consts::TAU * gain * period), 1.0 / period)
-        } else {
-            (0.0, 0.0)
-        };
-        Self {
-            momentum: zeros,
-            rate: zeros,
-            external: zeros,
-            next: T::zero(),
-            weight: T::from_f64(weight),
-            frequency: T::from_f64(frequency),
-        }
+        let (weight, frequency) = tick(gain, period);
+        Self { momentum: zeros, rate: zeros, external: zeros, next: T::zero(), weight, frequency }
     }
 
     /// One tick: positions, rates and torques of the actuators as they are measured at its end. Returns the external
@@ -135,6 +123,17 @@ fn low_pass<T: Scalar>(before: T, momentum: [T; 2], rate: [T; 2], frequency: T, 
     before + (mean - before) * weight
 }
 
+/// The weight and the frequency of a tick.
+fn tick<T: Scalar>(gain: f64, period: f64) -> (T, T) {
+    // of a shorter tick the frequency is not finite, in single precision at least
+    let (weight, frequency) = if period >= SHORTEST_PERIOD {
+        (weight(core::f64::consts::TAU * gain * period), 1.0 / period)
+    } else {
+        (0.0, 0.0)
+    };
+    (T::from_f64(weight), T::from_f64(frequency))
+}
+
 /// [`ObserverState`] for a [`DynArm`], whose number of joints is known when the program runs.
 #[cfg(all(feature = "arm", feature = "std"))]
 #[derive(Clone, Debug, PartialEq)]
@@ -142,9 +141,10 @@ pub struct DynObserverState<T> {
     momentum: Vec<T>,
     rate: Vec<T>,
     external: Vec<T>,
-    next: T,
-    weight: T,
-    frequency: T,
+    has_begun: bool,
+    /// Hz and s, of [`Self::update`].
+    gain: f64,
+    period: f64,
 }
 
 #[cfg(all(feature = "arm", feature = "std"))]
@@ -152,9 +152,8 @@ impl<T: Scalar> DynObserverState<T> {
     /// Creates an observer as [`ObserverState::new`] does, for a number of joints.
     #[must_use]
     pub fn new(dof: usize, gain: f64, period: f64) -> Self {
-        let ObserverState { next, weight, frequency, .. } = ObserverState::<0, T>::new(gain, period);
         let zeros = vec![T::zero(); dof];
-        Self { momentum: zeros.clone(), rate: zeros.clone(), external: zeros, next, weight, frequency }
+        Self { momentum: zeros.clone(), rate: zeros.clone(), external: zeros, has_begun: false, gain, period }
     }
 
     /// As [`ObserverState::update`].
@@ -169,14 +168,32 @@ impl<T: Scalar> DynObserverState<T> {
         tau: &[T],
     ) -> Result<Vec<T>, WrongLength> {
         let [momentum, rate] = arm.momentum_and_rate(q, qd, tau)?;
-        if momentum.len() != self.external.len() {
-            return Err(WrongLength { argument: "q", expected: self.external.len(), found: momentum.len() });
+        self.advance(self.period, momentum, rate)
+    }
+
+    /// One tick of any length, `period` s after the tick before: as [`update`](Self::update), with what
+    /// `momentum_and_rate` of an arm returns, from whatever implementation. The first tick begins and returns zeros; a
+    /// `period` below 1e-30 s leaves the external torques as they are.
+    ///
+    /// `momentum` is M(q) q̇, N m s or N s, and `rate` is τ + C(q, q̇)ᵀ q̇ - g(q), N m or N, base to tip. Returns the
+    /// external torques, N m or N.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint of the observer.
+    pub fn advance(&mut self, period: f64, momentum: Vec<T>, rate: Vec<T>) -> Result<Vec<T>, WrongLength> {
+        let expected = self.external.len();
+        if momentum.len() != expected {
+            return Err(WrongLength { argument: "q", expected, found: momentum.len() });
         }
+        if rate.len() != expected {
+            return Err(WrongLength { argument: "rate", expected, found: rate.len() });
+        }
+        let (weight, frequency) = if self.has_begun { tick(self.gain, period) } else { (T::zero(), T::zero()) };
         for (i, external) in self.external.iter_mut().enumerate() {
             let both = [[self.momentum[i], momentum[i]], [self.rate[i], rate[i]]];
-            *external = low_pass(*external, both[0], both[1], self.frequency, self.next);
+            *external = low_pass(*external, both[0], both[1], frequency, weight);
         }
-        (self.momentum, self.rate, self.next) = (momentum, rate, self.weight);
+        (self.momentum, self.rate, self.has_begun) = (momentum, rate, true);
         Ok(self.external.clone())
     }
 
@@ -185,7 +202,7 @@ impl<T: Scalar> DynObserverState<T> {
         for list in [&mut self.momentum, &mut self.rate, &mut self.external] {
             list.fill(T::zero());
         }
-        self.next = T::zero();
+        self.has_begun = false;
     }
 
     /// The external torques of the last update, base to tip.

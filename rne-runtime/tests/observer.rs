@@ -61,6 +61,36 @@ fn the_response_is_that_of_a_low_pass() {
     }
 }
 
+/// Ticks of unequal length: the response depends on the time alone, and equal ticks give the bits of `update`.
+#[test]
+#[cfg(feature = "arm")]
+fn a_tick_may_have_any_length() {
+    use rne_runtime::{DynArm, DynObserverState};
+
+    let arm = DynArm::new(&Model { gravity: [0.0; 3], ..one_link() });
+    let (gain, external) = (20.0, 3.0);
+    let tick = || arm.momentum_and_rate(&[0.4], &[0.0], &[-external]).expect("one joint");
+    let mut observer = DynObserverState::new(1, gain, f64::NAN);
+    let mut time = 0.0;
+    for (k, period) in [0.0, 1e-3, 0.02, 3e-4, 0.1, 0.0, 1e-6].into_iter().enumerate() {
+        let [momentum, rate] = tick();
+        let seen = observer.advance(period, momentum, rate).expect("one joint")[0];
+        time += if k == 0 { 0.0 } else { period };
+        let expected = -external * (-TAU * gain * time).exp_m1();
+        assert!((seen - expected).abs() < 1e-13 * external, "{time} s: {seen} is not {expected}");
+    }
+    let [mut equal, mut fixed] = [0.0, 1e-3].map(|period| DynObserverState::new(1, gain, period));
+    for k in 0..50 {
+        let [q, qd] = [[0.1 * f64::from(k)], [f64::from(k).sin()]];
+        let [momentum, rate] = arm.momentum_and_rate(&q, &qd, &[1.0]).expect("one joint");
+        let seen = equal.advance(1e-3, momentum, rate);
+        assert_eq!(seen, fixed.update(&arm, &q, &qd, &[1.0]));
+    }
+    let wrong = observer.advance(1e-3, vec![0.0; 2], vec![0.0; 2]).expect_err("two joints");
+    assert_eq!((wrong.expected, wrong.found), (1, 2));
+    assert_eq!(observer.advance(1e-3, vec![0.0], vec![0.0; 3]).expect_err("three rates").argument, "rate");
+}
+
 /// A gain or a period that is no positive number, and a period whose frequency is not finite, give zeros in either
 /// precision; the shortest period that is allowed gives numbers.
 #[test]

@@ -1,4 +1,5 @@
-//! The document in LaTeX: an article with amsmath, which every TeX has.
+//! The document in LaTeX: an article with amsmath, which every TeX has; or its equations for an article or for slides of
+//! beamer.
 
 use std::fmt::Write as _;
 
@@ -6,8 +7,24 @@ use crate::ClosedForm;
 use crate::document::{Item, sections};
 use crate::notation::{Script, latex_text};
 
+/// What a text in LaTeX is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LatexStyle {
+    /// A document that compiles by itself.
+    #[default]
+    Article,
+    /// Equations alone, for `\input` into a document with amsmath.
+    Body,
+    /// A frame of beamer for each torque, then a frame for each other section of equations, for `\input`.
+    Beamer,
+}
+
 /// Columns of a terminal whose formulas fill a line of the page.
 const COLUMNS: usize = 78;
+
+/// The same for a slide, in small letters.
+const COLUMNS_OF_SLIDE: usize = 54;
 
 const HEAD: &str = r"\documentclass{article}
 \usepackage{amsmath}
@@ -20,7 +37,66 @@ const HEAD: &str = r"\documentclass{article}
 \begin{document}
 ";
 
-pub(crate) fn latex(form: &ClosedForm, title: &str) -> String {
+pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String {
+    match style {
+        LatexStyle::Article => article(form, title),
+        LatexStyle::Body => {
+            let mut text = format!("% {}; needs amsmath\n", latex_text(title));
+            for section in sections(form, Script::Latex) {
+                let mut rows = rows(&section.items, COLUMNS);
+                if !rows.is_empty() {
+                    let _ = writeln!(text, "% {}", mixed(&section.title));
+                }
+                aligned(&mut text, &mut rows);
+            }
+            text
+        }
+        LatexStyle::Beamer => {
+            let mut text = format!("% {}; frames for beamer\n", latex_text(title));
+            for (at, section) in sections(form, Script::Latex).iter().enumerate() {
+                // the torques come first, a frame for each
+                let is_torques = at == usize::from(form.joints() < form.dof) && form.is_closed();
+                let parts: Vec<&[Item]> =
+                    if is_torques { section.items.chunks(1).collect() } else { vec![section.items.as_slice()] };
+                for items in parts {
+                    let title = match items {
+                        [Item::Formula { left, .. }] if is_torques => format!("Torque, ${left}$"),
+                        _ => mixed(&section.title),
+                    };
+                    frame(&mut text, &title, items);
+                }
+            }
+            text
+        }
+    }
+}
+
+/// A slide with formulas of a section; long ones go on behind it.
+fn frame(text: &mut String, title: &str, items: &[Item]) {
+    let mut rows = rows(items, COLUMNS_OF_SLIDE);
+    if rows.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n\\begin{{frame}}[allowframebreaks]{{{title}}}\n\\small\\allowdisplaybreaks");
+    aligned(text, &mut rows);
+    text.push_str("\\end{frame}\n");
+}
+
+/// The formulas of a section as rows below one another.
+fn rows(items: &[Item], columns: usize) -> Vec<String> {
+    items.iter().flat_map(|item| rows_of(item, columns)).collect()
+}
+
+/// The rows of an item; none of words.
+fn rows_of(item: &Item, columns: usize) -> Vec<String> {
+    let Item::Formula { left, width, right } = item else { return Vec::new() };
+    let lines = right.lines(width + 3, 4, columns).into_iter().enumerate();
+    lines
+        .map(|(at, (_, line))| if at == 0 { format!("  {left} &= {line}") } else { format!("  &\\quad {line}") })
+        .collect()
+}
+
+fn article(form: &ClosedForm, title: &str) -> String {
     let mut text = HEAD.to_owned();
     let _ = writeln!(text, "\\section*{{{}}}", latex_text(title));
     for section in sections(form, Script::Latex) {
@@ -30,14 +106,7 @@ pub(crate) fn latex(form: &ClosedForm, title: &str) -> String {
         let mut rows: Vec<String> = Vec::new();
         for item in section.items {
             match item {
-                Item::Formula { left, width, right } => {
-                    for (at, (_, line)) in right.lines(width + 3, 4, COLUMNS).into_iter().enumerate() {
-                        rows.push(match at {
-                            0 => format!("  {left} &= {line}"),
-                            _ => format!("  &\\quad {line}"),
-                        });
-                    }
-                }
+                item @ Item::Formula { .. } => rows.extend(rows_of(&item, COLUMNS)),
                 Item::Words(words) => {
                     aligned(&mut text, &mut rows);
                     let _ = writeln!(text, "\n{}\n", mixed(&words));

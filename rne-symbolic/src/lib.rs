@@ -23,7 +23,7 @@
 //! let robot = read("pendulum.yaml", text.as_bytes())?;
 //! let form = ClosedForm::of(&robot, 1);
 //! assert!(form.text().contains("  τ1 = (1/3) m a² θ̈1 + (1/2) m g a sin θ1\n"));
-//! assert!(form.latex("pendulum").contains(r"\tau_{1} &= \tfrac{1}{3}\,m\,a^{2}\,\ddot{\theta}_{1}"));
+//! assert!(form.latex("pendulum", rne_symbolic::LatexStyle::Article).contains(r"\tau_{1} &= \tfrac{1}{3}\,m\,a^{2}\,\ddot{\theta}_{1}"));
 //! # Ok::<(), rne_model::Report>(())
 //! ```
 #![forbid(unsafe_code)]
@@ -50,6 +50,7 @@ mod trigonometry;
 mod vector;
 mod written;
 
+pub use crate::latex::LatexStyle;
 pub use crate::parameters::read;
 
 use rne_model::Robot;
@@ -177,9 +178,9 @@ impl ClosedForm {
         text::text(self, spelling)
     }
 
-    /// The form as a LaTeX document that compiles by itself, with the package amsmath; `title` is any text.
+    /// The form in LaTeX with the package amsmath; `title` is any text.
     #[must_use]
-    pub fn latex(&self, title: &str) -> String {
-        latex::latex(self, title)
+    pub fn latex(&self, title: &str, style: LatexStyle) -> String {
+        latex::latex(self, title, style)
     }
 }

@@ -254,7 +254,7 @@ joints:
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     assert!(text.contains("h1 = 2 c112 θ̇1 ḋ2") && !text.contains("d2² + d2²"), "{text}");
-    let latex = form.latex("letters");
+    let latex = form.latex("letters", crate::LatexStyle::Article);
     let values: Vec<&str> = latex.lines().filter_map(|line| line.strip_prefix('$')?.strip_suffix("$%")).collect();
     let letters: Vec<&str> = values.iter().flat_map(|value| value.split(" = ")).collect();
     assert!(values.len() >= 8, "{values:?}");

@@ -256,14 +256,16 @@ impl Reading<'_> {
         };
         let mut matrix = DMatrix::zeros(count, count);
         if rows.len() != count {
-            return Err(self.refuse_at(node, &format!("{} rows, but {count} are expected for this robot", rows.len())));
+            return Err(self
+                .refuse_at(node, &format!("there are {} rows, but {count} are expected for this robot", rows.len())));
         }
         for (row, node) in rows.iter().enumerate() {
             let numbers = self.list_of(node)?;
             if numbers.len() != count - row {
-                return Err(
-                    self.refuse_at(node, &format!("{} numbers, but {} are expected", numbers.len(), count - row))
-                );
+                return Err(self.refuse_at(
+                    node,
+                    &format!("there are {} numbers, but {} are expected", numbers.len(), count - row),
+                ));
             }
             for (column, number) in (row..count).zip(numbers) {
                 matrix[(row, column)] = number;

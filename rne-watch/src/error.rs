@@ -55,7 +55,9 @@ pub enum WatchError {
 impl fmt::Display for WatchError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Joints { expected, found } => write!(f, "{found} joints, but the robot has {expected}"),
+            Self::Joints { expected, found } => {
+                write!(f, "the motion has {found} joints, but the robot has {expected}")
+            }
             Self::Length(list, joint) => {
                 write!(f, "`{list}` of joint {joint} does not have one number for each time")
             }
@@ -64,16 +66,20 @@ impl fmt::Display for WatchError {
                 "sample {} has a number that is not finite, or is not later than the one before it",
                 index + 1
             ),
-            Self::TooFew { found, needed } => write!(f, "{found} samples, but at least {needed} are needed"),
+            Self::TooFew { found, needed } => write!(
+                f,
+                "the motion has {found} samples, but at least {needed} are \
+                                                         needed"
+            ),
             Self::ShortLog { duration, needed, cutoff } => write!(
                 f,
-                "{duration:.1} s are too short to watch after a low-pass of {cutoff:.1} Hz: more than {needed:.1} s of \
-                 motion are needed"
+                "the motion is too short: after the low-pass filter of {cutoff:.1} Hz, {duration:.1} s are left, but \
+                 more than {needed:.1} s are needed"
             ),
             Self::ShortBaseline { duration, needed, cutoff } => write!(
                 f,
-                "{duration:.1} s are too short for a baseline of this arm after a low-pass of {cutoff:.1} Hz: at least \
-                 {needed:.1} s of motion are needed"
+                "the motion is too short for a baseline of this arm: after the low-pass filter of {cutoff:.1} Hz, \
+                 {duration:.1} s are left, but at least {needed:.1} s are needed"
             ),
             Self::Setting(name) => write!(f, "{name} must be a finite number above 0"),
             Self::Motion(error) => error.fmt(f),

@@ -361,7 +361,7 @@ fn what_cannot_be_watched_is_said() {
         Signals::new(&robot, &motion, 20.0).expect_err("no motion of the robot")
     };
     let is = |error: WatchError, words: &str| assert_eq!(error.to_string(), words);
-    is(refused(&|m| m.qdd.truncate(1)), "1 joints, but the robot has 2");
+    is(refused(&|m| m.qdd.truncate(1)), "the motion has 1 joints, but the robot has 2");
     assert!(matches!(refused(&|m| m.tau[1].truncate(7)), WatchError::Length("tau", 2)));
     assert!(matches!(refused(&|m| m.q[0][9] = f64::NAN), WatchError::Sample(9)));
     assert!(matches!(refused(&|m| m.time[5] = m.time[4]), WatchError::Sample(5)));

@@ -77,6 +77,7 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
         Function::LinkPoses => robot.link_poses(q).iter().flat_map(pose).collect(),
         Function::Jacobian => flat(robot.jacobian(q)),
         Function::JacobianRateTimesVelocity => robot.jacobian_rate_times_velocity(q, qd).to_vec(),
+        Function::WrenchTorques => robot.wrench_torques(q, &Wrench { force, moment }).to_vec(),
         Function::KineticEnergy => vec![robot.kinetic_energy(q, qd)],
         Function::PotentialEnergy => vec![robot.potential_energy(q)],
         Function::CentreOfMass => robot.centre_of_mass(q).to_vec(),

@@ -148,6 +148,7 @@ impl Driver<'_> {
                 | Function::PotentialEnergy
                 | Function::CentreOfMass
                 | Function::CentreOfMassJacobian => "q",
+                Function::WrenchTorques => "q, force, moment",
                 Function::BiasTorques
                 | Function::CoriolisMatrix
                 | Function::JacobianRateTimesVelocity

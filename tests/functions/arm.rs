@@ -354,6 +354,7 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::LinkPoses => arm.link_poses(q).map(poses),
         Function::Jacobian => arm.jacobian(q).map(flat),
         Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd).map(Vec::from),
+        Function::WrenchTorques => arm.wrench_torques(q, wrench),
         Function::KineticEnergy => arm.kinetic_energy(q, qd).map(|energy| vec![energy]),
         Function::PotentialEnergy => arm.potential_energy(q).map(|energy| vec![energy]),
         Function::CentreOfMass => arm.centre_of_mass(q).map(Vec::from),

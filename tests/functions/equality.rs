@@ -78,6 +78,10 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
             LEAST * mass * largest(&arm.robot.gravity) * reach(arm, given)
         }
         Function::CentreOfMass | Function::CentreOfMassJacobian => LEAST * reach(arm, given),
+        Function::WrenchTorques => {
+            let Wrench { force, moment } = given.wrench;
+            LEAST * (largest(&moment) + largest(&force) * (1.0 + reach(arm, given)))
+        }
         _ => 0.0,
     }
 }

@@ -15,6 +15,7 @@ mod driver;
 mod energy;
 mod equality;
 mod first_moments;
+mod frames;
 mod golden;
 mod kinematics;
 mod matrices;

@@ -98,7 +98,7 @@ impl Row {
     }
 }
 
-const HEADING: &str = "| function | form | median | worst | of |\n|---|---|---:|---:|---|\n";
+const HEADING: &str = "| function | form | median | largest | robot |\n|---|---|---:|---:|---|\n";
 
 fn table(rows: &[Row]) -> String {
     rows.iter().fold(HEADING.to_owned(), |mut text, row| {

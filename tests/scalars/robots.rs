@@ -116,6 +116,7 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
         ("link_poses", robot.link_poses(q).iter().flat_map(of_pose).collect()),
         ("jacobian", robot.jacobian(q).concat()),
         ("jacobian_rate_times_velocity", robot.jacobian_rate_times_velocity(q, qd).to_vec()),
+        ("wrench_torques", robot.wrench_torques(q, &wrench).to_vec()),
         ("kinetic_energy", vec![robot.kinetic_energy(q, qd)]),
         ("potential_energy", vec![robot.potential_energy(q)]),
         ("centre_of_mass", robot.centre_of_mass(q).to_vec()),

@@ -24,11 +24,15 @@ const SANITIZERS: [&str; 4] =
 /// Warnings that examples must not have.
 const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
+/// The folder of headers that replace those of ros2_control, for the example of a controller.
+const STUB: &str = "-Idoors/capi/tests/ros2_stub";
+
 /// Builds the C library, lays it out below a prefix, and runs programs of C and C++ against it
 ///
-/// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples,
-/// a program of sixteen threads and one that forks are compiled against it and run, under valgrind where it is there,
-/// and with the compiler's sanitizers of addresses, leaks and undefined behaviour.
+/// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples, a
+/// program of sixteen threads, one that forks and a controller of ros2_control with a stub of ROS are compiled against
+/// it and run, under valgrind where it is there, and with the compiler's sanitizers of addresses, leaks and undefined
+/// behaviour.
 #[derive(Args)]
 #[command(after_help = "\
 Needs cc and c++; skips valgrind, the sanitizers, pkg-config and CMake, each with one line, where they are not there.
@@ -131,6 +135,7 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
     } else {
         println!("pkg-config: skipped, it is not there");
     }
+    flags.push(STUB.to_owned());
     let has_valgrind = machine::has("valgrind");
     if !has_valgrind {
         println!("valgrind: skipped, it is not there");
@@ -145,6 +150,7 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
         ("doors/capi/examples/controller.c", "cc", "-std=c11"),
         ("doors/capi/tests/threads.c", "cc", "-std=c11"),
         ("doors/capi/tests/fork.c", "cc", "-std=c11"),
+        ("doors/capi/tests/ros2_control.cpp", "c++", "-std=c++17"),
     ];
     let sanitized = programs.join("sanitized");
     fs::create_dir_all(&sanitized)?;

@@ -1,11 +1,11 @@
 //! The dynamics as functions of query engines, `doors/datafusion/`: a workspace of its own.
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
 use xshell::cmd;
 
 use crate::Verdict;
-use crate::machine::{self, Missing};
+use crate::machine;
 
 /// Tests the dynamics as functions of DataFusion and of Ballista
 ///
@@ -20,16 +20,7 @@ impl Fleet {
     pub(crate) fn run() -> Result<Verdict> {
         let shell = machine::shell()?;
         let manifest = "doors/datafusion/Cargo.toml";
-        let fetched = cmd!(shell, "cargo fetch --quiet --locked --manifest-path {manifest}").quiet().ignore_status();
-        let fetched = fetched.output()?;
-        if !fetched.status.success() {
-            let said = String::from_utf8_lossy(&fetched.stderr);
-            // a lock file that is not that of its manifest is a fault
-            if said.contains("lock file") {
-                bail!("{}", said.trim());
-            }
-            return Err(Missing::error("its crates cannot be downloaded"));
-        }
+        machine::fetch(&shell, manifest)?;
         let folder = machine::target_folder("target")?.join("fleet");
         let arguments = ["--manifest-path", manifest, "--locked", "--target-dir"];
         let holds =

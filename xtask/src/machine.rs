@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result, anyhow};
-use xshell::{Cmd, Shell};
+use anyhow::{Context, Result, anyhow, bail};
+use xshell::{Cmd, Shell, cmd};
 
 /// A tool that this machine lacks: the message that replaces a result.
 #[derive(Debug)]
@@ -60,6 +60,21 @@ pub(crate) fn target_folder(default: &str) -> Result<PathBuf> {
 /// its own compiler, which need not be the one that is started.
 pub(crate) fn without_flags(command: Cmd<'_>) -> Cmd<'_> {
     ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "LD_LIBRARY_PATH"].into_iter().fold(command, Cmd::env_remove)
+}
+
+/// Downloads the crates of a workspace of its own. A lock file that is not that of its manifest is a fault, and crates
+/// that cannot be downloaded are missing.
+pub(crate) fn fetch(shell: &Shell, manifest: &str) -> Result<()> {
+    let fetched = cmd!(shell, "cargo fetch --quiet --locked --manifest-path {manifest}").quiet().ignore_status();
+    let fetched = fetched.output()?;
+    if fetched.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&fetched.stderr);
+    if said.contains("lock file") {
+        bail!("{}", said.trim());
+    }
+    Err(Missing::error("its crates cannot be downloaded"))
 }
 
 /// Whether a program can be started.

@@ -26,7 +26,9 @@ mod plain_build;
 mod playground;
 mod prose;
 mod python;
+mod ros2;
 mod single_calls;
+mod site;
 mod tool;
 mod urdf;
 mod verify;
@@ -78,9 +80,11 @@ enum Task {
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
     Python(python::Python),
+    Ros2(ros2::Ros2),
     Capi(capi::Capi),
     Page(page::Page),
     Playground(playground::Playground),
+    Site(site::Site),
 }
 
 /// Result of a task.
@@ -121,9 +125,11 @@ impl Task {
             Self::Features(features) => ("features", false, features.run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
             Self::Python(task) => ("python", task.install, task.run()),
+            Self::Ros2(task) => ("ros2", task.install, task.run()),
             Self::Capi(task) => ("capi", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),
             Self::Playground(task) => ("playground", task.install, task.run()),
+            Self::Site(task) => ("site", task.install, task.run()),
         }
     }
 }

@@ -97,19 +97,28 @@ impl Check {
         match self {
             Self::Compare => {
                 "\
-Compared with the runtime and with independent torques. Reduced forms that these tests derive are proved while the tests
-are built, against seven steps that are wrong then: `cargo build` is what fails in that case."
+The tests compare generated code with the runtime library and with torques of another program. If a test also derives
+the form `reduced`, the compiler proves that this form equals the seven steps while cargo builds the test. The mutation
+makes the seven steps wrong, so the proof fails, and `cargo build` fails instead of the test."
             }
             Self::Prove => {
                 "\
-Only a refusal by the proof counts; a test that fails in another way does not. Where a rod, a shift, a unit of length or
-of force is chosen otherwise nothing is wrong: every choice of them is the same function; such a change is no mutant."
+These mutations are errors in the form `reduced`. The proof that this form equals the seven steps must refuse them; a
+test that fails for another reason does not count. A mutation must make the function wrong. Another choice of a rod, of
+a shift of an origin, or of a scale of lengths or forces gives the same function, so such a change is no mutation."
             }
-            Self::Functions => "Compared with the runtime and with independent values, function by function.",
+            Self::Functions => {
+                "The tests compare each function with the runtime library and with values of another program."
+            }
             Self::Views => {
-                "Equations beside the runtime, closed forms beside Lagrange's equations, parts beside their sum."
+                "\
+The tests compare equations with the runtime library, closed forms with Lagrange's equations, and the parts of a torque
+with the torque."
             }
-            Self::Code => "The C code does not compile, or its bits are not those of the derived code.",
+            Self::Code => {
+                "\
+With these mutations, the C code does not compile, or its results differ from the results of derived Rust code."
+            }
         }
     }
 }

@@ -56,10 +56,12 @@ const PAGE: &str = "docs/mutations.md";
 const HEAD: &str = "\
 # Mutations
 
-Which tests notice when one term of the compiler is wrong. Each line is one change of one place, made in a copy of the
-tree; [xtask/mutants.yaml](../xtask/mutants.yaml) has the texts. Written by `cargo xtask mutate --update`, which exits
-with 1 when nothing fails. Changes that take no knowledge of dynamics, an operator or a comparison, are left to `cargo
-mutants`.
+A mutation is a change that makes one term of the source code wrong. This page lists mutations, and the tests that fail
+because of them. `cargo xtask mutate --update` writes the page: it makes each mutation in a copy of the repository and
+runs the tests that the section names. If no test fails, its exit status is 1.
+[xtask/mutants.yaml](../xtask/mutants.yaml) contains the old and the new text of each mutation. All mutations of this
+page need knowledge of dynamics or of the compiler. `cargo mutants` makes the other kind: it exchanges operators and
+comparisons.
 ";
 
 impl Mutate {

@@ -142,13 +142,14 @@ fn here(shell: &Shell) -> Result<String> {
         Ok(commit) if is_clean => commit,
         Ok(commit) => commit + " with changes",
     };
-    Ok(format!("{date}, {processor}, {cores} cores, load {load} before; {rustc}; rne at {commit}.\n\n"))
+    let machine = format!("{processor}, {cores} cores, load average {load} before the measurement");
+    Ok(format!("{date}, {machine}; {rustc}; rne at {commit}.\n\n"))
 }
 
 /// Processor time does not depend on the load.
 fn without_load(text: &str) -> String {
-    match (text.find(", load "), text.find(" before;")) {
-        (Some(start), Some(end)) => text[..start].to_owned() + &text[end + " before".len()..],
+    match (text.find(", load average "), text.find(" measurement;")) {
+        (Some(start), Some(end)) => text[..start].to_owned() + &text[end + " measurement".len()..],
         _ => text.to_owned(),
     }
 }
@@ -213,7 +214,7 @@ mod tests {
 
     #[test]
     fn words_that_do_not_belong_are_left_out() {
-        assert_eq!(without_load("2 cores, load 1.61 before; rustc"), "2 cores; rustc");
+        assert_eq!(without_load("2 cores, load average 1.61 before the measurement; rustc"), "2 cores; rustc");
         assert_eq!(without_empty_lines("a\n\n\n\nb\n\n\n"), "a\n\nb\n");
     }
 }

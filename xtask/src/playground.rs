@@ -60,6 +60,11 @@ pub(crate) struct Playground {
 }
 
 impl Playground {
+    /// Builds the page and serves it to nobody.
+    pub(crate) fn built(install: bool) -> Result<Verdict> {
+        Self { install, no_serve: true, port: 0, test: false }.run()
+    }
+
     pub(crate) fn run(&self) -> Result<Verdict> {
         target(self.install)?;
         let folder = machine::target_folder("target")?.join("playground");

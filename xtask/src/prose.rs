@@ -11,8 +11,8 @@ use crate::{Verdict, machine};
 
 /// Finds patterns of prose that are hard to read: in documents, helps of rne and first sentences of documentation
 ///
-/// A pattern holds anywhere in a text, or at the beginning of a sentence. Code, and blocks of documents that a program
-/// writes, are not searched.
+/// A pattern holds anywhere in a text, or at the beginning of a sentence. The strings of sources are messages, so the
+/// former are searched in them, too. Code in documents, and blocks that a program writes, are not searched.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 if there are such patterns.
@@ -44,6 +44,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/inspection.md",
     "docs/lecture/README.md",
     "docs/lecture/errata.md",
+    "docs/lecture/answers.md",
     "docs/lecture/exercises.md",
     "docs/lecture/folding.md",
     "docs/lecture/frames.md",
@@ -57,6 +58,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/python.md",
     "docs/reduced-form.md",
     "docs/robot-file.md",
+    "docs/ros2.md",
     "docs/run-time.md",
     "docs/teaching.md",
     "docs/urdf.md",
@@ -108,6 +110,19 @@ const LIBRARIES: &[&str] = &[
     "rne-runtime/src",
     "rne-search/src",
     "rne-symbolic/src",
+    "rne-watch/src",
+];
+
+/// Folders of sources whose strings are messages: every rule that may hold anywhere is searched in them.
+const MESSAGES: &[&str] = &[
+    "rne-cli/src",
+    "rne-convert/src",
+    "rne-diagnose/src",
+    "rne-identify/src",
+    "rne-logs/src",
+    "rne-macro/src",
+    "rne-model/src",
+    "rne-search/src",
     "rne-watch/src",
 ];
 
@@ -163,6 +178,9 @@ const RULES: &[Rule] = &[
         "both behind 1.6 Hz",
     ),
     anywhere(r"\bhalf as much again\b", "1.5 times", "half as much again as where motion ends"),
+    anywhere(r"\bstands? where\b", "found … where … is needed", "`)` stands where a number is needed"),
+    anywhere(r"\bheld still\b", "locked", "the joint is held still"),
+    anywhere(r"\bcut short\b", "incomplete", "the number is cut short"),
     anywhere(r"\bunless given\b", "[default: …]", "the low-pass; by the spectrum, unless given"),
 ];
 
@@ -279,6 +297,17 @@ fn of_helps(text: &str) -> Vec<Paragraph> {
     found
 }
 
+/// The code of a source line by line, without comments: its words are those of its strings.
+fn of_code(text: &str) -> Vec<Paragraph> {
+    let code = text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
+    let paragraph = |(index, line): (usize, &str)| {
+        let mut of_line = Paragraph::default();
+        of_line.push(index + 1, line);
+        of_line
+    };
+    code.map(paragraph).collect()
+}
+
 /// The rules that a paragraph breaks: line, words, and what to write instead. Questions may begin as they like.
 fn broken(paragraph: &Paragraph, rules: &[(Regex, &'static Rule)]) -> Vec<(usize, String, &'static str)> {
     let text = without_code(&paragraph.text);
@@ -312,21 +341,25 @@ impl Prose {
                 count += 1;
             }
         }
-        let mut tell = |path: &str, paragraphs: Vec<Paragraph>| {
+        let (_, of_messages): (Vec<_>, Vec<_>) = self::rules()?.into_iter().partition(|(_, rule)| rule.begins);
+        let mut tell = |path: &str, paragraphs: Vec<Paragraph>, rules: &[(Regex, &'static Rule)]| {
             for paragraph in &paragraphs {
-                for (line, words, instead) in broken(paragraph, &rules) {
+                for (line, words, instead) in broken(paragraph, rules) {
                     println!("{path}:{line}: \"{}\": {instead}", words.trim_start_matches(['.', ' ', '!', '?', ':']));
                     count += 1;
                 }
             }
         };
         for path in DOCUMENTS.iter().filter(|path| self.names(path)) {
-            tell(path, of_document(&machine::read(path)?));
+            tell(path, of_document(&machine::read(path)?), &rules);
         }
         for (folders, paragraphs) in [(SOURCES, first_sentences as Paragraphs), (HELPS, of_helps)] {
             for path in sources(folders)?.iter().filter(|path| self.names(path)) {
-                tell(path, paragraphs(&machine::read(path)?));
+                tell(path, paragraphs(&machine::read(path)?), &rules);
             }
+        }
+        for path in sources(MESSAGES)?.iter().filter(|path| self.names(path)) {
+            tell(path, of_code(&machine::read(path)?), &of_messages);
         }
         if count > 0 {
             println!("prose: {count} patterns");
@@ -384,7 +417,7 @@ fn sources(folders: &[&str]) -> Result<Vec<String>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Paragraph, RULES, broken, first_sentences, of_document, of_helps, options, rules};
+    use super::{Paragraph, RULES, broken, first_sentences, of_code, of_document, of_helps, options, rules};
 
     #[test]
     fn an_option_is_found_in_a_string_and_not_in_a_comment() {
@@ -406,6 +439,13 @@ mod tests {
         for (pattern, rule) in &rules {
             assert!(pattern.is_match(rule.example), "{}: {}", rule.pattern, rule.example);
         }
+    }
+
+    #[test]
+    fn messages_are_searched_and_comments_are_not() {
+        let text = "// it is held still\nformat!(\n    \"the joint {name} \\\n     is held still\"\n)\n";
+        let places: Vec<usize> = found(&of_code(text)).into_iter().map(|(line, _)| line).collect();
+        assert_eq!(places, [4]);
     }
 
     #[test]

@@ -169,6 +169,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Time,
     },
     Step {
+        name: "site",
+        about: "the documents, the playground, reports and the reference as a site, in headless Chromium",
+        variables: &[],
+        command: &["cargo", "xtask", "site", "--install", "--test"],
+        needs: Needs::Time,
+    },
+    Step {
         name: "book",
         about: "the lecture as a book",
         variables: &[],

@@ -137,6 +137,21 @@ pub unsafe extern "C" fn rne_arm_builtin(name: *const c_char, arm: *mut *mut Arm
     unsafe { made(arm, || Arm::of_name(text(name, "name")?)) }
 }
 
+/// Makes an arm with a frame in the place of the tip: "forward_kinematics", "jacobian", "jacobian_rate_times_velocity"
+/// and "wrench_torques" of this arm are those of the frame, and its other functions those of the tip.
+///
+/// `frame` is the name of a frame in the list `frames` of the robot file, or the name of a joint for its link frame.
+/// The new arm goes to `*at`, to be freed by rne_arm_free() as `arm` is; either may be freed first. After a failure
+/// `*at` is NULL.
+///
+/// # Safety
+/// `arm` is NULL or an arm; `frame` is NULL or ends with a zero byte; `at` is NULL or a place for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rne_arm_at_frame(arm: *const Arm, frame: *const c_char, at: *mut *mut Arm) -> Status {
+    // SAFETY: the caller's promise of all pointers.
+    unsafe { made(at, || reference(arm, "arm")?.at_frame(text(frame, "frame")?)) }
+}
+
 /// Frees an arm, and the names that it gave out; NULL is let pass. No other call may be using it, or use it later.
 ///
 /// # Safety

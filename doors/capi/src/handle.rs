@@ -74,7 +74,7 @@ impl Arm {
         };
         let text = String::from_utf8(bytes)
             .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is not text in UTF-8")))?;
-        let options = Options { selection, snap: false, ..Options::default() };
+        let options = Options { selection, snap: false, frames: true, ..Options::default() };
         let imported = rne_convert::import(path, &text, &options)?;
         Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))
     }
@@ -89,6 +89,12 @@ impl Arm {
             Some(plan) => CompiledArm::with_plan(file.yaml, plan)?,
             None => CompiledArm::from_yaml(file.yaml)?,
         }))
+    }
+
+    /// The arm with a frame in the place of the tip.
+    pub(crate) fn at_frame(&self, frame: &str) -> Result<Self, Failure> {
+        let arm = self.compiled.at_frame(frame);
+        Ok(Self::new(arm.map_err(|unknown| Failure::new(Status::UnknownName, unknown.to_string()))?))
     }
 
     /// What computes.

@@ -5,11 +5,11 @@ use std::ffi::{CStr, CString, c_char};
 use std::ptr::{null, null_mut};
 
 use rne::border::{
-    Input, InputF32, rne_arm_builtin, rne_arm_dof, rne_arm_free, rne_arm_joint_kind, rne_arm_joint_limits,
-    rne_arm_joint_name, rne_arm_load_file, rne_arm_load_text, rne_arm_load_urdf, rne_arm_name, rne_evaluate,
-    rne_evaluate_batch, rne_evaluate_batch_f32, rne_evaluate_batch_threads, rne_evaluate_batch_threads_f32,
-    rne_evaluate_f32, rne_function_argument, rne_function_arguments, rne_function_count, rne_function_find,
-    rne_function_outputs, rne_function_prepare, rne_last_error, rne_version,
+    Input, InputF32, rne_arm_at_frame, rne_arm_builtin, rne_arm_dof, rne_arm_free, rne_arm_joint_kind,
+    rne_arm_joint_limits, rne_arm_joint_name, rne_arm_load_file, rne_arm_load_text, rne_arm_load_urdf, rne_arm_name,
+    rne_evaluate, rne_evaluate_batch, rne_evaluate_batch_f32, rne_evaluate_batch_threads,
+    rne_evaluate_batch_threads_f32, rne_evaluate_f32, rne_function_argument, rne_function_arguments,
+    rne_function_count, rne_function_find, rne_function_outputs, rne_function_prepare, rne_last_error, rne_version,
 };
 use rne::{Arm, JointKind, Limits, Status};
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
@@ -480,4 +480,32 @@ fn words_are_those_of_a_thread() {
     assert_eq!((status, words().as_str()), (Status::NullPointer, "`arm` is NULL"));
     std::thread::spawn(|| assert_eq!(words(), "")).join().expect("no panic");
     assert_eq!(words(), "`arm` is NULL");
+}
+
+#[test]
+fn an_arm_at_a_frame_computes_at_the_frame() {
+    let yaml = include_str!("../../../docs/desk_arm_frames.yaml");
+    let text = CString::new(yaml).expect("no zero byte");
+    // SAFETY: a text and a place.
+    let arm = made(|arm| unsafe { rne_arm_load_text(text.as_ptr(), arm) });
+    let ours = CompiledArm::from_yaml(yaml).expect("an arm");
+    let (q, jacobian) = ([0.4, 0.7, -1.1], id(c"jacobian"));
+    for name in [c"camera", c"table", c"shoulder"] {
+        // SAFETY: an arm, a text and a place.
+        let at = made(|at| unsafe { rne_arm_at_frame(arm.0, name.as_ptr(), at) });
+        let mut found = [0.0; 18];
+        assert_eq!(one(&at, jacobian, &[input(c"q", &q, 0, 0)], &mut found), Status::Ok, "{}", words());
+        let expected = ours.at_frame(name.to_str().expect("UTF-8")).expect("a frame").jacobian(&q).expect("numbers");
+        assert_eq!(found.to_vec(), expected.concat());
+    }
+    // SAFETY: an arm, a text and a place.
+    refused(
+        |at| unsafe { rne_arm_at_frame(arm.0, c"camra".as_ptr(), at) },
+        Status::UnknownName,
+        "did you mean `camera`?",
+    );
+    // SAFETY: NULL is looked for.
+    refused(|at| unsafe { rne_arm_at_frame(null(), c"camera".as_ptr(), at) }, Status::NullPointer, "arm");
+    // SAFETY: the same.
+    refused(|at| unsafe { rne_arm_at_frame(arm.0, null(), at) }, Status::NullPointer, "frame");
 }

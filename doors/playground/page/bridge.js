@@ -9,6 +9,7 @@
     try {
       if (data.ask === "view") tell({ view: rne.view() });
       if (data.show) rne.show(data.show);
+      if (data.address) rne.showAddress(`#${data.address}`);
     } catch (error) {
       // a page that cannot be looked at as the one before is shown as it is
       tell({ view: null });
@@ -17,6 +18,7 @@
       if (data.show) tell({ shown: true });
     }
   });
+  root.addEventListener("address", ({ detail }) => tell({ address: detail }));
   addEventListener("load", () => tell({ title: document.title }));
   const colours = () => tell({ theme: root.dataset.theme || "" });
   new MutationObserver(colours).observe(root, { attributes: true, attributeFilter: ["data-theme"] });

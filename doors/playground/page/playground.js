@@ -44,6 +44,7 @@ class Playground {
     }
     this.problem = problem;
     this.fragment = location.hash;
+    this.view = this.asked = viewOfFragment(location.hash);
     this.take(text ?? this.robots.find(({ name }) => name === FIRST).text);
   }
 
@@ -55,6 +56,7 @@ class Playground {
     }
     // the way back in the browser leads to the text that was here
     history.pushState(null, "", location.hash);
+    this.view = this.asked = "";
     this.take(robot.text);
   }
 
@@ -87,8 +89,9 @@ class Playground {
   async address() {
     const { text } = this.editor;
     const shipped = this.robots.find((robot) => robot.text === text);
-    const fragment = shipped ? `#robot=${shipped.name}` : await fragmentOf(text);
+    const ofText = shipped ? `#robot=${shipped.name}` : await fragmentOf(text);
     if (text !== this.editor.text) return;
+    const fragment = this.view ? `${ofText}&${this.view}` : ofText;
     this.fragment = fragment;
     history.replaceState(null, "", fragment);
   }
@@ -196,6 +199,8 @@ class Playground {
     this.frame = next;
     this.next = null;
     next.className = "";
+    if (this.asked) next.contentWindow.postMessage({ address: this.asked }, "*");
+    this.asked = "";
     byId("shown").dataset.state = "good";
     document.title = `${next.dataset.title} – rne playground`;
     this.colour(next.dataset.theme);
@@ -203,7 +208,11 @@ class Playground {
   }
 
   /** A frame is as high as its page where the screen is narrow; its colours are those of the whole. */
-  follow(frame, { height, theme }) {
+  follow(frame, { height, theme, address }) {
+    if (typeof address === "string" && frame === this.frame && !this.asked) {
+      this.view = address.replace(/^#/, "");
+      this.address();
+    }
     if (height !== undefined) frame.style.setProperty("--height", `${Number(height)}px`);
     if (theme === undefined) return;
     frame.dataset.theme = theme;

@@ -1,4 +1,5 @@
-// A text in the fragment of an address, which no server sees: `#robot=NAME` or `#text=` and the deflated text.
+// A text in the fragment of an address, which no server sees: `#robot=NAME` or `#text=` and the deflated text. What
+// follows the first `&` is the view: address.js of the page reads it.
 
 /** What the compiler takes of a robot file, bytes. */
 const LARGEST_TEXT = 1 << 20;
@@ -15,9 +16,12 @@ async function fragmentOf(text) {
   return `#text=${base64url(new Uint8Array(await new Response(stream).arrayBuffer()))}`;
 }
 
+/** The view of a fragment, without the `&` before it. */
+const viewOfFragment = (fragment) => /^#(?:robot|text)=[^&]*&(.*)$/.exec(fragment)?.[1] || "";
+
 /** The text of a fragment; null when it has none, an error when it is damaged or too large. */
 async function textOf(fragment, robots) {
-  const [, kind, value] = /^#(robot|text)=(.*)$/.exec(fragment) || [];
+  const [, kind, value] = /^#(robot|text)=([^&]*)/.exec(fragment) || [];
   if (kind === "robot") {
     const name = decodeURIComponent(value);
     const found = robots.find((robot) => robot.name === name);

@@ -1,5 +1,6 @@
 //! The functions of the class `Arm`: arrays in, arrays out. They are those of the compiler's list.
 
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use rne_codegen::{Argument, Function};
@@ -77,14 +78,28 @@ macro_rules! details {
 
 macro_rules! methods {
     ($(
-        $variant:ident = $name:ident $arguments:tt -> $returned:ident:
+        $variant:ident = $name:ident $arguments:tt -> $returned:ident $(at $of_frame:ident)?:
             $summary:literal $(, $details:literal)?;
     )*) => {
-        $(method! { $variant $name $arguments $returned $summary $($details)? })*
+        $(method! { $($of_frame)? $variant $name $arguments $returned $summary $($details)? })*
     };
 }
 
 macro_rules! method {
+    // a function of the tip that can be taken at a frame; at the tip its name at frames is another name of it
+    (pose $($rest:tt)*) => {
+        at_frame! { $($rest)* }
+        at_frame! { pose $($rest)* }
+    };
+    (jacobian $($rest:tt)*) => {
+        at_frame! { $($rest)* }
+    };
+    (jacobian_rate_times_velocity $($rest:tt)*) => {
+        at_frame! { $($rest)* }
+    };
+    (wrench_torques $($rest:tt)*) => {
+        at_frame! { $($rest)* }
+    };
     // `Function::with_payload` is the other one
     (InverseDynamics $($rest:tt)*) => {
         loaded! { InverseDynamics InverseDynamicsWithPayload $($rest)* }
@@ -170,6 +185,45 @@ macro_rules! method {
             ) -> PyResult<Bound<'py, PyAny>> {
                 let given = vec![$(given!(self, $argument: $kind)),*];
                 self.compute(py, Function::$variant, given, parameters, out)
+            }
+        }
+    };
+}
+
+/// A function of the tip that can be taken at a frame.
+macro_rules! at_frame {
+    (pose $variant:ident $name:ident $($rest:tt)*) => {
+        at_frame! { $variant pose $($rest)* }
+    };
+    (
+        $variant:ident $name:ident ($($argument:ident: $kind:ident),*)
+            $returned:ident $summary:literal $($details:literal)?
+    ) => {
+        #[pymethods]
+        impl Arm {
+            #[doc = $summary]
+            ///
+            $(#[doc = details!($returned, $details)]
+            #[doc = ""])?
+            /// frame: the name of a frame that stands in the place of the tip: a frame in the list `frames` of the
+            /// robot file, or a joint for its link frame. None is the tip.
+            #[doc = concat!($(about!($kind),)* "Returns ", returned!($returned))]
+            #[pyo3(signature = ($($argument,)* *, frame=None, parameters=None, out=None))]
+            fn $name<'py>(
+                &self,
+                py: Python<'py>,
+                $($argument: &Bound<'py, PyAny>,)*
+                frame: Option<&str>,
+                parameters: Option<&Bound<'py, PyAny>>,
+                out: Option<&Bound<'py, PyAny>>,
+            ) -> PyResult<Bound<'py, PyAny>> {
+                let given = vec![$(given!(self, $argument: $kind)),*];
+                let Some(frame) = frame else {
+                    return self.compute(py, Function::$variant, given, parameters, out);
+                };
+                let arm = self.arm.at_frame(frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
+                let at = Self { arm, origin: self.origin.clone() };
+                at.compute(py, Function::$variant, given, parameters, out)
             }
         }
     };

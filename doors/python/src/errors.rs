@@ -36,9 +36,9 @@ fn in_keywords(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),
         Remedy::NameTip => "name the tip with tip=\"LINK\"".to_owned(),
-        Remedy::LockJoint { joint } => format!("lock={{{joint:?}: VALUE}} holds it still"),
+        Remedy::LockJoint { joint } => format!("lock={{{joint:?}: VALUE}} locks it at this value"),
         Remedy::LockOthers => {
-            "lock={\"JOINT\": VALUE} holds one joint, lock_others=True holds all of them at zero".to_owned()
+            "lock={\"JOINT\": VALUE} locks one joint at this value, lock_others=True locks all others at 0".to_owned()
         }
         Remedy::KeepUnphysical => "keep_unphysical=True keeps the inertia as it is".to_owned(),
     })

@@ -153,7 +153,7 @@ The instruction counts of this page have these limits:
 ";
 
 const LOOP: &str = "\
-## Compared with a loop over a baked-in table
+## Compared with a loop over a constant table
 
 The type `rne::Arm` of the runtime library computes the torques in loops, without `std`. It reads the numbers of the
 robot from a constant table in `f32` in flash. The certified program contains it, too. The torques of `rne::Arm` are

@@ -130,6 +130,7 @@ methods! {
     Kinematics: link_poses(q: [f32; 6]) -> [Pose<f32>; 6];
     Kinematics: jacobian(q: [f32; 6]) -> [[f32; 6]; 6];
     Kinematics: jacobian_rate_times_velocity(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
+    Kinematics: wrench_torques(q: [f32; 6], wrench: Wrench<f32>) -> [f32; 6];
     Energy: kinetic_energy(q: [f32; 6], qd: [f32; 6]) -> f32;
     Energy: potential_energy(q: [f32; 6]) -> f32;
     CentreOfMass: centre_of_mass(q: [f32; 6]) -> [f32; 3];

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use rne_model::Robot;
-use rne_symbolic::ClosedForm;
+use rne_symbolic::{ClosedForm, LatexStyle};
 
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
@@ -18,12 +18,34 @@ pub(crate) struct Wanted {
     /// Print symbolic equations of motion, τ = M θ̈ + h + γ
     #[arg(long, conflicts_with_all = OTHERS)]
     symbolic: bool,
-    /// Print symbolic equations of motion as LaTeX
-    #[arg(long, conflicts_with_all = OTHERS)]
-    latex: bool,
+    /// Print them as LaTeX: article (default), body for \input, or beamer, a frame for each torque
+    #[arg(long, value_name = "STYLE", value_enum, hide_possible_values = true, num_args = 0..=1, require_equals = true,
+        default_missing_value = "article", conflicts_with_all = OTHERS)]
+    latex: Option<Style>,
     /// Print symbolic equations of motion of joints 1 to N
     #[arg(long, value_name = "N", value_parser = crate::values::choice::joint, conflicts_with_all = OTHERS)]
     first: Option<usize>,
+}
+
+/// What the LaTeX is for.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Style {
+    /// A document
+    Article,
+    /// Equations alone
+    Body,
+    /// Slides
+    Beamer,
+}
+
+impl From<Style> for LatexStyle {
+    fn from(style: Style) -> Self {
+        match style {
+            Style::Article => Self::Article,
+            Style::Body => Self::Body,
+            Style::Beamer => Self::Beamer,
+        }
+    }
 }
 
 /// Options of the listing, which a closed form has no use for.
@@ -33,7 +55,7 @@ const OTHERS: [&str; 9] =
 impl Wanted {
     /// Whether a closed form is asked for.
     pub(crate) fn is_asked_for(&self) -> bool {
-        self.symbolic || self.latex || self.first.is_some()
+        self.symbolic || self.latex.is_some() || self.first.is_some()
     }
 
     /// The closed form of a file's arm.
@@ -56,8 +78,8 @@ impl Wanted {
         let robot = of(rne_symbolic::read(&name, &bytes).map_err(|report| Failure::from(&report))?);
         let form = ClosedForm::of(&robot, joints);
         let title = rne_emit::title(&robot);
-        if self.latex {
-            return Ok(Outcome::text(form.latex(&rne_emit::ascii(&title))));
+        if let Some(style) = self.latex {
+            return Ok(Outcome::text(form.latex(&rne_emit::ascii(&title), style.into())));
         }
         let text = form.text_spelt(|text| letters.of(text));
         let mut before = "";

@@ -20,6 +20,8 @@ use crate::values::numbers::fixed;
 pub(crate) struct Manner {
     pub(crate) digits: u8,
     pub(crate) json: bool,
+    /// Whether the right values are not told.
+    pub(crate) hint: bool,
 }
 
 /// The answer as JSON has it.
@@ -40,7 +42,8 @@ struct First {
     quantity: &'static str,
     component: &'static str,
     yours: f64,
-    right: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    right: Option<f64>,
     unit: &'static str,
     frame: &'static str,
     formula: String,
@@ -62,25 +65,25 @@ pub(crate) fn run(
     axes: Option<crate::render::worksheet::Axes>,
     manner: Manner,
 ) -> Result<Outcome, Failure> {
-    let Filled { values, axes } = worksheet_file::read(path, robot, axes.map(Into::into))?;
+    let Filled { values, axes, .. } = worksheet_file::read(path, robot, axes.map(Into::into))?;
     let axes = axes.unwrap_or(rne_diagnose::worksheet::Axes::Link);
     let sheet = Worksheet::new(robot, at, axes).map_err(Failure::usage)?;
     let comparison = sheet.compare(robot, at, &values, manner.digits).map_err(Failure::usage)?;
     let at_fault = comparison.first.is_some();
     if manner.json {
-        return Ok(Outcome { at_fault, ..Outcome::json(&reply(&sheet, &comparison))? });
+        return Ok(Outcome { at_fault, ..Outcome::json(&reply(&sheet, &comparison, manner.hint))? });
     }
     let text = match &comparison.first {
         None => agreement(robot, &comparison, manner.digits),
-        Some(first) => difference(robot, &sheet, &comparison, first),
+        Some(first) => difference(robot, &sheet, &comparison, first, manner.hint),
     };
     Ok(Outcome { text, at_fault, ..Outcome::default() })
 }
 
-fn reply(sheet: &Worksheet, comparison: &Comparison) -> Reply {
+fn reply(sheet: &Worksheet, comparison: &Comparison, hint: bool) -> Reply {
     let because = |reason: &Reason| Because {
         says: reason.says.clone(),
-        right: reason.right.clone(),
+        right: reason.right.clone().filter(|_| !hint),
         explains: explains(reason.reach),
     };
     let first = comparison.first.as_ref().map(|first| {
@@ -91,7 +94,7 @@ fn reply(sheet: &Worksheet, comparison: &Comparison) -> Reply {
             quantity: line.quantity.name(),
             component: line.quantity.components()[first.component],
             yours: first.theirs,
-            right: first.ours,
+            right: Some(first.ours).filter(|_| !hint),
             unit: line.unit(),
             frame: if line.quantity.has_axes() { sheet.axes.name() } else { "" },
             formula: format!("{} = {}", line.symbol(), line.formula),
@@ -131,7 +134,7 @@ fn agreement(robot: &Robot, comparison: &Comparison, digits: u8) -> String {
     format!("{GOOD}ok{GOOD:#}{}\n", text.strip_prefix("ok").unwrap_or(&text))
 }
 
-fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: &Difference) -> String {
+fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: &Difference, hint: bool) -> String {
     let line = &sheet.lines[first.line];
     let component = line.quantity.components()[first.component];
     let name = robot.joints.get(line.joint - 1).map_or("", |joint| &joint.name);
@@ -142,22 +145,32 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
         line.joint
     );
     let numbers = [first.theirs, first.ours, first.theirs - first.ours].map(fixed);
-    let _ = writeln!(text, "  yours   {}", numbers[0].trim_end());
     let unit = if line.unit() == "1" { "" } else { line.unit() };
-    let _ = writeln!(text, "  right   {}  {QUIET}{unit}{QUIET:#}", numbers[1].trim_end());
-    let _ = writeln!(text, "  off by  {}\n", numbers[2].trim_end());
+    let _ = if hint {
+        writeln!(text, "  yours   {}  {QUIET}{unit}{QUIET:#}\n", numbers[0].trim_end())
+    } else {
+        writeln!(
+            text,
+            "  yours   {}\n  right   {}  {QUIET}{unit}{QUIET:#}\n  off by  {}\n",
+            numbers[0].trim_end(),
+            numbers[1].trim_end(),
+            numbers[2].trim_end()
+        )
+    };
     let width = terminal::width(PAGE);
     let equals = if is_formula(line) { " =" } else { ":" };
     let formula = wrap(&format!("  {symbol}{equals} {}", line.formula), width, "    ");
     let _ = writeln!(text, "{FORMULA}{formula}{FORMULA:#}");
-    text.push_str(&inputs(line));
-    text.push_str(&terms(line));
+    if !hint {
+        text.push_str(&inputs(line));
+        text.push_str(&terms(line));
+    }
     text.push('\n');
     let mut previous = None;
     for reason in &first.reasons {
         let says = wrap(&format!("{} {}", introduced(reason.reach, previous), reason.says), width, "  ");
         let _ = writeln!(text, "{says}");
-        if let Some(right) = &reason.right {
+        if let Some(right) = reason.right.as_ref().filter(|_| !hint) {
             let right = wrap(&format!("  right: {right}"), width, "         ");
             let _ = writeln!(text, "{FOUND}{right}{FOUND:#}");
         }
@@ -167,7 +180,7 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
     if is_state {
         let _ = writeln!(text, "your worksheet is for another state than the command line");
     } else if first.reasons.is_empty() {
-        let check = if line.terms.len() > 1 { ": check each term above" } else { "" };
+        let check = if line.terms.len() > 1 { ": check each term" } else { "" };
         let _ = writeln!(text, "no usual mistake gives this value{check}");
     }
     let tally = format!(

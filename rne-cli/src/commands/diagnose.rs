@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     /// Accepted error of a torque, relative to the largest torque [default: half of the last digit of --tau]
     #[arg(long, value_name = "T", allow_hyphen_values = true,
         value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
-        "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]
+        "write a fraction of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]
     tolerance: Option<f64>,
     /// Print the answer as JSON: {"agrees": …, "error": …, "explanations": […]}
     #[arg(long)]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use rne_codegen::{Form, Function, Program};
 use rne_emit::{CCode, Origin, Precision, Prefix};
-use rne_model::Robot;
+use rne_model::{FrameId, Robot};
 
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
@@ -56,6 +56,9 @@ pub(crate) struct Arguments {
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
+    /// Frames or joints whose kinematics are written
+    #[arg(long = "frame", value_name = "NAMES", value_delimiter = ',')]
+    frames: Vec<String>,
     /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations) [default: reduced in C,
     /// seven_steps in Rust]
     #[arg(long, value_name = "F", value_parser = choice::form(), hide_possible_values = true)]
@@ -223,7 +226,7 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.with_sin_cos && arguments.lang == Language::C {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always brings its sine and cosine. Leave it out"
+            "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always contains its sine and cosine. Leave it out"
         )));
     }
     let options = [("--real", arguments.real.is_some()), ("--prefix", arguments.prefix.is_some())];
@@ -279,7 +282,7 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u
     let origin = Origin::new(name, &rne_certify::sha256(bytes));
     let code = rne_emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
-        Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))
+        Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} can store this number"))
     })?;
     if !arguments.tests {
         return Ok(code);
@@ -304,6 +307,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         return choice::functions_of(robot).collect();
     }
     let is_asked = |function: &Function| match asked.as_slice() {
+        [] if !arguments.frames.is_empty() => function.of_frame().is_some(),
         [] => Function::TORQUES.contains(function),
         asked => asked.contains(&FunctionOrAll::One(*function)),
     };
@@ -313,7 +317,35 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     let compiler = Compiler::new(&arguments.file, robot);
     let functions = functions(arguments, robot);
-    functions.into_iter().map(|function| compiler.compile(function, arguments.form())).collect()
+    let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|it| it.of_frame().is_some());
+    let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
+    let mut programs: Vec<Program> =
+        of_tip.iter().map(|&function| compiler.compile(function, arguments.form())).collect::<Result<_, _>>()?;
+    for frame in frames(arguments, robot)? {
+        let robot = robot.clone().at_frame(frame);
+        let compiler = Compiler::new(&arguments.file, &robot);
+        for &function in &of_frames {
+            let program = compiler.compile(function, arguments.form())?;
+            if let Some(other) = programs.iter().find(|other| other.name == program.name) {
+                return Err(Failure::usage(format_args!(
+                    "the frames {} and {} both give the name {}; write them to two files",
+                    other.frame.as_deref().unwrap_or("tip"),
+                    robot.frame_name(frame),
+                    program.name
+                )));
+            }
+            programs.push(program);
+        }
+    }
+    Ok(programs)
+}
+
+/// The frames asked for, or those of the list `frames`.
+fn frames(arguments: &Arguments, robot: &Robot) -> Result<Vec<FrameId>, Failure> {
+    if arguments.frames.is_empty() {
+        return Ok((0..robot.frames.len()).map(FrameId::Named).collect());
+    }
+    arguments.frames.iter().map(|name| robot.frame(name).map_err(Failure::usage)).collect()
 }
 
 /// The title before the mark may take several lines.
@@ -409,7 +441,7 @@ fn first_difference(found: &str, expected: &str) -> String {
             (a, b) => {
                 let quote =
                     |line: Option<&str>| line.map_or("the end of the file".to_owned(), |line| format!("`{line}`"));
-                return format!("line {number} is {}, but would be {}", quote(a), quote(b));
+                return format!("line {number} is {}, but rne would write {}", quote(a), quote(b));
             }
         }
     }
@@ -426,6 +458,9 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     }
     for function in &arguments.functions {
         let _ = write!(command, " --function {function}");
+    }
+    if !arguments.frames.is_empty() {
+        let _ = write!(command, " --frame {}", arguments.frames.join(","));
     }
     if arguments.rotors.rotors {
         command.push_str(" --rotors");

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::commands::compare::{self, Manner};
 use crate::commands::golden;
-use crate::files::chosen_arm::{ChosenArm, Setting};
+use crate::files::chosen_arm::{AtFrame, ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
 use crate::files::plan_file;
 use crate::files::states;
@@ -38,6 +38,8 @@ Examples:
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
+    #[command(flatten)]
+    at: AtFrame,
     /// Function to compute; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true)]
     function: Option<Function>,
@@ -65,13 +67,13 @@ pub(crate) struct Arguments {
     /// Acceleration of a moving base, x,y,z, m/s², without gravity
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
-    /// Gravity in the moving frame 0, x,y,z, m/s² [default: gravity of the robot file]
+    /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
     /// Print torques at N random states, as a file of expected values for tests (NAME.golden.csv)
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
-        "gravity", "trace", "json", "csv", "compare",
+        "gravity", "trace", "json", "csv", "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute the function at every state in this file: CSV or npy; - is standard input
@@ -101,13 +103,15 @@ pub(crate) struct Arguments {
     /// Print the values of --trace as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// With --trace: compare the values in your file (CSV or JSON, named as --trace prints them), and print the first
-    /// wrong one
+    /// With --trace: print the first wrong value of your worksheet (CSV or JSON)
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
     /// Significant digits for --compare [default: 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=15), requires = "compare")]
     digits: Option<u8>,
+    /// With --compare: do not print the right values
+    #[arg(long, requires = "compare")]
+    hint: bool,
     /// Print JSON, {"result": …}; --trace adds "trace"
     #[arg(long)]
     json: bool,
@@ -115,8 +119,8 @@ pub(crate) struct Arguments {
     letters: Letters,
 }
 
-/// Digits to which a hand computes.
-const DIGITS_BY_HAND: u8 = 4;
+/// Significant digits to which a hand computes.
+pub(crate) const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let outcome = computed(arguments)?;
@@ -138,13 +142,21 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.states.as_ref().is_some_and(is_read_twice) {
         return Err(Failure::usage("FILE and --states are both standard input; give one of them as a file"));
     }
-    let robot = arguments.arm.robot()?;
+    let robot = arguments.at.of(arguments.arm.robot()?)?;
+    let is_at_frame = arguments.at.frame.is_some();
+    let function = arguments.function.unwrap_or(match (&arguments.wrench, is_at_frame) {
+        (Some(_), true) => Function::WrenchTorques,
+        (None, true) => Function::ForwardKinematics,
+        (Some(_), false) => Function::InverseDynamicsWithWrench,
+        (None, false) => Function::InverseDynamics,
+    });
+    arguments.at.check(function)?;
     if let Some(states) = &arguments.states {
         let file = arguments.arm.file();
         return states::Job {
             robot_file: file,
             arm: &plan_file::compiled_arm(file, &robot)?,
-            function: arguments.function.unwrap_or(Function::InverseDynamics),
+            function,
             states,
             out: arguments.out.as_deref(),
             force: arguments.force,
@@ -156,10 +168,6 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
             arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
         return golden::file(&robot, states, &settings).map(Outcome::text);
     }
-    let function = arguments.function.unwrap_or(match arguments.wrench {
-        Some(_) => Function::InverseDynamicsWithWrench,
-        None => Function::InverseDynamics,
-    });
     let loaded = function.with_payload().filter(|_| arguments.arm.payload.is_some());
     let function = loaded.unwrap_or(function);
     // of a function that takes no payload, the payload is a part of the last link
@@ -167,7 +175,8 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.trace && !function.returns_torques() {
         let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
         return Err(Failure::usage(format_args!(
-            "--trace is the worksheet of torques, and {function} has none; these have one: {}",
+            "--trace prints the steps that compute torques, but {function} does not compute torques; use one of these \
+             functions: {}",
             with.join(", ")
         )));
     }
@@ -194,7 +203,8 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let situation = worksheet::situation(&state, robot.dof());
     if let Some(path) = &arguments.compare {
-        let manner = Manner { digits: arguments.digits.unwrap_or(DIGITS_BY_HAND), json: arguments.json };
+        let digits = arguments.digits.unwrap_or(DIGITS_BY_HAND);
+        let manner = Manner { digits, json: arguments.json, hint: arguments.hint };
         return compare::run(path, &robot, &situation, arguments.axes, manner);
     }
     let narrowed = Narrowed { joint: arguments.joint, step: arguments.step };

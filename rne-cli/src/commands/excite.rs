@@ -174,14 +174,14 @@ fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError
     Failure::input(if least.part > 1.0 {
         let name = one_line(&robot.joints[least.joint].name);
         format!(
-            "{none}: {}, and no less at {POSITIONS} positions within the limits, so {helps}: check the effort limit of \
-             {name} and the masses that this joint carries",
+            "{none}: {}, and gravity needs no less at {POSITIONS} positions within the limits, so {helps}: check the \
+             effort limit of {name} and the masses that this joint carries",
             least.words(robot, limits)
         )
     } else if middle.part > 1.0 {
         format!(
-            "{none}: {}, the middle of the limits, so {helps}; set position limits in the robot file around a posture \
-             that needs less",
+            "{none}: {}, which is the middle of the limits, so {helps}; set position limits in the robot file around a \
+             posture that needs less",
             middle.words(robot, limits)
         )
     } else if most.part > 1.0 {

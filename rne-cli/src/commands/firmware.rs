@@ -5,14 +5,13 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_codegen::{Form, Function};
 use rne_model::{Robot, plan_of};
 
-use crate::files::output_file::{is_standard_output, unreadable, unwritable};
+use crate::files::output_file::unwritable;
 use crate::files::output_folder;
 use crate::files::plan_file::{self, Compiler};
 use crate::files::robot_file;
@@ -82,7 +81,7 @@ fn name(text: &str) -> Result<String, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(&arguments.name));
-    is_free(&folder)?;
+    output_folder::is_free(&folder, "a firmware")?;
     let dependency = dependency(arguments.rne_path.as_deref())?;
     let robot_file = robot_of(arguments);
     let (checked, bytes) = robot_file::read_with_run_time(&robot_file, &[])?;
@@ -103,28 +102,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 fn robot_of(arguments: &Arguments) -> PathBuf {
     let shipped = rne_robots::find(&arguments.name).map_or("puma560", |robot| robot.name);
     arguments.robot.clone().unwrap_or_else(|| shipped.into())
-}
-
-/// Whether nothing stands where the folder is to be.
-fn is_free(folder: &Path) -> Result<(), Failure> {
-    let shown = folder.display();
-    if is_standard_output(folder) {
-        return Err(Failure::usage(format_args!(
-            "a firmware is a folder of files, so it cannot go to standard output; name the folder with {TYPED}-o \
-             FOLDER{TYPED:#}"
-        )));
-    }
-    match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
-        Ok(true) => Ok(()),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
-        Ok(false) => Err(Failure::usage(format_args!(
-            "{shown} is not empty and is not changed; name another folder with {TYPED}-o FOLDER{TYPED:#}"
-        ))),
-        Err(error) if error.kind() == ErrorKind::NotADirectory => Err(Failure::usage(format_args!(
-            "{shown} is not a folder and is not changed; name another with {TYPED}-o FOLDER{TYPED:#}"
-        ))),
-        Err(error) => Err(unreadable(folder, &error)),
-    }
 }
 
 /// The line of `rne` in the manifest of the template.

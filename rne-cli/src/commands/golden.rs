@@ -1,13 +1,16 @@
 //! Golden values: what the runtime, which knows nothing of generated code, computes at states that are the same in each
 //! run.
 
-use rne::{BaseMotion, DynArm, Payload, Scalar, Wrench};
+use std::borrow::Cow;
+
+use rne::{BaseMotion, DynArm, Scalar, Wrench};
 use rne_codegen::{Function, Program};
 use rne_emit::{Golden, Precision};
 use rne_model::{GoldenFile, Robot, exact_digits};
 
 use crate::outcome::Failure;
 use crate::render::physics;
+use crate::values::random::Random;
 use crate::values::state::State;
 
 /// Number of states with which emitted code is compared.
@@ -23,14 +26,15 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
             let state = random.state(robot.dof());
             let parameters: Vec<f64> =
                 in_file.iter().map(|value| random.rounded(value * (1.25 + random.number(0.5)))).collect();
-            let arm = robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
-            let arm = DynArm::from_robot(&arm);
+            let robot = &robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
+            let arm = DynArm::from_robot(robot);
             let results = programs.iter().map(|program| {
-                let numbers = state.of(program.function).numbers(&arm).map_err(Failure::usage)?;
+                let arm = &at_frame(robot, program, &arm);
+                let numbers = state.of(program.function).numbers(arm).map_err(Failure::usage)?;
                 let is_finite = numbers.iter().all(|number| number.is_finite());
                 let is_left_out = program.function.inverts_mass()
                     && precision == Precision::Single
-                    && !is_well_conditioned(&state, &arm);
+                    && !is_well_conditioned(&state, arm);
                 Ok(if is_finite && !is_left_out { numbers } else { Vec::new() })
             });
             let results = results.collect::<Result<_, Failure>>()?;
@@ -39,6 +43,15 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
             Ok(Golden { arguments: arguments(&state, parameters), results, sizes })
         })
         .collect()
+}
+
+/// The arm with the frame of a program in the place of the tip, if the program has one.
+fn at_frame<'a>(robot: &Robot, program: &Program, arm: &'a DynArm) -> Cow<'a, DynArm> {
+    let frame = program.frame.as_deref().and_then(|name| robot.frame(name).ok());
+    match frame.and_then(|frame| arm.clone().at_frame(robot.fixed_frame(frame))) {
+        Some(at) => Cow::Owned(at),
+        None => Cow::Borrowed(arm),
+    }
 }
 
 /// How large the terms of a function are: lengths and directions are about one, dynamics has the torques on a base that
@@ -121,63 +134,4 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
         text.push('\n');
     }
     Ok(text)
-}
-
-/// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.
-pub(crate) struct Random {
-    state: std::cell::Cell<u64>,
-    precision: Precision,
-}
-
-impl Random {
-    /// Numbers that this number type holds.
-    pub(crate) const fn new(precision: Precision) -> Self {
-        Self { state: std::cell::Cell::new(0x5EED), precision }
-    }
-
-    /// Between `-limit` and `limit`.
-    fn number(&self, limit: f64) -> f64 {
-        let next = self.state.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        self.state.set(next);
-        // the upper bits are the random ones
-        let [a, b, c, d, ..] = next.to_be_bytes();
-        self.rounded(limit * (2.0 * f64::from(u32::from_be_bytes([a, b, c, d])) / f64::from(u32::MAX) - 1.0))
-    }
-
-    #[allow(clippy::cast_possible_truncation)] // rounded
-    fn rounded(&self, number: f64) -> f64 {
-        match self.precision {
-            Precision::Single => f64::from(number as f32),
-            Precision::Double => number,
-        }
-    }
-
-    fn vector(&self, limit: f64) -> [f64; 3] {
-        [0; 3].map(|_| self.number(limit))
-    }
-
-    /// A state of an arm, and what acts on it: rad, m, kg, N.
-    pub(crate) fn state(&mut self, dof: usize) -> State {
-        let joints = |limit| (0..dof).map(|_| self.number(limit)).collect();
-        State {
-            function: Function::InverseDynamics,
-            q: joints(3.0),
-            qd: joints(2.0),
-            qdd: joints(5.0),
-            tau: joints(20.0),
-            wrench: Some(Wrench { force: self.vector(10.0), moment: self.vector(10.0) }),
-            payload: Some(Payload {
-                mass: self.rounded(1.5 + self.number(1.0)),
-                com: self.vector(0.1),
-                ..Payload::default()
-            }),
-            base: BaseMotion {
-                omega: self.vector(1.0),
-                omega_dot: self.vector(2.0),
-                velocity: [0.0; 3],
-                acceleration: self.vector(5.0),
-                gravity: self.vector(10.0),
-            },
-        }
-    }
 }

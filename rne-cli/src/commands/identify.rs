@@ -56,11 +56,11 @@ pub(crate) struct Arguments {
     /// Weight that keeps unknown link parameters near the values in FILE; 1 is the weight of one row of the log
     #[arg(long, value_name = "G", default_value_t = 1.0,
         value_parser = checked(|pull: &f64| pull.is_finite() && *pull >= 1e-6,
-        "a pull is a number of 1e-6 or more; 1 is as strong as one row of noise"))]
+        "write a number of at least 1e-6; 1 is the weight of one row of the log"))]
     pull: f64,
     /// Do not fit the last part of the data, such as 0.3 for 30 %; compute the errors on it
     #[arg(long, value_name = "PART", conflicts_with = "judge",
-        value_parser = checked(|part: &f64| *part > 0.0 && *part < 1.0, "a part lies between 0 and 1, such as 0.3"))]
+        value_parser = checked(|part: &f64| *part > 0.0 && *part < 1.0, "write a number between 0 and 1, such as 0.3"))]
     hold_out: Option<f64>,
     /// Identify nothing; compute how well FILE predicts the torques in the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
@@ -223,8 +223,8 @@ fn payload(
     let is_lost = found.is_there() && with.is_none();
     if !found.mass.is_excited || is_lost {
         let why = if is_lost {
-            "the log would take more mass from the last link of FILE than this link has, so FILE and the log are not \
-             of the same arm"
+            "according to the log, the last link and the payload together have a negative mass, so FILE and the log \
+             are not from the same arm"
         } else {
             "the log does not determine the mass of a payload: record a motion in which gravity or accelerations load \
              the joints"

@@ -54,6 +54,9 @@ pub(crate) struct Arguments {
     /// Keep angles that are nearly exact: 1.5708 stays 1.5708 and does not become pi/2
     #[arg(long)]
     no_snap: bool,
+    /// Keep the links of the arm, and the links fixed to them, as named frames in the list `frames` of the robot file
+    #[arg(long)]
+    frames: bool,
     /// Accept inertias that no physical body can have
     #[arg(long)]
     keep_unphysical: bool,
@@ -87,11 +90,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         convention: arguments.convention,
         snap: !arguments.no_snap,
         keep_unphysical: arguments.keep_unphysical,
+        frames: arguments.frames,
         name: arguments.name.clone(),
         ..Options::default()
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
-    let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
+    let remark =
+        format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account, arguments.frames));
     arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 
@@ -111,15 +116,31 @@ fn read(path: &Path) -> Result<(String, String), Failure> {
 /// Most lines of a list that are shown.
 const SHOWN: usize = 40;
 
+/// The links that are frames of the robot file, or that `--frames` would make to frames.
+fn frames(account: &Account, keeps_frames: bool) -> String {
+    let names: Vec<&str> = account.frames.iter().take(SHOWN).map(|(_, name)| name.as_str()).collect();
+    let more = account.frames.len().saturating_sub(SHOWN);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let names = names.join(", ") + &more;
+    if !keeps_frames {
+        return format!("  not kept as frames, {TYPED}--frames{TYPED:#} keeps them: {names}\n");
+    }
+    let mut text = format!("  frames: {names}\n");
+    for (link, name) in account.frames.iter().filter(|(link, name)| link != name).take(SHOWN) {
+        let _ = writeln!(text, "  the link {} is the frame {name}", rne_model::one_line(link));
+    }
+    text
+}
+
 /// The account of an import, line by line.
-fn told(account: &Account) -> String {
+fn told(account: &Account, keeps_frames: bool) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "from {} to {}", account.base, account.tip);
     for (joint, links) in &account.lumped {
         let _ = writeln!(text, "  {joint} moves {} as one body", links.join(", "));
     }
     for (joint, value) in account.held.iter().take(SHOWN) {
-        let _ = writeln!(text, "  {joint} is held at {value}");
+        let _ = writeln!(text, "  {joint} is locked at {value}");
     }
     if account.held.len() > SHOWN {
         let _ = writeln!(text, "  and {} more", account.held.len() - SHOWN);
@@ -127,6 +148,7 @@ fn told(account: &Account) -> String {
     if !account.aside.is_empty() {
         let _ = writeln!(text, "  on the base, left out: {}", account.aside.join(", "));
     }
+    text += &frames(account, keeps_frames);
     if let Some(change) = &account.change {
         let _ = writeln!(text, "{TITLE}snapped{TITLE:#} to multiples of pi/12, {TYPED}--no-snap{TYPED:#} keeps them:");
         for snapped in account.snapped.iter().take(SHOWN) {

@@ -41,8 +41,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Existing::Folder => {}
         _ if is_standard_output(folder) => {
             return Err(Failure::usage(format_args!(
-                "-o needs a folder for the pages; {TYPED}rne man{TYPED:#} and {TYPED}rne man COMMAND{TYPED:#} print \
-                 one page"
+                "-o needs the name of a folder for the pages; {TYPED}rne man{TYPED:#} and {TYPED}rne man \
+                 COMMAND{TYPED:#} print one page"
             )));
         }
         Existing::Nothing => return Err(Failure::input(format_args!("there is no folder {shown}; make it first"))),

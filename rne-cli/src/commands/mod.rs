@@ -24,6 +24,7 @@ mod import;
 mod list;
 mod log;
 mod man;
+mod mark;
 mod new;
 mod ops;
 mod plot;
@@ -35,6 +36,7 @@ mod show;
 mod toolchain;
 mod tour;
 mod watch;
+mod worksheet;
 
 use clap::{Parser, Subcommand};
 
@@ -103,6 +105,8 @@ commands! {
     Ops ops,
     Report report,
     Eval eval,
+    Worksheet worksheet,
+    Mark mark,
     Diagnose diagnose,
     Plot plot,
     Log log,

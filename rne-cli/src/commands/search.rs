@@ -152,7 +152,7 @@ impl Searched<'_> {
 /// Why nothing is written in the place of a plan that has appeared or changed during the search.
 fn meanwhile(path: &Path, failure: &Failure) -> Failure {
     let text = format!(
-        "{}\n\n{} has changed during the search and is kept; the result is not written",
+        "{}\n\n{} has changed during the search; rne does not overwrite it and does not write the result",
         failure.text.trim_end(),
         path.display()
     );
@@ -255,7 +255,8 @@ fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], pa
         let lost = lost.join(",");
         let _ = writeln!(
             text,
-            "{QUIET}left out, because it was not proved; `--rewrite --function {lost}` rewrites it again{QUIET:#}"
+            "{QUIET}the rewritten code is left out, because the proof failed; `--rewrite --function {lost}` rewrites \
+             it again{QUIET:#}"
         );
     }
     let state = match (written, known) {
@@ -369,7 +370,7 @@ mod tests {
             arm.write(notes);
             let (status, said) = refused(arm.keep(arm.plan.clone(), || ()));
             assert_eq!(status, INPUT);
-            assert!(said.contains("arm.plan.yaml has changed during the search and is kept"), "{said}");
+            assert!(said.contains("arm.plan.yaml has changed during the search; rne does not overwrite it"), "{said}");
             assert_eq!(arm.written().as_deref(), Some(notes));
         }
         // a fresh search replaces a plan that cannot be read, and nothing else
@@ -392,7 +393,7 @@ mod tests {
         arm.write(&wrong);
         let (_, said) = refused(arm.keep(arm.found(Function::ForwardDynamics), || ()));
         assert!(
-            said.contains("does not compute the same as the seven steps") && said.contains("and is kept"),
+            said.contains("does not compute the same as the seven steps") && said.contains("rne does not overwrite it"),
             "{said}"
         );
         assert_eq!(arm.written().as_deref(), Some(wrong.as_str()));

@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
     if arguments.form == Form::SevenSteps && !arguments.without.is_empty() {
         return Err(Failure::usage(format_args!(
-            "the seven steps use no tricks; `--without` goes with {TYPED}--form reduced{TYPED:#}"
+            "the seven steps use no tricks; use `--without` only with {TYPED}--form reduced{TYPED:#}"
         )));
     }
     let program = match arguments.form {
@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let _ = writeln!(text, "\n{}", heading::counts(&program));
     if program.outputs.len() > arguments.function.layout(robot.dof()).len() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
-        let line = format!("{QUIET}kept for reading, and counted: {}{QUIET:#}\n", words.join(", "));
+        let line = format!("{QUIET}also computed, and counted above: {}{QUIET:#}\n", words.join(", "));
         text.push_str(&letters.page(&line, PAGE));
     }
     let refusals = rne_emit::refusals(&program);
@@ -159,7 +159,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     text.push('\n');
     let listing = rne_emit::listing(&robot, &program, what);
     if listing.is_empty() {
-        let _ = writeln!(text, "{QUIET}no code of {} is there{QUIET:#}", program.function);
+        let _ = writeln!(text, "{QUIET}{} has no code in this selection{QUIET:#}", program.function);
     }
     text.push_str(&highlight::listing(&listing, letters));
     Ok(Outcome::text(text))

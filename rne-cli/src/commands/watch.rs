@@ -57,14 +57,14 @@ pub(crate) struct Arguments {
     #[arg(long)]
     all: bool,
     /// Gain of the momentum observer that finds contacts, Hz
-    #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero("it is a number above 0"))]
+    #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero("write a number above 0"))]
     gain: f64,
     /// Shortest duration of a contact to report, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero("it is a number above 0"))]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero("write a number above 0"))]
     hold: f64,
     /// Permitted false contact reports per hour [default: 0.01]
     #[arg(long, value_name = "RATE", default_value_t = 0.01, hide_default_value = true,
-        value_parser = above_zero("it is a number above 0"))]
+        value_parser = above_zero("write a number above 0"))]
     false_alarms: f64,
     /// Plot residual torques and events to this SVG file; with --by, friction and payload of each group
     #[arg(long, value_name = "SVG")]

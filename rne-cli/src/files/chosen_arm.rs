@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use rne::Payload;
+use rne_codegen::Function;
 use rne_model::Robot;
 
 use crate::files::robot_file;
@@ -31,6 +32,40 @@ impl Rotors {
     pub(crate) fn of(self, robot: Robot) -> Robot {
         Robot { rotors: self.rotors, ..robot }
     }
+}
+
+/// The frame that stands in the place of the tip.
+#[derive(Args, Clone)]
+pub(crate) struct AtFrame {
+    /// Take it at this frame or joint, not at the tip
+    #[arg(long, value_name = "NAME")]
+    pub(crate) frame: Option<String>,
+}
+
+impl AtFrame {
+    /// A robot seen from the frame.
+    pub(crate) fn of(&self, robot: Robot) -> Result<Robot, Failure> {
+        let Some(name) = &self.frame else { return Ok(robot) };
+        at_frame(robot, name)
+    }
+
+    /// Whether a function can be taken at the frame.
+    pub(crate) fn check(&self, function: Function) -> Result<(), Failure> {
+        if self.frame.is_none() || function.of_frame().is_some() {
+            return Ok(());
+        }
+        let with: Vec<&str> = Function::of_frames().map(Function::name).collect();
+        Err(Failure::usage(format_args!(
+            "{TYPED}--frame{TYPED:#} is for functions of a frame, and {function} is not one of them; these are: {}",
+            with.join(", ")
+        )))
+    }
+}
+
+/// A robot seen from the frame with this name.
+pub(crate) fn at_frame(robot: Robot, name: &str) -> Result<Robot, Failure> {
+    let frame = robot.frame(name).map_err(Failure::usage)?;
+    Ok(robot.at_frame(frame))
 }
 
 /// A parameter of the file and its value here: `payload=2`.
@@ -100,7 +135,7 @@ impl ChosenArm {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
-                "`{shown}` stands where FILE, the robot, is expected; write the numbers of a list with commas and \
+                "found `{shown}` where FILE, the robot, is expected; write the numbers of a list with commas and \
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }

@@ -108,7 +108,8 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
         if shown.is_empty() {
             return None;
         }
-        if let Some(comment) = shown.strip_prefix('#') {
+        // a spreadsheet puts a comment with a comma in quotes
+        if let Some(comment) = shown.strip_prefix('#').or_else(|| shown.strip_prefix("\"#")) {
             return Some(Line::Comment(comment.trim(), span));
         }
         let separator = *separator.get_or_insert(if shown.contains(',') { ',' } else { ';' });
@@ -158,6 +159,15 @@ fn cells(line: &str, start: usize, separator: char) -> Result<Vec<Cell<'_>>, usi
         }
     }
     Ok(cells)
+}
+
+/// A number with a decimal point where it has a decimal comma, as spreadsheets write it in half of Europe: `0,5`.
+pub(crate) fn with_point(number: &str) -> Cow<'_, str> {
+    let is_plain = number.chars().all(|c| c.is_ascii_digit() || "+-eE,".contains(c));
+    if is_plain && number.matches(',').count() == 1 {
+        return Cow::Owned(number.replace(',', "."));
+    }
+    Cow::Borrowed(number)
 }
 
 /// A text for a message: shortened, control characters escaped, in backticks.

@@ -1,6 +1,7 @@
 //! Files that are read and written.
 
 pub(crate) mod chosen_arm;
+pub(crate) mod class_states;
 pub(crate) mod csv_table;
 pub(crate) mod file_name;
 pub(crate) mod input_file;

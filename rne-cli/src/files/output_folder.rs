@@ -5,6 +5,31 @@ use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
 use crate::files::interruption::{self, Registered};
+use crate::files::output_file::{is_standard_output, unreadable};
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+
+/// Checks that there is nothing at the path of a new folder for `what`.
+pub(crate) fn is_free(folder: &Path, what: &str) -> Result<(), Failure> {
+    let shown = folder.display();
+    if is_standard_output(folder) {
+        return Err(Failure::usage(format_args!(
+            "{what} is a folder of files, so it cannot go to standard output; name the folder with {TYPED}-o \
+             FOLDER{TYPED:#}"
+        )));
+    }
+    match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
+        Ok(true) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Ok(false) => Err(Failure::usage(format_args!(
+            "{shown} is not empty and is not changed; name another folder with {TYPED}-o FOLDER{TYPED:#}"
+        ))),
+        Err(error) if error.kind() == ErrorKind::NotADirectory => Err(Failure::usage(format_args!(
+            "{shown} is not a folder and is not changed; name another with {TYPED}-o FOLDER{TYPED:#}"
+        ))),
+        Err(error) => Err(unreadable(folder, &error)),
+    }
+}
 
 /// A path that could not be written, and the reason.
 type Unwritable = (PathBuf, io::Error);

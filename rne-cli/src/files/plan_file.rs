@@ -110,7 +110,7 @@ fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec
             Ok((Some(plan), wrong))
         }
         _ => Err(Failure::usage(format_args!(
-            "{} is not a plan written by rne, so rne does not change it; move the file away",
+            "{} was not written by `rne search`, so rne does not overwrite it; move or rename this file",
             path.display()
         ))),
     }

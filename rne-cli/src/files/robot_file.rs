@@ -51,14 +51,24 @@ fn open(path: &Path) -> Result<Opened, Failure> {
             // which is refused as a robot file is
             Err(error) => Ok(Opened::RobotFile(input_file::name(path), error.into_bytes())),
         },
-        Ok(_) => Err(Failure::input(format_args!("{} is no robot file", path.display()))),
+        Ok(_) => Err(Failure::input(format_args!("{} is not a robot file", path.display()))),
         Err(error) => Err(not_opened(&error)),
     }
 }
 
-/// The robot file of the one arm of a URDF, as `rne import` makes it; a note names its ends, for another arm may be meant.
+/// The robot file of the one arm of a URDF, as `rne import` makes it. A note names the ends of the arm, because the
+/// user may mean another arm.
 fn imported(name: &str, text: &str) -> Result<String, Failure> {
-    let imported = rne_convert::import(name, text, &Options::default()).map_err(|report| Failure::from(&report))?;
+    let imported = rne_convert::import(name, text, &Options::default()).map_err(|report| {
+        // the options that the help names are those of `rne import`
+        let mut failure = Failure::from(&report);
+        failure.text = format!(
+            "{}\n\n{name} is a URDF. `{TYPED}rne import {name} -o FILE.yaml{TYPED:#}` and its options write a robot \
+             file of one arm; give that file to this command",
+            failure.text.trim_end()
+        );
+        failure
+    })?;
     let Account { base, tip, .. } = &imported.account;
     remark(format_args!(
         "{TITLE}note{TITLE:#}: {name} is a URDF, and the arm is from {base} to {tip}\n      {TYPED}rne import \
@@ -98,7 +108,8 @@ pub(crate) fn robot(path: &Path) -> Result<Robot, Failure> {
     Ok(read(path)?.robot)
 }
 
-/// A valid robot of a robot file, beside which something is written: a URDF is refused with the command that imports it.
+/// A valid robot of a robot file, for commands that write a file beside it. A URDF is refused with the command that
+/// imports it.
 pub(crate) fn robot_in_yaml(path: &Path) -> Result<Robot, Failure> {
     let (name, bytes) = match open(path)? {
         Opened::RobotFile(name, bytes) => (name, bytes),

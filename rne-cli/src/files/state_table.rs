@@ -205,7 +205,7 @@ impl Table {
                     if let Some(negative) = negative(&rows[begin..]) {
                         let (line, column) = (last_line(reader, record), &columns[mass.unwrap_or_default()].1);
                         return Err(Failure::input(format_args!(
-                            "{name}:{line}: `{column}` is a mass, {negative} kg: no body has less than 0"
+                            "{name}:{line}: the mass `{column}` is {negative} kg; a mass is zero or positive"
                         )));
                     }
                     count += 1;
@@ -230,7 +230,8 @@ impl Table {
                     if let Some(negative) = negative(row) {
                         let column = mass.unwrap_or_default() + 1;
                         return Err(Failure::input(format_args!(
-                            "{name}: state {read}: column {column} is a mass, {negative} kg: no body has less than 0"
+                            "{name}: state {read}: the mass in column {column} is {negative} kg; a mass is zero or \
+                             positive"
                         )));
                     }
                 }
@@ -280,7 +281,7 @@ fn reason(error: csv::Error) -> String {
     match error.into_kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             let cells = if len == 1 { "cell" } else { "cells" };
-            format!("{len} {cells} where the header has {expected_len}")
+            format!("the line has {len} {cells}, but the header has {expected_len}")
         }
         csv::ErrorKind::Io(error) => error.to_string(),
         kind => csv::Error::from(io::Error::other(format!("{kind:?}"))).to_string(),

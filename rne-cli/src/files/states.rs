@@ -129,7 +129,7 @@ impl Job<'_> {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(Outcome::default()),
             written => written.map_err(|error| state_results::stopped(&error))?,
         }
-        #[allow(clippy::cast_precision_loss)] // of a rate, three digits are told
+        #[allow(clippy::cast_precision_loss)] // of a rate, three digits are printed
         let rate = states as f64 / start.elapsed().as_secs_f64().max(1e-9);
         let rate = match states {
             0 => String::new(),

@@ -36,7 +36,9 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     let bytes = input_file::read(path, LONGEST)
         .map_err(|error| Failure::input(format_args!("the trajectory {name} cannot be read: {error}")))?;
     if bytes.len() > LONGEST {
-        return Err(Failure::input(format_args!("{name} has more than {LONGEST} bytes; plot a part of it")));
+        return Err(Failure::input(format_args!(
+            "{name} has more than {LONGEST} bytes; give a file with a part of the samples"
+        )));
     }
     let text = text_of(&name, &bytes)?;
     let mut mistakes = Mistakes::new(&name, text);
@@ -58,15 +60,15 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     };
     let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
     let Some(columns) = columns(&header, &joints, &help, &mut mistakes) else {
-        return mistakes.finish(()).and(Err(Failure::input("the header is not one of a trajectory")));
+        return mistakes.finish(()).and(Err(Failure::input("this is not the header of a trajectory")));
     };
     let asked = columns.asked(header.cells.len());
     let mut samples = Vec::new();
     for line in table {
         match line {
             Ok(row) if samples.len() == MOST => {
-                let message = format!("there are more than {MOST} samples");
-                mistakes.push(row.span, message, Some("plot a part of them, or every tenth"));
+                let message = format!("the file has more than {MOST} samples");
+                mistakes.push(row.span, message, Some("give a file with a part of the samples, or with every tenth"));
                 break;
             }
             _ if mistakes.are_enough() => break,
@@ -183,7 +185,8 @@ impl Columns {
 /// The numbers of a line, column by column; 0 for a column that is not asked for, and for a cell without a number.
 fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mistakes<'_>) -> Vec<f64> {
     if row.cells.len() != header.cells.len() {
-        let message = format!("{} cells, but {} columns in the header", row.cells.len(), header.cells.len());
+        let message =
+            format!("the line has {} cells, but the header has {} columns", row.cells.len(), header.cells.len());
         mistakes.push(row.span.clone(), message, Some("write numbers with a decimal point, not with a comma"));
         return Vec::new();
     }

@@ -13,7 +13,7 @@ use rne_model::{Report, Robot, did_you_mean, exact_digits};
 use serde::Serialize;
 use serde_json::value::RawValue;
 
-use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of};
+use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of, with_point};
 use crate::files::input_file;
 use crate::outcome::Failure;
 use crate::render::worksheet::Narrowed;
@@ -43,6 +43,15 @@ struct Row {
     frame: &'static str,
 }
 
+impl Row {
+    /// Appends a line of CSV with a text for the value.
+    fn write(&self, text: &mut String, separator: char, value: &str) {
+        let Self { joint, step, quantity, component, unit, frame, .. } = self;
+        let s = separator;
+        let _ = writeln!(text, "{joint}{s}{step}{s}{quantity}{s}{component}{s}{value}{s}{unit}{s}{frame}");
+    }
+}
+
 fn rows(sheet: &Worksheet, narrowed: Narrowed) -> impl Iterator<Item = Row> {
     let of_line = |line: &Line| {
         let (joint, quantity, unit) = (line.joint, line.quantity, line.unit());
@@ -64,8 +73,32 @@ fn rows(sheet: &Worksheet, narrowed: Narrowed) -> impl Iterator<Item = Row> {
 /// The worksheet as CSV.
 pub(crate) fn csv(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed) -> String {
     let mut text = format!("# rne worksheet, format {FORMAT}, robot {}\n{}\n", robot.name, COLUMNS.join(","));
-    for Row { joint, step, quantity, component, value, unit, frame } in rows(sheet, narrowed) {
-        let _ = writeln!(text, "{joint},{step},{quantity},{component},{},{unit},{frame}", exact_digits(value));
+    for row in rows(sheet, narrowed) {
+        row.write(&mut text, ',', &exact_digits(row.value));
+    }
+    text
+}
+
+/// A student's worksheet as CSV: the state is filled in, and with `answers` everything else, too. `comma` writes
+/// numbers with a decimal comma and semicolons between the columns.
+pub(crate) fn of_student(
+    robot: &Robot,
+    sheet: &Worksheet,
+    student: &str,
+    steps: &[u8],
+    answers: bool,
+    comma: bool,
+) -> String {
+    let separator = if comma { ';' } else { ',' };
+    let columns = COLUMNS.join(separator.encode_utf8(&mut [0; 4]));
+    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}, student {student}\n{columns}\n", robot.name);
+    for row in rows(sheet, Narrowed::default()) {
+        let is_state = ["q", "qd", "qdd"].contains(&row.quantity);
+        if !is_state && !steps.contains(&row.step) {
+            continue;
+        }
+        let value = if is_state || answers { exact_digits(row.value) } else { String::new() };
+        row.write(&mut text, separator, &if comma { value.replace('.', ",") } else { value });
     }
     text
 }
@@ -95,6 +128,8 @@ pub(crate) struct Filled {
     pub(crate) values: Vec<GivenValue>,
     /// The axes that the file names.
     pub(crate) axes: Option<Axes>,
+    /// The student whom the file names.
+    pub(crate) student: Option<String>,
 }
 
 /// The cells of a row, by their columns.
@@ -111,15 +146,25 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
     let text = text_of(&name, &bytes)?;
     let mut mistakes = Mistakes::new(&name, text);
     let is_json = text.trim_start().starts_with(['{', '[']);
-    let rows =
-        if is_json { json_rows(&name, text, robot, &mut mistakes)? } else { csv_rows(text, robot, &mut mistakes) };
+    let mut student = None;
+    let rows = if is_json {
+        json_rows(&name, text, robot, &mut mistakes)?
+    } else {
+        csv_rows(text, robot, &mut student, &mut mistakes)
+    };
     if mistakes.are_there() {
-        return mistakes.finish(Filled { values: Vec::new(), axes: None });
+        return mistakes.finish(Filled { values: Vec::new(), axes: None, student: None });
     }
-    Reading { robot, mistakes, axes, seen: HashMap::new(), values: Vec::new(), text }.rows(&rows)
+    let reading = Reading { robot, mistakes, axes, seen: HashMap::new(), values: Vec::new(), text };
+    Ok(Filled { student, ..reading.rows(&rows)? })
 }
 
-fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Vec<(Cells<'a>, Range<usize>)> {
+fn csv_rows<'a>(
+    text: &'a str,
+    robot: &Robot,
+    student: &mut Option<String>,
+    mistakes: &mut Mistakes<'_>,
+) -> Vec<(Cells<'a>, Range<usize>)> {
     let mut lines = Vec::new();
     for line in csv_table::lines(text) {
         match line {
@@ -131,14 +176,17 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
             csv_table::Line::OpenQuote(span) => mistakes.push(span, OPEN_QUOTE, None),
             csv_table::Line::Comment(comment, span) => {
                 if let Some(about) = comment.strip_prefix("rne worksheet,") {
+                    // a spreadsheet ends each line with the separators of the other columns
+                    let about = about.trim_end_matches([';', ',', '"', ' ']);
                     let word =
                         |key: &str| about.split(',').find_map(|part| part.trim().strip_prefix(key).map(str::trim));
                     is_ours(word("format "), word("robot "), &span, robot, mistakes);
+                    *student = word("student ").map(str::to_owned);
                 }
             }
         }
     }
-    let header = format!("the header is `{}`; each line below it has a value", COLUMNS.join(","));
+    let header = format!("the header is `{}`; each line below it contains one value", COLUMNS.join(","));
     let Some((first, rest)) = lines.split_first() else {
         if !mistakes.are_there() {
             mistakes.push(0..0, "the file is empty: there is no header", Some(&header));
@@ -170,8 +218,10 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
     let mut rows = Vec::new();
     for row in rest {
         if row.cells.len() > columns.len() {
-            let message = format!("{} cells, but {} columns in the header", row.cells.len(), columns.len());
-            let help = "write a number with a decimal point, not with a comma; put a text with a comma in quotes";
+            let message =
+                format!("the line has {} cells, but the header has {} columns", row.cells.len(), columns.len());
+            let help = "write numbers with a decimal point, or separate the columns with semicolons; put a text with a \
+                        comma in quotes";
             mistakes.push(row.span.clone(), message, Some(help));
         }
         let cells = columns.iter().zip(&row.cells).filter_map(|(column, cell)| Some(((*column)?, cell.clone())));
@@ -304,7 +354,7 @@ impl Reading<'_> {
             let help = "each row has a joint, a quantity, its component and a value; empty values are left out";
             self.mistakes.push(0..0, "the worksheet has no value to compare", Some(help));
         }
-        let filled = Filled { values: self.values, axes: self.axes };
+        let filled = Filled { values: self.values, axes: self.axes, student: None };
         self.mistakes.finish(filled)
     }
 
@@ -340,7 +390,8 @@ impl Reading<'_> {
             self.mistakes.push(span.clone(), message.replace("  ", " "), Some("keep one of them"));
             return;
         }
-        let resolution = if value_cell.text.contains('.') { resolution(&value_cell.text) } else { 0.0 };
+        let text = with_point(&value_cell.text);
+        let resolution = if text.contains('.') { resolution(&text) } else { 0.0 };
         self.values.push(GivenValue { joint, quantity, component, value, resolution });
     }
 
@@ -422,10 +473,10 @@ impl Reading<'_> {
             let span = cell.map_or_else(|| span.clone(), |cell| cell.span.clone());
             let message = match cell {
                 Some(cell) => format!("{quantity} has no component {}", quoted(&cell.text)),
-                None => format!("which component of {quantity} is this?"),
+                None => format!("the component of {quantity} is missing"),
             };
             let help = match names {
-                [_] => "it is one number: leave the component empty".to_owned(),
+                [_] => "{quantity} is one number: leave the component empty".to_owned(),
                 names => format!("its components are {}", names.join(", ")),
             };
             self.mistakes.push(span, message, Some(&help));
@@ -442,11 +493,10 @@ impl Reading<'_> {
     }
 
     fn value(&mut self, cell: &Cell<'_>) -> Option<f64> {
-        match rne_model::number(&cell.text) {
+        match rne_model::number(&with_point(&cell.text)) {
             Ok(value) => Some(value),
             Err(mistake) => {
-                let comma = cell.text.contains(',').then_some("write a decimal point: 0.5, not 0,5");
-                let help = mistake.help.as_deref().or(comma).unwrap_or("write a number, such as -0.25, 1.2e-3 or pi/2");
+                let help = mistake.help.as_deref().unwrap_or("write a number, such as -0.25, 1.2e-3 or pi/2");
                 let message = format!("the value {} is not a number: {}", quoted(&cell.text), mistake.message);
                 self.mistakes.push(cell.span.clone(), message, Some(help));
                 None

@@ -19,7 +19,9 @@ const FEW_DIGITS: usize = 4;
 
 /// The numbers of a function as text.
 pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
-    let mut text = format!("{TITLE}{}{TITLE:#} of {}\n", state.function, robot.name);
+    let frame = state.function.frame(robot).map(|frame| robot.frame_name(frame));
+    let at = frame.map(|frame| format!(" at the frame {frame}")).unwrap_or_default();
+    let mut text = format!("{TITLE}{}{TITLE:#} of {}{at}\n", state.function, robot.name);
     let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
     match state.function.answer() {
         Answer::Torques | Answer::Accelerations => per_joint(&mut text, robot, state, numbers),
@@ -41,7 +43,11 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
                 let (of_table, rest) = numbers.split_at((rows.len() * columns.len()).min(numbers.len()));
                 numbers = rest;
                 let units = table.unit.map(|unit| Kinds::of(robot).units(unit));
-                let about = [Some(table.about).filter(|about| !about.is_empty()), units];
+                let about = match frame {
+                    Some(frame) => table.about.replace("the tip", frame),
+                    None => table.about.to_owned(),
+                };
+                let about = [Some(about.as_str()).filter(|about| !about.is_empty()), units];
                 let about = about.into_iter().flatten().collect::<Vec<_>>().join(", ");
                 Table { about: &about, rows: &rows, columns: &columns, numbers: of_table, digits: DIGITS }
                     .write(&mut text);
@@ -49,7 +55,7 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
         }
         Answer::Poses => match state.function.shape() {
             Shape::Array(..) => poses(&mut text, &joints, numbers),
-            _ => poses(&mut text, &["tip".to_owned()], numbers),
+            _ => poses(&mut text, &[frame.unwrap_or("tip").to_owned()], numbers),
         },
         Answer::PerParameter => regressor(&mut text, &joints, numbers),
     }
@@ -79,7 +85,10 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
     }
     write_lines(text, &cells);
     if let Some(Wrench { force, moment }) = &state.wrench {
-        let _ = writeln!(text, "{QUIET}the last link exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
+        let frame = state.function.frame(robot).map(|frame| robot.frame_name(frame));
+        let link =
+            frame.map_or_else(|| "the last link".to_owned(), |frame| format!("the link of {frame}, in its axes,"));
+        let _ = writeln!(text, "{QUIET}{link} exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
     }
     if let Some(Payload { mass, com, inertia }) = &state.payload {
         let mass = exact_digits(*mass);

@@ -14,6 +14,7 @@ pub(crate) mod log_groups;
 pub(crate) mod log_remark;
 pub(crate) mod log_remedy;
 pub(crate) mod log_report;
+pub(crate) mod marks;
 pub(crate) mod payload;
 pub(crate) mod physics;
 pub(crate) mod remedy;

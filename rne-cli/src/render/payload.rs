@@ -88,7 +88,10 @@ impl WordedPayload<'_> {
             if known.is_empty() {
                 "centre of mass not excited".to_owned()
             } else {
-                format!("centre of mass {} in the frame of the last link, the rest not excited", known.join(", "))
+                format!(
+                    "centre of mass {} in the frame of the last link; the log does not excite the other coordinates",
+                    known.join(", ")
+                )
             }
         };
         let mut text = format!("{GOOD}payload {kilograms}{GOOD:#}, {centre}");

@@ -16,11 +16,11 @@ pub(crate) fn worded(report: &Report) -> Report {
                 format!("`rne import {file} -o robot.yaml` converts a URDF to a robot file")
             }
             Remedy::NameTip => "name the tip with --tip LINK".to_owned(),
-            Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE holds `{joint}` still"),
+            Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE locks `{joint}` at this value"),
             Remedy::LockOthers => {
-                "--lock JOINT=VALUE holds one joint, --lock-others holds all of them at zero".to_owned()
+                "--lock JOINT=VALUE locks one joint at this value, --lock-others locks all others at zero".to_owned()
             }
-            Remedy::KeepUnphysical => "--keep-unphysical keeps the inertia as it is".to_owned(),
+            Remedy::KeepUnphysical => "--keep-unphysical imports the inertia without a change".to_owned(),
         })
     })
 }
@@ -40,7 +40,7 @@ pub(crate) fn of_plan(report: Report, remedy: Remedy) -> Report {
     let robot = robot_of(Path::new(&report.name)).map(|path| path.display().to_string());
     let robot = robot.as_deref().unwrap_or("ROBOT.yaml");
     let words = match remedy {
-        Remedy::CountAnew => "`rne search ROBOT.yaml` counts again".to_owned(),
+        Remedy::CountAnew => "`rne search ROBOT.yaml` corrects the numbers".to_owned(),
         _ => format!(
             "`rne search {robot} --fresh` ignores the wrong parts of the plan and searches again; if you delete the \
              plan file, the build chooses by itself"

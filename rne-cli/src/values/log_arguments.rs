@@ -89,7 +89,7 @@ fn time_unit() -> impl TypedValueParser<Value = TimeUnit> {
 
 fn hertz(text: &str) -> Result<f64, String> {
     let hertz = text.parse().ok().filter(|hertz: &f64| hertz.is_finite() && *hertz > 0.0);
-    hertz.ok_or_else(|| "it is a number of Hz above 0, such as 2".to_owned())
+    hertz.ok_or_else(|| "write a number above 0, in Hz, such as 2".to_owned())
 }
 
 impl LogArguments {

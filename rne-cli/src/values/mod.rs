@@ -4,4 +4,5 @@ pub(crate) mod choice;
 pub(crate) mod limits;
 pub(crate) mod log_arguments;
 pub(crate) mod numbers;
+pub(crate) mod random;
 pub(crate) mod state;

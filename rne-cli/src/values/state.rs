@@ -131,7 +131,8 @@ impl State {
         }
         macro_rules! calls {
             ($(
-                $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+                $variant:ident = $name:ident($($argument:ident: $kind:ident),*)
+                    -> $returned:ident $(at $of_frame:ident)?:
                     $summary:literal $(, $details:literal)?;
             )*) => {
                 match self.function {

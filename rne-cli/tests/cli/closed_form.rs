@@ -37,6 +37,38 @@ fn two_links_in_latex() {
     assert_eq!(latex, fine(&["show", "robots/planar2.yaml", "--symbolic", "--latex"]), "of the closed form, as LaTeX");
 }
 
+/// Equations alone and slides have the equations of the article, and no document around them.
+#[test]
+fn equations_for_a_document_and_for_slides() {
+    let of = |robot: &str, style: &str| fine(&["show", robot, style]);
+    let environments = |text: &str| {
+        let count = |word: &str| text.matches(&format!("{word}{{align*}}")).count();
+        assert_eq!(count("\\begin"), count("\\end"), "{text}");
+        count("\\begin")
+    };
+    for robot in ["planar1", "planar2", "puma560"] {
+        let (article, body, slides) = (of(robot, "--latex"), of(robot, "--latex=body"), of(robot, "--latex=beamer"));
+        assert_eq!(article, of(robot, "--latex=article"));
+        let is_formula = |line: &&str| line.contains("&=") || line.contains("&\\quad");
+        let formulas = |text: &str| text.lines().filter(is_formula).map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(formulas(&body), formulas(&article));
+        for text in [&body, &slides] {
+            assert!(!text.contains("\\documentclass") && !text.contains("{document}"), "{text}");
+        }
+        // lines break elsewhere, and nothing else differs
+        let joined = |text: &str| formulas(text).concat().replace("&\\quad", "").replace([' ', '\\'], "");
+        assert_eq!(joined(&slides), joined(&article), "{robot}");
+        let frames = slides.matches("\\begin{frame}").count();
+        assert_eq!((frames, frames), (slides.matches("\\end{frame}").count(), environments(&slides)));
+        environments(&body);
+    }
+    let slides = of("planar2", "--latex=beamer");
+    // two torques, M, h and γ
+    assert_eq!(slides.matches("\\begin{frame}").count(), 5, "{slides}");
+    assert_eq!(slides.matches("{Torque, $\\tau").count(), 2, "{slides}");
+    fails(2, &["show", "planar2", "--latex=word"], &["article", "body", "beamer"]);
+}
+
 #[test]
 fn rotors_belong_to_the_arm_if_asked_for() {
     let text = fine(&["show", "robots/puma560.yaml", "--first", "2", "--rotors"]);

@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 23] = [
+const DOCUMENTS: [&str; 24] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/c-library.md",
@@ -21,6 +21,7 @@ const DOCUMENTS: [&str; 23] = [
     "docs/inspection.md",
     "docs/lecture/README.md",
     "docs/lecture/errata.md",
+    "docs/lecture/answers.md",
     "docs/lecture/exercises.md",
     "docs/lecture/folding.md",
     "docs/lecture/frames.md",
@@ -55,6 +56,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
     ("cargo xtask tool", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"deny\""),
     ("cargo xtask tool book", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"book\""),
+    ("cargo xtask site", "xtask/src/verify.rs", "\"xtask\", \"site\", \"--install\""),
     ("cargo xtask python", "xtask/src/verify.rs", "\"xtask\", \"python\", \"--install\""),
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
     // with the flags of pkg-config, below the prefix that it was given
@@ -71,6 +73,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
     // it fetches Pinocchio
     ("cargo xtask urdf", "xtask/src/main.rs", "Urdf(urdf::Urdf)"),
+    // it fetches Cyclone DDS, and measures for a minute
+    ("cargo xtask ros2", "xtask/src/main.rs", "Ros2(ros2::Ros2)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
     // in a firmware that rne has written
     ("rustup target add thumbv7em-none-eabihf", "firmware/example/run", "rustup target add $target"),
@@ -86,7 +90,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
 pub(crate) fn copy(name: &str) -> PathBuf {
     let folder = folder(name).join("clone");
     fs::create_dir(&folder).expect("a folder");
-    for part in ["robots", "docs", "docs/lecture", "docs/lecture/answers"] {
+    for part in ["robots", "docs", "docs/lecture", "docs/lecture/answers", "docs/lecture/class"] {
         fs::create_dir(folder.join(part)).expect("a folder");
         for entry in fs::read_dir(Path::new(ROOT).join(part)).expect("a folder") {
             let path = entry.expect("an entry").path();

@@ -164,7 +164,7 @@ fn a_file_brings_its_own_sine_and_cosine() {
     let torques: Vec<f64> = torques.lines().map(|line| line.parse().expect("a number")).collect();
     assert_eq!(torques, evaluated(&eval), "in every bit");
 
-    fails(2, &["emit", ROBOT, "--lang", "c", "--with-sin-cos"], &["--with-sin-cos", "always brings its sine"]);
+    fails(2, &["emit", ROBOT, "--lang", "c", "--with-sin-cos"], &["--with-sin-cos", "always contains its sine"]);
     let out = path(&folder, "arm.rs");
     fails(1, &[&emit[..], &["--check", &out]].concat(), &["actuator_torques --with-sin-cos -o "]);
 }
@@ -351,7 +351,7 @@ fn functions_are_chosen() {
     assert_eq!(twice.matches("pub fn ").count(), 1);
     let others = fine(&["emit", ROBOT, "--function", "mass_matrix,jacobian"]);
     assert!(others.contains("pub fn mass_matrix") && others.contains("pub fn jacobian"), "{others}");
-    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 29, "no motors");
+    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 30, "no motors");
     for lang in ["rust", "c"] {
         let zeros = fine(&["emit", ROBOT, "--function", "actuator_torques", "--lang", lang]);
         assert!(zeros.contains("actuator_torques"), "{zeros}");
@@ -467,4 +467,31 @@ fn a_new_file_has_the_permissions_of_any_new_file() {
     rne(&["emit", "robots/planar3.yaml", "-o", &emitted]);
     assert_eq!(mode(&emitted) & 0o777, 0o640, "those of the file that is replaced");
     assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 2, "no temporary file is left");
+}
+
+#[test]
+fn functions_are_written_at_frames() {
+    const FRAMES: &str = "docs/desk_arm_frames.yaml";
+    let names = |arguments: &[&str]| -> Vec<String> {
+        let text = fine(&[&["emit", FRAMES], arguments].concat());
+        let names = text.lines().filter_map(|line| line.strip_prefix("pub fn ")?.split('<').next());
+        names.map(str::to_owned).collect()
+    };
+    assert_eq!(
+        names(&["--function", "jacobian"]),
+        ["jacobian", "jacobian_of_camera", "jacobian_of_gripper", "jacobian_of_table"],
+        "the tip and the list of the file"
+    );
+    assert_eq!(
+        names(&["--frame", "camera"]),
+        ["pose_of_camera", "jacobian_of_camera", "jacobian_rate_times_velocity_of_camera", "wrench_torques_of_camera"]
+    );
+    assert_eq!(
+        names(&["--function", "jacobian,gravity_torques", "--frame", "elbow,table"]),
+        ["gravity_torques", "jacobian_of_elbow", "jacobian_of_table"]
+    );
+    fails(2, &["emit", FRAMES, "--frame", "camra"], &["`camera`, `gripper`, `table`", "did you mean `camera`?"]);
+    fails(2, &["eval", FRAMES, "--q", "0,0,0", "--frame", "camra"], &["did you mean `camera`?"]);
+    let refused = ["eval", FRAMES, "--q", "0,0,0", "--frame", "camera", "--function", "mass_matrix"];
+    fails(2, &refused, &["--frame is for functions of a frame", "wrench_torques"]);
 }

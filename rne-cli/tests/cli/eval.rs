@@ -40,8 +40,8 @@ fn close(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn a_number_is_no_file() {
-    fails(2, &["eval", "--q", "0.5", "0.3"], &["`0.3` stands where FILE, the robot, is expected", "--q 0.5,0.3"]);
-    fails(2, &["eval", "--q", "0.5", "pi/2"], &["`pi/2` stands where FILE, the robot, is expected"]);
+    fails(2, &["eval", "--q", "0.5", "0.3"], &["found `0.3` where FILE, the robot, is expected", "--q 0.5,0.3"]);
+    fails(2, &["eval", "--q", "0.5", "pi/2"], &["found `pi/2` where FILE, the robot, is expected"]);
     fails(1, &["eval", "nowhere", "--q", "1"], &["there is no robot file nowhere"]);
 }
 
@@ -346,7 +346,12 @@ fn functions_take_their_arguments_and_no_others() {
         &[q, qd, ["--tau", "1,2"]].concat(),
         &["takes no --tau; forward_dynamics and momentum_and_rate do"],
     );
-    call(2, "jacobian", &[&q[..], &["--trace"]].concat(), &["--trace", "jacobian has none", "gravity_torques"]);
+    call(
+        2,
+        "jacobian",
+        &[&q[..], &["--trace"]].concat(),
+        &["--trace", "jacobian does not compute torques", "gravity_torques"],
+    );
     call(1, "kinetic_energy", &[q, ["--qd", "1e200,1"]].concat(), &["kinetic_energy overflows"]);
     fails(2, &["eval", PUMA, "--function", "actuator_torques", "--q", "1"], &["actuator_torques takes no --q"]);
 }

@@ -140,7 +140,7 @@ fn gravity_beyond_the_effort_limits_is_told_apart() {
     assert!(!everywhere.contains(slower), "{everywhere}");
     // the ends would do, and leave no room
     let middle = said("[-0.5, 0.5]", 4.31, 0.0);
-    has(&middle, &["gravity alone needs 4.905 of 4.310 N m of swing at swing 0 rad, the middle", helps]);
+    has(&middle, &["gravity alone needs 4.905 of 4.310 N m of swing at swing 0 rad, which is the middle", helps]);
     assert!(!middle.contains(slower), "{middle}");
     // friction is in the way where it hangs lower
     let end = said("[-1.5, 0.2]", 4.2, 4.0);

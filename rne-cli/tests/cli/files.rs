@@ -91,7 +91,7 @@ fn a_dash_is_standard_output_everywhere() {
     // what is no text for standard output
     for (arguments, said) in [
         (&["firmware", "torque", "-o", "-"][..], "a firmware is a folder"),
-        (&["man", "-o", "-"], "needs a folder for the pages"),
+        (&["man", "-o", "-"], "needs the name of a folder for the pages"),
         (&["excite", "planar2", "--plot", "-"], "needs the name of a file, such as picture.svg"),
         (&["watch", "planar2", "states.csv", "--plot", "-"], "needs the name of a file, such as picture.svg"),
         (

@@ -111,7 +111,7 @@ fn nothing_is_excited_by_an_arm_that_stands_still() {
     assert!(!called.out.contains("± 0 "), "{}", called.out);
     let said = called.said();
     assert!(said.contains("nothing is excited") && said.contains("still.yaml is not written"), "{said}");
-    assert!(said.contains("efforts of waist are -2.260 throughout"), "{said}");
+    assert!(said.contains("efforts of waist are -2.260 in the whole log"), "{said}");
     assert!(!out.exists());
 }
 
@@ -156,7 +156,7 @@ fn what_cannot_be_identified_is_said() {
         fails(2, &["identify", ARM, LOG, "--cutoff", cutoff, "-o", out], &said);
         fails(2, &["watch", ARM, LOG, "--cutoff", cutoff], &["--cutoff", "samples at 25.0000 Hz"]);
     }
-    fails(2, &["identify", ARM, LOG, "--cutoff", "0"], &["a number of Hz above 0"]);
+    fails(2, &["identify", ARM, LOG, "--cutoff", "0"], &["a number above 0, in Hz"]);
     for factor in [0.0, 1e-200] {
         let log = changed(&folder.join("log.csv"), |_, cells| {
             for cell in &mut cells[EFFORTS] {

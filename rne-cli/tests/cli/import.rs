@@ -67,7 +67,7 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
     for part in [
         "two_links: 2 joints",
         "from base to tip",
-        "grip is held at 0.05",
+        "grip is locked at 0.05",
         "joint elbow, roll: 1.5708 is pi/2",
         "over 1,000 states",
     ] {
@@ -115,15 +115,17 @@ fn every_command_takes_a_urdf_with_one_arm() {
     let folder = folder("import_at_once");
     let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
     let (urdf, yaml, plan) = (path("puma.urdf"), path("puma.yaml"), path("puma.plan.yaml"));
-    fine(&["export", "puma560", "--urdf", "-o", &urdf]);
-    fine(&["import", &urdf, "-o", &yaml]);
+    for command in [&["export", "puma560", "--urdf", "-o", &urdf][..], &["import", &urdf, "-o", &yaml]] {
+        assert_eq!(rne(command).status, 0, "{command:?}");
+    }
     for command in [&["eval", "--q", "1,1,1,1,1,1"][..], &["ops"], &["emit"], &["show", "--joint", "2"]] {
         let [of_urdf, of_yaml] = [&urdf, &yaml].map(|file| rne(&[command, &[file.as_str()]].concat()));
         assert_eq!((of_urdf.status, &of_urdf.out), (0, &of_yaml.out), "{command:?}: {of_urdf:?}");
         assert!(of_urdf.err.contains("is a URDF, and the arm is from world to "), "{of_urdf:?}");
         assert!(of_urdf.err.contains(&format!("rne import {urdf}")), "{of_urdf:?}");
     }
-    assert!(fine(&["check", &urdf]).starts_with("ok "));
+    let checked = rne(&["check", &urdf]);
+    assert!(checked.status == 0 && checked.out.starts_with("ok "), "{checked:?}");
     // a plan is of a robot file
     fails(1, &["search", &urdf, "--seconds", "0"], &["this is URDF", "rne import"]);
     assert!(!fs::exists(plan).expect("a folder"));

@@ -22,6 +22,7 @@ mod import;
 mod log;
 mod log_tables;
 mod log_written;
+mod mark;
 mod plans;
 mod plot;
 mod report;

@@ -138,8 +138,8 @@ fn trajectories_that_are_none() {
     rows("2,x,1\n", &[":4:3", "`x` of column `q1` is not a finite number"]);
     rows("2,nan,1\n", &[":4:3", "not a finite number"]);
     rows("2,,1\n", &[":4:3", "a number of column `q1` is missing"]);
-    rows("2,1\n", &[":4:1", "2 cells, but 3 columns"]);
-    rows("2,0,5,1\n", &["4 cells, but 3 columns", "decimal point"]);
+    rows("2,1\n", &[":4:1", "the line has 2 cells, but the header has 3 columns"]);
+    rows("2,0,5,1\n", &["the line has 4 cells, but the header has 3 columns", "decimal point"]);
     rows("1,2,2\n", &[":4:1", "the time of sample 3 is not later"]);
     rows("0.5,2,2\n", &[":4:1", "not later"]);
     bad(&("t,q1,q2\n".to_owned() + &"0,0,0\n".repeat(200_001)), &["more than 200000 samples"]);

@@ -68,7 +68,7 @@ fn a_plan_is_written_replayed_and_never_becomes_worse() {
     fails(
         2,
         &["search", &robot, "--seconds", "0", "--fresh"],
-        &["is not a plan written by rne", "rne does not change it"],
+        &["was not written by `rne search`", "rne does not overwrite it"],
     );
     assert_eq!(fs::read_to_string(&plan).expect("notes"), "my: notes\n");
     let names: Vec<_> =

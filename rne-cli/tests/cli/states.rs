@@ -231,7 +231,7 @@ fn a_negative_mass_of_a_payload_is_refused() {
     let table = |masses: &[f64]| names.join(",") + "\n" + &masses.iter().map(|mass| line(*mass)).collect::<String>();
     let found = rne_reading(&arguments, &table(&[1.0, 0.0, -0.25, 1.0]));
     assert!(found.status == 1 && found.out.is_empty(), "{found:?}");
-    let said = "<standard input>:4: `m` is a mass, -0.25 kg: no body has less than 0";
+    let said = "<standard input>:4: the mass `m` is -0.25 kg; a mass is zero or positive";
     assert!(found.err.contains(said), "{found:?}");
     assert_eq!(rne_reading(&arguments, &table(&[1.0, 0.0, -0.0])).status, 0);
 
@@ -247,7 +247,7 @@ fn a_negative_mass_of_a_payload_is_refused() {
     let shape = format!("(20001, {})", names.len());
     fs::write(&path, npy("<f8", "False", &shape, &bytes(&numbers))).expect("a file");
     let [path, output] = [&path, &out].map(|path| path.display().to_string());
-    let said = format!("{path}: state 20000: column {} is a mass, -0.25 kg", place + 1);
+    let said = format!("{path}: state 20000: the mass in column {} is -0.25 kg", place + 1);
     fails(1, &[&arguments[..5], &[path.as_str(), "-o", &output]].concat(), &[&said]);
     assert!(!out.exists(), "a file is whole or not there");
 }
@@ -270,9 +270,12 @@ fn mistakes_in_csv_have_a_line() {
         ("q1,q2,of\n1,2,\"a\nb\"\n1,x,\"a\nb\"\n", ":4: `q2` is `x`, which is not a number"),
         ("q1,q2\n1,\n", ":2: `q2` is empty"),
         ("q1,q2\n1,2\u{1b}[31m\n", ":2: `q2` is `2\\u{1b}[31m`, which is not a number"),
-        ("q1,q2\n1,2\n1,2,3\n", ":3: 3 cells where the header has 2"),
-        ("q1,q2\n1\n", ":2: 1 cell where the header has 2"),
-        ("q1,q2\n\"1,2\n3,4\n", ":2: 1 cell where the header has 2; a quote in it is not closed on its line"),
+        ("q1,q2\n1,2\n1,2,3\n", ":3: the line has 3 cells, but the header has 2"),
+        ("q1,q2\n1\n", ":2: the line has 1 cell, but the header has 2"),
+        (
+            "q1,q2\n\"1,2\n3,4\n",
+            ":2: the line has 1 cell, but the header has 2; a quote in it is not closed on its line",
+        ),
     ] {
         let found = gravity(states);
         assert!(found.status == 1 && found.out.is_empty(), "{states:?}: {found:?}");
@@ -323,10 +326,10 @@ fn mistakes_in_arrays_are_told() {
             "<f8",
             "False",
             "(0, 0xffffffffffffffff, 2)",
-            "not an array of numpy: its shape is too large, or is not a shape",
+            "not an array of numpy: its shape is too large, or is not a tuple of whole numbers",
         ),
         ("<f8", "False", "(0, 9999999999, 9999999999, 2)", "not an array of numpy: its shape is too large"),
-        ("<f8", "False", "(-3, 2)", "not an array of numpy: its shape is too large, or is not a shape"),
+        ("<f8", "False", "(-3, 2)", "its shape is too large, or is not a tuple of whole numbers"),
         ("<f8", "False", "3, 2)", "not an array of numpy: its header must have '(' here, but there is `3, 2)"),
     ] {
         let found = reading(&npy(kind, fortran, shape, &six));

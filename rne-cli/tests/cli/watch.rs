@@ -220,7 +220,11 @@ fn a_log_that_cannot_be_compared_does_not_end_a_trend() {
     // the low-pass is that of the baseline, so another one is no remedy
     fs::write(path, fs::read_to_string(path).expect("it").split_inclusive('\n').take(12).collect::<String>())
         .expect("a file");
-    fails(1, &["watch", ARM, path, "--quiet", QUIET], &["short.csv: 0.4 s are too short to watch", "more than"]);
+    fails(
+        1,
+        &["watch", ARM, path, "--quiet", QUIET],
+        &["short.csv: the motion is too short", "0.4 s are left, but more than"],
+    );
     // nothing is left to compare
     fails(1, &["watch", ARM, path, "--quiet", QUIET, "--by", "log"], &["short.csv", " s "]);
 }

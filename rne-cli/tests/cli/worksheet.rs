@@ -194,7 +194,7 @@ fn files_that_are_no_worksheets() {
         &[":3:5", "`omega_dt`", "did you mean `omega_dot`?", "the quantities are q, qd"],
     );
     row("1,2,omega_dot,w,1,rad/s²,link", &[":3:15", "has no component `w`", "x, y, z"]);
-    row("1,2,omega_dot,,1,rad/s²,link", &["which component of omega_dot"]);
+    row("1,2,omega_dot,,1,rad/s²,link", &["the component of omega_dot is missing"]);
     row("1,7,tau,z,1,N m,", &["tau has no component `z`", "leave the component empty"]);
     row("3,2,omega_dot,x,1,rad/s²,link", &[":3:1", "`3` is not a joint of planar2", "1 to 2"]);
     row("j3,2,omega_dot,x,1,rad/s²,link", &["did you mean `j1`?"]);
@@ -211,7 +211,7 @@ fn files_that_are_no_worksheets() {
     for number in ["nan", "inf", "1e999", "O.5", "1/0"] {
         row(&format!("1,2,omega_dot,x,{number},rad/s²,link"), &[":3:17", "is not a number"]);
     }
-    row("1,2,omega_dot,x,0,5,rad/s²,link", &["8 cells, but 7 columns", "decimal point"]);
+    row("1,2,omega_dot,x,0,5,rad/s²,link", &["the line has 8 cells, but the header has 7 columns", "decimal point"]);
     row("1,2,\"omega_dot,x,0", &["this quote is not closed"]);
     row("1,0,orientation,xx,1,,", &["a worksheet in link axes has no orientation"]);
     bad("# rne worksheet, format 2, robot planar2\njoint,quantity,value\n1,tau,1\n", &[":1:1", "reads format 1"]);

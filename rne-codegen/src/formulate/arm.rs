@@ -12,7 +12,7 @@
 //! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On
 //! the base the rotation of a standard table is 1. R_t and p_t are the tool's.
 
-use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot, Transform};
+use rne_model::{Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, Robot, Transform};
 
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
@@ -56,8 +56,10 @@ pub(crate) struct Link<'s> {
 pub(crate) struct Arm<'s> {
     pub(crate) builder: &'s Builder,
     pub(crate) links: Vec<Link<'s>>,
-    /// Where the tip frame is mounted on the last link.
+    /// Where the tip frame is mounted on its link; a frame may stand in its place.
     pub(crate) tip: Mount<'s>,
+    /// The link that carries the tip frame, counted from 0; `None` for the base.
+    pub(crate) tip_link: Option<usize>,
     /// Gravity in frame 0.
     pub(crate) gravity: Vector<'s>,
     /// World → frame 0.
@@ -69,7 +71,16 @@ impl<'s> Arm<'s> {
         let dof = robot.dof();
         let zero = || builder.constant(0.0, Cause::Arithmetic);
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
-        let tool = Placement::new(builder, robot, &robot.tool, Entry::ToolXyz);
+        let frame = builder.function.frame(robot);
+        let FixedFrame { on: tip_link, placement } = frame.map_or_else(
+            || FixedFrame { on: dof.checked_sub(1), placement: robot.tool },
+            |frame| robot.fixed_frame(frame),
+        );
+        let tool = Placement::new(builder, robot, &placement, |axis| match frame {
+            Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
+            // the placement of a link frame is no entry, and zero
+            _ => Entry::ToolXyz(axis),
+        });
         let twists: Vec<_> =
             robot.rows().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
         let mut links: Vec<Link<'s>> = Vec::with_capacity(dof);
@@ -114,16 +125,21 @@ impl<'s> Arm<'s> {
                 }),
             });
         }
-        let (rotation, lever) = match (robot.convention, twists.last()) {
+        let (rotation, lever) = match (robot.convention, tip_link.map(|link| &twists[link])) {
             (Convention::Standard, Some(&twist)) => (twist * tool.rotation, twist * tool.translation),
             _ => (tool.rotation, tool.translation),
         };
-        let r = from_com(builder, &links, dof.checked_sub(1), lever);
+        // a frame carries no load, and its link has a lever to the next joint already
+        let r = match frame {
+            Some(_) => builder.zeros(Cause::FreeTip),
+            None => from_com(builder, &links, tip_link, lever),
+        };
         let rotation = builder.name_matrix(Quantity::TipRotation, dof + 1, rotation);
         Self {
             builder,
             links,
             tip: Mount { rotation, r, lever },
+            tip_link,
             gravity: gravity(builder, robot),
             base: Placement::new(builder, robot, &robot.base, Entry::BaseXyz),
         }
@@ -131,7 +147,20 @@ impl<'s> Arm<'s> {
 
     /// The mount of what a link carries on the way to the tip: the next joint, or the tip.
     pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
-        self.links.iter().find(|link| link.parent == Some(index)).map_or(&self.tip, |link| &link.mount)
+        let next = self.links.iter().find(|link| link.parent == Some(index) && self.tip_link != Some(index));
+        next.map_or(&self.tip, |link| &link.mount)
+    }
+
+    /// Whether a joint moves the tip frame: it is the joint of its link, or of a link that carries this one.
+    pub(crate) fn moves_tip(&self, joint: usize) -> bool {
+        let mut link = self.tip_link;
+        while let Some(index) = link {
+            if index == joint {
+                return true;
+            }
+            link = self.links[index].parent;
+        }
+        false
     }
 }
 
@@ -162,7 +191,7 @@ pub(crate) struct Placement<'s> {
 
 impl<'s> Placement<'s> {
     /// R = (Rz(yaw) Ry(pitch)) Rx(roll); `xyz` are the entries of the translation.
-    fn new(builder: &'s Builder, robot: &Robot, transform: &Transform, xyz: fn(usize) -> Entry) -> Self {
+    fn new(builder: &'s Builder, robot: &Robot, transform: &Transform, xyz: impl Fn(usize) -> Entry) -> Self {
         let translation = [0, 1, 2].map(|axis| number(builder, robot, xyz(axis), transform.xyz[axis]));
         let [roll, pitch, yaw] = transform.rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
         let turn = |axis, turn| turned(builder, axis, turn, Cause::Arithmetic);

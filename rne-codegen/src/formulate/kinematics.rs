@@ -10,8 +10,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::{Arm, JointState, Motion, Mount, Turning, seven_steps};
-use crate::ir::{Axis, Cause, Matrix, Name, Quantity, Vector};
+use crate::formulate::{Arm, JointState, Link, Motion, Mount, Turning, Wrench, seven_steps};
+use crate::ir::{Axis, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// A frame in the world.
 #[derive(Clone, Copy)]
@@ -51,7 +51,7 @@ pub(crate) fn frames<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: Frame<'
         joints.push(Frame { rotation: axes, origin: before.origin });
         links.push(Frame { rotation: table, origin });
     }
-    let last = joints.last().zip(links.last()).map_or((1, base, base), |(joint, link)| (dof, *joint, *link));
+    let last = arm.tip_link.map_or((1, base, base), |link| (link + 1, joints[link], links[link]));
     let before = mounted(arm, &arm.tip, last);
     let line = builder.joint(dof).named(dof + 1);
     let rotation = line.matrix(Quantity::FrameRotation, || before.rotation * arm.tip.rotation);
@@ -76,6 +76,9 @@ pub(crate) fn base<'s>(arm: &Arm<'s>) -> Frame<'s> {
 pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<[Vector<'s>; 2]> {
     let columns = arm.links.iter().zip(&frames.joints).enumerate().map(|(index, (link, frame))| {
         let line = arm.builder.joint(index + 1);
+        if !arm.moves_tip(index) {
+            return [arm.builder.zeros(Cause::BehindFrame); 2];
+        }
         let axis = frame.axis();
         let (linear, angular) = match link.kind {
             Revolute => {
@@ -100,7 +103,7 @@ pub(crate) fn tip_acceleration<'s>(arm: &Arm<'s>, states: &[JointState<'s>], bas
     let mut point = builder.zeros(Cause::FixedBase);
     let mut turning = base.turning;
     let mut rotations = Vec::with_capacity(dof);
-    for joint in arm.joints(states) {
+    for joint in arm.joints(states).filter(|joint| arm.moves_tip(joint.index)) {
         let line = joint.lines;
         turning = seven_steps::turning(&joint, &turning);
         let Turning { rotation, omega, omega_dot } = turning;
@@ -109,7 +112,7 @@ pub(crate) fn tip_acceleration<'s>(arm: &Arm<'s>, states: &[JointState<'s>], bas
             let rigid = rotation.transpose() * point + omega_dot.cross(span) + omega.cross(omega.cross(span));
             joint.unaccelerated(rigid, omega)
         };
-        point = if joint.index + 1 == dof {
+        point = if arm.tip_link == Some(joint.index) {
             line.within(Quantity::TipAcceleration, next)
         } else {
             line.named(joint.index + 2).vector(Quantity::JointPointAcceleration, next)
@@ -127,4 +130,26 @@ pub(crate) fn tip_acceleration<'s>(arm: &Arm<'s>, states: &[JointState<'s>], bas
     let name =
         |axis: Axis, x| builder.name(Name { indices: [1, 0], ..Name::vector(Quantity::TipAcceleration, tip, axis) }, x);
     [linear, angular.map(name)]
+}
+
+/// Jᵀ w of a wrench at the tip, in its axes, joint by joint: with F = R_tip f and N = R_tip n,
+///
+/// z_i · ((p_tip - p_i) × F + N) (revolute);   z_i · F (prismatic)
+pub(crate) fn wrench_torques<'s>(arm: &Arm<'s>, frames: &Frames<'s>, wrench: &Wrench<'s>) -> Vec<Symbol<'s>> {
+    let builder = arm.builder;
+    let tip = builder.joint(arm.links.len());
+    let [force, moment] =
+        [wrench.force, wrench.moment].map(|part| tip.within(Quantity::Torque, || frames.tip.rotation * part));
+    let torque = |(index, (link, frame)): (usize, (&Link<'s>, &Frame<'s>))| {
+        if !arm.moves_tip(index) {
+            return builder.constant(0.0, Cause::BehindFrame);
+        }
+        let (line, axis) = (builder.joint(index + 1), frame.axis());
+        let torque = line.within(Quantity::Torque, || match link.kind {
+            Revolute => axis.dot((frames.tip.origin - frame.origin).cross(force) + moment),
+            Prismatic => axis.dot(force),
+        });
+        builder.name(Name::scalar(Quantity::Torque, index + 1), torque)
+    };
+    arm.links.iter().zip(&frames.joints).enumerate().map(torque).collect()
 }

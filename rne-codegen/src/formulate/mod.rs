@@ -47,6 +47,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::LinkPoses => derivation.link_poses(),
         Function::Jacobian => derivation.jacobian(),
         Function::JacobianRateTimesVelocity => derivation.tip_acceleration(),
+        Function::WrenchTorques => derivation.wrench_torques(),
         Function::KineticEnergy => derivation.kinetic_energy(),
         Function::PotentialEnergy => derivation.potential_energy(),
         Function::CentreOfMass => derivation.centre_of_mass(),
@@ -173,6 +174,14 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let parts = parts.into_iter().enumerate();
         let tip = Name::scalar(Quantity::TipAcceleration, self.states.len() + 1);
         parts.flat_map(|(part, vector)| components(Name { indices: [part, 0], ..tip }, vector)).collect()
+    }
+
+    fn wrench_torques(&self) -> Outputs<'s> {
+        let torques = match &self.tip {
+            AtTip::Wrench(wrench) => kinematics::wrench_torques(&self.arm, &self.frames(), wrench),
+            AtTip::Nothing | AtTip::Payload(_) => Vec::new(),
+        };
+        by_joint(Quantity::Torque, torques)
     }
 
     fn kinetic_energy(&self) -> Outputs<'s> {

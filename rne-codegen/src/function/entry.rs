@@ -15,6 +15,8 @@ pub(super) struct Signature {
     pub(super) arguments: &'static [Argument],
     /// Its result.
     pub(super) returned: Returned,
+    /// The beginning of its name at a frame, for a function that can be taken there.
+    pub(super) of_frame: Option<&'static str>,
 }
 
 /// Properties of a function.

@@ -6,6 +6,8 @@ mod entry;
 mod layout;
 mod table;
 
+use rne_model::{FrameId, Robot};
+
 use crate::ir::Quantity;
 use crate::named::named;
 
@@ -82,6 +84,38 @@ impl Function {
             Self::InverseDynamicsDerivatives => Some(Self::InverseDynamicsDerivativesWithPayload),
             Self::MomentumAndRate => Some(Self::MomentumAndRateWithPayload),
             _ => None,
+        }
+    }
+
+    /// The beginning of its name at a frame, `jacobian` of `jacobian_of_camera`, for a function of the tip that can be
+    /// taken at any frame of a link instead.
+    #[must_use]
+    pub const fn of_frame(self) -> Option<&'static str> {
+        SIGNATURES[self as usize].of_frame
+    }
+
+    /// The functions of the tip that can be taken at any frame of a link instead.
+    pub fn of_frames() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|function| function.of_frame().is_some())
+    }
+
+    /// The frame that a program of this function is compiled for, if `robot` is seen from one and the function can be.
+    #[must_use]
+    pub fn frame(self, robot: &Robot) -> Option<FrameId> {
+        robot.at.filter(|_| self.of_frame().is_some())
+    }
+
+    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's
+    /// name that is no letter, digit or `_` becomes `_`.
+    #[must_use]
+    pub fn name_for(self, robot: &Robot) -> String {
+        match (self.of_frame(), robot.at) {
+            (Some(of_frame), Some(frame)) => {
+                let name = robot.frame_name(frame).chars();
+                let name: String = name.map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+                format!("{of_frame}_of_{name}")
+            }
+            _ => self.name().to_owned(),
         }
     }
 

@@ -9,7 +9,9 @@ use crate::ir::Quantity;
 use crate::named::named;
 
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
-/// what it returns, and what it computes. `$callback!` is given the list, so that each door makes its methods of it.
+/// what it returns, and what it computes. `at NAME` follows what is returned where the function of the tip can be taken
+/// at any frame of a link instead; its name there begins with NAME. `$callback!` is given the list, so that each door
+/// makes its methods of it.
 #[macro_export]
 #[rustfmt::skip]
 macro_rules! functions {
@@ -53,7 +55,7 @@ macro_rules! functions {
                 "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
                 "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
                  numbers that are not finite.";
-            ForwardKinematics = forward_kinematics(q: Positions) -> Pose:
+            ForwardKinematics = forward_kinematics(q: Positions) -> Pose at pose:
                 "The tip in the world, base and tool included.",
                 "tip->rotation: its columns are the axes of the tip frame, in world axes. tip->translation: its \
                  origin in the world, m.";
@@ -61,11 +63,12 @@ macro_rules! functions {
                 "The frame of every row of the table in the world.",
                 "poses[i]: at the far end of link i + 1 in a standard table, on its joint in a modified one; axes as \
                  columns, origin in m. The tool is not included.";
-            Jacobian = jacobian(q: Positions) -> SpatialRows:
+            Jacobian = jacobian(q: Positions) -> SpatialRows at jacobian:
                 "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.",
                 "jacobian: its product with q̇ is the velocity of the origin of the tip frame (m/s) above the angular \
                  velocity of the last link (rad/s).";
-            JacobianRateTimesVelocity = jacobian_rate_times_velocity(q: Positions, qd: Rates) -> Spatial:
+            JacobianRateTimesVelocity =
+                jacobian_rate_times_velocity(q: Positions, qd: Rates) -> Spatial at jacobian_rate_times_velocity:
                 "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.",
                 "acceleration: of the origin of the tip frame (m/s²), then angular (rad/s²). At any other q̈ they are \
                  J q̈ + J̇ q̇.";
@@ -140,6 +143,10 @@ macro_rules! functions {
             ) -> MomentumAndRate:
                 "The momentum of the joints with a payload at the tip, and its rate without external torques.",
                 "momentum, rate: as in momentum_and_rate. payload: as in inverse_dynamics_with_payload.";
+            WrenchTorques = wrench_torques(q: Positions, wrench: Wrench) -> Vector at wrench_torques:
+                "Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes.",
+                "force (N), moment (N m): as in inverse_dynamics_with_wrench. tau: its torques minus those of \
+                 inverse_dynamics.";
         }
     };
 }
@@ -147,7 +154,7 @@ macro_rules! functions {
 /// The enum and the signatures.
 macro_rules! signatures {
     ($(
-        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident:
+        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
             $summary:literal $(, $details:literal)?;
     )*) => {
         named! {
@@ -163,6 +170,7 @@ macro_rules! signatures {
             details: concat!("" $(, $details)?),
             arguments: &[$(Argument::$kind),*],
             returned: Returned::$returned,
+            of_frame: [$(Some(stringify!($of_frame)),)? None][0],
         }),*];
     };
 }
@@ -487,6 +495,7 @@ pub(crate) const TABLE: &[Entry] = &[
         own: &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..MOMENTUM_AND_RATE
     },
+    Entry { output: "tau", ..Entry::of(Function::WrenchTorques, Capability::Kinematics) },
 ];
 
 /// Entries stand in the order of the variants, and none lacks what C and listings say.

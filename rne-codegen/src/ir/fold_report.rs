@@ -33,6 +33,8 @@ pub enum Cause {
     NoAcceleration,
     /// One joint accelerates, the others do not.
     UnitAcceleration,
+    /// The joint is behind the frame, on the side of the tip.
+    BehindFrame,
     /// The function has nothing to do with gravity.
     NoGravity,
     /// Terms that are not zero cancel, as x - x does; what makes them equal is not told.
@@ -54,6 +56,7 @@ impl fmt::Display for Cause {
             Self::AtRest => f.write_str("the arm is at rest"),
             Self::NoAcceleration => f.write_str("the joints do not accelerate"),
             Self::UnitAcceleration => f.write_str("one joint alone accelerates"),
+            Self::BehindFrame => f.write_str("the joint does not move the frame"),
             Self::NoGravity => f.write_str("gravity has no part in it"),
             Self::Cancellation => f.write_str("its terms cancel"),
         }
@@ -178,6 +181,7 @@ impl Cause {
             | Self::AtRest
             | Self::NoAcceleration
             | Self::UnitAcceleration
+            | Self::BehindFrame
             | Self::NoGravity
             | Self::Cancellation => 4,
         }

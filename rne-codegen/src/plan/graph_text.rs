@@ -194,7 +194,7 @@ pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Trac
     }
     let (found, needed) = (reader.results.len(), plain.outputs.len());
     if found != needed {
-        let message = format!("`{function}` returns {needed} numbers, the graph has {found} results");
+        let message = format!("`{function}` returns {needed} numbers, but the graph has {found} results");
         return Err((text.split_whitespace().count(), message));
     }
     let results = reader.results.iter().map(|result| result.at).collect();
@@ -331,7 +331,7 @@ impl<'s> Reader<'s> {
             '*' => Ok(a * b),
             _ if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
             _ if self.divides_by(b.at) => Ok(self.builder.quotient(a, b)),
-            _ => Err(format!("`{word}` divides by what the plan does not divide by")),
+            _ => Err(format!("`{word}` divides by a value by which the code of the plan never divides")),
         }
     }
 
@@ -349,7 +349,7 @@ impl<'s> Reader<'s> {
             (_, Some(number)) => number.checked_sub(1).and_then(|index| self.constants.get(index)),
             _ => self.leaves.get(name),
         };
-        let value = value.ok_or_else(|| format!("there is no value `{name}` before this word"))?;
+        let value = value.ok_or_else(|| format!("the graph defines no value `{name}` before this word"))?;
         Ok(value.signed(is_negative))
     }
 
@@ -361,6 +361,8 @@ impl<'s> Reader<'s> {
         let distance = |number: &Number| (number.to_f64() - value).abs();
         let nearest = self.given.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let nearest = nearest.filter(|number| distance(number) <= ROUNDING * value.abs());
-        nearest.map(|&number| self.builder.number(number)).ok_or_else(|| format!("the plan has no number {word}"))
+        nearest
+            .map(|&number| self.builder.number(number))
+            .ok_or_else(|| format!("the number {word} does not occur in the code of the plan"))
     }
 }

@@ -120,23 +120,23 @@ fn mistakes_in_a_graph_name_their_word() {
     let plan = Plan::new(2);
     let plain = drawn(&robot, &plan, Function::InverseDynamics).unwrap().traced;
     for (text, word, what) in [
-        ("operations q1*qd9", 2, "there is no value `qd9`"),
+        ("operations q1*qd9", 2, "the graph defines no value `qd9`"),
         ("operations q1^qd2", 2, "`q1^qd2` is not an operation"),
         ("operations qd1", 2, "`qd1` is not an operation"),
-        ("operations qd1*qd2 2*1", 3, "there is no value `2`"),
-        ("operations qd1*qd2 0+1", 3, "there is no value `0`"),
-        ("operations qd1*qd2 +1*1", 3, "there is no value `+1`"),
-        ("operations ü*qd2", 2, "there is no value `ü`"),
+        ("operations qd1*qd2 2*1", 3, "the graph defines no value `2`"),
+        ("operations qd1*qd2 0+1", 3, "the graph defines no value `0`"),
+        ("operations qd1*qd2 +1*1", 3, "the graph defines no value `+1`"),
+        ("operations ü*qd2", 2, "the graph defines no value `ü`"),
         ("nonsense", 1, "a graph begins with `constants` or `operations`, not with `nonsense`"),
-        ("results qd1 qd1 qd2", 4, "returns 2 numbers, the graph has 3 results"),
-        ("results qd1", 2, "returns 2 numbers, the graph has 1 results"),
-        ("", 0, "returns 2 numbers, the graph has 0 results"),
-        ("operations k999*qd1", 2, "there is no value `k999`"),
-        ("constants 0.123456", 2, "the plan has no number 0.123456"),
+        ("results qd1 qd1 qd2", 4, "returns 2 numbers, but the graph has 3 results"),
+        ("results qd1", 2, "returns 2 numbers, but the graph has 1 results"),
+        ("", 0, "returns 2 numbers, but the graph has 0 results"),
+        ("operations k999*qd1", 2, "the graph defines no value `k999`"),
+        ("constants 0.123456", 2, "the number 0.123456 does not occur"),
         ("constants qd1", 2, "`qd1` is not an operation"),
         ("constants inf", 2, "`inf` is not a finite number"),
         ("constants 1e999", 2, "`1e999` is not a finite number"),
-        ("constants /1", 2, "there is no value `1`"),
+        ("constants /1", 2, "the graph defines no value `1`"),
     ] {
         let read = graph_text::read(text, &plain.graph, Function::InverseDynamics);
         let Err((at, message)) = read else { panic!("{text}") };

@@ -43,23 +43,23 @@ impl Trick {
     pub const fn formula(self) -> &'static str {
         match self {
             Self::Regrouping => {
-                "m, h_z, S33 of a link move to the link before: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk \
+                "m, h_z, S33 of a link move to the previous link: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk \
                 uuᵀ (4.4)"
             }
-            Self::RegroupingTargets => "the three rods of an axis annul other entries, h or S of the link before (4.5)",
-            Self::Gyrostat => "S11 = S22, h = 0: τ_n = c (ω̇'_z + q̈), the link before carries c·1 and the spin (5.6)",
-            Self::LastFrame => "φ = atan2(h_y, h_x) turns the last frame, so that h_y = 0 (5.8)",
+            Self::RegroupingTargets => "the three numbers of a rod make other entries of h or S zero (4.5)",
+            Self::Gyrostat => "S11 = S22, h = 0: τ_n = c (ω̇'_z + q̈); the previous link gets c·1 and the spin (5.6)",
+            Self::LastFrame => "φ = atan2(h_y, h_x) rotates the last frame, so that h_y = 0 (5.8)",
             Self::CarriedPrismatics => {
-                "a prismatic joint turns nothing: a = a' + U (p + q u) + 2 q̇ ω × u + q̈ u in the axes before (5.9)"
+                "a prismatic joint does not rotate: a = a' + U (p + q u) + 2 q̇ ω × u + q̈ u in previous axes (5.9)"
             }
             Self::AxisColumns => "U_i z = U_{i-1} z gives ω̇_x = ω_y ω_z - U23, ω̇_y = U13 - ω_x ω_z (5.3)",
             Self::ParallelGroups => "parallel axes share a frame N: Q = Σ q̇, Θ = Σ θ (5.5)",
-            Self::Offsets => "d acts in the frame before, on the axis or in the link's frame (5.2)",
-            Self::OriginShifts => "the origin of a frame may sit anywhere on its axis (5.4)",
+            Self::Offsets => "d is added in the previous frame, on the axis, or in the frame of the link (5.2)",
+            Self::OriginShifts => "the origin of a frame may be any point of its axis (5.4)",
             Self::Scales => "a' = λ a, f' = μ f: a length or a moment becomes 1 (3.5)",
             Self::MomentForms => "antisym(U S) = J ω̇ + ω × J ω, or with the diagonal split (3.3)",
-            Self::ScaledTwists => "u = v_y + tan α v_z turns a vector with seven products (5.1)",
-            Self::UnturnedFrames => "p, ω̇, h, S or the wrench from behind are evaluated in frame N (5.7)",
+            Self::ScaledTwists => "u = v_y + tan α v_z rotates a vector with seven products (5.1)",
+            Self::UnturnedFrames => "p, ω̇, h, S or the wrench of the next link are evaluated in frame N (5.7)",
             Self::Rewriting => "u w + v w = (u + v) w, c₁ x + c₂ y = c₁ (x + (c₂/c₁) y), 1 - s² = c², and so on (10)",
         }
     }

@@ -88,6 +88,7 @@ impl Algorithm {
             | Function::LinkPoses
             | Function::Jacobian
             | Function::JacobianRateTimesVelocity
+            | Function::WrenchTorques
             | Function::KineticEnergy
             | Function::PotentialEnergy
             | Function::CentreOfMass

@@ -66,7 +66,7 @@ fn friction_goes_through_the_gear_to_the_joint() {
         |motor: &str| rne_convert::export(&Robot::from_yaml(&text(motor)).unwrap_or_else(|e| panic!("{e}"))).unwrap();
     let geared = exported("{inertia: 1e-4, gear_ratio: -50, viscous: 2e-4, coulomb: [0.03, -0.01]}");
     assert!(geared.text.contains("<dynamics damping=\"0.5\" friction=\"1\"/>"), "{}", geared.text);
-    for part in ["motors are left out, but for their friction", "is written as its mean", ": joint1"] {
+    for part in ["motors are left out, except their friction", "is written as its mean", ": joint1"] {
         assert!(geared.remarks.iter().any(|remark| remark.contains(part)), "{part}: {:?}", geared.remarks);
     }
     let direct = exported("{viscous: 0.1, coulomb: [0.3, -0.3]}");

@@ -66,7 +66,7 @@ fn joints_off_the_chain_are_held_by_name_or_refused() {
     let others = import(&hand, &select(&[("f", 0.2)], true));
     assert_eq!(others.account.held, [("f".to_owned(), 0.2), ("t".to_owned(), 0.5)]);
     assert_close(&others.robot.joints[0].row.link.com, &[-0.075, 0.0, 0.0], 1e-16);
-    assert!(others.text.contains("the joint t is held at 0.5"), "{}", others.text);
+    assert!(others.text.contains("the joint t is locked at 0.5"), "{}", others.text);
     let unknown = refused(&hand, &select(&[("g", 0.2)], true));
     assert!(unknown.contains("there is no joint `g`") && unknown.contains("`a`, `f`, `t`"), "{unknown}");
     let twice = refused(&hand, &select(&[("f", 0.2), ("f", 0.2)], true));
@@ -116,7 +116,7 @@ fn what_no_row_can_say_is_refused_with_a_reason() {
     let mimic = refused(&with("continuous", "<mimic joint=\"a\"/>"), &Options::default());
     assert!(
         mimic.contains("the joint `b` on the chain follows `a`")
-            && mimic.contains("hold this joint still; LockJoint { joint: \"b\" }"),
+            && mimic.contains("lock this joint; LockJoint { joint: \"b\" }"),
         "{mimic}"
     );
     let unknown = Urdf::read("arm.urdf", &with("helical", "")).unwrap_err().to_string();

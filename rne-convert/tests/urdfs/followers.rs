@@ -33,13 +33,13 @@ fn a_follower_of_a_moving_joint_is_refused_unless_it_is_held_by_name() {
         let text = with_follower(on, 2.0, mimic);
         let message = refused(&text, &select(&[], true));
         assert!(message.contains("follow moving joints of the chain: `k` follows `j`"), "{message}");
-        assert!(message.contains("hold each of these joints by its name; LockJoint { joint: \"k\" }"), "{message}");
+        assert!(message.contains("lock each of these joints by its name; LockJoint { joint: \"k\" }"), "{message}");
         assert!(message.contains("arm.urdf:"), "{message}");
         let held = import(&text, &select(&[("k", 0.0)], true)).account;
-        assert_eq!(held.remarks, ["the joint k is held still, although it follows j, which moves"]);
+        assert_eq!(held.remarks, ["the joint k is locked, although it follows j, which moves"]);
     }
     assert!(refused(&with_follower("base", 2.0, mimic), &select(&[], false)).contains("`k` follows `j`"));
-    let note = "the joint k follows j, which moves; nothing that it carries has mass, so it is held still";
+    let note = "the joint k follows j, which moves; no link after it has mass, so rne locks it";
     let light = import(&with_follower("arm", 0.0, mimic), &select(&[], true));
     assert_eq!(light.account.remarks, [note]);
     assert!(light.text.contains(note), "{}", light.text);
@@ -64,7 +64,7 @@ fn a_follower_of_a_moving_joint_is_refused_unless_it_is_held_by_name() {
     assert_eq!(locked(&[("j", 0.3)]).held, [("k".to_owned(), -0.3), ("j".to_owned(), 0.3)]);
     // and where it is held by name, too, the two agree or a remark tells that they do not
     assert_eq!(locked(&[("j", 0.3), ("k", -0.3)]).remarks, [""; 0]);
-    let note = "the joint k is held at 0.5, although it follows j, which holds it at -0.3";
+    let note = "the joint k is locked at 0.5, although it follows j, whose position would put it at -0.3";
     assert_eq!(locked(&[("j", 0.3), ("k", 0.5)]).remarks, [note]);
 }
 
@@ -83,16 +83,16 @@ fn followers_of_nobody_and_of_each_other_are_refused() {
     let nobody = with_follower("arm", 2.0, "<mimic joint=\"x\"/>");
     let message = refused(&nobody, &options(&[]));
     assert!(message.contains("the joint `k` follows `x`, but the file has no such joint"), "{message}");
-    assert!(message.contains("hold the joint still; LockJoint { joint: \"k\" }"), "{message}");
+    assert!(message.contains("lock the joint; LockJoint { joint: \"k\" }"), "{message}");
     let circle = with_follower("arm", 2.0, "<mimic joint=\"l\"/>").replace(
         "</robot>",
         &format!("<link name=\"c\"/>{}</robot>", joint("l", "continuous", ("arm", "c"), "", "<mimic joint=\"k\"/>")),
     );
     let message = refused(&circle, &options(&[]));
-    assert!(message.contains("which follows it in a circle"), "{message}");
+    assert!(message.contains("form a circle"), "{message}");
     assert_eq!(import(&circle, &options(&[("k", 0.2)])).account.held, [("k".to_owned(), 0.2), ("l".to_owned(), 0.2)]);
     let itself = with_follower("arm", 2.0, "<mimic joint=\"k\"/>");
-    assert!(refused(&itself, &options(&[])).contains("follows `k`, which follows it in a circle"));
+    assert!(refused(&itself, &options(&[])).contains("follows `k`, and the `mimic` elements form a circle"));
 }
 
 /// Where a joint is held, it should be able to be; and no angle is so large that its last digit is an angle.
@@ -119,13 +119,13 @@ fn a_joint_that_is_held_outside_of_its_limits_is_told() {
     };
     let text = with_end("");
     let told = import(&text, &held_at(3.0)).account.remarks;
-    assert_eq!(told, ["the joint k is held at 3, which is outside of its limits, from -0.5 to 1"]);
+    assert_eq!(told, ["the joint k is locked at 3, which is outside of its limits, from -0.5 to 1"]);
     for value in [-0.5, 0.0, 1.0] {
         assert_eq!(import(&text, &held_at(value)).account.remarks, Vec::<String>::new(), "{value}");
     }
     for value in [8_388_608.0, 1e15, -1e16, 1e300, f64::NAN, f64::INFINITY] {
         let message = refused(&text, &held_at(value));
-        assert!(message.contains("the joint `k` cannot be held at"), "{message}");
+        assert!(message.contains("the joint `k` cannot be locked at"), "{message}");
         assert!(message.contains("below 8388608 rad"), "{message}");
     }
     for angle in ["8388608", "1e15", "-1e16", "1e300"] {

@@ -10,6 +10,7 @@ use rne_runtime::DynArm;
 mod bodies;
 mod chain;
 mod followers;
+mod frames;
 mod geometry;
 
 pub(crate) const GRAVITY: f64 = 9.81;

@@ -31,6 +31,10 @@ pub struct Comparison {
     pub compared: usize,
     /// Number of values that differ.
     pub differing: usize,
+    /// Number of given values, by the step that finds them: index 0 counts the inputs of the steps.
+    pub given: [usize; 8],
+    /// Number of values that agree, by step.
+    pub right: [usize; 8],
     /// The steps, 1 to 7, of which no value is given.
     pub steps_not_given: Vec<u8>,
     /// The first that differs in the order of computation; `None` when all agree.
@@ -105,9 +109,18 @@ impl Worksheet {
         digits: u8,
     ) -> Result<Comparison, WrongLength> {
         let given = Ordered::new(self, given, digits);
+        let by_step = |only_right: bool| {
+            let mut counts = [0; 8];
+            let counted = given.values.iter().filter(|(at, _)| !only_right || given.agrees(**at, self.value(**at)));
+            counted.for_each(|(_, value)| counts[usize::from(value.quantity.step())] += 1);
+            counts
+        };
+        let (all, right) = (by_step(false), by_step(true));
         let mut comparison = Comparison {
             compared: given.values.len(),
-            differing: given.values.iter().filter(|(at, _)| !given.agrees(**at, self.value(**at))).count(),
+            differing: given.values.len() - right.iter().sum::<usize>(),
+            given: all,
+            right,
             steps_not_given: given.steps_not_given(),
             first: None,
         };

@@ -217,7 +217,7 @@ impl Formulas<'_> {
             &[&[input], &part.inputs[..]].concat(),
         );
         carried.term.slips = vec![
-            (format!("R{i} stands where R{i}ᵀ belongs"), list(&(here.rotation * value))),
+            (format!("R{i} is used in place of R{i}ᵀ"), list(&(here.rotation * value))),
             (format!("it is not turned by R{i}ᵀ"), list(value)),
         ];
         carried
@@ -383,7 +383,7 @@ impl Formulas<'_> {
                 }
                 let turn = next.rotation_matrix();
                 let slips = vec![
-                    (format!("R{n}ᵀ stands where R{n} belongs"), list(&turn.tr_mul(&own))),
+                    (format!("R{n}ᵀ is used in place of R{n}"), list(&turn.tr_mul(&own))),
                     (format!("it is not turned by R{n}"), list(&own)),
                 ];
                 let formula = format!("R{n} {symbol}, from the axes of joint {n}");

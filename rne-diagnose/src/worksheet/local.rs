@@ -43,7 +43,7 @@ pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
             whole(format!("two components are exchanged: {order}"), values.to_vec());
         }
         for (order, values) in [("y, z, x", [y, z, x]), ("z, x, y", [z, x, y])] {
-            whole(format!("the components stand in the order {order}"), values.to_vec());
+            whole(format!("the components are in the order {order}"), values.to_vec());
         }
     }
     if ours.len() == 9 {
@@ -53,7 +53,7 @@ pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
     if line.quantity.is_angular(line.kind) {
         whole("it is in degrees".to_owned(), ours.iter().map(|x| x * 180.0 / PI).collect());
         whole(
-            "it was turned from degrees into radians twice".to_owned(),
+            "it was converted from degrees to radians twice".to_owned(),
             ours.iter().map(|x| x * PI / 180.0).collect(),
         );
     }
@@ -72,9 +72,9 @@ pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
     for (says, factor) in
         [("ten times as large", 10.0), ("a hundred times as large", 100.0), ("a thousand times as large", 1e3)]
     {
-        alone(format!("it is {says}: a unit, or the decimal point"), own * factor);
+        alone(format!("it is {says}: check the unit and the decimal point"), own * factor);
         let small = says.replace("as large", "smaller");
-        alone(format!("it is {small}: a unit, or the decimal point"), own / factor);
+        alone(format!("it is {small}: check the unit and the decimal point"), own / factor);
     }
     alone("it is twice as large".to_owned(), 2.0 * own);
     alone("it is half as large".to_owned(), 0.5 * own);

@@ -10,6 +10,7 @@ use crate::evidence::{evidence, refusals};
 use crate::heading::Heading;
 use crate::parameters::{self, Parameter};
 use crate::syntax::Precision;
+use crate::text::about_frame;
 use crate::wrap::{TIED, WIDTH, fill};
 use crate::{inert, table};
 
@@ -46,6 +47,9 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
         let details = program.function.details();
         if !details.is_empty() {
             text.push_str(&comment("///", details));
+        }
+        if let Some(frame) = about_frame(program) {
+            text.push_str(&comment("///", &frame));
         }
         let _ = writeln!(text, "{};", head(file, program));
     }

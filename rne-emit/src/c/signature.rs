@@ -42,7 +42,7 @@ pub(super) fn head(file: &File, program: &Program) -> String {
     if layout != Layout::Number {
         arguments.push(declared(file, &layout, program.function.entry().output));
     }
-    wrapped(&format!("{returned} {}_{}(", file.prefix, program.function), &arguments)
+    wrapped(&format!("{returned} {}_{}(", file.prefix, program.name), &arguments)
 }
 
 /// A head with its arguments, in several lines where it is too long for one.

@@ -130,8 +130,8 @@ impl Tests<'_> {
         if parameters::are_used(program) {
             given.push(format!("&{}[state]", array("parameters")));
         }
-        let (given, function, prefix) = (given.join(", "), program.function, self.prefix);
-        let layout = function.layout(program.dof);
+        let (given, function, prefix) = (given.join(", "), &program.name, self.prefix);
+        let layout = program.function.layout(program.dof);
         let elements = result_elements(program, "result");
         let count = elements.len();
         if layout == Layout::Number {
@@ -173,7 +173,7 @@ impl Tests<'_> {
             "test_tolerance"
         };
         let table = self.table(&format!("    static const {real} expected[{}][{count}]", expected.len()), &expected);
-        let name = format!("test_{function}");
+        let name = format!("test_{}", program.name);
         let text = format!(
             "static void {name}(void)\n{{\n{}    unsigned state;\n    \
              const double scale = test_largest(&expected[0][0], {}u, {:?});\n    \

@@ -89,7 +89,7 @@ impl Law {
 
     /// Those whose functions are all there.
     fn of(programs: &[Program]) -> impl Iterator<Item = Self> {
-        let is_there = |function: &Function| programs.iter().any(|program| program.function == *function);
+        let is_there = |function: &Function| self::program(programs, *function).is_some();
         Self::ALL.into_iter().filter(move |law| law.functions().iter().all(is_there))
     }
 }
@@ -107,7 +107,7 @@ fn floor(golden: &[Golden], program: usize, part: f64) -> f64 {
     part * sizes.fold(0.0, |largest: f64, size| largest.max(*size))
 }
 
-/// The program of a function.
+/// The program of a function, not at a frame.
 fn program(programs: &[Program], function: Function) -> Option<&Program> {
-    programs.iter().find(|program| program.function == function)
+    programs.iter().find(|program| program.function == function && program.frame.is_none())
 }

@@ -161,7 +161,7 @@ impl Tests<'_> {
             let members = members.iter().map(|known| format!("{0}: Number(state.parameters.{0})", known.member));
             given.push(format!("&super::Parameters {{ {} }}", members.collect::<Vec<_>>().join(", ")));
         }
-        format!("super::{}({}).flat()", program.function, given.join(", "))
+        format!("super::{}({}).flat()", program.name, given.join(", "))
     }
 
     /// A call of the program of a function.
@@ -172,7 +172,7 @@ impl Tests<'_> {
     /// The test that holds a program against values.
     fn values(&self, index: usize) -> Option<String> {
         let (program, expected) = (self.programs.get(index)?, results(self.golden, index)?);
-        let name = program.function.name();
+        let name = &program.name;
         let mut rows = String::new();
         for numbers in &expected {
             let _ = writeln!(rows, "            {},", list(numbers, 12));

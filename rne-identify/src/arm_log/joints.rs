@@ -44,21 +44,44 @@ fn slides(robot: &Robot) -> Vec<bool> {
 
 /// The joints of the log that are those of the robot, base to tip.
 fn matched(joints: Vec<String>, logged: &[String]) -> Result<(Vec<String>, Option<ArmLogRemark>), ArmLogError> {
-    if joints.iter().all(|name| logged.contains(name)) {
-        return Ok((joints, None));
+    match match_joints(&joints, logged) {
+        Ok(JointMatch::ByName) => Ok((joints, None)),
+        Ok(JointMatch::ByOrder) => {
+            Ok((logged.to_vec(), Some(ArmLogRemark::MatchedByOrder { logged: logged.to_vec(), joints })))
+        }
+        Err(mismatch) => Err(ArmLogError::Unmatched { logged: logged.to_vec(), joints, mismatch }),
+    }
+}
+
+/// How the joints of measurements are matched with those of a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointMatch {
+    /// The measurements have all names of the robot's joints, in any order and among others.
+    ByName,
+    /// The measurements have other names and as many joints: the joints are taken in the order of the measurements.
+    ByOrder,
+}
+
+/// Matches the joints of measurements, by their names, with the joints of a robot, base to tip: the one rule for logs
+/// and for messages.
+///
+/// # Errors
+/// When the joints cannot be matched.
+pub fn match_joints(joints: &[String], measured: &[String]) -> Result<JointMatch, Mismatch> {
+    if joints.iter().all(|name| measured.contains(name)) {
+        return Ok(JointMatch::ByName);
     }
     // some names are those of the robot, and say another order
-    let is_elsewhere = |(at, name): &(usize, &String)| logged.contains(name) && logged[*at] != **name;
-    let mismatch = if logged.len() < joints.len() {
-        Mismatch::Fewer
-    } else if logged.len() > joints.len() {
-        Mismatch::More
+    let is_elsewhere = |(at, name): &(usize, &String)| measured.contains(name) && measured[*at] != **name;
+    if measured.len() < joints.len() {
+        Err(Mismatch::Fewer)
+    } else if measured.len() > joints.len() {
+        Err(Mismatch::More)
     } else if let Some((_, joint)) = joints.iter().enumerate().find(is_elsewhere) {
-        Mismatch::Order { joint: joint.clone() }
+        Err(Mismatch::Order { joint: joint.clone() })
     } else {
-        return Ok((logged.to_vec(), Some(ArmLogRemark::MatchedByOrder { logged: logged.to_vec(), joints })));
-    };
-    Err(ArmLogError::Unmatched { logged: logged.to_vec(), joints, mismatch })
+        Ok(JointMatch::ByOrder)
+    }
 }
 
 /// Checks that the units that names of columns say are those of the robot's joints: a joint that turns has no position

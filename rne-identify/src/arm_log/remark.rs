@@ -60,7 +60,7 @@ impl fmt::Display for ArmLogRemark {
             }
             Self::Log(remark) => remark.fmt(f),
             Self::ConstantEffort { joint, effort } => {
-                write!(f, "efforts of {joint} are {} throughout: are they measured?", rounded(*effort, 3))
+                write!(f, "efforts of {joint} are {} in the whole log: are they measured?", rounded(*effort, 3))
             }
             Self::LeftOut(left_out) => write!(f, "left out: {left_out}"),
         }

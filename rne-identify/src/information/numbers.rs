@@ -23,7 +23,7 @@ impl fmt::Display for WrongNumbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} numbers that do not fit the rows of this robot: they come from another robot, other options or another \
+            "the {} numbers do not fit the rows of this robot: they come from another robot, other options or another \
              version of rne",
             self.found
         )

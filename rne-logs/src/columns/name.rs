@@ -1,22 +1,46 @@
-//! Meaning of a table's column, by its name.
+//! Meaning of a table's column, by the pattern of its name.
 
 use crate::TimeUnit;
 use crate::columns::quantity::Quantity;
 use crate::columns::unit::{self, Unit};
 use crate::limits::LONGEST_NAME;
 
-/// The words by which columns are known: at the end of a name or at its beginning, and before the number of a joint.
-const WORDS: [(Quantity, &[&str]); 3] = [
-    (Quantity::Position, &["q", "position", "positions", "pos", "angle", "angles"]),
-    (Quantity::Velocity, &["qd", "dq", "velocity", "velocities", "vel", "speed"]),
-    (Quantity::Effort, &["tau", "effort", "efforts", "torque", "torques", "current", "currents", "i"]),
+/// The words for a quantity, and whether they are words for a current. A word may be in capital letters.
+const WORDS: [(Quantity, bool, &[&str]); 4] = [
+    (Quantity::Position, false, &["q", "position", "positions", "pos", "angle", "angles"]),
+    (Quantity::Velocity, false, &["qd", "dq", "velocity", "velocities", "vel", "speed"]),
+    (Quantity::Effort, false, &["tau", "effort", "efforts", "torque", "torques"]),
+    (Quantity::Effort, true, &["current", "currents", "i"]),
 ];
 
-/// Words of efforts that are currents.
-const CURRENTS: [&str; 3] = ["current", "currents", "i"];
+/// The names of columns of joints, in the order in which they are tried; an optional unit follows, as in `q1 [deg]`,
+/// `q1_deg` or `q1 deg`. The documentation of logs has this table.
+const PATTERNS: [Pattern; 12] = [
+    Pattern(Form::Number, "", "", "tables of `rne`, libfranka"),
+    Pattern(Form::Number, "_", "", "ur_rtde"),
+    Pattern(Form::Number, "[", "]", "arrays"),
+    Pattern(Form::Number, ".", "", "messages written as columns"),
+    Pattern(Form::Number, " ", "", "hand-written tables"),
+    Pattern(Form::JointBefore, "/", "", "PlotJuggler, ros2_control"),
+    Pattern(Form::JointBefore, ".", "", "tables of `rne`"),
+    Pattern(Form::JointBefore, "_", "", "hand-written tables"),
+    Pattern(Form::JointBefore, " ", "", "hand-written tables"),
+    Pattern(Form::JointBehind, ".", "", "messages written as columns"),
+    Pattern(Form::JointBehind, "[", "]", "messages written as columns"),
+    Pattern(Form::JointBehind, "/", "", "messages written as columns"),
+];
+
+/// The names of columns that are lists, a number of each joint in a row; an optional unit follows.
+#[cfg(feature = "parquet")]
+const LISTS: [Pattern; 1] = [Pattern(Form::List, "", "", "messages written as rows")];
+
+/// Names of lists of positions in collections for learning.
+#[cfg(feature = "parquet")]
+const STATES: [&str; 3] = ["observation.state", "observation/state", "observation_state"];
 
 const TIMES: [&str; 8] = ["time", "t", "ts", "timestamp", "stamp", "__time", "seconds", "time_from_start"];
 
+/// Characters between the words of a name.
 const SEPARATORS: [char; 7] = ['/', '.', '_', '[', ']', ' ', ':'];
 
 /// Characters before a unit that is not in brackets.
@@ -36,6 +60,7 @@ pub(crate) struct Named {
     pub(crate) quantity: Quantity,
     /// Whether its word is one of currents.
     pub(crate) is_current: bool,
+    /// Empty for a list, which has all joints.
     pub(crate) joint: String,
     /// The joint's number, where its name is one.
     pub(crate) number: Option<u32>,
@@ -56,13 +81,74 @@ pub(crate) enum Meaning {
     Nothing,
 }
 
-/// The meaning of a column's name.
+/// How a name says its joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    /// `q1`, and after the name of a group, `actual_q_1`
+    Number,
+    /// `elbow.position`, and after a path, `/joint_states/elbow/position`
+    JointBefore,
+    /// `position.elbow`
+    JointBehind,
+    /// `joint_positions`
+    #[cfg(feature = "parquet")]
+    List,
+}
+
+/// How a name says its joint, the texts between and after the word and the joint, and who writes such names.
+struct Pattern(
+    Form,
+    &'static str,
+    &'static str,
+    #[cfg_attr(not(test), expect(dead_code, reason = "the test of the table in docs/logs.md reads it"))] &'static str,
+);
+
+impl Pattern {
+    /// The column of a name without a unit at its end.
+    fn read(&self, name: &str) -> Option<(Named, Form)> {
+        let &Self(form, between, after, _) = self;
+        let name = name.trim_start_matches(SEPARATORS).strip_suffix(after)?;
+        let (word, joint) = match form {
+            Form::Number => {
+                let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+                (last(stem.strip_suffix(between)?), without_zeros(&name[stem.len()..])?)
+            }
+            Form::JointBefore => {
+                let (joint, word) = name.rsplit_once(between)?;
+                (word, joint.trim_end_matches(SEPARATORS).rsplit('/').next().filter(|joint| !joint.is_empty())?)
+            }
+            Form::JointBehind => name.split_once(between).filter(|(_, joint)| !joint.is_empty())?,
+            #[cfg(feature = "parquet")]
+            Form::List if STATES.contains(&name) => ("position", ""),
+            #[cfg(feature = "parquet")]
+            Form::List => (last(name), ""),
+        };
+        let is_word = |known: &&str| word.eq_ignore_ascii_case(known);
+        let &(quantity, is_current, _) = WORDS.iter().find(|(.., words)| words.iter().any(is_word))?;
+        let named = Named { quantity, is_current, joint: joint.to_owned(), number: joint_number(joint), unit: None };
+        Some((named, form))
+    }
+}
+
+/// The meaning of the name of a column of numbers.
 pub(crate) fn meaning(name: &str) -> Meaning {
-    let name = name.trim();
     // the tool centre point is no joint
-    if is_too_long(name) || name.split(SEPARATORS).any(|word| word.eq_ignore_ascii_case("tcp")) {
+    let is_tip = |name: &str| name.split(SEPARATORS).any(|word| word.eq_ignore_ascii_case("tcp"));
+    if !is_too_long(name) && is_tip(name) { Meaning::Nothing } else { by(&PATTERNS, name) }
+}
+
+/// The meaning of the name of a column of lists, which is never one of a joint alone.
+#[cfg(feature = "parquet")]
+pub(crate) fn list(name: &str) -> Meaning {
+    by(&LISTS, name)
+}
+
+fn by(patterns: &[Pattern], name: &str) -> Meaning {
+    let name = name.trim();
+    if is_too_long(name) {
         return Meaning::Nothing;
     }
+    let plain = |name: &str| patterns.iter().find_map(|pattern| pattern.read(name));
     if let (base, Some(text)) = bracketed(name)
         && let Some((mut named, _)) = plain(base)
     {
@@ -74,7 +160,9 @@ pub(crate) fn meaning(name: &str) -> Meaning {
     }
     let name = name.trim_end_matches("[]").trim_end_matches("()").trim_end();
     let mut is_like = false;
-    for (rest, behind) in splits(name) {
+    // the longest end first
+    for (place, separator) in name.match_indices(BEFORE_UNITS) {
+        let (rest, behind) = (&name[..place], &name[place + separator.len()..]);
         let Some((mut named, form)) = plain(rest) else { continue };
         is_like |= form == Form::Number;
         // a joint may be called A or m
@@ -87,82 +175,10 @@ pub(crate) fn meaning(name: &str) -> Meaning {
         }
     }
     match plain(name) {
-        // q_1_raw is no joint called 1_raw
-        Some((_, Form::JointBehind)) | None if is_like => Meaning::Like,
-        Some((named, form)) => Meaning::Joint(within(named, form)),
+        Some((named, _)) => Meaning::Joint(named),
+        None if is_like => Meaning::Like,
         None => Meaning::Nothing,
     }
-}
-
-/// The ways to part a name before its last words, the longest end first.
-fn splits(name: &str) -> impl Iterator<Item = (&str, &str)> {
-    let places = name.match_indices(BEFORE_UNITS);
-    places.map(|(place, separator)| (&name[..place], &name[place + separator.len()..]))
-}
-
-/// How a name says its joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
-    /// q1, qd_2, actual_q_3
-    Number,
-    /// elbow/position
-    JointBefore,
-    /// position.elbow
-    JointBehind,
-}
-
-/// The meaning of a name without a unit at its end.
-fn plain(name: &str) -> Option<(Named, Form)> {
-    let name = name.trim_matches(SEPARATORS);
-    let named = |(quantity, is_current), joint: &str| Named {
-        quantity,
-        is_current,
-        joint: joint.to_owned(),
-        number: joint_number(joint),
-        unit: None,
-    };
-    let (stem, number) = numbered(name);
-    if !number.is_empty() {
-        if let Some(found) = of_word(last(stem)) {
-            return Some((named(found, without_zeros(number)), Form::Number));
-        }
-        // q_deg_1
-        for (rest, behind) in splits(stem) {
-            if let Some(found) = of_word(last(rest))
-                && let Some(unit) = Unit::parse(found.0, behind).filter(|_| behind.chars().count() > 1)
-            {
-                let named = Named { unit: Some(unit), ..named(found, without_zeros(number)) };
-                return Some((named, Form::Number));
-            }
-        }
-    }
-    if let Some((joint, last)) = name.rsplit_once(SEPARATORS)
-        && let Some(found) = of_word(last)
-    {
-        let joint = joint.trim_end_matches(SEPARATORS).rsplit('/').next().unwrap_or_default();
-        return Some((named(found, joint), Form::JointBefore));
-    }
-    let (first, joint) = name.split_once(SEPARATORS)?;
-    Some((named(of_word(first)?, joint), Form::JointBehind))
-}
-
-/// A unit between the word and the joint, as in `position_deg.elbow`. One that changes no number may be part of the
-/// joint's name.
-fn within(mut named: Named, form: Form) -> Named {
-    if form == Form::JointBehind && named.unit.is_none() {
-        let joint = named.joint.clone();
-        let mut ends: Vec<(usize, &str)> = joint.match_indices(['_', ' ', '.', '/']).collect();
-        ends.reverse();
-        for (end, separator) in ends {
-            let unit = Unit::parse(named.quantity, &joint[..end]).filter(|unit| !unit.is_si());
-            if let Some(unit) = unit {
-                named.unit = Some(unit);
-                joint[end + separator.len()..].clone_into(&mut named.joint);
-                break;
-            }
-        }
-    }
-    named
 }
 
 /// The number of a joint whose name is one.
@@ -170,27 +186,14 @@ pub(crate) fn joint_number(joint: &str) -> Option<u32> {
     joint.parse().ok().filter(|_| joint.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// A name, and the number at its end.
-fn numbered(name: &str) -> (&str, &str) {
-    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    (bare.trim_end_matches(SEPARATORS), &name[bare.len()..])
-}
-
 fn last(name: &str) -> &str {
     name.rsplit(SEPARATORS).next().unwrap_or_default()
 }
 
-/// `01` is joint 1.
-fn without_zeros(number: &str) -> &str {
-    let significant = number.trim_start_matches('0');
-    if significant.is_empty() { "0" } else { significant }
-}
-
-/// The quantity of a word, and whether it is a current.
-fn of_word(word: &str) -> Option<(Quantity, bool)> {
-    let word = word.to_lowercase();
-    let (quantity, _) = WORDS.iter().find(|(_, words)| words.contains(&word.as_str()))?;
-    Some((*quantity, CURRENTS.contains(&word.as_str())))
+/// `01` is joint 1; no digits are no joint.
+fn without_zeros(digits: &str) -> Option<&str> {
+    let significant = digits.trim_start_matches('0');
+    if significant.is_empty() { digits.get(..1) } else { Some(significant) }
 }
 
 /// A name and the unit in brackets after it, as in `q1 [rad]`, `time (s)`; the number of a joint is not a unit.
@@ -228,36 +231,10 @@ fn is_time(name: &str) -> bool {
     TIMES.contains(&last) || TIMES.contains(&name.trim_start_matches('/'))
 }
 
-/// Quantity and unit of a list of numbers, by the last word of its name; a text in brackets that is not a unit is an
-/// error.
-#[cfg(feature = "parquet")]
-pub(crate) fn list(name: &str) -> Option<(Quantity, bool, Result<Option<Unit>, String>)> {
-    if is_too_long(name) {
-        return None;
-    }
-    let of = |name: &str| {
-        let last = name.rsplit(['/', '.', '_', ' ']).next().unwrap_or_default();
-        // what collections for learning have
-        let is_state = matches!(name, "observation.state" | "observation/state" | "observation_state");
-        of_word(last).or(is_state.then_some((Quantity::Position, false)))
-    };
-    if let (base, Some(text)) = bracketed(name) {
-        let (quantity, is_current) = of(base)?;
-        let unit = Unit::parse(quantity, text);
-        return Some((quantity, is_current, unit.map(Some).ok_or_else(|| text.to_owned())));
-    }
-    if let Some((quantity, is_current)) = of(name) {
-        return Some((quantity, is_current, Ok(None)));
-    }
-    let mut units = splits(name).filter_map(|(rest, behind)| {
-        let (quantity, is_current) = of(rest)?;
-        Some((quantity, is_current, Ok(Some(Unit::parse(quantity, behind)?))))
-    });
-    units.next()
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
 
     fn joint(name: &str) -> Option<(Quantity, String, Option<f64>)> {
@@ -280,14 +257,12 @@ mod tests {
             ("q[0] (°)", Position, "0", Some(degree)),
             ("q1_deg", Position, "1", Some(degree)),
             ("q1 deg", Position, "1", Some(degree)),
-            ("q_deg_1", Position, "1", Some(degree)),
             ("actual_q_3_rad", Position, "3", Some(1.0)),
             ("q3 [mm]", Position, "3", Some(1e-3)),
             ("q3_m", Position, "3", Some(1.0)),
             ("elbow_position_m", Position, "elbow", Some(1.0)),
             ("elbow/position [deg]", Position, "elbow", Some(degree)),
             ("position.elbow_deg", Position, "elbow", Some(degree)),
-            ("position_deg.elbow", Position, "elbow", Some(degree)),
             ("position.joint_A", Position, "joint_A", None),
             ("position.joint_m", Position, "joint_m", None),
             ("position[elbow]", Position, "elbow", None),
@@ -311,11 +286,46 @@ mod tests {
             ("q1_filtered", Meaning::Like),
             ("tau1_lbft", Meaning::Like),
             ("qdd1", Meaning::Nothing),
+            // no pattern has a unit in the middle, or a joint after an underscore
+            ("q_deg_1", Meaning::Nothing),
+            ("position_deg.elbow", Meaning::Nothing),
+            ("position_elbow", Meaning::Nothing),
+            ("position.", Meaning::Nothing),
             ("temperature [C]", Meaning::Nothing),
             ("actual_TCP_speed_0", Meaning::Nothing),
         ] {
             assert_eq!(meaning(name), wanted, "{name}");
         }
+    }
+
+    /// The tables of the documentation are those of this module.
+    #[test]
+    fn the_documentation_has_these_patterns_and_words() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/logs.md");
+        let text = std::fs::read_to_string(path).unwrap();
+        let mut table = "| pattern | examples | from |\n|---|---|---|\n".to_owned();
+        for Pattern(form, between, after, from) in PATTERNS {
+            let names = |quantity: &str, joint: &str| match form {
+                Form::JointBefore => format!("`{joint}{between}{quantity}{after}`"),
+                _ => format!("`{quantity}{between}{joint}{after}`"),
+            };
+            let [joint, example, words] = match form {
+                Form::Number => ["{number}", "1", "q qd tau"],
+                _ => ["{joint}", "elbow", "position velocity effort"],
+            };
+            let examples: Vec<String> = words.split(' ').map(|word| names(word, example)).collect();
+            for example in &examples {
+                assert!(matches!(meaning(example.trim_matches('`')), Meaning::Joint(_)), "{example}");
+            }
+            let _ = writeln!(table, "| {} | {} | {from} |", names("{quantity}", joint), examples.join(", "));
+        }
+        table += "\n| `{quantity}` | words |\n|---|---|\n";
+        for (quantity, is_current, words) in WORDS {
+            let what = if is_current { "current" } else { quantity.word() };
+            let _ = writeln!(table, "| {what} | `{}` |", words.join("`, `"));
+        }
+        let _ = writeln!(table, "| time | `{}` |", TIMES.join("`, `"));
+        assert!(text.contains(&table), "docs/logs.md has another table than\n{table}");
     }
 
     #[test]

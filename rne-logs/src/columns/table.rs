@@ -193,14 +193,7 @@ impl<'a> Header<'a> {
             match inner.map_or(Meaning::Nothing, meaning) {
                 Meaning::Joint(named) if targets.contains(&Target::of(&named)) => header.unread.push(place),
                 Meaning::Joint(named) => header.found.push(Found { named, place }),
-                Meaning::Unknown { quantity, unit } => {
-                    let what = format!(
-                        "the column {name} has {} in {unit}, which is not a known unit; the known units are {}",
-                        quantity.plural(),
-                        Unit::known(quantity)
-                    );
-                    return Err(LogError::file(path, what));
-                }
+                Meaning::Unknown { quantity, unit } => return Err(Unit::unknown(path, name, quantity, &unit)),
                 Meaning::Like => header.unread.push(place),
                 Meaning::Nothing => {}
             }

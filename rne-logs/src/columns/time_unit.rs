@@ -60,9 +60,9 @@ impl TimeUnit {
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => {
                 let name = self.name();
-                format!("{text} {name} are later than the year 2262")
+                format!("the time {text} {name} is later than the year 2262")
             }
-            _ => format!("{text:?} is no time"),
+            _ => format!("{text:?} is not a time"),
         }
     }
 

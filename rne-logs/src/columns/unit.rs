@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
+use std::path::Path;
 
-use crate::TimeUnit;
 use crate::columns::quantity::Quantity;
+use crate::{LogError, TimeUnit};
 
 /// Dimension of a joint's quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,6 +137,15 @@ impl Unit {
     /// Whether numbers are as they are in SI units.
     pub(crate) fn is_si(self) -> bool {
         self.factor == 1.0
+    }
+
+    /// The error for a column whose name says a unit that is not known.
+    pub(crate) fn unknown(path: &Path, name: &str, quantity: Quantity, unit: &str) -> LogError {
+        let (quantities, known) = (quantity.plural(), Self::known(quantity));
+        let what = format!(
+            "the column {name} has {quantities} in {unit}, which is not a known unit; the known units are {known}"
+        );
+        LogError::file(path, what)
     }
 
     /// The units of a quantity that are known, for people.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::columns::name::list;
+use crate::columns::name::{Meaning, Named, list};
 use crate::columns::quantity::Quantity;
 use crate::columns::time_column::within;
 use crate::columns::unit::{Dimension, JointUnits, Unit};
@@ -34,15 +34,11 @@ impl ListColumns {
         // by quantity: the name and the unit
         let mut found: Vec<(Quantity, &str, Option<Unit>)> = Vec::new();
         for (place, name) in columns {
-            let Some((quantity, is_current, unit)) = list(name) else { continue };
-            let unit = unit.map_err(|text| {
-                let (quantities, known) = (quantity.plural(), Unit::known(quantity));
-                let what = format!(
-                    "the column {name} has {quantities} in {text}, which is not a known unit; the known units are \
-                     {known}"
-                );
-                LogError::file(path, what)
-            })?;
+            let Named { quantity, is_current, unit, .. } = match list(name) {
+                Meaning::Joint(named) => named,
+                Meaning::Unknown { quantity, unit } => return Err(Unit::unknown(path, name, quantity, &unit)),
+                Meaning::Like | Meaning::Nothing => continue,
+            };
             if let Some((_, first, _)) = found.iter().find(|(other, ..)| *other == quantity) {
                 let what = format!(
                     "the columns {first} and {name} are both {}; remove one, or choose a group",
@@ -168,7 +164,7 @@ mod tests {
         for (names, wanted) in [
             (["actual.q", "target.q"], "actual.q and target.q are both positions"),
             (["position_deg", "velocity"], "position_deg gives a unit, but the name velocity does not"),
-            (["position [gon]", "velocity"], "positions in gon, which is no unit"),
+            (["position [gon]", "velocity"], "positions in gon, which is not a known unit"),
         ] {
             let error = lists(&names).unwrap_err().to_string();
             assert!(error.contains(wanted), "{error}");

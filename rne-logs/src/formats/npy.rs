@@ -204,7 +204,7 @@ impl Header {
             }
         }
         if text.next().is_some() {
-            return Err(format!("its header goes on with {}", shown(text.left)));
+            return Err(format!("its header continues after its end with {}", shown(text.left)));
         }
         let missing = |key: &str| format!("its header has no {key}");
         Ok(Self {
@@ -248,10 +248,10 @@ impl<'a> Text<'a> {
         let quote = if self.next() == Some(b'"') { b'"' } else { b'\'' };
         self.expect(quote)?;
         let Some(end) = self.left.iter().position(|byte| *byte == quote || *byte == b'\\') else {
-            return Err("a text of its header does not end".to_owned());
+            return Err("a text in its header has no closing quote".to_owned());
         };
         if self.left[end] == b'\\' {
-            return Err("a text of its header has a backslash".to_owned());
+            return Err("a text in its header has a backslash".to_owned());
         }
         let text = &self.left[..end];
         self.left = &self.left[end + 1..];
@@ -277,7 +277,7 @@ impl<'a> Text<'a> {
 
     /// A tuple of decimal numbers. Their product, in which a zero counts as 1, is a number of numbers.
     fn shape(&mut self) -> Result<Vec<u64>, String> {
-        let wrong = || "its shape is too large, or is not a shape".to_owned();
+        let wrong = || "its shape is too large, or is not a tuple of whole numbers".to_owned();
         self.expect(b'(')?;
         let (mut shape, mut product) = (Vec::new(), 1_u64);
         while !self.skip(b')') {
@@ -341,25 +341,25 @@ mod tests {
     fn other_headers_are_refused() {
         let with = |shape: &str| format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}");
         for (text, wanted) in [
-            (with("(-1, 7)"), "too large, or is not a shape"),
-            (with("(4e2, 7)"), "too large, or is not a shape"),
-            (with("(0x190, 7)"), "too large, or is not a shape"),
-            (with("(400L, 7L)"), "too large, or is not a shape"),
-            (with("(4294967296, 4294967296)"), "too large, or is not a shape"),
-            (with("(0, 4611686018427387904)"), "too large, or is not a shape"),
-            (with("(99999999999999999999, 1)"), "too large, or is not a shape"),
-            (with("(5)"), "too large, or is not a shape"),
-            (with("((5, 6), 7)"), "too large, or is not a shape"),
+            (with("(-1, 7)"), "too large, or is not a tuple of whole numbers"),
+            (with("(4e2, 7)"), "too large, or is not a tuple of whole numbers"),
+            (with("(0x190, 7)"), "too large, or is not a tuple of whole numbers"),
+            (with("(400L, 7L)"), "too large, or is not a tuple of whole numbers"),
+            (with("(4294967296, 4294967296)"), "too large, or is not a tuple of whole numbers"),
+            (with("(0, 4611686018427387904)"), "too large, or is not a tuple of whole numbers"),
+            (with("(99999999999999999999, 1)"), "too large, or is not a tuple of whole numbers"),
+            (with("(5)"), "too large, or is not a tuple of whole numbers"),
+            (with("((5, 6), 7)"), "too large, or is not a tuple of whole numbers"),
             (with("(5, 6"), "must have ')' here"),
             (with("(5, 6), 'shape': (1, 1)"), "has `shape` twice"),
             (with("(5, 6), 'other': 1"), "has a key `other`"),
-            (with("(5, 6)}, {"), "goes on with"),
+            (with("(5, 6)}, {"), "continues after its end with"),
             (with("[5, 6]"), "must have '(' here"),
             (String::new(), "must have '{' here, but"),
             ("{}".to_owned(), "no descr"),
             ("{'descr': '<f8', 'fortran_order': False}".to_owned(), "no shape"),
             ("{'descr': '<f8', 'fortran_order': 0, 'shape': ()}".to_owned(), "neither True nor False"),
-            ("{'descr': '<f8".to_owned(), "does not end"),
+            ("{'descr': '<f8".to_owned(), "has no closing quote"),
             ("{'descr': '\\x3cf8'".to_owned(), "a backslash"),
             ("__import__('os')".to_owned(), "must have '{' here"),
         ] {

@@ -279,7 +279,11 @@ impl Pages {
         let (levels, count) = match page {
             Page::DataPage { buf, num_values, rep_level_encoding, .. } => {
                 if *rep_level_encoding != Encoding::RLE {
-                    let what = format!("the lists of {} are written in an old way that rne does not read", self.name);
+                    let what = format!(
+                        "the lists of {} are written in an old encoding that rne does not read: read it with \
+                         pandas.read_parquet and write it again with to_parquet",
+                        self.name
+                    );
                     return Err(Refused::error(what));
                 }
                 let length = buf.first_chunk().map_or(0, |length| u32::from_le_bytes(*length)) as usize;
@@ -290,8 +294,9 @@ impl Pages {
             }
             Page::DictionaryPage { .. } => return Ok(()),
         };
-        let levels =
-            levels.ok_or_else(|| ParquetError::General("the data of a page does not match its header".to_owned()))?;
+        let levels = levels.ok_or_else(|| {
+            ParquetError::General("a part of the file (a page) contains less data than its header states".to_owned())
+        })?;
         let longest = longest_list(levels, count as usize, &mut self.length);
         if longest > MOST_JOINTS {
             let what =

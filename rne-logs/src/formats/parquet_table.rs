@@ -397,7 +397,7 @@ fn footer(mut file: &File) -> Option<u32> {
 
 /// Error for an assertion that failed in the library.
 fn corrupt() -> ParquetError {
-    ParquetError::General("the data of a page does not match its header".to_owned())
+    ParquetError::General("a part of the file (a page) contains other data than its header states".to_owned())
 }
 
 /// Message of the library as a sentence.

@@ -103,7 +103,7 @@ impl fmt::Display for Interruption {
             Self::Beginning => f.write_str("begins the log"),
             Self::Gap { seconds } => write!(f, "after a gap of {seconds:.3} s"),
             Self::Reset { seconds } => write!(f, "time went back by {seconds:.3} s"),
-            Self::Duplicate => f.write_str("two states have one time"),
+            Self::Duplicate => f.write_str("two states have the same time"),
             Self::Jump { joint, by } => write!(f, "joint {} jumped by {by:.3}", joint + 1),
         }
     }

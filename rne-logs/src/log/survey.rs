@@ -175,8 +175,9 @@ impl Survey {
             });
             if rows > FEW_ROWS && rows / MOST_FILLED > count {
                 let what = format!(
-                    "more than {MOST_FILLED} states would be interpolated for each of the first {count} states, up to \
-                     {} s of the log: with a lower limit of gaps, rne leaves long intervals out",
+                    "the first {count} states of the log, up to {} s, have such long intervals that rne would \
+                     interpolate more than {MOST_FILLED} states for each of them: choose a lower limit of gaps, so \
+                     that rne does not fill long intervals",
                     short(log.seconds(state.time))
                 );
                 return Err(log.request(what).remedy(Remedy::Give(Setting::Gap)));

@@ -94,14 +94,15 @@ fn lists_of_parquet_are_as_long_as_joints_are_many() {
     let bytes = lists(&[5_000_000, 2, 2], None, plain());
     assert!(bytes.len() < 20_000, "{}", bytes.len());
     let (_folder, path) = file("log.parquet", bytes);
-    assert!(refused(path, Options::default()).contains("at most 1024 are read"));
+    assert!(refused(path, Options::default()).contains("rne reads at most 1024"));
 }
 
 /// A file whose end claims more than it has is cut off, and one that claims too much is not tried.
 #[test]
 fn the_end_of_parquet_has_a_limit() {
     let bytes = lists(&[2; 80], None, plain());
-    for (length, wanted) in [(20_000_000_u32, "has 20000000 bytes; at most 16777216 are read"), (10_000_000, "cut off")]
+    for (length, wanted) in
+        [(20_000_000_u32, "has 20000000 bytes; rne reads at most 16777216"), (10_000_000, "cut off")]
     {
         let mut bytes = bytes.clone();
         let place = bytes.len() - 8;

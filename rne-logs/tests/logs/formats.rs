@@ -287,7 +287,10 @@ fn names_of_lists_and_bags_are_the_joints() {
         let plain = only(path.clone(), options());
         assert_eq!((&turned.q[0], &turned.tau[1]), (&plain.q[1], &plain.tau[0]));
         let error = runs(&[path], joints(&["wrist", "elbo"]), 1000).unwrap_err();
-        assert!(error.to_string().contains("no joint elbo (did you mean elbow?); it has elbow, wrist"), "{error}");
+        assert!(
+            error.to_string().contains("no joint elbo (did you mean elbow?); its joints are elbow, wrist"),
+            "{error}"
+        );
     }
 }
 

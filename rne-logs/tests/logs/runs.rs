@@ -263,7 +263,7 @@ fn what_is_filled_in_is_bounded() {
     let with = |gap| Options { gap, ..Options::default() };
     let error = survey(std::slice::from_ref(&path), with(1000.0)).err().unwrap();
     assert!(error.is_of_request(), "{error}");
-    assert!(error.to_string().contains("more than 20 states would be interpolated for each of the first"), "{error}");
+    assert!(error.to_string().contains("interpolate more than 20 states for each of them"), "{error}");
     survey(&[path], with(100.0)).unwrap();
 }
 

@@ -120,7 +120,7 @@ fn what_may_be_of_either_arm_is_refused() {
                 Column::Numbers("centre.stamp", centre.clone()),
                 Column::Lists("right.position", positions()),
             ],
-            "the columns left.stamp and centre.stamp are both times, and neither begins with right",
+            "the columns left.stamp and centre.stamp both contain times, and neither begins with right",
         ),
         (
             [
@@ -128,7 +128,7 @@ fn what_may_be_of_either_arm_is_refused() {
                 Column::Numbers("centre.stamp", centre),
                 Column::Numbers("right_q1", times(0.01)),
             ],
-            "the columns left.stamp and centre.stamp are both times, and neither begins with right",
+            "the columns left.stamp and centre.stamp both contain times, and neither begins with right",
         ),
     ] {
         let error = refused(&columns, of("right"));

@@ -109,7 +109,12 @@ class Arm:
         """Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip."""
     def forward_kinematics(
         self, q: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The tip in the world, base and tool included."""
+    def pose(
+        self, q: ArrayLike, *,
+        frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The tip in the world, base and tool included."""
     def link_poses(
@@ -119,12 +124,12 @@ class Arm:
         """The frame of every row of the table in the world."""
     def jacobian(
         self, q: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones."""
     def jacobian_rate_times_velocity(
         self, q: ArrayLike, qd: ArrayLike, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular."""
     def kinetic_energy(
@@ -214,6 +219,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """The momentum of the joints with a payload at the tip, and its rate without external torques."""
+    def wrench_torques(
+        self, q: ArrayLike, wrench: ArrayLike, *,
+        frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes."""
     # <!-- end -->
     def inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...

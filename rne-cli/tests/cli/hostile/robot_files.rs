@@ -114,7 +114,7 @@ fn texts() -> Vec<(&'static str, String, &'static str)> {
     let long = "x".repeat(100_000);
     vec![
         // what stands in the wrong place
-        ("a URDF", "<?xml version=\"1.0\"?><robot name=\"r\"/>".into(), "URDF"),
+        ("a URDF without links", "<?xml version=\"1.0\"?><robot name=\"r\"/>".into(), "the robot has no link"),
         ("JSON", "{\"joints\": [1, 2]}".into(), "is missing"),
         ("TOML", "format = 1\nname = \"arm\"\n".into(), "mapping"),
         ("C", "#include <stdio.h>\nint main(void) { return 0; }\n".into(), "x.yaml:"),

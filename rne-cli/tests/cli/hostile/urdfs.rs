@@ -124,7 +124,7 @@ fn texts() -> Vec<(&'static str, String, &'static str)> {
         // what is connected to what
         ("two roots", with("<link name=\"a\"/>", "<link name=\"a\"/><link name=\"c\"/>"), "x.urdf:3"),
         ("a circle", with("parent link=\"a\"", "parent link=\"b\""), "x.urdf:"),
-        ("a link that is nowhere", with("child link=\"b\"", "child link=\"../b\""), "names the link"),
+        ("a link that is nowhere", with("child link=\"b\"", "child link=\"../b\""), "refers to the link"),
         ("a link twice", with("name=\"a\"", "name=\"b\""), "x.urdf:4"),
         ("no type", with(" type=\"revolute\"", ""), "lacks the attribute `type`"),
         ("a type with an escape", with("revolute", "rev\u{202E}olute\u{9B}2J"), "it must be revolute"),

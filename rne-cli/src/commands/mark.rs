@@ -1,0 +1,127 @@
+//! `rne mark`: the worksheets of a class, marked.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_codegen::Step;
+use rne_diagnose::worksheet::{self, Worksheet};
+use rne_model::Robot;
+
+use crate::commands::eval::DIGITS_BY_HAND;
+use crate::commands::worksheet::numbers_of;
+use crate::files::class_states::{Chosen, ClassStates};
+use crate::files::input_file::is_standard_input;
+use crate::files::robot_file;
+use crate::files::worksheet_file::{self, Filled};
+use crate::outcome::{Failure, Outcome};
+use crate::render::marks::{self, Mark, Marked};
+use crate::render::worksheet::Axes;
+use crate::values::choice;
+
+/// Mark the worksheets of a class: points and first errors
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne mark planar1 --states docs/lecture/class/key.csv docs/lecture/class/*.csv
+  rne mark planar2 --seed 7 sheets/*.csv --csv > marks.csv
+  rne mark planar2 --seed 7 sheets/ada.csv --hint
+
+A point is a right value of a worksheet, as `rne eval --trace --csv` and
+`rne worksheet` write it. The name of a student is in the first line of the
+worksheet, else it is the name of the file. KEY itself is not marked.
+
+Exit status: 1 if a file cannot be read; the other files are marked.")]
+pub(crate) struct Arguments {
+    /// Robot file, or a name from `rne list`
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Worksheets that the students filled in: CSV or JSON
+    #[arg(value_name = "WORKSHEET", required = true)]
+    worksheets: Vec<PathBuf>,
+    #[command(flatten)]
+    states: Chosen,
+    /// Points only for these steps, such as 1,2,7: 1 angular velocity, …, 7 torque
+    #[arg(long = "step", value_name = "S", value_parser = choice::step, value_delimiter = ',')]
+    steps: Vec<Step>,
+    /// Axes of worksheets that do not name their axes: link (default), joint, or base (frame 0)
+    #[arg(long, value_enum, hide_possible_values = true)]
+    axes: Option<Axes>,
+    /// Significant digits that count
+    #[arg(long, value_name = "N", default_value_t = DIGITS_BY_HAND,
+        value_parser = clap::value_parser!(u8).range(1..=15))]
+    digits: u8,
+    /// Do not print the right values
+    #[arg(long)]
+    hint: bool,
+    /// Print JSON, {"of": POINTS, "marks": […]}
+    #[arg(long, conflicts_with = "csv")]
+    json: bool,
+    /// Print a CSV table
+    #[arg(long)]
+    csv: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = robot_file::robot(&arguments.file)?;
+    let states = arguments.states.read(&robot)?;
+    let is_key = |path: &&PathBuf| arguments.states.states.as_deref().is_some_and(|key| key == path.as_path());
+    let paths: Vec<&PathBuf> = arguments.worksheets.iter().filter(|path| !is_key(path)).collect();
+    if paths.is_empty() {
+        return Err(Failure::usage("the only worksheet is KEY itself; name the files of the students"));
+    }
+    let steps = numbers_of(&arguments.steps);
+    let mut marked = Vec::new();
+    let mut remark = String::new();
+    for path in paths {
+        match mark(path, &robot, &states, &steps, arguments) {
+            Ok(one) => marked.push(one),
+            Err(failure) => {
+                let _ = writeln!(remark, "{}", failure.text.trim_end());
+                marked.push(Marked { student: stem(path), file: path.display().to_string(), mark: Err(failure) });
+            }
+        }
+    }
+    let mut files: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for one in marked.iter().filter(|one| one.mark.is_ok()) {
+        files.entry(&one.student).or_default().push(&one.file);
+    }
+    for (student, files) in files.iter().filter(|(_, files)| files.len() > 1) {
+        let _ =
+            writeln!(remark, "note: {} has several files: {}", marks::shown(student), marks::shown(&files.join(", ")));
+    }
+    let at_fault = marked.iter().any(|one| one.mark.is_err());
+    let text = if arguments.json {
+        Outcome::json(&marks::json(&marked, arguments.hint))?.text
+    } else if arguments.csv {
+        marks::csv(&marked, arguments.hint)?
+    } else {
+        marks::table(&marked, arguments.hint)
+    };
+    Ok(Outcome { text, remark, remark_last: true, at_fault })
+}
+
+/// The name of a student of whom nothing is known but the file.
+fn stem(path: &Path) -> String {
+    if is_standard_input(path) {
+        return "-".to_owned();
+    }
+    path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}
+
+fn mark(
+    path: &Path,
+    robot: &Robot,
+    states: &ClassStates,
+    steps: &[u8],
+    arguments: &Arguments,
+) -> Result<Marked, Failure> {
+    let Filled { values, axes, student } = worksheet_file::read(path, robot, arguments.axes.map(Into::into))?;
+    let student = student.unwrap_or_else(|| stem(path));
+    let at = states.of(&student, robot)?;
+    let sheet = Worksheet::new(robot, &at, axes.unwrap_or(worksheet::Axes::Link)).map_err(Failure::usage)?;
+    let comparison = sheet.compare(robot, &at, &values, arguments.digits).map_err(Failure::usage)?;
+    let mark = Mark::new(&sheet, comparison, steps);
+    Ok(Marked { student, file: path.display().to_string(), mark: Ok(mark) })
+}

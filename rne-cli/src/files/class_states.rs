@@ -1,0 +1,242 @@
+//! The states for which a class fills in worksheets: a file of states, or numbers of each student's own.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_diagnose::worksheet::Situation;
+use rne_model::{JointKind, Robot, did_you_mean};
+
+use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of, with_point};
+use crate::files::input_file;
+use crate::outcome::Failure;
+use crate::values::random::Random;
+
+/// The choice of the states.
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+pub(crate) struct Chosen {
+    /// CSV file with the columns q1, …, qd1, …, qdd1, …: one state for everybody, or a row for each student in the
+    /// column name
+    #[arg(long, value_name = "KEY")]
+    pub(crate) states: Option<PathBuf>,
+    /// A state for each student, computed from this number and the student's name
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+}
+
+impl Chosen {
+    pub(crate) fn read(&self, robot: &Robot) -> Result<ClassStates, Failure> {
+        match (&self.states, self.seed) {
+            (Some(path), _) => read(path, robot),
+            (None, seed) => Ok(ClassStates::Seed(seed.unwrap_or_default())),
+        }
+    }
+}
+
+/// Who has which state.
+#[derive(Debug)]
+pub(crate) enum ClassStates {
+    Everybody(Box<Situation>),
+    /// By the students' names; with the name of the file.
+    Each(BTreeMap<String, Situation>, String),
+    Seed(u64),
+}
+
+impl ClassStates {
+    /// The state of a student.
+    pub(crate) fn of(&self, student: &str, robot: &Robot) -> Result<Situation, Failure> {
+        match self {
+            Self::Everybody(state) => Ok(Situation::clone(state)),
+            Self::Seed(seed) => Ok(by_seed(robot, *seed, student)),
+            Self::Each(states, file) => states.get(student).cloned().ok_or_else(|| {
+                let near = did_you_mean(student, states.keys().map(String::as_str));
+                let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+                Failure::input(format_args!("{file} has no row for the student {}{near}", quoted(student)))
+            }),
+        }
+    }
+
+    /// The students that the file of states names.
+    pub(crate) fn students(&self) -> Vec<String> {
+        match self {
+            Self::Each(states, _) => states.keys().cloned().collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// A free arm on a base at rest.
+fn at(q: Vec<f64>, qd: Vec<f64>, qdd: Vec<f64>) -> Situation {
+    Situation { q, qd, qdd, base: None, wrench: None, payload: None }
+}
+
+/// A state for a name: positions in steps of 0.05 rad or m within the limits of the file, rates and accelerations in
+/// steps of 0.1. No rate is zero, so that every term counts.
+fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
+    // FNV-1a, of the seed and the name
+    let bytes = seed.to_le_bytes().into_iter().chain(student.bytes());
+    let hash =
+        bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    let random = Random::seeded(hash);
+    // from -1 to 1
+    let number = || random.number(1.0);
+    let step = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
+    let rate = |most: f64| {
+        let value = number();
+        step(value.signum() * (0.2 + (most - 0.2) * value.abs()), 10.0)
+    };
+    let q = robot.joints.iter().map(|joint| {
+        let (low, high) = if joint.row.kind == JointKind::Revolute { (-1.5_f64, 1.5_f64) } else { (0.1, 0.5) };
+        let (low, high) = match joint.limits.position {
+            Some((lower, upper)) if lower.max(low) < upper.min(high) => (lower.max(low), upper.min(high)),
+            Some(limits) => limits,
+            None => (low, high),
+        };
+        let value = low + (high - low) * (number() + 1.0) / 2.0;
+        // a sine that is nearly 0 hides the term that it belongs to
+        let value = if value.abs() < 0.2 { 0.2_f64.copysign(value) } else { value };
+        Some(step(value, 20.0)).filter(|value| (low..=high).contains(value)).unwrap_or(value.clamp(low, high))
+    });
+    let q = q.collect();
+    let [qd, qdd] = [2.0, 3.0].map(|most| robot.joints.iter().map(|_| rate(most)).collect());
+    at(q, qd, qdd)
+}
+
+/// More than a file of states for a class has, in bytes.
+const LONGEST: usize = 4 << 20;
+
+/// The content of a column of the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Column {
+    Name,
+    /// A list (q, qd, qdd) and a joint, both from 0.
+    Number(usize, usize),
+}
+
+const LISTS: [&str; 3] = ["q", "qd", "qdd"];
+
+fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
+    let name = input_file::name(path);
+    let bytes = input_file::read(path, LONGEST)
+        .map_err(|error| Failure::input(format_args!("the states {name} cannot be read: {error}")))?;
+    if bytes.len() > LONGEST {
+        return Err(Failure::input(format_args!("{name} has more than {LONGEST} bytes: are these states of a class?")));
+    }
+    let text = text_of(&name, &bytes)?;
+    let mut mistakes = Mistakes::new(&name, text);
+    let mut rows = Vec::new();
+    for line in csv_table::lines(text) {
+        match line {
+            csv_table::Line::Row(row) => rows.push(row),
+            csv_table::Line::OpenQuote(span) => mistakes.push(span, OPEN_QUOTE, None),
+            csv_table::Line::Comment(..) => {}
+        }
+    }
+    let dof = robot.dof();
+    let help = format!(
+        "the columns are q1 to q{dof}, qd1 to qd{dof} and qdd1 to qdd{dof}, and name if each student has a row; \
+         without qd or qdd these numbers are 0"
+    );
+    let Some((header, rows)) = rows.split_first() else {
+        mistakes.push(0..0, "the file is empty: there is no header", Some(&help));
+        return mistakes.finish(ClassStates::Seed(0));
+    };
+    let columns = columns(header, dof, &help, &mut mistakes);
+    if rows.is_empty() && !mistakes.are_there() {
+        mistakes.push(header.span.clone(), "there is no state below the header", Some(&help));
+    }
+    let has_names = columns.contains(&Some(Column::Name));
+    if let (false, [_, second, ..]) = (has_names, rows) {
+        let help = "add a column `name` with the name of each student, or keep one row for everybody";
+        mistakes.push(second.span.clone(), "there are several states, but no column `name`", Some(help));
+    }
+    let mut states = BTreeMap::new();
+    for row in rows.iter().filter(|_| !columns.is_empty()) {
+        let mut lists = [(); 3].map(|()| vec![0.0; dof]);
+        let mut student = String::new();
+        if row.cells.len() != header.cells.len() {
+            let message = format!("{} cells, but {} columns in the header", row.cells.len(), header.cells.len());
+            mistakes.push(row.span.clone(), message, Some("a decimal comma needs semicolons between the columns"));
+            continue;
+        }
+        for (column, cell) in columns.iter().zip(&row.cells) {
+            match column {
+                Some(Column::Name) => student = cell.text.to_string(),
+                Some(Column::Number(list, joint)) => lists[*list][*joint] = number(cell, &mut mistakes),
+                None => {}
+            }
+        }
+        if has_names && student.is_empty() {
+            mistakes.push(row.span.clone(), "the name of the student is missing", None);
+        }
+        let [q, qd, qdd] = lists;
+        if states.insert(student.clone(), at(q, qd, qdd)).is_some() && has_names {
+            mistakes.push(row.span.clone(), format!("the student {} occurs twice", quoted(&student)), None);
+        }
+    }
+    let of_everybody = states.get("").cloned().filter(|_| !has_names).map(Box::new);
+    mistakes.finish(of_everybody.map_or_else(|| ClassStates::Each(states, name.clone()), ClassStates::Everybody))
+}
+
+/// The columns of a header; none if it has mistakes.
+fn columns(header: &csv_table::Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>) -> Vec<Option<Column>> {
+    let names = |list: usize| (1..=dof).map(move |joint| format!("{}{joint}", LISTS[list]));
+    let all: Vec<(String, Column)> = std::iter::once(("name".to_owned(), Column::Name))
+        .chain((0..3).flat_map(|list| names(list).enumerate().map(move |(at, name)| (name, Column::Number(list, at)))))
+        .collect();
+    let mut columns = Vec::new();
+    for cell in &header.cells {
+        let column = all.iter().find(|(name, _)| name.eq_ignore_ascii_case(&cell.text)).map(|(_, column)| *column);
+        if column.is_some() && columns.contains(&column) {
+            mistakes.push(cell.span.clone(), format!("the column {} occurs twice", quoted(&cell.text)), None);
+        }
+        columns.push(column);
+    }
+    for (list, symbol) in LISTS.into_iter().enumerate() {
+        let missing: Vec<&str> = all
+            .iter()
+            .filter(|(_, column)| matches!(column, Column::Number(of, _) if *of == list))
+            .filter(|(_, column)| !columns.contains(&Some(*column)))
+            .map(|(name, _)| name.as_str())
+            .collect();
+        // rates and accelerations are there for all joints or for none
+        if let (Some(first), true) = (missing.first(), symbol == "q" || missing.len() < dof) {
+            let help = csv_table::other_separator(header).unwrap_or(help);
+            mistakes.push(header.span.clone(), format!("there is no column `{first}`"), Some(help));
+        }
+    }
+    if mistakes.are_there() { Vec::new() } else { columns }
+}
+
+fn number(cell: &Cell<'_>, mistakes: &mut Mistakes<'_>) -> f64 {
+    rne_model::number(&with_point(&cell.text)).unwrap_or_else(|mistake| {
+        let help = mistake.help.as_deref().unwrap_or("write a number, such as -0.25 or pi/2");
+        let message = format!("{} is not a number: {}", quoted(&cell.text), mistake.message);
+        mistakes.push(cell.span.clone(), message, Some(help));
+        f64::NAN
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_of_a_seed() {
+        let robot = rne_robots::find("stanford").map(|shipped| Robot::from_yaml(shipped.yaml));
+        let robot = robot.expect("a shipped robot").unwrap_or_else(|report| panic!("{report}"));
+        let ada = by_seed(&robot, 7, "ada");
+        assert_eq!(ada, by_seed(&robot, 7, "ada"));
+        assert!(ada != by_seed(&robot, 8, "ada") && ada != by_seed(&robot, 7, "bob"));
+        for student in 0..200 {
+            let state = by_seed(&robot, 7, &student.to_string());
+            for (joint, q) in robot.joints.iter().zip(&state.q) {
+                assert!(joint.limits.position.is_none_or(|(low, high)| (low..=high).contains(q)), "{q}");
+            }
+            for rate in state.qd.iter().chain(&state.qdd) {
+                assert!((0.2..=3.0).contains(&rate.abs()) && (rate * 10.0).fract() == 0.0, "{rate}");
+            }
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! `rne worksheet` and `rne mark`: worksheets of a class, filled in by closed forms, and marked.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::call::{Called, fails, fine, folder, rne};
+
+/// Mass, length and gravity of `planar1`.
+const M: f64 = 2.0;
+const A: f64 = 0.5;
+const G: f64 = 9.81;
+
+/// The numbers of a pendulum's worksheet that somebody computes.
+struct Pendulum {
+    omega: f64,
+    omega_dot: f64,
+    acceleration: [f64; 2],
+    tau: f64,
+}
+
+impl Pendulum {
+    /// A slender bar about its end: c̈ = (-a/2 θ̇², a/2 θ̈), τ = m a²/3 θ̈ + m g a/2 cos θ.
+    fn at([q, qd, qdd]: [f64; 3]) -> Self {
+        let tau = M * A * A / 3.0 * qdd + M * G * A / 2.0 * q.cos();
+        Self { omega: qd, omega_dot: qdd, acceleration: [-A / 2.0 * qd * qd, A / 2.0 * qdd], tau }
+    }
+}
+
+/// A mistake of a student, and what the mark says of it.
+type Mistake = (fn(&mut Pendulum, [f64; 3]), u64, Option<(&'static str, u64)>, &'static str);
+
+/// Mistakes that students make; points of 10, the first wrong quantity with its step, and the likely cause.
+const MISTAKES: [Mistake; 8] = [
+    (|_, _| {}, 10, None, ""),
+    (|all, _| all.acceleration[0] = 0.0, 9, Some(("acceleration", 4)), "the term ω1 × (ω1 × d1) is left out"),
+    (|all, _| all.acceleration[0] *= -1.0, 9, Some(("acceleration", 4)), "the term ω1 × (ω1 × d1) has the other sign"),
+    (|all, _| all.omega *= 180.0 / std::f64::consts::PI, 9, Some(("omega", 1)), "in degrees"),
+    (|all, _| all.omega_dot *= -1.0, 9, Some(("omega_dot", 2)), "sign"),
+    (|all, [q, ..]| all.tau -= M * G * A * q.cos(), 9, Some(("tau", 7)), "gravity points the other way"),
+    (|all, [.., qdd]| all.tau -= M * A * A / 4.0 * qdd, 9, Some(("tau", 7)), ""),
+    (|all, _| all.acceleration.swap(0, 1), 8, Some(("acceleration", 4)), "two components are exchanged: y, x, z"),
+];
+
+/// Fills in the rows of a blank worksheet; every other one with commas and semicolons as a German spreadsheet.
+fn filled(blank: &str, mistake: fn(&mut Pendulum, [f64; 3])) -> String {
+    let separator = if blank.lines().nth(1).expect("a header").contains(';') { ';' } else { ',' };
+    let cells = |line: &str| line.split(separator).map(str::to_owned).collect::<Vec<_>>();
+    let given = |quantity: &str| {
+        let row = blank.lines().map(cells).find(|row| row.len() == 7 && row[2] == quantity).expect("a row");
+        row[4].replace(',', ".").parse::<f64>().expect("a number")
+    };
+    let state = ["q", "qd", "qdd"].map(given);
+    assert!(state.iter().all(|number| *number != 0.0), "{state:?}");
+    let mut all = Pendulum::at(state);
+    mistake(&mut all, state);
+    let mut text = String::new();
+    for line in blank.lines() {
+        let mut row = cells(line);
+        if row.len() == 7 && row[4].is_empty() {
+            let value = match (row[2].as_str(), row[3].as_str()) {
+                ("omega", "z") => all.omega,
+                ("omega_dot", "z") => all.omega_dot,
+                ("acceleration", "x") => all.acceleration[0],
+                ("acceleration", "y") => all.acceleration[1],
+                ("tau", _) => all.tau,
+                _ => 0.0,
+            };
+            let value = format!("{value:.5}");
+            row[4] = if separator == ';' { value.replace('.', ",") } else { value };
+        }
+        text += &row.join(separator.encode_utf8(&mut [0; 4]));
+        text.push('\n');
+    }
+    text
+}
+
+fn path(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
+/// A class of forty with numbers of their own, in two folders of worksheets: those with a decimal comma and those
+/// without.
+fn class(name: &str) -> Vec<PathBuf> {
+    let folder = folder(name);
+    let students: Vec<String> = (1..=40).map(|number| format!("student {number:02}")).collect();
+    let mut files = Vec::new();
+    for (half, comma) in [(&students[..20], &[][..]), (&students[20..], &["--decimal-comma"])] {
+        let sheets = folder.join(if comma.is_empty() { "point" } else { "comma" });
+        let mut words = vec!["worksheet", "planar1", "--seed", "11", "--step", "1,2,4,7", "-o", path(&sheets)];
+        words.extend(comma);
+        words.extend(half.iter().map(String::as_str));
+        let called = rne(&words);
+        assert_eq!((called.status, called.out.as_str()), (0, ""), "{called:?}");
+        files.extend(half.iter().map(|student| sheets.join(format!("{student}.csv"))));
+    }
+    files
+}
+
+fn marked(files: &[PathBuf], more: &[&str]) -> Called {
+    let mut words = vec!["mark", "planar1", "--seed", "11", "--step", "1,2,4,7"];
+    words.extend(files.iter().map(|file| path(file)));
+    words.extend(more);
+    rne(&words)
+}
+
+#[test]
+fn forty_worksheets_are_marked_by_one_command() {
+    let files = class("mark_forty");
+    let mut states = std::collections::BTreeSet::new();
+    for (index, file) in files.iter().enumerate() {
+        let blank = fs::read_to_string(file).expect("a worksheet");
+        states.insert(blank.lines().filter(|line| line.contains("qd")).collect::<String>());
+        fs::write(file, filled(&blank, MISTAKES[index % MISTAKES.len()].0)).expect("a file");
+    }
+    assert!(states.len() > 30, "each has numbers of their own: {}", states.len());
+    let called = marked(&files, &["--json"]);
+    assert_eq!((called.status, called.err.as_str()), (0, ""), "{called:?}");
+    let reply: Value = serde_json::from_str(&called.out).expect("JSON");
+    let marks = reply["marks"].as_array().expect("marks");
+    assert_eq!((marks.len(), &reply["of"]), (40, &10.into()));
+    for (index, mark) in marks.iter().enumerate() {
+        let (_, points, first, cause) = &MISTAKES[index % MISTAKES.len()];
+        assert_eq!(mark["student"], format!("student {:02}", index + 1));
+        assert_eq!(mark["points"], *points, "{mark}");
+        match first {
+            None => assert!(mark["first_error"].is_null(), "{mark}"),
+            Some((quantity, step)) => {
+                assert_eq!(
+                    (&mark["first_error"]["quantity"], &mark["first_error"]["step"]),
+                    (&(*quantity).into(), &(*step).into()),
+                    "{mark}"
+                );
+                let said = mark["first_error"]["cause"].as_str().unwrap_or_default();
+                assert!(said.contains(cause), "{mark}");
+            }
+        }
+    }
+    // the table: a line for each student, and the causes that several share
+    let table = marked(&files, &[]).out;
+    assert!(
+        table.starts_with("student     points  first error") && table.contains("\n  5 × gravity points the other way"),
+        "{table}"
+    );
+    assert_eq!(table.matches("10/10  none").count(), 5, "{table}");
+    let csv = marked(&files, &["--csv"]).out;
+    assert_eq!(csv.lines().count(), 41);
+    assert_eq!(csv.lines().filter(|line| line.contains(",10,10,0,,,")).count(), 5, "{csv}");
+}
+
+/// `--hint` has the place and the cause, and nowhere the right value.
+#[test]
+fn hints_have_no_answer() {
+    let files = class("mark_hint");
+    let file = &files[..1];
+    let blank = fs::read_to_string(&file[0]).expect("a worksheet");
+    let right = filled(&blank, |_, _| {});
+    let value = right.lines().find(|line| line.contains("acceleration,x")).and_then(|line| line.split(',').nth(4));
+    let value = value.expect("a value").trim_end_matches('0').to_owned();
+    fs::write(&file[0], filled(&blank, MISTAKES[1].0)).expect("a file");
+    for shape in [&[][..], &["--json"], &["--csv"]] {
+        let told = marked(file, shape).out;
+        assert!(told.contains(&value), "{told}");
+        let hint = marked(file, &[shape, &["--hint"]].concat()).out;
+        assert!(!hint.contains(&value) && hint.contains("ω1 × (ω1 × d1) is left out"), "{hint}");
+    }
+    let compare = |more: &[&str]| {
+        let call = [
+            "eval",
+            "planar1",
+            "--q",
+            "0.3",
+            "--qd",
+            "0.5",
+            "--qdd",
+            "1",
+            "--trace",
+            "--compare",
+            "docs/lecture/class/bob.csv",
+        ];
+        let called = rne(&[&call, more].concat());
+        assert_eq!((called.status, called.err.as_str()), (1, ""));
+        called.out
+    };
+    for shape in [&[][..], &["--json"]] {
+        let (told, hint) = (compare(shape), compare(&[shape, &["--hint"]].concat()));
+        assert!(told.contains("-0.0625") && !hint.contains("0625"), "{hint}");
+        assert!(hint.contains("ω1 × (ω1 × d1) is left out"), "{hint}");
+    }
+    fails(2, &["eval", "planar1", "--q", "0", "--trace", "--hint"], &["--compare"]);
+}
+
+/// A file that cannot be read is refused at its line; the others are marked.
+#[test]
+fn hostile_files_are_refused_at_their_line() {
+    let files = class("mark_hostile");
+    let blank = fs::read_to_string(&files[0]).expect("a worksheet");
+    fs::write(&files[0], filled(&blank, |_, _| {})).expect("a file");
+    let bad: [(&[u8], &str); 9] = [
+        (b"", "the file is empty"),
+        (b"joint,quantity,value\n1,tau,=1+1\n", ".csv:2:7"),
+        (b"joint,quantity,value\n1,tau,nan\n", ".csv:2:7"),
+        (b"joint,quantity,component,value\n1,omega,z,1\n1,omega,z,2\n", ".csv:3:1"),
+        (b"joint,quantity,value\n99,tau,1\n", ".csv:2:1"),
+        (b"joint,quantity,value\n1,t\xff,1\n", ".csv:2:4"),
+        (b"joint,quantity,value\n1,tau,\"1\n", ".csv:2:7"),
+        (b"{\"rows\": [[[[", ".csv:1:"),
+        (b"# rne worksheet, format 1, robot panda\njoint,quantity,value\n1,tau,1\n", ".csv:1:1"),
+    ];
+    for ((text, _), file) in bad.iter().zip(&files[1..]) {
+        fs::write(file, text).expect("a file");
+    }
+    let mut long = b"joint,quantity,value\n".to_vec();
+    long.resize(5 << 20, b'x');
+    fs::write(&files[10], long).expect("a file");
+    let called = marked(&files[..11], &["--json"]);
+    assert_eq!(called.status, 1, "{called:?}");
+    for (_, place) in bad {
+        assert!(called.said().contains(place), "no {place} in {}", called.err);
+    }
+    let reply: Value = serde_json::from_str(&called.out).expect("JSON");
+    let marks = reply["marks"].as_array().expect("marks");
+    assert_eq!((&marks[0]["points"], marks.len()), (&10.into(), 11));
+    for mark in &marks[1..] {
+        assert!(mark["points"].is_null() && mark["refused"].is_string(), "{mark}");
+    }
+    // the name that a file gives is no formula of a spreadsheet and no code of a terminal
+    let text = "# rne worksheet, format 1, robot planar1, student =1+1\u{1b}[31m\njoint,quantity,value\n1,tau,1\n";
+    fs::write(&files[0], text).expect("a file");
+    let (csv, table) = (marked(&files[..1], &["--csv"]).out, marked(&files[..1], &[]).out);
+    assert!(csv.contains("\n'=1+1"), "{csv}");
+    assert!(table.contains("=1+1\\u{1b}[31m") && !table.contains('\u{1b}'), "{table}");
+    // a worksheet that two hand in
+    let twice = [files[0].clone(), files[0].clone()];
+    assert!(marked(&twice, &[]).said().contains("has several files"));
+}
+
+/// Files of states, one for everybody or a row for each.
+#[test]
+fn states_of_a_class() {
+    let folder = folder("mark_states");
+    let key = folder.join("key.csv");
+    let with = |text: &str| {
+        fs::write(&key, text).expect("a file");
+        rne(&["mark", "planar1", "--states", path(&key), "docs/lecture/class/ada.csv", "docs/lecture/class/carl.csv"])
+    };
+    let one = with("q1,qd1,qdd1\n0.3,0.5,1\n");
+    assert!(one.status == 0 && one.out.contains("ada       34/34"), "{one:?}");
+    let each = with("name;q1;qd1;qdd1\nada;0,3;0,5;1\ncarl;0,3;0,5;pi/2\n");
+    assert!(each.out.contains("34/34  none") && each.out.contains("the worksheet is for another state"), "{each:?}");
+    let unknown = with("name,q1\nada,0.3\ncarla,0.3\n");
+    assert!(unknown.status == 1 && unknown.err.contains("no row for the student `carl`; did you mean `carla`?"));
+    for (text, parts) in [
+        ("", &["the file is empty"][..]),
+        ("q1,qd1\n", &["no state below"]),
+        ("q2\n1\n", &[":1:1", "no column `q1`"]),
+        ("q1\tqd1\n1\t2\n", &["separated by tabs"]),
+        ("q1\n0.3\n0.4\n", &[":3:1", "no column `name`"]),
+        ("q1,q1\n1,1\n", &[":1:4", "occurs twice"]),
+        ("name,q1\nada,1\nada,2\n", &[":3:1", "`ada` occurs twice"]),
+        ("name,q1\n,1\n", &[":2:1", "the name of the student is missing"]),
+        ("q1\nO.3\n", &[":2:1", "is not a number"]),
+        ("q1,qd1\n0,3,0,5\n", &[":2:1", "4 cells, but 2 columns", "semicolons"]),
+    ] {
+        let called = with(text);
+        assert_eq!((called.status, called.out.as_str()), (1, ""), "{text:?}: {called:?}");
+        for part in parts {
+            assert!(called.said().contains(part), "{text:?}: no {part} in {}", called.err);
+        }
+    }
+    fails(2, &["mark", "planar1", "docs/lecture/class/ada.csv"], &["--states <KEY>|--seed <N>"]);
+    // names of students are those of the file of states
+    fs::write(&key, "name,q1\nada,0.3\nbo b,0.4\n").expect("a file");
+    let sheets = folder.join("sheets");
+    let written = ["worksheet", "planar1", "--states", path(&key), "-o", path(&sheets)];
+    assert_eq!(rne(&written).status, 0);
+    assert!(fs::read_to_string(sheets.join("bo b.csv")).expect("a file").contains("\n1,0,q,,0.4,rad,\n"));
+    // nothing is overwritten, and no name leads out of the folder
+    fails(2, &written, &["is not empty and is not changed"]);
+    for name in ["../ada", "a/b", ".ada", "ada,bob", "", "-", "a\nb"] {
+        let out = folder.join("no");
+        fails(2, &["worksheet", "planar1", "--seed", "1", "-o", path(&out), "--", name], &["cannot be the name"]);
+        assert!(!out.exists());
+    }
+    let twice = ["worksheet", "planar1", "--seed", "1", "-o", "nowhere", "ada", "Ada"];
+    fails(2, &twice, &["`Ada` is named twice"]);
+    fails(2, &["worksheet", "planar1", "--seed", "1", "-o", "nowhere"], &["no student is named"]);
+}
+
+/// Answers of a worksheet are right, in all axes and with a decimal comma.
+#[test]
+fn answers_have_all_points() {
+    for axes in ["link", "joint", "base"] {
+        for comma in [&[][..], &["--decimal-comma"]] {
+            let sheets = folder("mark_answers").join("sheets");
+            let words =
+                ["worksheet", "stanford", "--seed", "3", "--answers", "--axes", axes, "ada", "-o", path(&sheets)];
+            assert_eq!(rne(&[&words, comma].concat()).status, 0);
+            let table = fine(&["mark", "stanford", "--seed", "3", path(&sheets.join("ada.csv"))]);
+            assert!(table.contains("204/204  none"), "{axes}: {table}");
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Named frames of a table, from the frames of a chain.
+
+use std::collections::BTreeSet;
+
+use rne_model::{FixedFrame, Frame, Robot};
+
+use crate::chain::{Chain, ChainFrame};
+use crate::import::transform;
+use crate::table::Table;
+
+/// The frames of a chain as a robot file has them: from the link frames of the table.
+pub(crate) fn named_frames(chain: &Chain, table: &Table) -> Vec<Frame> {
+    let frame = |ChainFrame { name, on, place }: &ChainFrame| {
+        let link = on.map_or(table.start, |joint| table.frames[joint]);
+        let placement = transform(link.inverse() * *place);
+        Frame { name: name.clone(), fixed: FixedFrame { on: *on, placement } }
+    };
+    chain.frames.iter().map(frame).collect()
+}
+
+/// Gives frames names that a robot file takes: identifiers, none of which is `base`, the name of a joint, or the name
+/// of another frame.
+pub(crate) fn as_identifiers(frames: Vec<ChainFrame>, robot: &Robot) -> Vec<ChainFrame> {
+    let is_reserved = |name: &str| name == "base" || robot.joints.iter().any(|joint| joint.name == name);
+    let mut taken = BTreeSet::new();
+    let named = |frame: ChainFrame| {
+        let mut name: String = frame.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            name.insert_str(0, "frame_");
+        }
+        if is_reserved(&name) {
+            name.push_str("_frame");
+        }
+        let free = (2..).map(|number| format!("{name}_{number}"));
+        let name = std::iter::once(name.clone())
+            .chain(free)
+            .find(|name| !taken.contains(name) && !is_reserved(name))
+            .unwrap_or_default();
+        taken.insert(name.clone());
+        ChainFrame { name, ..frame }
+    };
+    frames.into_iter().map(named).collect()
+}

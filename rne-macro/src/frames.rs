@@ -1,0 +1,130 @@
+//! The code for the named frames and the link frames of a robot.
+
+use proc_macro2::{Literal, Span, TokenStream};
+use quote::quote;
+use rne_codegen::{Compiler, Form, Function, Program};
+use rne_model::Robot;
+
+use crate::description;
+use crate::error::{Errors, not_compiled};
+use crate::implementation::Target;
+use crate::parameters::Parameters;
+
+impl Target<'_> {
+    /// Everything for the frames of a robot; `None`, and an error in `errors`, where a program cannot be compiled.
+    pub(crate) fn frames(
+        &self,
+        robot: &Robot,
+        form: Form,
+        parameters: &Parameters,
+        span: Span,
+        errors: &mut Errors,
+    ) -> Option<TokenStream> {
+        let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let (ident, krate, dof) = (&self.item.ident, self.krate, Literal::usize_unsuffixed(robot.dof()));
+        let mut implementations = TokenStream::new();
+        for (index, frame) in robot.frame_ids().enumerate() {
+            let robot = robot.clone().at_frame(frame);
+            let compiler = Compiler::new(&robot);
+            let programs: Result<Vec<Program>, _> =
+                Function::of_frames().map(|function| compiler.compile(function, form)).collect();
+            let programs = programs.map_err(|error| errors.at_span(span, not_compiled(&robot.name, &error))).ok()?;
+            let (index, operations) = (Literal::usize_unsuffixed(index), description::operations(&programs));
+            let methods = programs.iter().map(|program| self.method(&robot, program, parameters));
+            implementations.extend(quote! {
+                #[doc = #operations]
+                #[automatically_derived]
+                #[allow(clippy::approx_constant)]
+                #[allow(clippy::inline_always)]
+                impl #impl_generics #krate::AtFrame<#dof, #index> for #ident #type_generics #where_clause {
+                    #(#methods)*
+                }
+            });
+        }
+        let names: Vec<&str> = robot.frame_ids().map(|frame| robot.frame_name(frame)).collect();
+        let count = robot.frames.len();
+        let of_list = (0..count).map(|index| {
+            let index = Literal::usize_unsuffixed(index);
+            quote!(<Self as #krate::AtFrame<#dof, #index>>::pose_at_frame(self, q))
+        });
+        let number = self.number();
+        let (listed, described) = (&names[..count], description::values(&names[..count]));
+        // no name is empty
+        let unknown = robot.frame("").err().map_or_else(String::new, |unknown| unknown.known());
+        let unknown = format!("{} has no frame of this name: {unknown}", robot.name);
+        let (about, about_names) = (
+            "The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`. The name is that of a \
+             frame in the list `frames` of the robot file, or that of a joint for its link frame. In a constant, \
+             `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\n\
+             Where the robot file has no frame of this name.",
+            format!("Names of the list `frames`, in the order of `frame_poses`.{described}"),
+        );
+        let (vis, length) = (self.visibility(), Literal::usize_unsuffixed(count));
+        let (str, usize) = (quote!(::core::primitive::str), quote!(::core::primitive::usize));
+        Some(quote! {
+            #implementations
+
+            #[automatically_derived]
+            impl #impl_generics #krate::FrameKinematics<#dof, #length> for #ident #type_generics #where_clause {
+                fn frame_poses<#number: #krate::Scalar>(
+                    &self,
+                    q: &[#number; #dof],
+                ) -> [#krate::Pose<#number>; #length] {
+                    let _ = q;
+                    [#(#of_list),*]
+                }
+            }
+
+            #[automatically_derived]
+            impl #impl_generics #ident #type_generics #where_clause {
+                #[doc = #about_names]
+                #vis const FRAME_NAMES: [&'static #str; #length] = [#(#listed),*];
+                #[doc = #about]
+                #[must_use]
+                #vis const fn frame(name: &#str) -> #usize {
+                    match #krate::frame_index(&[#(#names),*], name) {
+                        ::core::option::Option::Some(index) => index,
+                        ::core::option::Option::None => ::core::panic!(#unknown),
+                    }
+                }
+            }
+        })
+    }
+
+    /// A stub for a robot that is not known, as [`Target::stub`].
+    pub(crate) fn frames_stub(&self) -> TokenStream {
+        let (ident, krate, vis) = (&self.item.ident, self.krate, self.visibility());
+        let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let mut generics = self.item.generics.clone();
+        generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        generics.params.push(syn::parse_quote!(const __FRAME: ::core::primitive::usize));
+        let (with_both, ..) = generics.split_for_impl();
+        let joints = quote!(__JOINTS);
+        let methods =
+            Function::of_frames().map(|function| self.signature_at_frame(function, &joints, &quote!(loop {})));
+        let number = self.number();
+        quote! {
+            #[automatically_derived]
+            impl #with_both #krate::AtFrame<__JOINTS, __FRAME> for #ident #type_generics #where_clause {
+                #(#methods)*
+            }
+
+            #[automatically_derived]
+            impl #with_both #krate::FrameKinematics<__JOINTS, __FRAME> for #ident #type_generics #where_clause {
+                fn frame_poses<#number: #krate::Scalar>(
+                    &self,
+                    _: &[#number; __JOINTS],
+                ) -> [#krate::Pose<#number>; __FRAME] {
+                    loop {}
+                }
+            }
+
+            #[automatically_derived]
+            impl #impl_generics #ident #type_generics #where_clause {
+                #vis const fn frame(_: &::core::primitive::str) -> ::core::primitive::usize {
+                    0
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+// The state of a page in its address: a link opens the exact view. Only what is not as at first stands there.
+
+/** The words of an address that have no value. */
+const WORDS = ["exercise", "lecture", "unfolded", "reduced", "c", "equations", "joint", "base", "light", "dark", "frames"];
+
+/** What an address asks for: lists by their names, and words. */
+function readAddress(fragment) {
+  const asked = { lists: {}, words: new Set(), cell: null, look: null, wrong: [] };
+  for (const part of fragment.replace(/^#/, "").split("&").filter(Boolean)) {
+    const [key, value] = part.includes("=") ? [part.slice(0, part.indexOf("=")), part.slice(part.indexOf("=") + 1)] : [part, null];
+    if (value === null) {
+      if (WORDS.includes(key) || key === "no-masses") asked.words.add(key);
+      continue;
+    }
+    const numbers = decodeURIComponent(value).split(",").map(numberOf);
+    if (key === "look" && VIEWS.includes(value)) asked.look = value;
+    else if (key === "cell" && /^\d+\.\d$/.test(value)) asked.cell = value.split(".").map(Number);
+    else if (!["q", "qd", "qdd", "f", "n", "look"].includes(key)) continue;
+    else if (numbers.every(Number.isFinite)) asked.lists[key] = numbers;
+    else asked.wrong.push(`${key} has something that is no number`);
+  }
+  return asked;
+}
+
+/** Shows what an address asks for; returns what it cannot show, in words. */
+function showAddress(page, fragment) {
+  const { lists, words, cell, look, wrong } = readAddress(fragment);
+  const { dof } = page.inspection;
+  const fits = (key, count) => {
+    if (!lists[key]) return false;
+    if (lists[key].length === count) return true;
+    wrong.push(`${key} has ${lists[key].length} numbers, and ${count} are needed`);
+    return false;
+  };
+  const state = structuredClone(page.initial);
+  for (const of of OF) if (fits(of, dof)) state[of] = lists[of];
+  const wrench = { f: fits("f", 3) ? lists.f : [0, 0, 0], n: fits("n", 3) ? lists.n : [0, 0, 0] };
+  const chosen = (group, first) => group.find((name) => words.has(name)) || first;
+  const view = {
+    ...viewOf(page),
+    state,
+    wrench,
+    form: chosen(["unfolded", "reduced"], "folded"),
+    language: chosen(["c", "equations"], "rust"),
+    axes: chosen(["joint", "base"], "link"),
+    theme: chosen(["light", "dark"], "auto"),
+    exercise: words.has("exercise"),
+    lecture: words.has("lecture"),
+    frames: words.has("frames"),
+    masses: !words.has("no-masses"),
+    pinned: null,
+    scrolled: [0, 0, 0],
+  };
+  if (cell && page.inspection.cell(...cell)) {
+    view.cell = cell;
+    view.layers = page.layersOf(cell[1]);
+  } else if (cell) {
+    wrong.push(`there is no cell ${cell.join(".")}`);
+  }
+  if (look) view.look = page.arm.lookOf(look);
+  else if (fits("look", 3)) [view.look] = [{ yaw: lists.look[0], pitch: lists.look[1], zoom: lists.look[2] }];
+  else view.look = page.arm.home;
+  showView(page, view);
+  return wrong;
+}
+
+/** The address of what a page shows. */
+function addressOf(page) {
+  const view = viewOf(page);
+  const parts = [];
+  const isFirst = (a, b) => a.every((value, index) => value === b[index]);
+  for (const of of OF) if (!isFirst(view.state[of], page.initial[of])) parts.push(`${of}=${view.state[of].join(",")}`);
+  for (const of of ["f", "n"]) if (view.wrench[of].some((value) => value !== 0)) parts.push(`${of}=${view.wrench[of].join(",")}`);
+  if (!isFirst(view.cell, page.firstCell)) parts.push(`cell=${view.cell.join(".")}`);
+  const name = page.arm.viewName();
+  if (name ? page.arm.lookOf(name) !== page.arm.home : true)
+    parts.push(`look=${name || [view.look.yaw, view.look.pitch, view.look.zoom].join(",")}`);
+  for (const word of [view.form, view.language, view.axes, view.theme]) if (WORDS.includes(word)) parts.push(word);
+  for (const word of ["exercise", "lecture", "frames"]) if (view[word]) parts.push(word);
+  if (!view.masses) parts.push("no-masses");
+  return parts.length ? `#${parts.join("&")}` : "";
+}
+
+/** Keeps the address of a page that of what it shows, and shows what an address asks for that is typed or followed. */
+class Address {
+  constructor(page) {
+    this.page = page;
+    this.show(location.hash);
+    window.addEventListener("hashchange", () => {
+      if (location.hash !== this.written) this.show(location.hash);
+    });
+  }
+
+  show(fragment) {
+    const wrong = readAddress(fragment).words.size || fragment.includes("=") ? showAddress(this.page, fragment) : [];
+    byId("address-notice").hidden = wrong.length === 0;
+    byId("address-notice").textContent = wrong.length ? `The address is not shown as it stands: ${wrong.join("; ")}.` : "";
+  }
+
+  /** Soon: a slider that moves would write it a hundred times. */
+  later() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.write(), 250);
+  }
+
+  write() {
+    clearTimeout(this.timer);
+    const address = addressOf(this.page);
+    if (address === this.written) return;
+    this.written = address;
+    document.documentElement.dispatchEvent(new CustomEvent("address", { detail: address }));
+    try {
+      history.replaceState(null, "", address || location.pathname + location.search);
+    } catch {
+      // a frame without an address of its own: the page around it has one
+    }
+  }
+}
