@@ -80,9 +80,8 @@ pub fn errors(
         let qd: Vec<f32> = ranges.iter().map(|range| between((-range.velocity, range.velocity))).collect();
         let qdd: Vec<f32> = ranges.iter().map(|range| between((-range.acceleration, range.acceleration))).collect();
         let found = single_precision(robot, &interpreter, [&q, &qd, &qdd], &sin_cos)?;
-        let enclose = |numbers: &[f32]| -> Vec<Interval> {
-            numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect()
-        };
+        let enclose =
+            |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
         let [q, qd, qdd, parameters] = [&q, &qd, &qdd, &parameters].map(|numbers| enclose(numbers));
         let zero = Interval::exactly(0.0);
         let arguments = Arguments { tau: &qdd, parameters: &parameters, ..Arguments::of_joints(&q, &qd, &qdd, zero) };

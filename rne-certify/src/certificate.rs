@@ -265,7 +265,9 @@ impl Certificate {
         for range in ranges {
             let _ = writeln!(text, "- {range}");
         }
-        text.push_str("\n| result | largest magnitude | largest bound of the error | at state |\n|---|---:|---:|---:|\n");
+        text.push_str(
+            "\n| result | largest magnitude | largest bound of the error | at state |\n|---|---:|---:|---:|\n",
+        );
         for Error { name, largest, bound, state } in results {
             let _ = writeln!(text, "| {name} | {largest:.4} | {bound:.2e} | {state} |");
         }
@@ -301,8 +303,13 @@ mod tests {
         let traced = trace(source, "a_f");
         let lines: Vec<_> = traced.iter().map(|of| (of.line, of.name.as_str(), of.step.as_str())).collect();
         let step = "joint 1, step 1: angular velocity";
-        let expected =
-            [(5, "q1", "argument"), (8, "k_1", "constants"), (12, "w1_z", step), (15, "s1, c1", step), (16, "tau[0]", step)];
+        let expected = [
+            (5, "q1", "argument"),
+            (8, "k_1", "constants"),
+            (12, "w1_z", step),
+            (15, "s1, c1", step),
+            (16, "tau[0]", step),
+        ];
         assert_eq!(lines, expected);
         assert_eq!(traced[2].equations, "ω1 = z");
     }

@@ -186,8 +186,8 @@ impl Kind {
             "vldr" | "ldr" | "ldrb" | "ldrh" => (Self::Load, 1),
             "vstr" | "str" | "strb" | "strh" => (Self::Store, 1),
             "pop" | "ldmia" if line.operands().contains("pc}") => (Self::Return, registers),
-            "vpush" | "vpop" | "vldmia" | "vstmia" | "vldmdb" | "vstmdb" | "push" | "pop" | "ldmia" | "stmia" | "ldmdb"
-            | "stmdb" => (Self::Several, registers),
+            "vpush" | "vpop" | "vldmia" | "vstmia" | "vldmdb" | "vstmdb" | "push" | "pop" | "ldmia" | "stmia"
+            | "ldmdb" | "stmdb" => (Self::Several, registers),
             "bx" => (Self::Return, 0),
             "bl" | "blx" => (Self::Call, 0),
             "b" => (Self::Branch, 0),
@@ -300,9 +300,10 @@ pub fn stack(lines: &[Line]) -> u64 {
             "sub" | "subs" | "subw" if line.operands().starts_with("sp,") => {
                 bytes(line.operands().rsplit(',').next().unwrap_or_default())
             }
-            "str" => line.operands().split_once("[sp, #-").map_or(0, |(_, rest)| {
-                rest.split_once("]!").map_or(0, |(number, _)| bytes(number))
-            }),
+            "str" => line
+                .operands()
+                .split_once("[sp, #-")
+                .map_or(0, |(_, rest)| rest.split_once("]!").map_or(0, |(number, _)| bytes(number))),
             _ => 0,
         })
         .sum()

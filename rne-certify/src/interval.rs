@@ -99,7 +99,8 @@ impl Div for Interval {
 impl Real for Interval {
     fn by_sign(self, positive: Self, negative: Self) -> Self {
         let zero = Self::exactly(0.0);
-        let parts = [(self.high > 0.0, positive), (self.low < 0.0, negative), (self.low <= 0.0 && self.high >= 0.0, zero)];
+        let parts =
+            [(self.high > 0.0, positive), (self.low < 0.0, negative), (self.low <= 0.0 && self.high >= 0.0, zero)];
         let mut chosen = parts.into_iter().filter(|(is_possible, _)| *is_possible).map(|(_, part)| part);
         let Some(first) = chosen.next() else { return zero };
         chosen.fold(first, |a, b| Self { low: a.low.min(b.low), high: a.high.max(b.high) })
@@ -133,7 +134,8 @@ mod tests {
     #[test]
     fn turns_are_enclosed() {
         // 30° to twice the digits: sin = 1/2
-        let sixth = Interval { low: std::f64::consts::FRAC_PI_6.next_down(), high: std::f64::consts::FRAC_PI_6.next_up() };
+        let sixth =
+            Interval { low: std::f64::consts::FRAC_PI_6.next_down(), high: std::f64::consts::FRAC_PI_6.next_up() };
         let (sine, cosine) = sixth.sin_cos();
         assert!(sine.low < 0.5 && 0.5 < sine.high && sine.high - sine.low < 1e-14);
         let square = sine * sine + cosine * cosine;

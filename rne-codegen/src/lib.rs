@@ -51,12 +51,14 @@ pub use function::{
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::{
-    Axis, Cause, Causes, Component, Derivation, ExactConstant, ExactStep, Fold, FoldReport, Line, Name, Operation, Place, Quantity, Residue, Step,
-    WithRespectTo,
+    Axis, Cause, Causes, Component, Derivation, ExactConstant, ExactStep, Fold, FoldReport, Line, Name, Operation,
+    Place, Quantity, Residue, Step, WithRespectTo,
 };
 pub use named::UnknownName;
 pub use pipeline::Target;
-pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, Scales, SineCosine, Statement};
+pub use program::{
+    Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, Scales, SineCosine, Statement,
+};
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};

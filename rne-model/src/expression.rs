@@ -543,8 +543,10 @@ impl<'t> Parser<'t> {
         let range = start..start + name.len();
         match (Function::of(name), called) {
             (Some(function), true) => Ok(Kind::Call(function, Box::new(self.parenthesised()?))),
-            (Some(_), false) if is_reserved(name) => Err(Mistake::new(range, format!("`{name}` needs an argument in parentheses"))
-                .help(format!("write `{name}(…)`"))),
+            (Some(_), false) if is_reserved(name) => {
+                Err(Mistake::new(range, format!("`{name}` needs an argument in parentheses"))
+                    .help(format!("write `{name}(…)`")))
+            }
             (None, true) => {
                 let mistake = Mistake::new(range, format!("unknown function {}", quoted(name)));
                 Err(mistake.help("the functions are sqrt sin cos tan deg mm g; a product is written with `*`"))

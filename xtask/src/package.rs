@@ -47,6 +47,7 @@ const CRATES: [&str; 19] = [
     "rne-logs",
     "rne-identify",
     "rne-watch",
+    "rne-certify",
     "rne-cli",
 ];
 

@@ -6,10 +6,10 @@ use anyhow::{Result, ensure};
 
 use crate::functions::{self, Method, Robot};
 use crate::image::{self, Figures, Image};
-use rne_certify::listing::Fault;
 use crate::log::{Agreement, Log};
 use crate::table::Row;
 use crate::tools::{self, Build};
+use rne_certify::listing::Fault;
 
 /// A processor and how code for it is compiled.
 pub(crate) struct Board<'a> {

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
-pub(crate) use rne_certify::image::{Figures, Image};
 use rne_certify::image::Function;
+pub(crate) use rne_certify::image::{Figures, Image};
 use rne_certify::listing;
 
 use crate::tools;

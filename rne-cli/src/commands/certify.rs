@@ -131,7 +131,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 fn is_ours(text: &str) -> bool {
-    text.trim().is_empty() || text.starts_with("# Certificate of `") || text.starts_with("{\n  \"command\": \"rne certify")
+    text.trim().is_empty()
+        || text.starts_with("# Certificate of `")
+        || text.starts_with("{\n  \"command\": \"rne certify")
 }
 
 /// Compares a file with the certificate of now, line by line.
@@ -262,7 +264,12 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         hashes.insert(format!("compiler {compiler}"), hash);
     }
     let proof = program.proof.as_ref().map_or_else(
-        || vec!["The code is the seven steps of recursive Newton-Euler, so there is no other form to compare.".to_owned()],
+        || {
+            vec![
+                "The code is the seven steps of recursive Newton-Euler, so there is no other form to compare."
+                    .to_owned(),
+            ]
+        },
         |proof| rne_emit::evidence(&program, proof),
     );
     Ok(Certificate {
@@ -321,7 +328,10 @@ fn write_evidence(
         let is_other = match output_file::existing(path) {
             Existing::Nothing => false,
             Existing::Text(found) => {
-                found != *text && !arguments.force && !found.contains(rne_emit::GENERATED) && !found.contains("\"steps\"")
+                found != *text
+                    && !arguments.force
+                    && !found.contains(rne_emit::GENERATED)
+                    && !found.contains("\"steps\"")
             }
             _ => true,
         };
@@ -382,7 +392,8 @@ fn build(
     let symbol = format!("{prefix}_{}", arguments.function);
     let name = if is_stream(&arguments.file) { "on standard input".into() } else { file_name(&arguments.file) };
     let write = |file: &str, text: &str| fs::write(folder.join(file), text).map_err(Failure::input);
-    let stem = arguments.file.file_stem().map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned());
+    let stem =
+        arguments.file.file_stem().map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned());
     let origin = Origin::new(&name, &sha256(bytes));
     let programs = std::slice::from_ref(program);
     let code = rne_emit::c_code_of_file(robot, programs, Precision::Single, &prefix, Some(&origin))
@@ -419,7 +430,8 @@ fn build(
             write("arm.rs", &text)?;
             write("lib.rs", &rust_library(&symbol, arguments.function, robot.dof(), arrays, length))?;
             let cpu = format!("target-cpu={}", arguments.cpu.name());
-            options = vec!["--target", "thumbv7em-none-eabihf", "--edition", "2024", "-Copt-level=3", "-Cpanic=abort", "-C"];
+            options =
+                vec!["--target", "thumbv7em-none-eabihf", "--edition", "2024", "-Copt-level=3", "-Cpanic=abort", "-C"];
             let mut command = Command::new(compiler);
             command.current_dir(folder).args(&options).arg(&cpu);
             command.args(["--crate-type", "lib", "--crate-name", "arm", "--emit", "obj=arm.o", "lib.rs"]);
@@ -440,8 +452,17 @@ fn build(
 
 /// Links the code with the program of the board, which is GNU C.
 fn link(compile: &impl Fn(&[&str], &[&str]) -> Result<String, Failure>, object: &str) -> Result<(), Failure> {
-    let options =
-        ["-std=gnu99", "-O2", "-ffp-contract=off", "-nostartfiles", "-Wl,--gc-sections", "-T", "board.ld", "-o", "board.elf"];
+    let options = [
+        "-std=gnu99",
+        "-O2",
+        "-ffp-contract=off",
+        "-nostartfiles",
+        "-Wl,--gc-sections",
+        "-T",
+        "board.ld",
+        "-o",
+        "board.elf",
+    ];
     compile(&options, &["board.c", "cases.c", object]).map(drop)
 }
 

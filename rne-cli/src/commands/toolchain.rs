@@ -47,7 +47,8 @@ fn output(command: &mut Command) -> Result<Output, Failure> {
     match command.output() {
         Ok(output) if output.status.success() => Ok(output),
         Ok(output) => {
-            let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+            let said =
+                [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
             let lines: Vec<&str> = said.lines().collect();
             let last = lines[lines.len().saturating_sub(20)..].join("\n");
             Err(Failure::input(format_args!("{program} fails ({}):\n{last}", output.status)))
@@ -95,9 +96,8 @@ pub(crate) fn objdump_of(compiler: &str) -> String {
 
 /// The functions of an image, with their sizes, and with the stack frames that the compiler recorded in files `.su`.
 pub(crate) fn image(objdump: &str, folder: &Path, elf: &str) -> Result<Image, Failure> {
-    let read = |option: &str| {
-        text(Command::new(objdump).current_dir(folder).args([option, "--no-show-raw-insn"]).arg(elf))
-    };
+    let read =
+        |option: &str| text(Command::new(objdump).current_dir(folder).args([option, "--no-show-raw-insn"]).arg(elf));
     let mut listed = listing::functions(&read("--disassemble")?).map_err(Failure::input)?;
     let mut functions = BTreeMap::new();
     for line in read("--syms")?.lines() {

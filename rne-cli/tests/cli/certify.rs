@@ -59,8 +59,7 @@ fn the_figures_of_json_are_those_of_the_page() {
     }
     for cpu in ["cortex-m4", "cortex-m7"] {
         let certify = ["certify", ROBOT, "--states", "50", "--cpu", cpu];
-        let json: serde_json::Value =
-            serde_json::from_str(&fine(&[&certify[..], &["--json"]].concat())).expect("JSON");
+        let json: serde_json::Value = serde_json::from_str(&fine(&[&certify[..], &["--json"]].concat())).expect("JSON");
         let page = fine(&certify);
         let instructions = json["cost"]["instructions"].as_u64().expect("a number");
         assert_eq!(json["emulation"]["instructions"].as_u64(), Some(instructions));
@@ -99,7 +98,9 @@ fn mutations(source: &str, kind: usize) -> Vec<(usize, usize, String)> {
             // an operator
             0 => {
                 for (operator, other) in [(" + ", " - "), (" - ", " + "), (" * ", " + ")] {
-                    found.extend(words.match_indices(operator).map(|(i, _)| (right + i, right + i + 3, other.to_owned())));
+                    found.extend(
+                        words.match_indices(operator).map(|(i, _)| (right + i, right + i + 3, other.to_owned())),
+                    );
                 }
             }
             // an operand

@@ -39,7 +39,23 @@ fn printed(folder: &Path, files: &[&str], options: &[&str]) -> Option<String> {
 fn standard_output_is_one_file_that_compiles_alone() {
     let folder = folder("c_one_file");
     let code = fine(&["emit", ROBOT, "--form", "seven_steps", "--lang", "c", "--real", "double", "--prefix", "arm"]);
-    assert_eq!(code, fine(&["emit", ROBOT, "--lang", "c", "--real", "double", "--prefix", "arm", "--form", "seven_steps", "-o", "-"]));
+    assert_eq!(
+        code,
+        fine(&[
+            "emit",
+            ROBOT,
+            "--lang",
+            "c",
+            "--real",
+            "double",
+            "--prefix",
+            "arm",
+            "--form",
+            "seven_steps",
+            "-o",
+            "-"
+        ])
+    );
     let includes: Vec<&str> = code.lines().filter(|line| line.starts_with("#include")).collect();
     assert_eq!(includes, ["#include <float.h>", "#include <stdint.h>"], "no library, and not itself");
     let main = "#include <stdio.h>\nint main(void)\n{\n    const double q[] = {0.6, -1.1}, qd[] = {1.3, -0.4}, \

@@ -150,12 +150,7 @@ impl Ways {
         Some(derivation)
     }
 
-    fn place(
-        &self,
-        image: Residue,
-        steps: &mut Vec<ExactStep>,
-        places: &mut HashMap<Residue, usize>,
-    ) -> Option<usize> {
+    fn place(&self, image: Residue, steps: &mut Vec<ExactStep>, places: &mut HashMap<Residue, usize>) -> Option<usize> {
         if let Some(&place) = places.get(&image) {
             return Some(place);
         }

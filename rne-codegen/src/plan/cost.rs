@@ -6,8 +6,8 @@ use crate::formulate::Outputs;
 use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Number, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
-use crate::program::Scales;
 use crate::plan::{OriginShift, Plan, Scale};
+use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
 use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
 
