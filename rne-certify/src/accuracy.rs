@@ -132,7 +132,7 @@ mod tests {
         let robot = Robot::from_yaml(PENDULUM).expect("a robot");
         let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("it compiles");
         let sample = Sample { states: 2000, seed: 1 };
-        let error = errors(&robot, &program, sample, |x| x.sin_cos()).expect("errors")[0];
+        let error = errors(&robot, &program, sample, f32::sin_cos).expect("errors")[0];
         // 1.3 (9.81 0.4 + 0.4² 4)
         assert!(error.largest > 5.0 && error.largest < 5.94, "{error:?}");
         // some roundings of 2⁻²⁴ of the largest torque, and no fewer than half of one

@@ -44,7 +44,7 @@ pub fn cases(header: &str, function: &str, dof: usize, arrays: &[&str], length: 
         text
     });
     let voids = (0..arrays.len()).fold(String::new(), |mut text, index| {
-        let _ = write!(text, "    (void)a{index};\n");
+        let _ = writeln!(text, "    (void)a{index};");
         text
     });
     let _ = write!(
@@ -99,6 +99,7 @@ impl Printed {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp)] // the same bits
 mod tests {
     use super::{Printed, state};
 

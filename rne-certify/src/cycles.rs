@@ -131,6 +131,7 @@ impl Core {
         assumptions
     }
 
+    #[allow(clippy::match_same_arms)] // a table: a line for a core and a kind
     const fn cycles(self, kind: Kind, registers: u64) -> u64 {
         match (self, kind) {
             (Self::M4, Kind::Sum | Kind::Product | Kind::Move | Kind::Integer) => 1,

@@ -39,7 +39,7 @@ impl Interval {
     /// covers this where results are at most 1. Neither function has a slope above 1.
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
-        const ERROR: f64 = 1.0 / (1_u64 << 51) as f64;
+        const ERROR: f64 = 2.0 * f64::EPSILON; // 2^-51
         let middle = self.low + (self.high - self.low) / 2.0;
         let slack = (self.high - middle).max(middle - self.low).next_up() + ERROR;
         let around = |x: f64| Self { low: (x - slack).next_down().max(-1.0), high: (x + slack).next_up().min(1.0) };
@@ -108,6 +108,7 @@ impl Real for Interval {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::float_cmp)] // numbers of 53 bits
 mod tests {
     use super::Interval;
 

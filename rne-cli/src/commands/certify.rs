@@ -1,20 +1,21 @@
 //! `rne certify`: what the code of an arm costs on a microcontroller, and how exact it is.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use clap::{Args, ValueEnum};
 use rne_certify::accuracy::{self, Sample};
 use rne_certify::board;
-use rne_certify::certificate::{Accuracy, Certificate, Class, Cost, Emulation, Error, trace};
+use rne_certify::certificate::{Accuracy, Certificate, Class, Cost, Error, trace};
 use rne_certify::cycles::{self, Core, Counter};
+use rne_certify::image::Image;
 use rne_certify::{misra, sha256};
-use rne_codegen::{Argument, Form, Function, Interpreter, Layout, Program};
-use rne_emit::{Origin, Precision, Prefix};
+use rne_codegen::{Argument, Form, Function, Layout, Program};
+use rne_emit::Prefix;
 use rne_model::{JointKind, Robot};
 
+use crate::commands::certify_code::{build, emulate};
 use crate::commands::{certify_trace, toolchain};
 use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
@@ -46,54 +47,54 @@ docs/assurance.md says what each number means.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
-    file: PathBuf,
+    pub(super) file: PathBuf,
     #[command(flatten)]
-    rotors: Rotors,
+    pub(super) rotors: Rotors,
     /// Programming language of the code: c or rust
     #[arg(long, value_enum, default_value_t = Language::C, hide_possible_values = true)]
-    lang: Language,
+    pub(super) lang: Language,
     /// Compiler [default: arm-none-eabi-gcc for C, rustc for Rust]
     #[arg(long, value_name = "PROGRAM")]
-    cc: Option<String>,
+    pub(super) cc: Option<String>,
     /// Processor: cortex-m4 or cortex-m7, each with a floating-point unit
     #[arg(long, value_name = "CORE", default_value = "cortex-m4", value_parser = core)]
-    cpu: Core,
+    pub(super) cpu: Core,
     /// Function to certify; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), default_value = "inverse_dynamics",
         hide_possible_values = true)]
-    function: Function,
+    pub(super) function: Function,
     /// Form of the code: reduced or seven_steps
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::Reduced.name(),
         hide_possible_values = true)]
-    form: Form,
+    pub(super) form: Form,
     /// Prefix of all names in C code [default: the robot's name]
     #[arg(long, value_name = "P")]
-    prefix: Option<Prefix>,
+    pub(super) prefix: Option<Prefix>,
     /// Number of random states at which the error is bounded
     #[arg(long, value_name = "N", default_value_t = 10_000)]
-    states: usize,
+    pub(super) states: usize,
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    pub(super) seed: u64,
     /// Also write the C code, its header and a trace for the independent checker to this folder
     #[arg(long, value_name = "FOLDER")]
-    evidence: Option<PathBuf>,
+    pub(super) evidence: Option<PathBuf>,
     /// Print the certificate as JSON
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
     /// Output file; - is standard output [default: -]
     #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
     /// Overwrite the output file even if it is no certificate
     #[arg(long, requires = "output")]
-    force: bool,
+    pub(super) force: bool,
     /// Write nothing; check that this certificate is what rne would write now
     #[arg(long, value_name = "OUT", conflicts_with = "output")]
-    check: Option<PathBuf>,
+    pub(super) check: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Language {
+pub(super) enum Language {
     C,
     Rust,
 }
@@ -163,22 +164,6 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
     )))
 }
 
-/// The code of the arm in files of a folder.
-struct Code {
-    /// The name of the function for the linker.
-    symbol: String,
-    /// The file with the function, and how the certificate names it.
-    source: String,
-    /// SHA-256 of the files.
-    hashes: BTreeMap<String, String>,
-    /// Lines of the code with their steps.
-    text: String,
-    /// The image.
-    elf: String,
-    /// Options of the compiler.
-    options: Vec<String>,
-}
-
 fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[])?;
     let robot = arguments.rotors.of(checked.robot);
@@ -201,44 +186,15 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
     let folder = folder.path();
     let code = build(arguments, &robot, &program, &compiler, &arrays, &bytes, folder)?;
     let image = toolchain::image(&objdump, folder, &code.elf)?;
-    let may_be_called = |name: &str| name.contains("sin_cos");
-    let figures = image.straight_but_for(&code.symbol, may_be_called).map_err(Failure::input)?;
-    let calls = image.calls(&code.symbol, may_be_called).map_err(Failure::input)?;
-    let mut counter = Counter::default();
-    let mut stack = 0;
-    let lines = |name: &str| image.function(name).map(|function| function.lines.as_slice()).map_err(Failure::input);
-    for callee in &calls {
-        counter.add(arguments.cpu, lines(callee)?);
-        stack = stack.max(cycles::stack(lines(callee)?));
-    }
-    counter.add(arguments.cpu, lines(&code.symbol)?);
-    stack += cycles::stack(lines(&code.symbol)?);
-    let worst = counter.cycles();
-    let mut called = BTreeMap::new();
-    for callee in calls {
-        *called.entry(callee).or_default() += 1;
-    }
-    let cost = Cost {
-        instructions: figures.instructions,
-        cycles: worst.total,
-        waits: worst.waits,
-        classes: worst.classes.into_iter().map(class).collect(),
-        unknown: worst.unknown,
-        assumptions: arguments.cpu.assumptions().into_iter().map(str::to_owned).collect(),
-        code: figures.code,
-        constants: figures.constants,
-        stack: figures.stack,
-        stack_of_listing: stack,
-        calls: called,
-    };
+    let cost = cost(arguments.cpu, &image, &code.symbol)?;
     if let Some(evidence) = &arguments.evidence {
-        write_evidence(arguments, evidence, &robot, &program, &code.source, folder)?;
+        certify_trace::write(arguments, evidence, &robot, &program, &code.source, folder)?;
     }
     let emulation = match toolchain::version_of("qemu-system-arm") {
         None => None,
         Some(version) => {
             tools.insert("qemu-system-arm".to_owned(), version);
-            Some(emulate(arguments, &robot, &program, &code, figures.instructions, folder)?)
+            Some(emulate(arguments, &robot, &program, &code, cost.instructions, folder)?)
         }
     };
     let misra = match toolchain::version_of("cppcheck").filter(|_| arguments.lang == Language::C) {
@@ -290,56 +246,38 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
     })
 }
 
-/// Writes the C code, its header and the trace of its constants.
-fn write_evidence(
-    arguments: &Arguments,
-    evidence: &Path,
-    robot: &Robot,
-    program: &Program,
-    source: &str,
-    folder: &Path,
-) -> Result<(), Failure> {
-    if arguments.lang != Language::C || arguments.function != Function::InverseDynamics || robot.has_rotors() {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for inverse_dynamics in C without rotors: the checker computes this function"
-        )));
+/// The cost of a call: of the function and of the sine that it calls.
+fn cost(core: Core, image: &Image, symbol: &str) -> Result<Cost, Failure> {
+    let may_be_called = |name: &str| name.contains("sin_cos");
+    let figures = image.straight_but_for(symbol, may_be_called).map_err(Failure::input)?;
+    let calls = image.calls(symbol, may_be_called).map_err(Failure::input)?;
+    let mut counter = Counter::default();
+    let mut stack = 0;
+    let lines = |name: &str| image.function(name).map(|function| function.lines.as_slice()).map_err(Failure::input);
+    for callee in &calls {
+        counter.add(core, lines(callee)?);
+        stack = stack.max(cycles::stack(lines(callee)?));
     }
-    let compiler = Compiler::new(&arguments.file, robot);
-    let Some(derivation) = compiler.derivation(program)? else {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are rounded one \
-             operation after another, so they have no exact expressions"
-        )));
-    };
-    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    let trace = certify_trace::trace(robot, program, &derivation, &prefix, Precision::Single);
-    let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
-    fs::create_dir_all(evidence)
-        .map_err(|error| Failure::input(format_args!("{} cannot be made: {error}", evidence.display())))?;
-    let read = |name: &str| fs::read_to_string(folder.join(name)).map_err(Failure::input);
-    let stem = source.trim_end_matches(".c");
-    let header = format!("{stem}.h");
-    let files = [
-        (evidence.join(source), read(source)?),
-        (evidence.join(&header), read(&header)?),
-        (evidence.join(format!("{stem}.trace.json")), trace),
-    ];
-    for (path, text) in &files {
-        let is_other = match output_file::existing(path) {
-            Existing::Nothing => false,
-            Existing::Text(found) => {
-                found != *text
-                    && !arguments.force
-                    && !found.contains(rne_emit::GENERATED)
-                    && !found.contains("\"steps\"")
-            }
-            _ => true,
-        };
-        if is_other {
-            return Err(Failure::usage(format_args!("{} is not changed: rne did not write it", path.display())));
-        }
+    counter.add(core, lines(symbol)?);
+    stack += cycles::stack(lines(symbol)?);
+    let worst = counter.cycles();
+    let mut called = BTreeMap::new();
+    for callee in calls {
+        *called.entry(callee).or_default() += 1;
     }
-    output_file::replace_all(&files).map(drop)
+    Ok(Cost {
+        instructions: figures.instructions,
+        cycles: worst.total,
+        waits: worst.waits,
+        classes: worst.classes.into_iter().map(class).collect(),
+        unknown: worst.unknown,
+        assumptions: core.assumptions().into_iter().map(str::to_owned).collect(),
+        code: figures.code,
+        constants: figures.constants,
+        stack: figures.stack,
+        stack_of_listing: stack,
+        calls: called,
+    })
 }
 
 fn class(of: cycles::Class) -> Class {
@@ -347,7 +285,7 @@ fn class(of: cycles::Class) -> Class {
     Class { what: what.to_owned(), mnemonics, instructions, cycles }
 }
 
-fn file_name(path: &Path) -> String {
+pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
@@ -376,139 +314,6 @@ fn arrays(program: &Program) -> Result<Vec<&'static str>, Failure> {
              forward_dynamics"
         ))),
     }
-}
-
-/// Writes the code and the program of the board, and compiles and links them.
-fn build(
-    arguments: &Arguments,
-    robot: &Robot,
-    program: &Program,
-    compiler: &str,
-    arrays: &[&str],
-    bytes: &[u8],
-    folder: &Path,
-) -> Result<Code, Failure> {
-    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    let symbol = format!("{prefix}_{}", arguments.function);
-    let name = if is_stream(&arguments.file) { "on standard input".into() } else { file_name(&arguments.file) };
-    let write = |file: &str, text: &str| fs::write(folder.join(file), text).map_err(Failure::input);
-    let stem =
-        arguments.file.file_stem().map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned());
-    let origin = Origin::new(&name, &sha256(bytes));
-    let programs = std::slice::from_ref(program);
-    let code = rne_emit::c_code_of_file(robot, programs, Precision::Single, &prefix, Some(&origin))
-        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
-    let (header, c_source) = (format!("{stem}.h"), format!("{stem}.c"));
-    let gcc = if arguments.lang == Language::C { compiler } else { "arm-none-eabi-gcc" };
-    let flags = arguments.cpu.flags();
-    write(&header, code.header())?;
-    let length = program.outputs.len();
-    write("cases.c", &board::cases(&header, &symbol, robot.dof(), arrays, length))?;
-    write("board.c", board::SOURCE)?;
-    write("board.h", board::HEADER)?;
-    write("board.ld", board::LINKER_SCRIPT)?;
-    let compile = |options: &[&str], files: &[&str]| {
-        toolchain::text(Command::new(gcc).current_dir(folder).args(options).args(flags).args(files))
-    };
-    let (source, object, text, options, hashes);
-    match arguments.lang {
-        Language::C => {
-            text = code.source(&header);
-            write(&c_source, &text)?;
-            let own = [&toolchain::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
-            compile(&own, &[&c_source])?;
-            options = [&toolchain::OPTIONS[..], &["-ffunction-sections"], &flags].concat();
-            hashes = BTreeMap::from([
-                (header, sha256(code.header().as_bytes())),
-                (c_source.clone(), sha256(text.as_bytes())),
-            ]);
-            object = format!("{stem}.o");
-            source = c_source;
-        }
-        Language::Rust => {
-            text = rne_emit::rust_file_with_sin_cos(robot, programs);
-            write("arm.rs", &text)?;
-            write("lib.rs", &rust_library(&symbol, arguments.function, robot.dof(), arrays, length))?;
-            let cpu = format!("target-cpu={}", arguments.cpu.name());
-            options =
-                vec!["--target", "thumbv7em-none-eabihf", "--edition", "2024", "-Copt-level=3", "-Cpanic=abort", "-C"];
-            let mut command = Command::new(compiler);
-            command.current_dir(folder).args(&options).arg(&cpu);
-            command.args(["--crate-type", "lib", "--crate-name", "arm", "--emit", "obj=arm.o", "lib.rs"]);
-            // rustc says what to do if the target is not installed
-            toolchain::text(&mut command)?;
-            hashes = BTreeMap::from([(format!("{stem}.rs"), sha256(text.as_bytes()))]);
-            object = "arm.o".to_owned();
-            source = format!("{stem}.rs");
-            let options = options.iter().map(|&option| option.to_owned()).chain([cpu]).collect();
-            link(&compile, &object)?;
-            return Ok(Code { symbol, source, hashes, text, elf: "board.elf".to_owned(), options });
-        }
-    }
-    link(&compile, &object)?;
-    let options = options.iter().map(|&option| option.to_owned()).collect();
-    Ok(Code { symbol, source, hashes, text, elf: "board.elf".to_owned(), options })
-}
-
-/// Links the code with the program of the board, which is GNU C.
-fn link(compile: &impl Fn(&[&str], &[&str]) -> Result<String, Failure>, object: &str) -> Result<(), Failure> {
-    let options = [
-        "-std=gnu99",
-        "-O2",
-        "-ffp-contract=off",
-        "-nostartfiles",
-        "-Wl,--gc-sections",
-        "-T",
-        "board.ld",
-        "-o",
-        "board.elf",
-    ];
-    compile(&options, &["board.c", "cases.c", object]).map(drop)
-}
-
-/// The emitted Rust as a library with one function for C.
-fn rust_library(symbol: &str, function: Function, dof: usize, arrays: &[&str], length: usize) -> String {
-    let list = |element: &dyn Fn(usize) -> String| (0..arrays.len()).map(element).collect::<Vec<_>>().join(", ");
-    let parameters = list(&|index| format!("a{index}: &[f32; {dof}]"));
-    let passed = list(&|index| format!("a{index}"));
-    format!(
-        "#![no_std]\nmod arm;\n\n#[unsafe(no_mangle)]\npub extern \"C\" fn {symbol}({parameters}, out: &mut [f32; {length}]) \
-         {{\n    *out = arm::{function}({passed});\n}}\n"
-    )
-}
-
-/// Runs the code in QEMU and compares instructions with the listing and results with those of this computer.
-fn emulate(
-    arguments: &Arguments,
-    robot: &Robot,
-    program: &Program,
-    code: &Code,
-    instructions: u64,
-    folder: &Path,
-) -> Result<Emulation, Failure> {
-    let said = toolchain::emulated(arguments.cpu, folder, &code.elf)?;
-    let printed = board::Printed::read(&said)
-        .ok_or_else(|| Failure::input(format_args!("QEMU prints what the program does not print:\n{said}")))?;
-    if printed.instructions != instructions {
-        return Err(Failure::input(format_args!(
-            "QEMU executes {} instructions in a call, but the listing shows {instructions}",
-            printed.instructions
-        )));
-    }
-    let interpreter = Interpreter::new(program);
-    for (number, found) in (0..board::STATES).zip(&printed.results) {
-        let [q, qd, qdd] = board::state(number, robot.dof());
-        let expected = accuracy::single_precision(robot, &interpreter, [&q, &qd, &qdd], rne_emit::sin_cos_f32);
-        let expected: Option<Vec<u32>> = expected.map(|numbers| numbers.iter().map(|x| x.to_bits()).collect());
-        if expected.as_ref() != Some(found) {
-            return Err(Failure::input(format_args!(
-                "at state {number}, the results in QEMU, {found:08x?}, do not have the bits of the results on this computer, {:08x?}",
-                expected.unwrap_or_default()
-            )));
-        }
-    }
-    let machine = arguments.cpu.machine().to_owned();
-    Ok(Emulation { machine, instructions: printed.instructions, states: printed.results.len() })
 }
 
 fn accuracy(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<Accuracy, Failure> {
@@ -556,10 +361,10 @@ fn command(arguments: &Arguments) -> String {
         arguments.seed
     );
     if let Some(compiler) = &arguments.cc {
-        command.push_str(&format!(" --cc {compiler}"));
+        let _ = write!(command, " --cc {compiler}");
     }
     if let Some(prefix) = &arguments.prefix {
-        command.push_str(&format!(" --prefix {prefix}"));
+        let _ = write!(command, " --prefix {prefix}");
     }
     if arguments.rotors.rotors {
         command.push_str(" --rotors");

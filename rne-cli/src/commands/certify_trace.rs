@@ -1,18 +1,73 @@
 //! The trace that the independent checker reads: the table of the arm, and the exact expressions of the constants.
 
-use rne_codegen::{Derivation, ExactConstant, ExactStep, Program};
+use std::fs;
+use std::path::Path;
+
+use rne_codegen::{Derivation, ExactConstant, ExactStep, Function, Program};
 use rne_emit::{Precision, Prefix};
 use rne_model::{Angle, InertiaReference, QuarterTurns, Robot};
 use serde_json::{Value, json};
 
-/// The trace of a function in C as JSON.
-pub(crate) fn trace(
+use crate::commands::certify::{Arguments, Language};
+use crate::files::output_file::{self, Existing};
+use crate::files::plan_file::Compiler;
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+
+/// Writes the C code, its header and the trace of its constants.
+pub(super) fn write(
+    arguments: &Arguments,
+    evidence: &Path,
     robot: &Robot,
     program: &Program,
-    derivation: &Derivation,
-    prefix: &Prefix,
-    precision: Precision,
-) -> Value {
+    source: &str,
+    folder: &Path,
+) -> Result<(), Failure> {
+    if arguments.lang != Language::C || arguments.function != Function::InverseDynamics || robot.has_rotors() {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--evidence{TYPED:#} is for inverse_dynamics in C without rotors: the checker computes this function"
+        )));
+    }
+    let compiler = Compiler::new(&arguments.file, robot);
+    let Some(derivation) = compiler.derivation(program)? else {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are rounded one \
+             operation after another, so they have no exact expressions"
+        )));
+    };
+    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+    let trace = trace(robot, program, &derivation, &prefix, Precision::Single);
+    let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
+    fs::create_dir_all(evidence)
+        .map_err(|error| Failure::input(format_args!("{} cannot be made: {error}", evidence.display())))?;
+    let read = |name: &str| fs::read_to_string(folder.join(name)).map_err(Failure::input);
+    let stem = source.trim_end_matches(".c");
+    let header = format!("{stem}.h");
+    let files = [
+        (evidence.join(source), read(source)?),
+        (evidence.join(&header), read(&header)?),
+        (evidence.join(format!("{stem}.trace.json")), trace),
+    ];
+    for (path, text) in &files {
+        let is_other = match output_file::existing(path) {
+            Existing::Nothing => false,
+            Existing::Text(found) => {
+                found != *text
+                    && !arguments.force
+                    && !found.contains(rne_emit::GENERATED)
+                    && !found.contains("\"steps\"")
+            }
+            _ => true,
+        };
+        if is_other {
+            return Err(Failure::usage(format_args!("{} is not changed: rne did not write it", path.display())));
+        }
+    }
+    output_file::replace_all(&files).map(drop)
+}
+
+/// The trace of a function in C as JSON.
+fn trace(robot: &Robot, program: &Program, derivation: &Derivation, prefix: &Prefix, precision: Precision) -> Value {
     let steps: Vec<Value> = derivation.steps.iter().map(step).collect();
     let constants: serde_json::Map<String, Value> = derivation
         .constants

@@ -4,6 +4,7 @@
 //! commands, and `prediction_errors` is what `identify` and `watch` share.
 
 mod certify;
+mod certify_code;
 mod certify_trace;
 mod check;
 mod closed_form;
