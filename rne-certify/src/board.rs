@@ -63,7 +63,7 @@ pub fn cases(header: &str, function: &str, dof: usize, arrays: &[&str], length: 
     text
 }
 
-/// What the program prints.
+/// The results that the program prints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Printed {
     /// The instructions of the call of the function at the first state.

@@ -26,9 +26,9 @@ pub struct Certificate {
     pub options: Vec<String>,
     /// SHA-256, by what it is of.
     pub hashes: BTreeMap<String, String>,
-    /// What a call costs.
+    /// The cost of a call.
     pub cost: Cost,
-    /// What QEMU measured; absent where it is not installed.
+    /// The measurement in QEMU; absent where it is not installed.
     pub emulation: Option<Emulation>,
     /// The error of the results.
     pub accuracy: Accuracy,
@@ -40,7 +40,7 @@ pub struct Certificate {
     pub trace: Vec<Traced>,
 }
 
-/// What a call costs.
+/// The cost of a call.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Cost {
     /// Instructions of a call, those of the functions that it calls included.
@@ -53,7 +53,7 @@ pub struct Cost {
     pub classes: Vec<Class>,
     /// Instructions that the table of the core does not know.
     pub unknown: Vec<String>,
-    /// What the table assumes.
+    /// The assumptions of the table.
     pub assumptions: Vec<String>,
     /// Bytes of instructions.
     pub code: u64,
@@ -62,7 +62,7 @@ pub struct Cost {
     /// Bytes of stack of the deepest chain of calls, as the compiler records frames; as the instructions show them for
     /// a compiler that records none.
     pub stack: u64,
-    /// The same as the instructions show it.
+    /// The bytes of stack that the instructions show.
     pub stack_of_listing: u64,
     /// The functions that are called, and how often.
     pub calls: BTreeMap<String, usize>,
@@ -71,7 +71,7 @@ pub struct Cost {
 /// Instructions of one kind.
 #[derive(Clone, Debug, Serialize)]
 pub struct Class {
-    /// What they are.
+    /// The kind in words.
     pub what: String,
     /// Their mnemonics.
     pub mnemonics: Vec<String>,
@@ -81,7 +81,7 @@ pub struct Class {
     pub cycles: u64,
 }
 
-/// What QEMU measured.
+/// The measurement in QEMU.
 #[derive(Clone, Debug, Serialize)]
 pub struct Emulation {
     /// The board.
@@ -175,8 +175,7 @@ impl Certificate {
     #[must_use]
     pub fn page(&self) -> String {
         let mut text = format!(
-            "# Certificate of `{}` of {} on {}\n\nThis command writes the page, and with `--check` it compares the page \
-             with new results:\n\n```sh\n{}\n```\n\n",
+            "# Certificate of `{}` of {} on {}\n\nThis command writes the page:\n\n```sh\n{}\n```\n\n",
             self.function, self.robot, self.core, self.command
         );
         self.tools_and_files(&mut text);
@@ -223,8 +222,8 @@ impl Certificate {
             self.form, cost.instructions, cost.cycles, cost.code, cost.constants, cost.stack, cost.stack_of_listing
         );
         text.push_str(
-            "The code has one path, so the number of instructions and the cycles are the same for every input. They are \
-             the worst case, also for NaN and infinities. The cycles hold under these assumptions:\n\n",
+            "The code has one path, so the number of instructions and the cycles are the same for every input. They \
+             are the worst case, also for NaN and infinities. The cycles hold under these assumptions:\n\n",
         );
         for assumption in &cost.assumptions {
             let _ = writeln!(text, "- {assumption}");
@@ -245,9 +244,9 @@ impl Certificate {
         let _ = match &self.emulation {
             Some(Emulation { machine, instructions, states }) => writeln!(
                 text,
-                "QEMU runs the code on the board `{machine}`. The timer SysTick measures {instructions} instructions for \
-                 a call, the number that the listing shows. At {states} states, the results have the same bits as on \
-                 the host."
+                "QEMU runs the code on the board `{machine}`. The timer SysTick measures {instructions} instructions \
+                 for a call, the number that the listing shows. At {states} states, the results have the same bits as \
+                 on the host."
             ),
             None => writeln!(text, "Not run: QEMU is not installed (Debian: `apt-get install qemu-system-arm`)."),
         };
@@ -257,10 +256,10 @@ impl Certificate {
         let Accuracy { states, seed, ranges, results } = &self.accuracy;
         let _ = write!(
             text,
-            "\n## Error in single precision\n\nThe function runs at {states} random states (seed {seed}). At each state, \
-             interval arithmetic in `f64`, rounded outwards, encloses the exact result for the numbers of the robot \
-             file. The bound is the distance of the `f32` result from the farthest end of this interval, so it holds at \
-             each of these states. It says nothing about other states.\n\nRanges of the states:\n\n"
+            "\n## Error in single precision\n\nThe function runs at {states} random states (seed {seed}). At each \
+             state, interval arithmetic in `f64`, rounded outwards, encloses the exact result for the numbers of the \
+             robot file. The bound is the distance of the `f32` result from the farthest end of this interval, so it \
+             holds at each of these states. It says nothing about other states.\n\nRanges of the states:\n\n"
         );
         for range in ranges {
             let _ = writeln!(text, "- {range}");

@@ -36,7 +36,7 @@ enum Kind {
 /// Instructions of one kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Class {
-    /// What they are, in words.
+    /// The kind in words.
     pub what: &'static str,
     /// Their mnemonics that occur.
     pub mnemonics: Vec<String>,
@@ -105,7 +105,7 @@ impl Core {
         }
     }
 
-    /// What the table assumes, a sentence each.
+    /// The assumptions of the table, a sentence each.
     #[must_use]
     pub fn assumptions(self) -> Vec<&'static str> {
         let mut assumptions = vec![
@@ -328,8 +328,8 @@ mod tests {
     #[test]
     fn cycles_are_those_of_the_manual() {
         // 2 + 1 + 1 + 3 + 14 + 2 + 4, and a wait of vdiv for vmla, of vstr for vdiv
-        let listing = "     100:\tvldr\ts0, [r0]\n     104:\tvmul.f32\ts1, s0, s0\n     108:\tvadd.f32\ts2, s0, s0\n     \
-                       10c:\tvmla.f32\ts3, s0, s0\n     110:\tvdiv.f32\ts4, s3, s1\n     114:\tvstr\ts4, [r1]\n     \
+        let listing = "     100:\tvldr\ts0, [r0]\n     104:\tvmul.f32\ts1, s0, s0\n     108:\tvadd.f32\ts2, s0, s0\n   \
+                         10c:\tvmla.f32\ts3, s0, s0\n     110:\tvdiv.f32\ts4, s3, s1\n     114:\tvstr\ts4, [r1]\n     \
                        118:\tbx\tlr\n";
         assert_eq!(cycles(Core::M4, listing), 27 + 2);
         assert_eq!(cycles(Core::M7, listing), 3 + 3 + 3 + 6 + 16 + 1 + 9);
@@ -337,8 +337,8 @@ mod tests {
 
     #[test]
     fn what_a_branch_leaps_takes_no_time() {
-        let listing = "     100:\tb.n\t10c <f+0xc>\n     102:\tnop\n     104:\t.word\t0x3f800000\n     108:\t.word\t0\n     \
-                       10c:\tbx\tlr\n";
+        let listing = "     100:\tb.n\t10c <f+0xc>\n     102:\tnop\n     104:\t.word\t0x3f800000\n     \
+                       108:\t.word\t0\n     10c:\tbx\tlr\n";
         assert_eq!(cycles(Core::M4, listing), 8);
     }
 

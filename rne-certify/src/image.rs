@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::listing::{self, Count, Fault, Line};
 
-/// What a function costs.
+/// The cost of a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Figures {
     /// Instructions of one call.
@@ -53,7 +53,7 @@ impl Image {
         Self { functions }
     }
 
-    /// The same with the stack frames of functions that the image says nothing about.
+    /// Adds the stack frames of functions that the image says nothing about.
     #[must_use]
     pub fn with_frames(mut self, frame: impl Fn(&str) -> Option<u64>) -> Self {
         for (name, function) in &mut self.functions {
@@ -62,7 +62,7 @@ impl Image {
         self
     }
 
-    /// What keeps a function from being straight.
+    /// The faults that keep a function from being straight.
     ///
     /// # Errors
     /// When there is no such function.

@@ -35,8 +35,8 @@ impl Interval {
         Self { low: low.next_down(), high: high.next_up() }
     }
 
-    /// Sine and cosine of all angles of the interval. The crate `libm` (a port of musl's) errs by less than 1 ulp; 2^-51
-    /// covers this where results are at most 1. Neither function has a slope above 1.
+    /// Sine and cosine of all angles of the interval. The crate `libm` (a port of musl's) errs by less than 1 ulp;
+    /// 2^-51 covers this where results are at most 1. Neither function has a slope above 1.
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
         const ERROR: f64 = 2.0 * f64::EPSILON; // 2^-51

@@ -27,7 +27,7 @@ pub enum Fault {
     ReturnsElsewhere,
 }
 
-/// What a straight function is made of.
+/// The instructions and constants of a straight function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
     /// In a straight function every one is executed, once.
@@ -70,7 +70,7 @@ pub fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>, NoListing
     Ok(functions)
 }
 
-/// What a function is made of, and all that keeps it from being straight.
+/// The instructions and constants of a function, and all that keeps it from being straight.
 #[must_use]
 pub fn judge(function: &[Line]) -> (Count, Vec<Fault>) {
     let mut count = Count::default();
@@ -126,7 +126,7 @@ impl Line {
         }
     }
 
-    /// What fills up to the next function.
+    /// Whether the line fills up to the next function.
     #[must_use]
     pub fn is_padding(&self) -> bool {
         self.name() == "nop" || self.mnemonic == "..." || self.mnemonic == "movs" && self.operands == "r0, r0"
@@ -141,7 +141,7 @@ impl Line {
         }
     }
 
-    /// What is wrong with an instruction, `next` following it.
+    /// The fault of an instruction, which `next` follows.
     fn fault(&self, next: &[Self]) -> Option<Fault> {
         let name = self.name();
         let text = || format!("{} {}", self.mnemonic, self.operands);

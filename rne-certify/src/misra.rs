@@ -12,10 +12,7 @@ pub const NOT_DECIDED: [&str; 28] = [
 
 /// Rules that emitted code violates, and why.
 pub const DEVIATIONS: [(&str, &str); 3] = [
-    (
-        "2.5",
-        "advisory; macros of the header that the source does not use: they are the limits of the joints, for the caller",
-    ),
+    ("2.5", "advisory; macros that the source does not use: the limits of the joints, for the caller"),
     (
         "19.2",
         "advisory; the sine reads the bits of a float through a union, which C99 defines, and which needs no library",

@@ -188,9 +188,9 @@ impl<'r> Compiler<'r> {
         }
     }
 
-    /// How the constants of a program are computed exactly from the numbers of the robot file, for checkers that share no
-    /// code with the compiler. `program` is what [`Compiler::compile`] returned. `None` for a program whose constants are
-    /// rounded one operation after another, as those of the seven steps are.
+    /// How the constants of a program are computed exactly from the numbers of the robot file, for checkers that share
+    /// no code with the compiler. `program` is what [`Compiler::compile`] returned. `None` for a program whose
+    /// constants are rounded one operation after another, as those of the seven steps are.
     ///
     /// # Errors
     /// As [`Compiler::compile`].

@@ -80,8 +80,8 @@ pub struct Proof {
     pub before: (usize, usize),
 }
 
-/// The factors by which the form `reduced` multiplies lengths and forces, so that constants become 1. What is returned is
-/// in SI units.
+/// The factors by which the form `reduced` multiplies lengths and forces, so that constants become 1. What is returned
+/// is in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
     /// Lengths, and the velocities and accelerations of points, are multiplied by it: λ.

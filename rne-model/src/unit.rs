@@ -2,8 +2,8 @@
 
 /// The help for a `number` with a `unit` after it; `None` where that is no unit.
 ///
-/// The units of a robot file are rad, m, kg, s and N. The functions `deg`, `mm` and `g` convert degrees, millimetres and
-/// grams.
+/// The units of a robot file are rad, m, kg, s and N. The functions `deg`, `mm` and `g` convert degrees, millimetres
+/// and grams.
 pub(crate) fn instead(number: &str, unit: &str) -> Option<String> {
     if number.is_empty() || unit.len() > 16 {
         return None;

@@ -10,8 +10,8 @@ use crate::machine::{self, Missing};
 /// Builds every shipped robot for Cortex-M4F and M7F, reads and runs the code, and compares it with docs/embedded.md
 ///
 /// Needs Debian's packages rustc-web, cargo-web, rust-web-src (a compiler with the sources of `core`),
-/// gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm, cppcheck, binutils-riscv64-unknown-elf and lld; Node for
-/// WebAssembly, which is left out without. They do not disturb rustup's compiler. Five minutes at first, one minute
+/// gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm, cppcheck, binutils-riscv64-unknown-elf and lld; Node
+/// for WebAssembly, which is left out without. They do not disturb rustup's compiler. Five minutes at first, one minute
 /// then. CARGO_TARGET_DIR is obeyed.
 #[derive(Args)]
 #[command(after_help = "\

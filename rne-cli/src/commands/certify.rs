@@ -309,8 +309,8 @@ fn arrays(program: &Program) -> Result<Vec<&'static str>, Failure> {
         ))),
         Some(arrays) if is_array => Ok(arrays),
         _ => Err(Failure::usage(format_args!(
-            "rne certify cannot call {function}: it takes functions of positions, velocities, accelerations and torques \
-             that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
+            "rne certify cannot call {function}: it takes functions of positions, velocities, accelerations and \
+             torques that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
              forward_dynamics"
         ))),
     }
@@ -329,8 +329,8 @@ fn accuracy(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<A
         let source = |is_given: bool| if is_given { "limits of the robot file" } else { "no limit in the robot file" };
         let accuracy::Range { position: (low, high), velocity, acceleration } = *range;
         format!(
-            "joint {}: position {low:.4} to {high:.4} {unit} ({}), speed up to {velocity:.4} {unit}/s ({}), acceleration \
-             up to {acceleration} {unit}/s²",
+            "joint {}: position {low:.4} to {high:.4} {unit} ({}), speed up to {velocity:.4} {unit}/s ({}), \
+             acceleration up to {acceleration} {unit}/s²",
             index + 1,
             source(joint.limits.position.is_some()),
             source(joint.limits.velocity.is_some())

@@ -127,8 +127,8 @@ fn rust_library(symbol: &str, function: Function, dof: usize, arrays: &[&str], l
     let parameters = list(&|index| format!("a{index}: &[f32; {dof}]"));
     let passed = list(&|index| format!("a{index}"));
     format!(
-        "#![no_std]\nmod arm;\n\n#[unsafe(no_mangle)]\npub extern \"C\" fn {symbol}({parameters}, out: &mut [f32; {length}]) \
-         {{\n    *out = arm::{function}({passed});\n}}\n"
+        "#![no_std]\nmod arm;\n\n#[unsafe(no_mangle)]\npub extern \"C\" fn {symbol}({parameters}, out: &mut [f32; \
+         {length}]) {{\n    *out = arm::{function}({passed});\n}}\n"
     )
 }
 
@@ -157,7 +157,8 @@ pub(super) fn emulate(
         let expected: Option<Vec<u32>> = expected.map(|numbers| numbers.iter().map(|x| x.to_bits()).collect());
         if expected.as_ref() != Some(found) {
             return Err(Failure::input(format_args!(
-                "at state {number}, the results in QEMU, {found:08x?}, do not have the bits of the results on this computer, {:08x?}",
+                "at state {number}, the results in QEMU, {found:08x?}, do not have the bits of the results on this computer, \
+                 {:08x?}",
                 expected.unwrap_or_default()
             )));
         }

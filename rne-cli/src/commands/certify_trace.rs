@@ -31,8 +31,8 @@ pub(super) fn write(
     let compiler = Compiler::new(&arguments.file, robot);
     let Some(derivation) = compiler.derivation(program)? else {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are rounded one \
-             operation after another, so they have no exact expressions"
+            "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are rounded \
+             one operation after another, so they have no exact expressions"
         )));
     };
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));

@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text: text.trim_start_matches('\n').to_owned(), at_fault: bad > 0, ..Outcome::default() })
 }
 
-/// What stands before the name of a file whose warnings count as errors.
+/// The words before the name of a file whose warnings count as errors.
 fn denied(warnings: usize) -> String {
     let s = if warnings == 1 { "" } else { "s" };
     format!("{WARNING}{warnings} warning{s} denied{WARNING:#}")

@@ -37,7 +37,7 @@ fn package(program: &str) -> &'static str {
     }
 }
 
-/// What a program prints; its errors are those of the command.
+/// Runs a program and returns the text that it prints; its errors are those of the command.
 pub(crate) fn text(command: &mut Command) -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&output(command)?.stdout).into_owned())
 }
@@ -138,7 +138,7 @@ fn frames(folder: &Path) -> BTreeMap<String, u64> {
     frames
 }
 
-/// What an image prints in QEMU, where an instruction takes 1024 ns.
+/// The text that an image prints in QEMU, where an instruction takes 1024 ns.
 pub(crate) fn emulated(core: Core, folder: &Path, elf: &str) -> Result<String, Failure> {
     text(
         Command::new("qemu-system-arm")
@@ -148,7 +148,7 @@ pub(crate) fn emulated(core: Core, folder: &Path, elf: &str) -> Result<String, F
     )
 }
 
-/// What the addon `misra` of cppcheck reports about a source.
+/// The text that the addon `misra` of cppcheck prints about a source.
 pub(crate) fn misra(folder: &Path, source: &str) -> Result<String, Failure> {
     let output = output(Command::new("cppcheck").current_dir(folder).args([
         "--addon=misra",

@@ -81,7 +81,8 @@ fn checked(source: &Path, trace: &Path) -> (bool, String) {
     (output.status.code() == Some(0), String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// The places where one part of a source can be changed to another of its kind, with the change: (start, end, new text).
+/// The places where one part of a source can be changed to another of its kind, with the change: (start, end, new
+/// text).
 fn mutations(source: &str, kind: usize) -> Vec<(usize, usize, String)> {
     let start = source.find("_inverse_dynamics(").expect("the function");
     let mut found = Vec::new();

@@ -33,7 +33,7 @@ pub enum ExactStep {
     Root(usize),
 }
 
-/// What a constant is exactly, by places of steps.
+/// The exact value of a constant, by places of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExactConstant {
     /// A number.
@@ -76,7 +76,7 @@ thread_local! {
     static WAYS: RefCell<HashMap<Residue, (bool, Way)>> = RefCell::new(HashMap::new());
 }
 
-/// What an action returns, and the ways of all constants that it computes.
+/// Runs an action and returns its result with the ways of all constants that it computes.
 pub(crate) fn recorded<T>(act: impl FnOnce() -> T) -> (T, Ways) {
     WAYS.take();
     LOWERED.take();
