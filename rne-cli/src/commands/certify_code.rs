@@ -157,8 +157,7 @@ pub(super) fn emulate(
         let expected: Option<Vec<u32>> = expected.map(|numbers| numbers.iter().map(|x| x.to_bits()).collect());
         if expected.as_ref() != Some(found) {
             return Err(Failure::input(format_args!(
-                "at state {number}, the results in QEMU, {found:08x?}, do not have the bits of the results on this computer, \
-                 {:08x?}",
+                "at state {number}, the results in QEMU, {found:08x?}, do not have the bits of this computer, {:08x?}",
                 expected.unwrap_or_default()
             )));
         }
