@@ -32,7 +32,7 @@ def main():
                 name = page.relative_to(folder).as_posix()
                 driver.get(root + name)
                 words = len(driver.find_element("css selector", "main").text.split())
-                check(driver.title and words > 50, f"{name} has the title {driver.title!r} and {words} words")
+                check(driver.title and words > 20, f"{name} has the title {driver.title!r} and {words} words")
                 narrow(driver, f"{name}, {screen}")
                 quiet(driver, f"{name}, {screen}")
         seen_on(driver, *SCREENS["desk"])
