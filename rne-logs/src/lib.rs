@@ -38,6 +38,7 @@ pub use crate::columns::quantity::Quantity;
 pub use crate::columns::time_unit::TimeUnit;
 pub use crate::columns::unit::{Dimension, JointUnits};
 pub use crate::error::LogError;
+pub use crate::formats::csv_rows::CsvRows;
 pub use crate::formats::format::Format;
 pub use crate::formats::guard::is_guarded;
 #[cfg(feature = "parquet")]

@@ -1,5 +1,4 @@
-//! The document in LaTeX: an article with amsmath, which every TeX has; or its equations for an article or for slides of
-//! beamer.
+//! The document in LaTeX: an article with amsmath, which every TeX has; or its equations for an article or for slides.
 
 use std::fmt::Write as _;
 
@@ -7,7 +6,7 @@ use crate::ClosedForm;
 use crate::document::{Item, sections};
 use crate::notation::{Script, latex_text};
 
-/// What a text in LaTeX is for.
+/// The use of a text in LaTeX.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LatexStyle {
@@ -23,7 +22,7 @@ pub enum LatexStyle {
 /// Columns of a terminal whose formulas fill a line of the page.
 const COLUMNS: usize = 78;
 
-/// The same for a slide, in small letters.
+/// Columns of a terminal whose formulas fill a line of a slide, in small letters.
 const COLUMNS_OF_SLIDE: usize = 54;
 
 const HEAD: &str = r"\documentclass{article}
@@ -71,7 +70,7 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
     }
 }
 
-/// A slide with formulas of a section; long ones go on behind it.
+/// A slide with formulas of a section; long ones go on in another slide.
 fn frame(text: &mut String, title: &str, items: &[Item]) {
     let mut rows = rows(items, COLUMNS_OF_SLIDE);
     if rows.is_empty() {

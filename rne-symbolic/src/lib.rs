@@ -23,7 +23,8 @@
 //! let robot = read("pendulum.yaml", text.as_bytes())?;
 //! let form = ClosedForm::of(&robot, 1);
 //! assert!(form.text().contains("  τ1 = (1/3) m a² θ̈1 + (1/2) m g a sin θ1\n"));
-//! assert!(form.latex("pendulum", rne_symbolic::LatexStyle::Article).contains(r"\tau_{1} &= \tfrac{1}{3}\,m\,a^{2}\,\ddot{\theta}_{1}"));
+//! let latex = form.latex("pendulum", rne_symbolic::LatexStyle::Body);
+//! assert!(latex.contains(r"\tau_{1} &= \tfrac{1}{3}\,m\,a^{2}\,\ddot{\theta}_{1}"));
 //! # Ok::<(), rne_model::Report>(())
 //! ```
 #![forbid(unsafe_code)]

@@ -16,8 +16,8 @@ use crate::{Verdict, machine, page};
 
 /// Builds one static site: the documents, the playground, a page for each shipped robot, and the reference
 ///
-/// The site is the folder target/site. Any web server can host it, and its links are relative. A link that leads nowhere
-/// is an error. Documents keep their paths: docs/teaching.md is docs/teaching.html.
+/// The site is the folder target/site. Any web server can host it, and its links are relative. A link that leads
+/// nowhere is an error. Documents keep their paths: docs/teaching.md is docs/teaching.html.
 #[derive(Args)]
 #[command(after_help = "\
 Needs what `cargo xtask playground` needs; --test needs what `cargo xtask page`
@@ -74,7 +74,8 @@ impl Site {
         }
         let rne = page::rne(&shell)?;
         let names = cmd!(shell, "git ls-files *.md").quiet().read()?;
-        let sources: Vec<PathBuf> = names.lines().map(PathBuf::from).collect();
+        // texts in sources are parts of the reference
+        let sources: Vec<PathBuf> = names.lines().filter(|name| !name.contains("/src/")).map(PathBuf::from).collect();
         let mut wrong = Vec::new();
         for source in &sources {
             let text =
@@ -127,8 +128,8 @@ fn framed(place: &Path, title: &str, body: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
          content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n\
-         <title>{title}</title>\n<link rel=\"stylesheet\" href=\"{up}style.css\">\n</head>\n<body>\n<nav>{links}</nav>\n\
-         <main>\n{body}</main>\n</body>\n</html>\n"
+         <title>{title}</title>\n<link rel=\"stylesheet\" href=\"{up}style.css\">\n</head>\n<body>\n\
+         <nav>{links}</nav>\n<main>\n{body}</main>\n</body>\n</html>\n"
     )
 }
 
@@ -276,7 +277,8 @@ fn reports(shell: &xshell::Shell, rne: &Path, site: &Path) -> Result<()> {
         let title = title.map_or(name.as_str(), |(title, _)| title);
         let _ = writeln!(
             list,
-            "<li><a href=\"{name}.html\">{title}</a> (<a href=\"../playground/index.html#robot={name}\">playground</a>)</li>"
+            "<li><a href=\"{name}.html\">{title}</a> \
+             (<a href=\"../playground/index.html#robot={name}\">playground</a>)</li>"
         );
     }
     list.push_str("</ul>\n");

@@ -6,6 +6,13 @@ import pytest
 import rne
 
 N = 40
+
+
+def close(a, b):
+    """Equal to 1e-12 of the largest number."""
+    assert np.abs(a - b).max() <= 1e-12 * max(np.abs(b).max(), 1e-9)
+
+
 random = np.random.default_rng(5)
 
 SHAPES = {

@@ -27,7 +27,7 @@ pub(crate) struct Wanted {
     first: Option<usize>,
 }
 
-/// What the LaTeX is for.
+/// The use of the LaTeX.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Style {
     /// A document

@@ -106,7 +106,7 @@ fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
 /// More than a file of states for a class has, in bytes.
 const LONGEST: usize = 4 << 20;
 
-/// The content of a column of the file.
+/// The contents of a column of the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Column {
     Name,

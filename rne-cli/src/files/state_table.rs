@@ -1,12 +1,10 @@
 //! Tables of states in files, CSV or arrays of numpy, that are read in parts.
 
-use std::cell::Cell;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
-use std::rc::Rc;
 
-use rne_logs::Npy;
+use rne_logs::{CsvRows, Npy};
 use rne_model::{did_you_mean, open_file};
 
 use crate::files::csv_table::quoted;
@@ -15,9 +13,6 @@ use crate::outcome::Failure;
 
 /// States of a part: some megabytes, whatever the file's size.
 pub(crate) const PART: usize = 16_384;
-
-/// The longest line of a CSV file, with its line ends where a quote holds them.
-const LONGEST_LINE: u64 = 1 << 20;
 
 /// A table of numbers that is read in parts.
 pub(crate) struct Table {
@@ -31,10 +26,8 @@ pub(crate) struct Table {
 
 enum Rows {
     Csv {
-        reader: Box<csv::Reader<Bounded>>,
-        end: Rc<Cell<u64>>,
+        rows: Box<CsvRows>,
         columns: Vec<(usize, String)>,
-        record: csv::ByteRecord,
     },
     Npy {
         numbers: Box<dyn Iterator<Item = io::Result<f64>>>,
@@ -42,31 +35,6 @@ enum Rows {
         /// How many states were read.
         read: usize,
     },
-}
-
-/// A reader that gives no more than what a line may have: a quote that is not closed would hold the whole file.
-struct Bounded {
-    file: Box<dyn BufRead>,
-    given: u64,
-    end: Rc<Cell<u64>>,
-    /// Whether what was given ends with a line: the last one may have no end, and is given one.
-    is_line: bool,
-}
-
-impl Read for Bounded {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if self.given >= self.end.get() {
-            let message = "the line has more than a million characters, or a quote in it is not closed";
-            return Err(io::Error::new(ErrorKind::InvalidData, message));
-        }
-        let mut count = self.file.read(buffer)?;
-        if let (0, false, [first, ..]) = (count, self.is_line, &mut *buffer) {
-            (*first, count) = (b'\n', 1);
-        }
-        self.is_line = buffer[..count].last().map_or(self.is_line, |last| *last == b'\n');
-        self.given += count as u64;
-        Ok(count)
-    }
 }
 
 impl Table {
@@ -105,18 +73,8 @@ impl Table {
         wanted: &[String],
         others: &[Option<String>],
     ) -> Result<Self, Failure> {
-        let end = Rc::new(Cell::new(LONGEST_LINE));
-        let mut reader = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .has_headers(true)
-            .from_reader(Bounded { file, given: 0, end: Rc::clone(&end), is_line: true });
-        let header =
-            reader.byte_headers().map_err(|error| Failure::input(format_args!("{name}: {}", reason(error))))?;
-        let header: Vec<String> = header
-            .iter()
-            .map(|cell| String::from_utf8_lossy(inner(cell)).trim_start_matches('\u{feff}').trim().to_owned())
-            .collect();
+        let rows = CsvRows::open(file, b',', true).map_err(|what| Failure::input(format_args!("{name}: {what}")))?;
+        let header = &rows.header;
         if header.is_empty() {
             let needed = wanted.join(",");
             return Err(Failure::input(format_args!("{name} is empty; its header is {needed}, in any order")));
@@ -129,7 +87,7 @@ impl Table {
             match places[..] {
                 [place] => columns.push((place, column.clone())),
                 [] => {
-                    let near = instead(column, &header);
+                    let near = instead(column, header);
                     let needed = wanted.join(", ");
                     return Err(Failure::input(format_args!(
                         "{name}: the header has no column `{column}`{near}; the required columns are {needed}; \
@@ -141,7 +99,7 @@ impl Table {
                 }
             }
         }
-        let rows = Rows::Csv { reader: Box::new(reader), end, columns, record: csv::ByteRecord::new() };
+        let rows = Rows::Csv { rows: Box::new(rows), columns };
         Ok(Self { states: None, name, rows, mass: None })
     }
 
@@ -167,32 +125,21 @@ impl Table {
         // of the row that was read last
         let negative = |row: &[f64]| mass.and_then(|mass| row.get(mass)).copied().filter(|mass| *mass < 0.0);
         match &mut self.rows {
-            Rows::Csv { reader, end, columns, record } => {
+            Rows::Csv { rows: table, columns } => {
                 let mut count = 0;
                 while count < PART {
-                    let first = reader.position().line();
-                    // what is read ahead was given before
-                    end.set(reader.position().byte().saturating_add(LONGEST_LINE));
-                    let is_there = reader.read_byte_record(record).map_err(|error| {
-                        let is_open = record.iter().any(|cell| cell.contains(&b'\n'));
-                        let line = match (error.kind(), error.position()) {
-                            (csv::ErrorKind::UnequalLengths { .. }, _) if !is_open => last_line(reader, record),
-                            (_, Some(begin)) => begin.line(),
-                            (_, None) => first,
-                        };
-                        let hint = if is_open { "; a quote in it is not closed on its line" } else { "" };
-                        Failure::input(format_args!("{name}:{line}: {}{hint}", reason(error)))
-                    })?;
+                    let is_there =
+                        table.read().map_err(|(line, what)| Failure::input(format_args!("{name}:{line}: {what}")))?;
                     if !is_there {
                         break;
                     }
                     let begin = rows.len();
                     for (place, column) in &*columns {
-                        let cell = inner(record.get(*place).unwrap_or_default());
+                        let cell = table.cell(*place);
                         let number = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse::<f64>().ok());
                         let misfit = number.and_then(|number| misfit(number, cell));
                         rows.push(number.filter(|_| misfit.is_none()).ok_or_else(|| {
-                            let line = last_line(reader, record);
+                            let line = table.line();
                             let shown = quoted(&String::from_utf8_lossy(cell));
                             let what = match (cell, misfit) {
                                 ([], _) => "empty".to_owned(),
@@ -203,7 +150,7 @@ impl Table {
                         })?);
                     }
                     if let Some(negative) = negative(&rows[begin..]) {
-                        let (line, column) = (last_line(reader, record), &columns[mass.unwrap_or_default()].1);
+                        let (line, column) = (table.line(), &columns[mass.unwrap_or_default()].1);
                         return Err(Failure::input(format_args!(
                             "{name}:{line}: the mass `{column}` is {negative} kg; a mass is zero or positive"
                         )));
@@ -262,28 +209,4 @@ fn misfit(number: f64, cell: &[u8]) -> Option<&'static str> {
         return Some("large");
     }
     (number == 0.0 && mantissa.any(|byte| matches!(byte, b'1'..=b'9'))).then_some("small")
-}
-
-/// A cell without blanks and without the quotes behind them.
-fn inner(cell: &[u8]) -> &[u8] {
-    let cell = cell.trim_ascii();
-    cell.strip_prefix(b"\"").and_then(|cell| cell.strip_suffix(b"\"")).unwrap_or(cell).trim_ascii()
-}
-
-/// The line on which a record that was just read begins. Its own position is that of empty lines before it.
-fn last_line<R: Read>(reader: &csv::Reader<R>, record: &csv::ByteRecord) -> u64 {
-    let inner: usize = record.iter().map(|cell| cell.split(|byte| *byte == b'\n').count() - 1).sum();
-    reader.position().line().saturating_sub(1 + inner as u64).max(1)
-}
-
-/// Why a record cannot be read.
-fn reason(error: csv::Error) -> String {
-    match error.into_kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            let cells = if len == 1 { "cell" } else { "cells" };
-            format!("the line has {len} {cells}, but the header has {expected_len}")
-        }
-        csv::ErrorKind::Io(error) => error.to_string(),
-        kind => csv::Error::from(io::Error::other(format!("{kind:?}"))).to_string(),
-    }
 }

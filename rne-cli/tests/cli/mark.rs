@@ -80,8 +80,7 @@ fn path(path: &Path) -> &str {
     path.to_str().expect("UTF-8")
 }
 
-/// A class of forty with numbers of their own, in two folders of worksheets: those with a decimal comma and those
-/// without.
+/// A class of forty with numbers of their own, in two folders: with a decimal point and with a comma.
 fn class(name: &str) -> Vec<PathBuf> {
     let folder = folder(name);
     let students: Vec<String> = (1..=40).map(|number| format!("student {number:02}")).collect();

@@ -16,23 +16,23 @@ const WORDS: [(Quantity, bool, &[&str]); 4] = [
 /// The names of columns of joints, in the order in which they are tried; an optional unit follows, as in `q1 [deg]`,
 /// `q1_deg` or `q1 deg`. The documentation of logs has this table.
 const PATTERNS: [Pattern; 12] = [
-    Pattern(Form::Number, "", "", "tables of `rne`, libfranka"),
-    Pattern(Form::Number, "_", "", "ur_rtde"),
-    Pattern(Form::Number, "[", "]", "arrays"),
-    Pattern(Form::Number, ".", "", "messages written as columns"),
-    Pattern(Form::Number, " ", "", "hand-written tables"),
-    Pattern(Form::JointBefore, "/", "", "PlotJuggler, ros2_control"),
-    Pattern(Form::JointBefore, ".", "", "tables of `rne`"),
-    Pattern(Form::JointBefore, "_", "", "hand-written tables"),
-    Pattern(Form::JointBefore, " ", "", "hand-written tables"),
-    Pattern(Form::JointBehind, ".", "", "messages written as columns"),
-    Pattern(Form::JointBehind, "[", "]", "messages written as columns"),
-    Pattern(Form::JointBehind, "/", "", "messages written as columns"),
+    Pattern(Form::Number, "", ""),        // tables of `rne`, libfranka
+    Pattern(Form::Number, "_", ""),       // ur_rtde
+    Pattern(Form::Number, "[", "]"),      // arrays
+    Pattern(Form::Number, ".", ""),       // messages written as columns
+    Pattern(Form::Number, " ", ""),       // hand-written tables
+    Pattern(Form::JointBefore, "/", ""),  // PlotJuggler, ros2_control
+    Pattern(Form::JointBefore, ".", ""),  // tables of `rne`
+    Pattern(Form::JointBefore, "_", ""),  // hand-written tables
+    Pattern(Form::JointBefore, " ", ""),  // hand-written tables
+    Pattern(Form::JointBehind, ".", ""),  // messages written as columns
+    Pattern(Form::JointBehind, "[", "]"), // messages written as columns
+    Pattern(Form::JointBehind, "/", ""),  // messages written as columns
 ];
 
 /// The names of columns that are lists, a number of each joint in a row; an optional unit follows.
 #[cfg(feature = "parquet")]
-const LISTS: [Pattern; 1] = [Pattern(Form::List, "", "", "messages written as rows")];
+const LISTS: [Pattern; 1] = [Pattern(Form::List, "", "")];
 
 /// Names of lists of positions in collections for learning.
 #[cfg(feature = "parquet")]
@@ -95,18 +95,13 @@ enum Form {
     List,
 }
 
-/// How a name says its joint, the texts between and after the word and the joint, and who writes such names.
-struct Pattern(
-    Form,
-    &'static str,
-    &'static str,
-    #[cfg_attr(not(test), expect(dead_code, reason = "the test of the table in docs/logs.md reads it"))] &'static str,
-);
+/// How a name says its joint, and the texts between and after the word and the joint.
+struct Pattern(Form, &'static str, &'static str);
 
 impl Pattern {
     /// The column of a name without a unit at its end.
     fn read(&self, name: &str) -> Option<(Named, Form)> {
-        let &Self(form, between, after, _) = self;
+        let &Self(form, between, after) = self;
         let name = name.trim_start_matches(SEPARATORS).strip_suffix(after)?;
         let (word, joint) = match form {
             Form::Number => {
@@ -303,8 +298,8 @@ mod tests {
     fn the_documentation_has_these_patterns_and_words() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/logs.md");
         let text = std::fs::read_to_string(path).unwrap();
-        let mut table = "| pattern | examples | from |\n|---|---|---|\n".to_owned();
-        for Pattern(form, between, after, from) in PATTERNS {
+        let has = |row: &str| assert!(text.contains(row), "docs/logs.md does not have\n{row}");
+        for Pattern(form, between, after) in PATTERNS {
             let names = |quantity: &str, joint: &str| match form {
                 Form::JointBefore => format!("`{joint}{between}{quantity}{after}`"),
                 _ => format!("`{quantity}{between}{joint}{after}`"),
@@ -317,15 +312,18 @@ mod tests {
             for example in &examples {
                 assert!(matches!(meaning(example.trim_matches('`')), Meaning::Joint(_)), "{example}");
             }
-            let _ = writeln!(table, "| {} | {} | {from} |", names("{quantity}", joint), examples.join(", "));
+            has(&format!("\n| {} | {} |", names("{quantity}", joint), examples.join(", ")));
         }
-        table += "\n| `{quantity}` | words |\n|---|---|\n";
+        let rows =
+            text.lines().filter(|row| row.starts_with("| `") && row.contains("{quantity}") && row.contains("`, `"));
+        assert_eq!(rows.count(), PATTERNS.len(), "docs/logs.md has other patterns too");
+        let mut table = "\n| `{quantity}` | words |\n|---|---|\n".to_owned();
         for (quantity, is_current, words) in WORDS {
             let what = if is_current { "current" } else { quantity.word() };
-            let _ = writeln!(table, "| {what} | `{}` |", words.join("`, `"));
+            writeln!(table, "| {what} | `{}` |", words.join("`, `")).unwrap();
         }
-        let _ = writeln!(table, "| time | `{}` |", TIMES.join("`, `"));
-        assert!(text.contains(&table), "docs/logs.md has another table than\n{table}");
+        writeln!(table, "| time | `{}` |", TIMES.join("`, `")).unwrap();
+        has(&table);
     }
 
     #[test]

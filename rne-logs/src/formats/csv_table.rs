@@ -1,29 +1,24 @@
 //! Tables of text: CSV.
 
 use std::fs::File;
-use std::io::{self, BufRead as _, BufReader, ErrorKind, Read};
+use std::io::{self, BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 
 use crate::Options;
 use crate::columns::label::Label;
 use crate::columns::table::{Column, Columns};
 use crate::columns::unit::FileUnits;
+use crate::formats::csv_rows::CsvRows;
 use crate::formats::sample::{Sample, Source};
 use crate::remedy::{Remedy, Setting};
 use crate::spelling::listed;
 use crate::{LogError, TimeUnit};
 
-/// The longest line, bytes.
-const LONGEST_LINE: usize = 1 << 20;
-
 /// A table of text, a sample a line.
 pub(crate) struct CsvTable {
     path: PathBuf,
-    reader: csv::Reader<Lines>,
-    record: csv::ByteRecord,
+    rows: CsvRows,
     columns: Columns,
-    /// The columns' names.
-    header: Vec<String>,
     labels: Vec<Label>,
     /// The columns that have no number in the first row.
     words: Vec<String>,
@@ -38,26 +33,6 @@ enum Clock {
     Column(usize, TimeUnit),
     /// Seconds from row to row, of a table without times.
     Step(f64),
-}
-
-/// A reader that gives up on lines without end.
-struct Lines {
-    file: BufReader<File>,
-    length: usize,
-}
-
-impl Read for Lines {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.file.read(buffer)?;
-        match buffer[..count].iter().rposition(|byte| *byte == b'\n') {
-            Some(end) => self.length = count - end,
-            None => self.length += count,
-        }
-        if self.length > LONGEST_LINE {
-            return Err(io::Error::new(ErrorKind::InvalidData, "a line has more than a million bytes"));
-        }
-        Ok(count)
-    }
 }
 
 impl CsvTable {
@@ -81,23 +56,15 @@ impl CsvTable {
         let header = header.unwrap_or_default();
         let delimiter = [b',', b';', b'\t'].into_iter().find(|byte| header.contains(byte)).unwrap_or(b',');
         // lines are records: a quote that is not closed would hold the file
-        let mut reader = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .delimiter(delimiter)
-            .quoting(false)
-            .from_reader(Lines { file, length: 0 });
-        let header = reader.byte_headers().map_err(|error| LogError::file(path, reason(error)))?;
-        let header: Vec<String> = header
-            .iter()
-            .map(|cell| String::from_utf8_lossy(inner(cell)).trim_start_matches('\u{feff}').into())
-            .collect();
+        let rows = CsvRows::open(Box::new(file), delimiter, false).map_err(|what| LogError::file(path, what))?;
+        let header = &rows.header;
         if header.is_empty() {
             return Err(LogError::file(
                 path,
                 "the file is empty; its first line must have the names of the columns, as in time,q1,tau1",
             ));
         }
-        if let [only] = header.as_slice()
+        if let [only] = &header[..]
             && only.split_whitespace().count() > 2
         {
             let what = "the cells of the first line are separated by blanks: separate the cells of all lines by commas";
@@ -107,25 +74,22 @@ impl CsvTable {
             let what = "the first line has numbers; it must have the names of the columns, as in time,q1,qd1,tau1";
             return Err(LogError::file(path, what));
         }
-        let columns = Columns::of(path, &header, options)?;
+        let columns = Columns::of(path, header, options)?;
         let clock = match (columns.time, options.rate) {
             (Some((place, _)), Some(_)) => return Err(two_times(path, &header[place])),
             (Some((place, said)), None) => Clock::Column(place, said.or(options.time_unit).unwrap_or_default()),
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => {
                 let error = no_time(path, header.iter().map(String::as_str));
-                let error = error.remedy(Remedy::Give(Setting::TimeColumn(header)));
+                let error = error.remedy(Remedy::Give(Setting::TimeColumn(header.clone())));
                 return Err(error.remedy(Remedy::Give(Setting::Rate)));
             }
         };
         let is_time_unit_known = columns.time.is_none_or(|(_, said)| said.is_some()) || options.time_unit.is_some();
-        let record = csv::ByteRecord::new();
         Ok(Self {
             path: path.to_owned(),
-            reader,
-            record,
+            rows,
             columns,
-            header,
             labels: Vec::new(),
             words: Vec::new(),
             clock,
@@ -136,13 +100,15 @@ impl CsvTable {
     }
 
     fn wrong(&self, what: impl std::fmt::Display) -> LogError {
-        // lines without cells are passed over: the line is that of the reader, which stands behind the record
-        let line = self.reader.position().line().saturating_sub(1).max(1);
+        self.wrong_at(self.rows.line(), what)
+    }
+
+    fn wrong_at(&self, line: u64, what: impl std::fmt::Display) -> LogError {
         LogError::file(&self.path, format_args!("line {line}: {what}"))
     }
 
     fn number(&self, Column { place, factor }: Column) -> Result<f64, LogError> {
-        let cell = inner(self.record.get(place).unwrap_or_default());
+        let cell = self.rows.cell(place);
         if cell.is_empty() {
             return Ok(f64::NAN);
         }
@@ -157,7 +123,7 @@ impl CsvTable {
     fn is_selected(&mut self) -> bool {
         let mut is_selected = true;
         for label in &mut self.labels {
-            let cell = inner(self.record.get(label.place).unwrap_or_default());
+            let cell = self.rows.cell(label.place);
             is_selected &= label.take(&String::from_utf8_lossy(cell));
         }
         is_selected
@@ -175,22 +141,21 @@ impl CsvTable {
 impl Source for CsvTable {
     fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
         loop {
-            match self.reader.read_byte_record(&mut self.record) {
-                Ok(true) => {}
-                Ok(false) => return Ok(false),
-                Err(error) => return Err(self.wrong(reason(error))),
+            if !self.rows.read().map_err(|(line, what)| self.wrong_at(line, what))? {
+                return Ok(false);
             }
             if self.is_selected() {
                 break;
             }
         }
         if self.row == 0 {
-            let cells = self.header.iter().zip(&self.record);
-            self.words = cells.filter(|(_, cell)| is_word(cell)).map(|(name, _)| name.clone()).collect();
+            let names = self.rows.header.iter().enumerate();
+            let words = names.filter(|(place, _)| is_word(self.rows.cell(*place)));
+            self.words = words.map(|(_, name)| name.clone()).collect();
         }
         sample.measured = match self.clock {
             Clock::Column(place, unit) => {
-                let cell = inner(self.record.get(place).unwrap_or_default());
+                let cell = self.rows.cell(place);
                 let cell = std::str::from_utf8(cell).unwrap_or_default();
                 unit.parse(cell).ok_or_else(|| {
                     let error = self.wrong(unit.refusal(cell) + of_comma(cell.as_bytes()));
@@ -220,7 +185,7 @@ impl Source for CsvTable {
 
     #[expect(clippy::cast_precision_loss, reason = "a bar of some hundred steps")]
     fn progress(&self) -> f64 {
-        (self.reader.position().byte() as f64 / self.size.max(1) as f64).min(1.0)
+        (self.rows.bytes() as f64 / self.size.max(1) as f64).min(1.0)
     }
 
     fn notes(&self) -> Vec<String> {
@@ -240,7 +205,7 @@ impl Source for CsvTable {
     }
 
     fn label_columns(&self) -> Vec<String> {
-        self.header.clone()
+        self.rows.header.clone()
     }
 
     fn word_columns(&self) -> Vec<String> {
@@ -248,7 +213,7 @@ impl Source for CsvTable {
     }
 
     fn hold(&mut self, column: usize, wanted: Option<&str>) {
-        self.labels.push(Label::new(column, &self.header[column], wanted));
+        self.labels.push(Label::new(column, &self.rows.header[column], wanted));
     }
 
     fn labels(&self) -> &[Label] {
@@ -279,22 +244,6 @@ fn of_comma(cell: &[u8]) -> &'static str {
 
 /// Whether a cell has a text that is no number.
 fn is_word(cell: &[u8]) -> bool {
-    let cell = std::str::from_utf8(inner(cell)).unwrap_or_default();
+    let cell = std::str::from_utf8(cell).unwrap_or_default();
     !cell.is_empty() && cell.parse::<f64>().is_err()
-}
-
-/// A cell without blanks and quotes.
-fn inner(cell: &[u8]) -> &[u8] {
-    let cell = cell.trim_ascii();
-    cell.strip_prefix(b"\"").and_then(|cell| cell.strip_suffix(b"\"")).unwrap_or(cell).trim_ascii()
-}
-
-fn reason(error: csv::Error) -> String {
-    match error.into_kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("the line has {len} cells, but the header has {expected_len}")
-        }
-        csv::ErrorKind::Io(error) => error.to_string(),
-        kind => csv::Error::from(io::Error::other(format!("{kind:?}"))).to_string(),
-    }
 }

@@ -1,5 +1,6 @@
 //! A reader for each format of files.
 
+pub(crate) mod csv_rows;
 pub(crate) mod csv_table;
 pub(crate) mod format;
 pub(crate) mod guard;

@@ -368,11 +368,7 @@ class Baseline:
     def save(self, path: Path) -> None: ...
 
 class Watch:
-    """What was found in logs.
-
-    An event has `since_time`, `until_time`, `not_before_time` and `not_after_time` (`str`, RFC 3339 in UTC, or `None`),
-    and `rivals` (`list[str]`), beside the other keys of `rne watch --json`.
-    """
+    """Result of `rne.watch`: the changes that were found in logs."""
 
     robot: str
     compared_with: str

@@ -27,15 +27,15 @@ class Baseline:
 
 
 class Watch:
-    """What was found in logs.
+    """Result of `rne.watch`: the changes that were found in logs.
 
     `events` is a list of dicts with the keys of `rne watch --json`: cause (friction, payload, contact, sensor or model),
     joint (from 1), name, parameter, value ± deviation in `unit`, file_value, baseline_value, threshold, since and until
-    (s), since_time, until_time, not_before_time and not_after_time (RFC 3339, UTC, or None), rivals. `parameters` has all other parameters with their thresholds, `joints` the errors of the model. With `by`,
-    `trend` has a dict for each log (log, events, payload, payload_deviation, joints), `csv` its table, `left_out` the
-    logs that cannot be compared, each with the reason, and `events` those of all logs, each with the key `log`;
-    `parameters` and `joints` are empty then. `baseline` is that of the quiet logs,
-    or None without any. `compared_with` says what the logs are compared with, and `notes` has the remarks on them.
+    (s), since_time, until_time, not_before_time and not_after_time (RFC 3339, UTC, or None), rivals. `parameters` has
+    all other parameters with their thresholds, `joints` the errors of the model. With `by`, `trend` has a dict for each
+    log (log, events, payload, payload_deviation, joints), `csv` its table, `left_out` the logs that cannot be compared,
+    each with the reason, and `events` those of all logs, each with the key `log`; `parameters` and `joints` are empty
+    then. `baseline` is that of the quiet logs, or None without any. `compared_with` says what the logs are compared with, and `notes` has the remarks on them.
     """
 
     def __init__(self, reply):
