@@ -31,7 +31,8 @@ def main():
             for page in pages:
                 name = page.relative_to(folder).as_posix()
                 driver.get(root + name)
-                check(driver.title and driver.find_elements("css selector", "main h1"), f"{name} has no title")
+                words = len(driver.find_element("css selector", "main").text.split())
+                check(driver.title and words > 20, f"{name} has the title {driver.title!r} and {words} words")
                 narrow(driver, f"{name}, {screen}")
                 quiet(driver, f"{name}, {screen}")
         seen_on(driver, *SCREENS["desk"])

@@ -51,12 +51,14 @@ pub use function::{
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::{
-    Axis, Cause, Causes, Component, Fold, FoldReport, Line, Name, Operation, Place, Quantity, Residue, Step,
-    WithRespectTo,
+    Axis, Cause, Causes, Component, Derivation, ExactConstant, ExactStep, Fold, FoldReport, Line, Name, Operation,
+    Place, Quantity, Residue, Step, WithRespectTo,
 };
 pub use named::UnknownName;
 pub use pipeline::Target;
-pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, SineCosine, Statement};
+pub use program::{
+    Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, Scales, SineCosine, Statement,
+};
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
@@ -184,6 +186,19 @@ impl<'r> Compiler<'r> {
             }
             Err(error) => Err(error.suspecting(robot, true)),
         }
+    }
+
+    /// How the constants of a program are computed exactly from the numbers of the robot file, for checkers that share
+    /// no code with the compiler. `program` is what [`Compiler::compile`] returned. `None` for a program whose
+    /// constants are rounded one operation after another, as those of the seven steps are.
+    ///
+    /// # Errors
+    /// As [`Compiler::compile`].
+    pub fn derivation(&self, program: &Program) -> Result<Option<Derivation>, CompileError> {
+        // the search of a plan computes numbers that no program has
+        self.plans();
+        let (compiled, ways) = ir::derivation::recorded(|| self.compile(program.function, program.form));
+        Ok(ways.derivation(&compiled?))
     }
 
     /// By the plan, with the algorithm that takes the fewest operations.

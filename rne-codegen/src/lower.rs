@@ -10,6 +10,7 @@ use writing::Writing;
 
 use crate::CompileError;
 use crate::function::{Form, Function};
+use crate::ir::derivation;
 use crate::ir::{ExactAngle, Name, Number, Op, Operation, Place, Quantity, Ref, Step, Traced};
 use crate::program::{Constant, Exactly, Program, Resolution, ResolvedAs};
 use crate::reduced::Algorithm;
@@ -38,6 +39,7 @@ pub(crate) fn lower(
     let lowering = Lowering::new(&written, uses);
     let constants = lowering.constants()?;
     let exactly = constants.iter().map(|(constant, at)| (constant.name, lowering.exactly(constant, *at))).collect();
+    derivation::note_program(&exactly);
     let (mut definitions, returned) = lowering.definitions(&outputs);
     definitions.sort_by_key(|definition| definition.position);
     let is_angle = |definition: &Definition| definition.name.quantity.is_of_an_angle();
@@ -71,6 +73,7 @@ pub(crate) fn lower(
         fold_report: written.trace.fold_report,
         algorithm: Algorithm::default(),
         is_rewritten: false,
+        scales: None,
         choices: Vec::new(),
         proof: None,
         refusals: Vec::new(),

@@ -9,7 +9,7 @@ use crate::function::{Argument, Form, Function};
 use crate::ir::{Builder, Cost, Embedding, Name, Policy, Quantity, Traced};
 use crate::lower::{Heading, lower};
 use crate::plan::{self, Plan};
-use crate::program::{Exactly, Program, Proof};
+use crate::program::{Exactly, Program, Proof, Scales};
 use crate::prove::{self, Reference};
 use crate::reduced::Algorithm;
 
@@ -42,6 +42,8 @@ impl Target {
 pub struct Formulation {
     pub(crate) names: Vec<Name>,
     pub(crate) traced: Traced,
+    /// The factors of lengths and forces, if it measures them in units of the arm.
+    pub(crate) scales: Option<Scales>,
 }
 
 impl Formulation {
@@ -57,15 +59,15 @@ impl Formulation {
 
     fn on(builder: Builder, robot: &Robot, function: Function) -> Self {
         let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
-        Self { names, traced: builder.finish(outputs) }
+        Self { names, traced: builder.finish(outputs), scales: None }
     }
 
     /// The plain formulas with every value computed once, however often and in whatever way they compute it: the
     /// reduced form of what has no recursion of its own.
     #[must_use]
     pub fn numbered(robot: &Robot, function: Function) -> Self {
-        let Self { names, traced } = Self::plain(Policy::Value, robot, function);
-        Self { names, traced: traced.numbered() }
+        let plain = Self::plain(Policy::Value, robot, function);
+        Self { traced: plain.traced.numbered(), ..plain }
     }
 
     /// A function written by one algorithm under a plan, every value once.
@@ -102,9 +104,10 @@ impl Formulation {
         target: Target,
         reference: &Reference<'_>,
     ) -> Result<Program, CompileError> {
-        let embedding = self.embedding();
+        let (embedding, scales) = (self.embedding(), self.scales);
         let (program, exactly) = self.lowered(reference.robot(), function)?;
         let mut program = target.arranged(&program);
+        program.scales = scales;
         program.proof = Some(prove::prove(reference, &program, &exactly, embedding)?);
         Ok(program)
     }
@@ -155,7 +158,7 @@ pub(crate) fn seven_steps_within(
     keep: &[Quantity],
     explains: bool,
 ) -> Result<Program, CompileError> {
-    let Formulation { mut names, mut traced } = if explains {
+    let Formulation { mut names, mut traced, .. } = if explains {
         Formulation::explained(robot, function)
     } else {
         Formulation::plain(Policy::Structure, robot, function)

@@ -52,6 +52,8 @@ pub struct Program {
     pub algorithm: Algorithm,
     /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.
     pub is_rewritten: bool,
+    /// The factors of lengths and forces, if the code measures them in units of the arm.
+    pub scales: Option<Scales>,
     /// The choices of a program that is not the seven steps, one line each.
     pub choices: Vec<String>,
     /// Why a program that is not the seven steps gives their numbers.
@@ -76,6 +78,22 @@ pub struct Proof {
     pub single_of_seven_steps: f64,
     /// (products, sums) of the seven steps before folding.
     pub before: (usize, usize),
+}
+
+/// The factors by which the form `reduced` multiplies lengths and forces, so that constants become 1. What is returned
+/// is in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Lengths, and the velocities and accelerations of points, are multiplied by it: λ.
+    pub length: f64,
+    /// Forces are multiplied by it: μ.
+    pub force: f64,
+}
+
+impl Default for Scales {
+    fn default() -> Self {
+        Self { length: 1.0, force: 1.0 }
+    }
 }
 
 /// The exact constants of a program: each as a number and, if it is an angle, as a turn.

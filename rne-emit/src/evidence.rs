@@ -1,6 +1,6 @@
 //! Why a program that is not the seven steps can be trusted, in words.
 
-use rne_codegen::{Form, Program, Proof};
+use rne_codegen::{Form, Program, Proof, Scales};
 
 /// The form of a program, its proof and its choices, one sentence or choice per line.
 #[must_use]
@@ -20,8 +20,8 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
     let mut lines = vec![
         form,
         format!(
-            "Proved identical to the seven steps: {what} agree at {} random points of the fields of 2^61 - 1 and \
-            2^61 - 31.",
+            "Identical to the seven steps but for a probability below 1e-100: {what} agree at {} random points of the \
+            fields of 2^61 - 1 and 2^61 - 31.",
             proof.points
         ),
         format!(
@@ -30,6 +30,13 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
             proof.states, proof.rounding, proof.single, proof.single_of_seven_steps
         ),
     ];
+    if let Some(Scales { length, force }) = program.scales {
+        lines.push(format!(
+            "Scaled values: lengths and the velocities and accelerations of points are multiplied by {length:.6}, \
+             forces by {force:.6}, masses by {:.6}, so that constants become 1. Results are in SI units.",
+            force / length
+        ));
+    }
     if !program.choices.is_empty() {
         lines.push("Choices:".to_owned());
         lines.extend(program.choices.iter().map(|choice| format!("  {choice}")));

@@ -8,6 +8,7 @@
 mod annotated;
 mod ascii;
 mod c;
+mod emitted_sine;
 mod evidence;
 mod expression;
 mod formula;
@@ -27,6 +28,7 @@ mod wrap;
 pub use annotated::{Annotated, Part};
 pub use ascii::ascii;
 pub use c::{BadPrefix, CCode, ConstantTooLarge, Origin, Prefix, c_code, c_code_of_file};
+pub use emitted_sine::sin_cos_f32;
 pub use evidence::{evidence, refusals};
 pub use formula::Formula;
 pub use heading::{GENERATED, Heading};

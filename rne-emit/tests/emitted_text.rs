@@ -206,7 +206,7 @@ fn every_reduced_form_tells_its_proof() {
             assert_eq!(proof.points, 4);
         }
         let text = rne_emit::rust_file(robot, programs);
-        assert!(text.contains("Proved identical to the seven steps"), "{text}");
+        assert!(text.contains("Identical to the seven steps but for a probability below 1e-100"), "{text}");
     }
 }
 

@@ -30,7 +30,7 @@ const MAX_RUN_TIME_PARTS: usize = 250;
 
 /// The forms of a number, for the help of every mistake.
 pub(crate) const ALLOWED: &str = "a number is a finite decimal such as 0.4 or 2.0e-4, or an expression over numbers, \
-     `pi`, parameters, `+ - * / ^`, parentheses and sqrt sin cos tan deg";
+     `pi`, parameters, `+ - * / ^`, parentheses and sqrt sin cos tan deg mm g";
 
 /// An expression; every part knows its bytes within the scalar.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,10 +103,14 @@ enum Function {
     Cos,
     Tan,
     Deg,
+    /// Millimetres and grams: a thousandth.
+    Milli,
 }
 
 impl Function {
-    const NAMES: [&str; 5] = ["sqrt", "sin", "cos", "tan", "deg"];
+    const NAMES: [&str; 7] = ["sqrt", "sin", "cos", "tan", "deg", "mm", "g"];
+    /// The functions whose names may also name a parameter, because robot files use `g` for gravity.
+    const NOT_RESERVED: [&str; 2] = ["mm", "g"];
 
     fn of(name: &str) -> Option<Self> {
         Some(match name {
@@ -115,6 +119,7 @@ impl Function {
             "cos" => Self::Cos,
             "tan" => Self::Tan,
             "deg" => Self::Deg,
+            "mm" | "g" => Self::Milli,
             _ => return None,
         })
     }
@@ -127,13 +132,15 @@ impl Function {
             Self::Tan => libm::tan(x),
             // In this order deg(90) is pi/2 to the last bit.
             Self::Deg => x / 180.0 * PI,
+            // The decimal is moved, because 130.2 / 1000 is not the number nearest to 0.1302.
+            Self::Milli => format!("{x}e-3").parse().unwrap_or(f64::NAN),
         }
     }
 }
 
 /// Whether a name means something already and cannot name a parameter.
 pub(crate) fn is_reserved(name: &str) -> bool {
-    name == "pi" || Function::of(name).is_some()
+    name == "pi" || Function::of(name).is_some() && !Function::NOT_RESERVED.contains(&name)
 }
 
 /// Whether a text is a name: a letter or underscore, then letters, digits and underscores.
@@ -347,7 +354,7 @@ impl Expression {
 }
 
 /// A number as a robot file has it: a decimal, or an expression over numbers, `pi`, `+ - * / ^`, parentheses and
-/// `sqrt sin cos tan deg`. There are no parameters.
+/// `sqrt sin cos tan deg mm g`. There are no parameters.
 ///
 /// ```
 /// assert_eq!(rne_model::number("-pi/2"), Ok(-std::f64::consts::FRAC_PI_2));
@@ -536,13 +543,15 @@ impl<'t> Parser<'t> {
         let range = start..start + name.len();
         match (Function::of(name), called) {
             (Some(function), true) => Ok(Kind::Call(function, Box::new(self.parenthesised()?))),
-            (Some(_), false) => Err(Mistake::new(range, format!("`{name}` needs an argument in parentheses"))
-                .help(format!("write `{name}(…)`"))),
+            (Some(_), false) if is_reserved(name) => {
+                Err(Mistake::new(range, format!("`{name}` needs an argument in parentheses"))
+                    .help(format!("write `{name}(…)`")))
+            }
             (None, true) => {
                 let mistake = Mistake::new(range, format!("unknown function {}", quoted(name)));
-                Err(mistake.help("the functions are sqrt sin cos tan deg; a product is written with `*`"))
+                Err(mistake.help("the functions are sqrt sin cos tan deg mm g; a product is written with `*`"))
             }
-            (None, false) => Ok(Kind::Name(name.to_owned())),
+            (_, false) => Ok(Kind::Name(name.to_owned())),
         }
     }
 

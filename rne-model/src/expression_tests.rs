@@ -102,6 +102,9 @@ fn functions() {
         ("tan(0.5)", libm::tan(0.5)),
         ("deg(90)", PI / 2.0),
         ("deg(180)", PI),
+        ("mm(77)", 0.077),
+        ("g(130.2)", 0.1302),
+        ("mm(4.5) * 2", 0.009),
         ("deg(-90)", -PI / 2.0),
         ("deg(270)", 1.5 * PI),
         ("-deg (45) / 2", -PI / 8.0),
@@ -142,10 +145,10 @@ fn what_is_no_number_says_why_and_where() {
         ("90deg", 3, 5, "the number `90` has the unit `deg`", "radians: write `deg(90)`"),
         ("-90 deg", 5, 7, "the number `-90` has the unit `deg`", "write `deg(-90)`"),
         ("pi/2 rad", 6, 8, "has the unit `rad`", "write `pi/2` alone"),
-        ("400 mm", 5, 6, "has the unit `mm`", "write `400/1000`"),
+        ("400 mm", 5, 6, "has the unit `mm`", "write `mm(400)`"),
         ("3 + 4 cm", 7, 8, "has the unit `cm`", "write `(3 + 4)/100`"),
         ("1.98 kg", 6, 7, "has the unit `kg`", "write `1.98` alone"),
-        ("250 g", 5, 5, "has the unit `g`", "write `250/1000`"),
+        ("250 g", 5, 5, "has the unit `g`", "write `g(250)`"),
         ("0.1 kg*m^2", 5, 10, "has the unit `kg*m^2`", "write `0.1` alone"),
         ("250 kg mm²", 5, 11, "has the unit `kg mm²`", "write `250*1e-6`"),
         ("30 rpm", 4, 6, "has the unit `rpm`", "write `30*2*pi/60`"),
@@ -178,7 +181,7 @@ fn mistakes_in_expressions_point_at_their_column() {
         ("()", 2, 2, "found `)` where", ""),
         ("sin pi", 1, 3, "`sin` needs an argument in parentheses", "`sin(…)`"),
         ("sin(1, 2)", 6, 6, "`,` is not part", ""),
-        ("atan(1)", 1, 4, "unknown function `atan`", "sqrt sin cos tan deg"),
+        ("atan(1)", 1, 4, "unknown function `atan`", "sqrt sin cos tan deg mm g"),
         ("a(1)", 1, 1, "unknown function `a`", "`*`"),
         ("pi(2)", 3, 3, "found `(` where an operator is needed", ""),
         ("m**2", 2, 3, "`**` is not an operator", "`^`"),
@@ -311,5 +314,5 @@ fn hostile_expressions_end_in_an_error() {
 fn names() {
     assert!(is_identifier("a") && is_identifier("_a1") && is_identifier("J_xx"));
     assert!(!is_identifier("") && !is_identifier("1a") && !is_identifier("a b") && !is_identifier("é"));
-    assert!(is_reserved("pi") && is_reserved("deg") && !is_reserved("e"));
+    assert!(is_reserved("pi") && is_reserved("deg") && !is_reserved("e") && !is_reserved("g") && !is_reserved("mm"));
 }

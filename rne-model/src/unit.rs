@@ -2,7 +2,8 @@
 
 /// The help for a `number` with a `unit` after it; `None` where that is no unit.
 ///
-/// The units of a robot file are rad, m, kg, s and N; only angles have a function, `deg`, for those of another.
+/// The units of a robot file are rad, m, kg, s and N. The functions `deg`, `mm` and `g` convert degrees, millimetres
+/// and grams.
 pub(crate) fn instead(number: &str, unit: &str) -> Option<String> {
     if number.is_empty() || unit.len() > 16 {
         return None;
@@ -32,10 +33,10 @@ pub(crate) fn instead(number: &str, unit: &str) -> Option<String> {
         "rad" => as_it_is("angles are in radians"),
         "m" => as_it_is(lengths),
         "cm" => times(lengths, "/100"),
-        "mm" => times(lengths, "/1000"),
+        "mm" => format!("{lengths}: write `mm({number})`"),
         "in" | "inch" | "inches" => times(lengths, "*0.0254"),
         "kg" => as_it_is(masses),
-        "g" => times(masses, "/1000"),
+        "g" => format!("{masses}: write `g({number})`"),
         "lb" | "lbs" => times(masses, "*0.45359237"),
         "kgm2" => as_it_is(inertias),
         "kgcm2" => times(inertias, "*1e-4"),

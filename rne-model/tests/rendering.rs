@@ -53,7 +53,7 @@ fn a_mistake_inside_an_expression() {
     22 |     link: {mass: r, inertia: {yy: "m / x", zz: m/12}}
        |                                        ^
        |
-       = help: define it under `parameters`, or check the number: a number is a finite decimal such as 0.4 or 2.0e-4, or an expression over numbers, `pi`, parameters, `+ - * / ^`, parentheses and sqrt sin cos tan deg
+       = help: define it under `parameters`, or check the number: a number is a finite decimal such as 0.4 or 2.0e-4, or an expression over numbers, `pi`, parameters, `+ - * / ^`, parentheses and sqrt sin cos tan deg mm g
     "#);
 }
 

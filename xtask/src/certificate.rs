@@ -10,8 +10,8 @@ use crate::machine::{self, Missing};
 /// Builds every shipped robot for Cortex-M4F and M7F, reads and runs the code, and compares it with docs/embedded.md
 ///
 /// Needs Debian's packages rustc-web, cargo-web, rust-web-src (a compiler with the sources of `core`),
-/// gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm, binutils-riscv64-unknown-elf and lld; Node for
-/// WebAssembly, which is left out without. They do not disturb rustup's compiler. Five minutes at first, one minute
+/// gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm, cppcheck, binutils-riscv64-unknown-elf and lld; Node
+/// for WebAssembly, which is left out without. They do not disturb rustup's compiler. Five minutes at first, one minute
 /// then. CARGO_TARGET_DIR is obeyed.
 #[derive(Args)]
 #[command(after_help = "\
@@ -35,13 +35,14 @@ pub(crate) struct Certificate {
 }
 
 /// Newlib is only recommended by the C compiler, which links its memcpy and memset all the same.
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 9] = [
     "rustc-web",
     "cargo-web",
     "rust-web-src",
     "gcc-arm-none-eabi",
     "libnewlib-arm-none-eabi",
     "qemu-system-arm",
+    "cppcheck",
     "binutils-riscv64-unknown-elf",
     "lld",
 ];
@@ -50,6 +51,11 @@ impl Certificate {
     pub(crate) fn run(&self) -> Result<Verdict> {
         machine::packages(&PACKAGES, self.install)?;
         let shell = machine::shell()?;
+        // the certificates of users' arms and the independent checker, with the workspace's own compiler
+        let of_users = machine::without_flags(cmd!(shell, "cargo test --package rne-cli --test cli certify")).quiet();
+        if of_users.run().is_err() {
+            return Ok(Verdict::Fails);
+        }
         // Debian's compiler builds the tool as well: what the macro is made of is built once.
         shell.set_var("RUSTC", "/usr/bin/rustc");
         shell.set_var("RUSTC_BOOTSTRAP", "1");

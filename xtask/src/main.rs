@@ -27,6 +27,7 @@ mod playground;
 mod prose;
 mod python;
 mod ros2;
+mod sbom;
 mod single_calls;
 mod site;
 mod tool;
@@ -75,6 +76,7 @@ enum Task {
     Tool(tool::Tool),
     Features(features::Features),
     Fleet(fleet::Fleet),
+    Sbom(sbom::Sbom),
     Frozen(frozen::Frozen),
     Doors(doors::Doors),
     Fuzz(fuzz::Fuzz),
@@ -119,6 +121,7 @@ impl Task {
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
             Self::Fleet(_) => ("fleet", false, fleet::Fleet::run()),
+            Self::Sbom(task) => ("sbom", false, task.run()),
             Self::Frozen(task) => ("frozen", false, task.run()),
             Self::Doors(task) => ("doors", task.install, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),

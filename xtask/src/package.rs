@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 19] = [
+const CRATES: [&str; 20] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -47,6 +47,7 @@ const CRATES: [&str; 19] = [
     "rne-logs",
     "rne-identify",
     "rne-watch",
+    "rne-certify",
     "rne-cli",
 ];
 

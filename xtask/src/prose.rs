@@ -86,6 +86,7 @@ const SOURCES: &[&str] = &[
     "rne-search/src",
     "rne-symbolic/src",
     "rne-watch/src",
+    "rne-certify/src",
     "xtask/src",
 ];
 
@@ -111,6 +112,7 @@ const LIBRARIES: &[&str] = &[
     "rne-search/src",
     "rne-symbolic/src",
     "rne-watch/src",
+    "rne-certify/src",
 ];
 
 /// Folders of sources whose strings are messages: every rule that may hold anywhere is searched in them.
@@ -124,6 +126,7 @@ const MESSAGES: &[&str] = &[
     "rne-model/src",
     "rne-search/src",
     "rne-watch/src",
+    "rne-certify/src",
 ];
 
 /// Folders of sources whose helps are checked.

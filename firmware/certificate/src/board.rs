@@ -5,11 +5,11 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 
 use crate::functions::{self, Method, Robot};
-use crate::image::{Figures, Image};
-use crate::listing::Fault;
+use crate::image::{self, Figures, Image};
 use crate::log::{Agreement, Log};
 use crate::table::Row;
 use crate::tools::{self, Build};
+use rne_certify::listing::Fault;
 
 /// A processor and how code for it is compiled.
 pub(crate) struct Board<'a> {
@@ -48,7 +48,7 @@ impl Board<'_> {
             arguments: &arguments,
         };
         let elf = build.run(workspace)?.join("board");
-        let image = Image::read(&elf)?;
+        let image = image::read(&elf)?;
         let log = Log::read(&tools::qemu(self.machine, &elf)?)?;
         let examined = Examined { image, log };
         examined.gate_closes()?;

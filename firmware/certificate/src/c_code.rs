@@ -15,7 +15,7 @@ use robots::puma560::Arguments;
 use robots::{STATES, State};
 
 use crate::functions::{self, Method};
-use crate::image::Image;
+use crate::image;
 use crate::log::{Agreement, Log};
 use crate::table::Row;
 use crate::tools;
@@ -56,7 +56,7 @@ pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
         sources.push(write_source(workspace, &folder, robot)?);
     }
     fs::write(folder.join("cases.c"), cases(&sources)?)?;
-    let board = workspace.join("c");
+    let board = workspace.join("../rne-certify/board");
     let include = format!("-I{}", board.display());
     let mut files: Vec<String> = sources.iter().map(|source| format!("{}.c", source.prefix)).collect();
     files.push("cases.c".to_owned());
@@ -75,7 +75,7 @@ pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
     for Method { name, form } in functions::methods() {
         agrees(&log, expected, &format!("method {form} {name}"))?;
     }
-    let image = Image::read(&elf)?.with_frames(|name| frame(&folder, name));
+    let image = image::read(&elf)?.with_frames(|name| frame(&folder, name));
     let row = |robot: functions::Robot| {
         let functions::Robot { name, form, .. } = robot;
         let results = agrees(&log, expected, &format!("torques {name} {form}"))?;

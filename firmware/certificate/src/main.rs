@@ -4,7 +4,6 @@ mod board;
 mod c_code;
 mod functions;
 mod image;
-mod listing;
 mod log;
 mod object_file;
 mod report;

@@ -23,6 +23,7 @@ use crate::values::choice;
 Examples:
   rne check robots/*.yaml
   rne check --physics robots/planar2.yaml
+  rne check --deny-warnings my_arm.yaml
   rne check robots/puma560.plan.yaml   compiles and proves a plan
 
 `rne search` writes plan files (NAME.plan.yaml). A plan file lists the choices
@@ -32,7 +33,8 @@ which rne refuses the reduced form, which is the code with the fewest
 operations. The note gives the reason.
 
 The exit status is 1 if a file has errors, or if an arm violates a law of
-mechanics by more than rounding. Warnings and notes do not change the status 0.
+mechanics by more than rounding. Warnings and notes do not change the status 0,
+except with --deny-warnings, which makes every warning count as an error.
 docs/robot-file.md explains every key of a robot file.")]
 pub(crate) struct Arguments {
     /// Robot files, names from `rne list`, or plan files of `rne search` (NAME.plan.yaml: choices that save operations
@@ -42,6 +44,9 @@ pub(crate) struct Arguments {
     /// Check laws of mechanics that every arm obeys, and print the deviations
     #[arg(long)]
     physics: bool,
+    /// Exit with status 1 if there is a warning, for continuous integration
+    #[arg(long)]
+    deny_warnings: bool,
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "what every command returns")]
@@ -55,9 +60,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             None => robot(path, arguments),
         };
         match checked {
-            Ok(Good { about, lints, laws }) => {
+            Ok(Good { about, lints, warnings, laws }) => {
+                let is_denied = arguments.deny_warnings && warnings > 0;
+                bad += usize::from(is_denied);
+                let verdict = if is_denied { denied(warnings) } else { format!("{GOOD}ok{GOOD:#}") };
                 let file = left(&path.display().to_string(), widest);
-                let _ = writeln!(text, "{GOOD}ok{GOOD:#} {file}  {QUIET}{about}{QUIET:#}");
+                let _ = writeln!(text, "{verdict} {file}  {QUIET}{about}{QUIET:#}");
                 if let Some((laws, hold)) = laws {
                     text.push_str(&laws);
                     bad += usize::from(!hold);
@@ -78,11 +86,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text: text.trim_start_matches('\n').to_owned(), at_fault: bad > 0, ..Outcome::default() })
 }
 
+/// The words before the name of a file whose warnings count as errors.
+fn denied(warnings: usize) -> String {
+    let s = if warnings == 1 { "" } else { "s" };
+    format!("{WARNING}{warnings} warning{s} denied{WARNING:#}")
+}
+
 /// A file in order.
 struct Good {
     /// It in a few words.
     about: String,
     lints: Option<String>,
+    /// Number of warnings.
+    warnings: usize,
     /// The laws of physics, and whether all hold; where they are asked for.
     laws: Option<(String, bool)>,
 }
@@ -97,9 +113,11 @@ fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
     }
     let refusals = refusals(path, &robot)?;
     let laws = arguments.physics.then(|| physics::check(&robot)).transpose().map_err(Failure::input)?;
+    let misnamed = misnamed_golden(path);
+    let warnings = lints.warnings().count() + usize::from(misnamed.is_some());
     let lints = (!lints.is_empty()).then(|| rendered(&lints));
-    let lints: Vec<String> = lints.into_iter().chain(misnamed_golden(path)).chain(refusals).collect();
-    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), laws })
+    let lints: Vec<String> = lints.into_iter().chain(misnamed).chain(refusals).collect();
+    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), warnings, laws })
 }
 
 /// The reduced forms that a build would refuse, with the reasons: a note for each function that has such a form.
@@ -153,5 +171,5 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
         others => format!("; {others} other functions rewritten"),
     };
     let about = format!("plan of {}: inverse_dynamics {planned} operations{rewritten}{others}; proved", robot.name);
-    Ok(Good { about, lints: None, laws: None })
+    Ok(Good { about, lints: None, warnings: 0, laws: None })
 }

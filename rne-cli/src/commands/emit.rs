@@ -59,10 +59,10 @@ pub(crate) struct Arguments {
     /// Frames or joints whose kinematics are written
     #[arg(long = "frame", value_name = "NAMES", value_delimiter = ',')]
     frames: Vec<String>,
-    /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations)
-    #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
-        hide_possible_values = true)]
-    form: Form,
+    /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations) [default: reduced in C,
+    /// seven_steps in Rust]
+    #[arg(long, value_name = "F", value_parser = choice::form(), hide_possible_values = true)]
+    form: Option<Form>,
     /// Names of parameters of FILE that become function arguments, NAME,NAME,…; the others are constants in the code
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     run_time: Vec<String>,
@@ -84,6 +84,16 @@ pub(crate) struct Arguments {
     /// Write nothing; check that this file contains the code that rne would write
     #[arg(long, value_name = "OUT", conflicts_with = "output")]
     check: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// The form that is asked for. Firmware wants few operations, and a reader of Rust code every vector.
+    fn form(&self) -> Form {
+        self.form.unwrap_or(match self.lang {
+            Language::Rust => Form::SevenSteps,
+            Language::C => Form::Reduced,
+        })
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -268,7 +278,8 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
     // without its folder: the same file gives the same bytes wherever it is
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
-    let origin = Origin::of(if is_stream(&arguments.file) { "on standard input" } else { &name }, bytes);
+    let name = if is_stream(&arguments.file) { "on standard input" } else { &*name };
+    let origin = Origin::new(name, &rne_certify::sha256(bytes));
     let code = rne_emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
         Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} can store this number"))
@@ -309,12 +320,12 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
     let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|it| it.of_frame().is_some());
     let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
     let mut programs: Vec<Program> =
-        of_tip.iter().map(|&function| compiler.compile(function, arguments.form)).collect::<Result<_, _>>()?;
+        of_tip.iter().map(|&function| compiler.compile(function, arguments.form())).collect::<Result<_, _>>()?;
     for frame in frames(arguments, robot)? {
         let robot = robot.clone().at_frame(frame);
         let compiler = Compiler::new(&arguments.file, &robot);
         for &function in &of_frames {
-            let program = compiler.compile(function, arguments.form)?;
+            let program = compiler.compile(function, arguments.form())?;
             if let Some(other) = programs.iter().find(|other| other.name == program.name) {
                 return Err(Failure::usage(format_args!(
                     "the frames {} and {} both give the name {}; write them to two files",
@@ -454,8 +465,8 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     if arguments.rotors.rotors {
         command.push_str(" --rotors");
     }
-    if arguments.form != Form::default() {
-        let _ = write!(command, " --form {}", arguments.form);
+    if let Some(form) = arguments.form {
+        let _ = write!(command, " --form {form}");
     }
     if !arguments.run_time.is_empty() {
         let _ = write!(command, " --run-time {}", arguments.run_time.join(","));

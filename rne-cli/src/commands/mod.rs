@@ -3,6 +3,9 @@
 //! `tour` is what `rne` does without a command. `compare`, `closed_form`, `golden` and `residuals` are parts of
 //! commands, and `prediction_errors` is what `identify` and `watch` share.
 
+mod certify;
+mod certify_code;
+mod certify_trace;
 mod check;
 mod closed_form;
 mod compare;
@@ -31,6 +34,7 @@ mod report;
 mod residuals;
 mod search;
 mod show;
+mod toolchain;
 mod tour;
 mod watch;
 mod worksheet;
@@ -98,6 +102,7 @@ commands! {
     Check check,
     Show show,
     Emit emit,
+    Certify certify,
     Ops ops,
     Report report,
     Eval eval,

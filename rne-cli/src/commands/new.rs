@@ -87,7 +87,7 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
     };
     let mut text = format!(
         "# A robot file with placeholders: put your numbers in their place. m, rad, kg.\n\
-         # A number may be an expression: pi/2, deg(90), 0.4318/2, m*a^2/12.\n\
+         # A number may be an expression: pi/2, deg(90), mm(77), 0.4318/2, m*a^2/12.\n\
          format: 1\n\
          name: {name}\n\
          title: {name}\n\

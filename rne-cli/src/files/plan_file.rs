@@ -212,6 +212,12 @@ impl<'a> Compiler<'a> {
         self.compiled(function, form)?.map_err(|error| self.failure(function, form, &error))
     }
 
+    /// How the constants of a program in the reduced form are computed from the numbers of the robot file.
+    pub(crate) fn derivation(&self, program: &Program) -> Result<Option<codegen::Derivation>, Failure> {
+        let derivation = self.planned()?.derivation(program);
+        derivation.map_err(|error| self.failure(program.function, program.form, &error))
+    }
+
     /// An error of the compiler, at its place in the plan file where that is the cause.
     pub(crate) fn failure(&self, function: Function, form: Form, error: &CompileError) -> Failure {
         match (form, self.read.get(), self.planned.get()) {

@@ -161,3 +161,19 @@ fn a_golden_file_with_another_name_is_told() {
     fs::rename(&golden, folder.join("wrist.golden.csv")).expect("renamed");
     assert!(!fine(&["check", robot]).contains("warning"));
 }
+
+#[test]
+fn denied_warnings_are_errors() {
+    let folder = folder("check_denied");
+    let robot = folder.join("far.yaml");
+    let robot = robot.to_str().expect("UTF-8");
+    let text = std::fs::read_to_string(format!("{ROOT}/robots/planar1.yaml")).expect("a robot");
+    let far = text.replacen("convention: standard", "convention: standard\nbase: {xyz: [77, 0, 0], rpy: [0, 0, 0]}", 1);
+    assert_ne!(far, text);
+    std::fs::write(robot, far).expect("written");
+    assert_eq!(rne(&["check", robot]).status, 0);
+    let denied = rne(&["check", "--deny-warnings", robot]);
+    assert_eq!(denied.status, 1, "{denied:?}");
+    assert!(denied.out.contains("1 warning denied") && !denied.out.contains("ok "), "{denied:?}");
+    assert_eq!(rne(&["check", "--deny-warnings", "robots/planar2.yaml"]).status, 0);
+}

@@ -73,6 +73,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
     // it fetches Pinocchio
     ("cargo xtask urdf", "xtask/src/main.rs", "Urdf(urdf::Urdf)"),
+    // its document is checked in xtask/src/sbom.rs
+    ("cargo xtask sbom", "xtask/src/main.rs", "Sbom(sbom::Sbom)"),
     // it fetches Cyclone DDS, and measures for a minute
     ("cargo xtask ros2", "xtask/src/main.rs", "Ros2(ros2::Ros2)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),

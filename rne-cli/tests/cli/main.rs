@@ -2,6 +2,7 @@
 
 mod ascii;
 mod call;
+mod certify;
 mod check;
 mod closed_form;
 mod diagnose;

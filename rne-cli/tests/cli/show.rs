@@ -137,7 +137,7 @@ fn the_reduced_form_says_its_choices_and_its_proof() {
     for part in [
         "form reduced",
         "only the torques keep a physical meaning",
-        "Proved identical to the seven steps",
+        "Identical to the seven steps but for a probability below 1e-100",
         "Choices:\n",
         "the last link is a spinning sphere without mass",
         "let tau6 = ",

@@ -2,6 +2,7 @@
 
 use rne_model::{Angle, Double, InertiaReference, Joint, QuarterTurns, decimal_digits};
 
+use super::derivation::{Way, note};
 use super::{operators, residue::Residue};
 
 /// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
@@ -23,7 +24,9 @@ impl Number {
 
     /// A small integer.
     pub(crate) fn integer(value: u32) -> Self {
-        Self { value: Double::new(f64::from(value)), residue: Residue::integer(u64::from(value)) }
+        let residue = Residue::integer(u64::from(value));
+        note(residue, || Way::Decimal(f64::from(value)));
+        Self { value: Double::new(f64::from(value)), residue }
     }
 
     pub(crate) fn is_zero(self) -> bool {
@@ -40,7 +43,9 @@ impl Number {
         if self.is_unit() {
             return Some(self);
         }
-        Some(Self { value: Double::new(1.0) / self.value, residue: self.residue.inverse()? })
+        let inverse = Self { value: Double::new(1.0) / self.value, residue: self.residue.inverse()? };
+        note(inverse.residue, || Way::Inverse(self.residue));
+        Some(inverse)
     }
 
     /// √x; `None` when the value is negative or an image is no square.
@@ -49,6 +54,7 @@ impl Number {
             return Some(self);
         }
         let root = Self { value: self.value.sqrt(), residue: self.residue.sqrt()? };
+        note(root.residue, || Way::Root(self.residue));
         (self.value.high > 0.0).then_some(root)
     }
 
@@ -87,7 +93,11 @@ operators! { Number:
     a + b => match (a.is_zero(), b.is_zero()) {
         (true, _) => b,
         (_, true) => a,
-        _ => Self { value: a.value + b.value, residue: a.residue + b.residue }.settled(),
+        _ => {
+            let residue = a.residue + b.residue;
+            note(residue, || Way::Sum(a.residue, b.residue));
+            Self { value: a.value + b.value, residue }.settled()
+        }
     };
     -a => Self { value: -a.value, residue: -a.residue };
     a - b => a + -b;
@@ -95,7 +105,10 @@ operators! { Number:
         (Residue::ZERO, _) | (_, Residue::ZERO) => Self::ZERO,
         (Residue::ONE, _) => b,
         (_, Residue::ONE) => a,
-        (x, y) => Self { value: a.value * b.value, residue: x * y },
+        (x, y) => {
+            note(x * y, || Way::Product(x, y));
+            Self { value: a.value * b.value, residue: x * y }
+        }
     };
 }
 
@@ -171,6 +184,7 @@ impl Embedding {
             let factor = if exponent < 0 { Residue::TENTH } else { Residue::integer(10) };
             (0..exponent.abs()).fold(Residue::integer(digits), |residue, _| residue * factor)
         };
+        note(residue, || Way::Decimal(magnitude));
         let number = Number { value: Double::decimal(magnitude), residue };
         if value < 0.0 { -number } else { number }
     }
@@ -243,6 +257,8 @@ impl Embedding {
         let point = self.point(0xA11E, mixed(bits(rest_sin)) ^ bits(rest_cos));
         let rest = if rest_sin.high < 0.0 { (-point.0, point.1) } else { point };
         let (s, c) = (0..quarters).fold(rest, |(s, c), _| (c, -s));
+        note(s, || Way::Sine(angle.radians));
+        note(c, || Way::Cosine(angle.radians));
         ExactAngle { sin: Number { value: sin, residue: s }, cos: Number { value: cos, residue: c } }
     }
 

@@ -4,9 +4,10 @@ use rne_model::{JointKind, Robot};
 
 use crate::formulate::Outputs;
 use crate::function::{Argument, Function};
-use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
+use crate::ir::{Builder, Cost, Graph, Number, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
 use crate::plan::{OriginShift, Plan, Scale};
+use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
 use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
 
@@ -123,7 +124,9 @@ impl FramedRobot {
         let mut traced = builder.finish(outputs);
         // a number of the plan means what it is called, or nothing, wherever it is first used
         traced.trace.forget_births_of_leaves(&traced.graph);
-        Some(Formulation { names, traced: traced.numbered() })
+        let [length, force] = [parameters.lambda, parameters.mu].map(Number::to_f64);
+        let scales = Some(Scales { length, force }).filter(|scales| *scales != Scales::default());
+        Some(Formulation { names, traced: traced.numbered(), scales })
     }
 }
 

@@ -87,7 +87,7 @@ fn a_trick_that_is_left_out_is_not_used() {
 fn rewritten_graphs_survive_as_text() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
-    let Formulation { names, traced: plain } = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
+    let Formulation { names, traced: plain, scales } = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
     let given = plain.graph.factors();
     let before = plain.graph.cost(&mut Vec::new());
     let mut rewriting = Annealing::new(plain.graph.clone(), 3, Graph::cost);
@@ -108,7 +108,7 @@ fn rewritten_graphs_survive_as_text() {
     let again = graph_text::written(&on, &given);
     let words = |text: &str| text.split_whitespace().count();
     assert_eq!(words(&again), words(&text), "a text goes on as it was");
-    let rewritten = Formulation { names, traced: read.told_by(&plain) };
+    let rewritten = Formulation { names, traced: read.told_by(&plain), scales };
     let (program, exactly, embedding) = lowered(&robot, Function::InverseDynamics, rewritten);
     prove::prove(&Reference::of(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, embedding).unwrap();
     assert_eq!((program.operations().mul, program.operations().add), (cost.mul, cost.add));

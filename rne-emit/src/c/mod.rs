@@ -95,22 +95,20 @@ struct File<'a> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     file: String,
-    hash: u64,
+    sha256: String,
 }
 
 impl Origin {
-    /// The origin of code that is made of these bytes.
+    /// The origin of code that is made of a file with this SHA-256, in hexadecimal.
     #[must_use]
-    pub fn of(file: &str, bytes: &[u8]) -> Self {
-        // FNV-1a of 64 bits: no cryptography, enough to see that a file is another
-        let hash = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
-        Self { file: file.to_owned(), hash: bytes.iter().fold(0xCBF2_9CE4_8422_2325, hash) }
+    pub fn new(file: &str, sha256: &str) -> Self {
+        Self { file: file.to_owned(), sha256: sha256.to_owned() }
     }
 }
 
 impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, FNV-1a {:016x}", self.file, self.hash)
+        write!(f, "{}, SHA-256 {}", self.file, self.sha256)
     }
 }
 

@@ -18,7 +18,7 @@ fn rewritten_graphs_are_the_seven_steps() {
             // squares of cosines
             joint.switches.second_moment_unturned = true;
         }
-        let Formulation { names, traced: plain } = drawn(&robot, &plan, function).unwrap();
+        let Formulation { names, traced: plain, scales } = drawn(&robot, &plan, function).unwrap();
         let residues = |graph: &Graph| graph.outputs.iter().map(|at| graph.residue(*at)).collect::<Vec<_>>();
         let expected = residues(&plain.graph);
         let (graphs, seen, found) = (RefCell::new(Vec::new()), Cell::new(0_usize), Cell::new(false));
@@ -43,7 +43,7 @@ fn rewritten_graphs_are_the_seven_steps() {
         // the last one first: that is the one whose value has changed
         for graph in graphs.into_iter().rev() {
             let written = Traced { graph, trace: Trace::default() }.told_by(&plain);
-            let rewritten = Formulation { names: names.clone(), traced: written };
+            let rewritten = Formulation { names: names.clone(), traced: written, scales };
             must_be_identical(&robot, &plan, &lowered(&robot, function, rewritten));
         }
     }

@@ -99,8 +99,27 @@ void print_results(const char *what, uint32_t state, const float *numbers, uint3
     put("\n");
 }
 
+#define SYST ((volatile uint32_t *)0xE000E010u) // control, reload, current
+
+uint32_t timer(void)
+{
+    return SYST[2];
+}
+
+void print_ticks(const char *what, uint32_t start, uint32_t end)
+{
+    put("ticks ");
+    put(what);
+    put(" ");
+    put_number((start - end) & 0xFFFFFFu);
+    put("\n");
+}
+
 int main(void)
 {
+    SYST[1] = 0xFFFFFFu;
+    SYST[2] = 0u;
+    SYST[0] = 5u; // the clock of the processor, no interrupt
     open_standard_output();
     for (uint32_t number = 0; number < STATES; number++) {
         run_cases(number);

@@ -4,11 +4,9 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use anyhow::{Context, Result};
-
 /// An instruction, or data between instructions.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Line {
+pub struct Line {
     address: u64,
     mnemonic: String,
     operands: String,
@@ -16,25 +14,45 @@ pub(crate) struct Line {
 
 /// Why a function is not straight.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Fault {
+pub enum Fault {
+    /// It calls a function.
     Calls(String),
+    /// It branches.
     Branches(String),
+    /// It computes in double precision.
     Doubles(String),
+    /// It traps.
     Traps(String),
+    /// It returns elsewhere than at its end.
     ReturnsElsewhere,
 }
 
-/// What a straight function is made of.
+/// The instructions and constants of a straight function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Count {
+pub struct Count {
     /// In a straight function every one is executed, once.
-    pub(crate) instructions: u64,
+    pub instructions: u64,
     /// Bytes of constants between them; what aligns those is code.
-    pub(crate) constants: u64,
+    pub constants: u64,
 }
 
+/// A line that is not as `objdump` writes lines.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoListing(String);
+
+impl fmt::Display for NoListing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "this line of objdump has no address: {}", self.0)
+    }
+}
+
+impl std::error::Error for NoListing {}
+
 /// The functions of an image, by their symbols.
-pub(crate) fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>> {
+///
+/// # Errors
+/// When a line has no address.
+pub fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>, NoListing> {
     let mut functions: BTreeMap<String, Vec<Line>> = BTreeMap::new();
     let mut current = None;
     for line in objdump.lines() {
@@ -42,7 +60,7 @@ pub(crate) fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>> {
             current = Some(functions.entry(symbol.1.to_owned()).or_default());
         } else if let (Some(function), Some((address, rest))) = (current.as_mut(), line.trim_start().split_once(":\t"))
         {
-            let address = u64::from_str_radix(address, 16).with_context(|| format!("no address: {line}"))?;
+            let address = u64::from_str_radix(address, 16).map_err(|_| NoListing(line.to_owned()))?;
             let (mnemonic, operands) = rest.split_once('\t').unwrap_or((rest, ""));
             let operands = operands.split(['@', ';']).next().unwrap_or_default();
             let [mnemonic, operands] = [mnemonic, operands].map(|text| text.trim().to_owned());
@@ -52,8 +70,9 @@ pub(crate) fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>> {
     Ok(functions)
 }
 
-/// What a function is made of, and all that keeps it from being straight.
-pub(crate) fn judge(function: &[Line]) -> (Count, Vec<Fault>) {
+/// The instructions and constants of a function, and all that keeps it from being straight.
+#[must_use]
+pub fn judge(function: &[Line]) -> (Count, Vec<Fault>) {
     let mut count = Count::default();
     let mut faults = Vec::new();
     let last = function.iter().rposition(|line| line.data() == 0 && !line.is_padding());
@@ -78,13 +97,27 @@ const CONDITIONS: [&str; 16] =
     ["eq", "ne", "cs", "cc", "hs", "lo", "mi", "pl", "vs", "vc", "hi", "ls", "ge", "lt", "gt", "le"];
 
 impl Line {
+    /// The mnemonic as `objdump` prints it.
+    #[must_use]
+    pub fn mnemonic(&self) -> &str {
+        &self.mnemonic
+    }
+
+    /// The operands as `objdump` prints them.
+    #[must_use]
+    pub fn operands(&self) -> &str {
+        &self.operands
+    }
+
     /// The mnemonic without the width of its encoding.
-    fn name(&self) -> &str {
+    #[must_use]
+    pub fn name(&self) -> &str {
         self.mnemonic.strip_suffix(".n").or_else(|| self.mnemonic.strip_suffix(".w")).unwrap_or(&self.mnemonic)
     }
 
     /// Bytes of data; none in an instruction.
-    fn data(&self) -> u64 {
+    #[must_use]
+    pub fn data(&self) -> u64 {
         match self.mnemonic.as_str() {
             ".word" => 4,
             ".short" => 2,
@@ -93,8 +126,9 @@ impl Line {
         }
     }
 
-    /// What fills up to the next function.
-    fn is_padding(&self) -> bool {
+    /// Whether the line fills up to the next function.
+    #[must_use]
+    pub fn is_padding(&self) -> bool {
         self.name() == "nop" || self.mnemonic == "..." || self.mnemonic == "movs" && self.operands == "r0, r0"
     }
 
@@ -107,7 +141,7 @@ impl Line {
         }
     }
 
-    /// What is wrong with an instruction, `next` following it.
+    /// The fault of an instruction, which `next` follows.
     fn fault(&self, next: &[Self]) -> Option<Fault> {
         let name = self.name();
         let text = || format!("{} {}", self.mnemonic, self.operands);
@@ -131,8 +165,15 @@ impl Line {
         (writes_pc && !self.is_return()).then(|| Fault::Branches(text()))
     }
 
+    /// Its address.
+    #[must_use]
+    pub const fn address(&self) -> u64 {
+        self.address
+    }
+
     /// Where a jump leads.
-    fn target(&self) -> Option<u64> {
+    #[must_use]
+    pub fn target(&self) -> Option<u64> {
         let target = self.operands.split(' ').next().filter(|_| self.name() == "b")?;
         u64::from_str_radix(target, 16).ok()
     }
@@ -150,7 +191,8 @@ impl Line {
 
 impl Fault {
     /// The function that is called, if that is what is wrong.
-    pub(crate) fn callee(&self) -> Option<&str> {
+    #[must_use]
+    pub fn callee(&self) -> Option<&str> {
         let Self::Calls(line) = self else { return None };
         line.split_once('<')?.1.strip_suffix('>')
     }

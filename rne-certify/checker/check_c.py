@@ -1,0 +1,495 @@
+#!/usr/bin/env python3
+"""Checks C code of an arm against its Denavit-Hartenberg table, independently of rne.
+
+    python3 check_c.py my_arm.c my_arm.trace.json
+
+The script shares no code with rne and needs only Python's standard library. It reads the C source as text.
+1. Each constant: the trace gives its expression in the numbers of the robot file. The script evaluates the expression
+   with 60 digits; the literal in the source must be the nearest float (or double) of it.
+2. The function: the script evaluates the source modulo a random prime at random points, with the expressions of the
+   constants. It computes the torques modulo the prime by its own recursive Newton-Euler algorithm, in the axes of
+   frame 0. Both must be equal. The sine and cosine of an angle are a random point (s, c) with s^2 + c^2 = 1.
+3. Sine and cosine: their source must be one of two texts whose SHA-256 stands below. A test of rne compares the
+   functions with high precision at 100,000 angles; this script does not.
+
+The primes have 127 bits. A wrong term survives one point with a probability below 1e-33; there are 8 points.
+Not checked: that the table in the trace is what the robot file says (compare them: the table is at the end of the
+trace), the compiler, the processor. Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read.
+"""
+import decimal
+import hashlib
+import json
+import math
+import random
+import re
+import struct
+import sys
+from decimal import Decimal
+
+decimal.getcontext().prec = 60
+POINTS = 8
+KERNELS = {  # of the sine, by the type, with the comments removed and the prefix replaced by PREFIX
+    "float": "075ef40048349db137365e9a3658e49b884b4617431a61b682e6f95359e0b870",
+    "double": "832cb059c93293dbe679defff4e5a128e7221d57220703aa1a890c25590203ef",
+}
+
+class Wrong(Exception):
+    """Something in the C source or the trace is wrong."""
+
+# --- numbers with 60 digits ---------------------------------------------------------------------------------------
+
+def arctan_of_inverse(n):
+    total, power, k = Decimal(0), Decimal(1) / n, 0
+    while abs(power) > Decimal(10) ** -70:
+        total += power / (2 * k + 1) * (-1) ** k
+        power, k = power / (n * n), k + 1
+    return total
+
+PI = 4 * (4 * arctan_of_inverse(5) - arctan_of_inverse(239))  # J. Machin
+
+def sine(x):
+    x = x % (2 * PI)
+    total, term, k = Decimal(0), x, 1
+    while abs(term) > Decimal(10) ** -70:
+        total += term
+        term, k = -term * x * x / ((k + 1) * (k + 2)), k + 2
+    return total
+
+def cosine(x):
+    return sine(x + PI / 2)
+
+def angle_of(s, c):
+    x = Decimal(math.atan2(float(s), float(c)))
+    for _ in range(4):  # Newton: the sine of what is left
+        x += s * cosine(x) - c * sine(x)
+    return x
+
+def as_float(x, kind):
+    """The nearest float or double of a decimal."""
+    near = float(x)  # Python rounds a Decimal's text correctly
+    if kind == "double":
+        return near
+    bits = struct.unpack("<I", struct.pack("<f", near))[0]
+    candidates = [struct.unpack("<f", struct.pack("<I", (bits + k) & 0xFFFFFFFF))[0] for k in (-1, 0, 1) if bits + k >= 0]
+    return min((y for y in candidates if y == y), key=lambda y: (abs(Decimal(y) - x), y != near))
+
+# --- the field of a prime -----------------------------------------------------------------------------------------
+
+def is_prime(n):
+    if any(n % p == 0 for p in (3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)):
+        return False
+    d, twos = n - 1, 0
+    while d % 2 == 0:
+        d, twos = d // 2, twos + 1
+    for _ in range(24):  # Miller and Rabin
+        x = pow(random.randrange(2, n - 1), d, n)
+        if x in (1, n - 1):
+            continue
+        for _ in range(twos - 1):
+            x = x * x % n
+            if x == n - 1:
+                break
+        else:
+            return False
+    return True
+
+def random_prime():
+    while True:
+        n = random.getrandbits(127) | (1 << 126) | 3  # 3 modulo 4: roots are powers
+        if is_prime(n):
+            return n
+
+class NoRoot(Exception):
+    """A number has no square root modulo this prime: another prime is taken."""
+
+class Field:
+    def __init__(self, prime):
+        self.p, self.points = prime, {}
+    def inverse(self, x):
+        if x % self.p == 0:
+            raise NoRoot
+        return pow(x, self.p - 2, self.p)
+    def root(self, x):
+        y = pow(x, (self.p + 1) // 4, self.p)
+        if y * y % self.p != x % self.p:
+            raise NoRoot
+        return y
+    def decimal(self, text):
+        sign, digits, exponent = Decimal(text).as_tuple()
+        value = int("".join(map(str, digits))) * (-1) ** sign
+        return value * (pow(10, exponent, self.p) if exponent >= 0 else self.inverse(pow(10, -exponent, self.p))) % self.p
+    def circle(self):
+        t = random.randrange(2, self.p)
+        scale = self.inverse(1 + t * t)
+        return 2 * t * scale % self.p, (1 - t * t) * scale % self.p
+    def turn(self, radians):
+        """Sine and cosine of a constant angle: the same point, up to right angles and sign, for related angles."""
+        x = Decimal(radians)
+        quarters = int((x / (PI / 2)).to_integral_value())
+        if abs(x - quarters * PI / 2) < Decimal(radians if radians else 1.0).copy_abs() * Decimal(2) ** -49:
+            s, c = 0, 1
+        else:
+            rest = x - quarters * PI / 2
+            values = [float(abs(sine(rest))), float(cosine(rest))]
+            point = self.points.setdefault(tuple(sorted(values)), self.circle())
+            s, c = point if values[0] <= values[1] else point[::-1]
+            s = s if rest > 0 else -s
+        for _ in range(quarters % 4):
+            s, c = c, -s
+        return s % self.p, c % self.p
+
+# --- the trace ----------------------------------------------------------------------------------------------------
+
+def evaluate(steps, leaf, add, multiply, negate, inverse, root):
+    values = []
+    for operator, *operands in steps:
+        if operator in ("number", "sin", "cos"):
+            values.append(leaf(operator, operands[0]))
+            continue
+        if any(not 0 <= at < len(values) for at in operands):
+            raise Wrong("the trace names a step that does not stand before")
+        a = [values[at] for at in operands]
+        values.append({"+": add, "*": multiply, "-": negate, "/": inverse, "sqrt": root}[operator](*a))
+    return values
+
+def exact_values(steps):
+    def leaf(operator, number):
+        return Decimal(number) if operator == "number" else (sine if operator == "sin" else cosine)(Decimal(float(number)))
+    return evaluate(steps, leaf, lambda a, b: a + b, lambda a, b: a * b, lambda a: -a, lambda a: 1 / a, Decimal.sqrt)
+
+def field_values(steps, field):
+    def leaf(operator, number):
+        return field.decimal(number) if operator == "number" else field.turn(float(number))[operator == "cos"]
+    return evaluate(steps, leaf, lambda a, b: (a + b) % field.p, lambda a, b: a * b % field.p, lambda a: -a % field.p,
+                    field.inverse, field.root)
+
+# --- the C source -------------------------------------------------------------------------------------------------
+
+TOKEN = re.compile(r"\s*([A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fu]?|[-+*/()\[\]{},;=&])")
+
+def tokens_of(text):
+    tokens, at = [], 0
+    text = text.rstrip()
+    while at < len(text):
+        match = TOKEN.match(text, at)
+        if not match:
+            raise Wrong(f"the source has an unknown symbol: {text[at:at + 20]!r}")
+        tokens.append(match.group(1))
+        at = match.end()
+    return tokens
+
+class Source:
+    def __init__(self, text, trace):
+        self.kind, self.name, prefix = trace["real"], trace["function"], trace["prefix"]
+        text = re.sub(r"//[^\n]*", "", re.sub(r"/\*.*?\*/", "", text, flags=re.S))
+        head = f"void {self.name}("
+        if text.count(head) != 1:
+            raise Wrong(f"the source must define {self.name} once")
+        before, after = text.split(head)
+        body, rest = after.split("\n}\n", 1) if "\n}\n" in after else (after, "?")
+        if rest.strip():
+            raise Wrong("the source has code after the function")
+        before = re.sub(r'#include (<float.h>|<stdint.h>|"[^"]*")\n', "", before)
+        kernel = " ".join(before.replace(prefix, "PREFIX").split())
+        if kernel and hashlib.sha256(kernel.encode()).hexdigest() != KERNELS[self.kind]:
+            raise Wrong("the sine and cosine are not those of rne: " + hashlib.sha256(kernel.encode()).hexdigest())
+        self.tokens, self.at, self.prefix = tokens_of(body), 0, prefix
+        self.parameters = self.header()
+    def next(self, *expected):
+        token = self.tokens[self.at] if self.at < len(self.tokens) else "the end"
+        if expected and token not in expected:
+            raise Wrong(f"the source has {token!r} where {' or '.join(expected)} is expected")
+        self.at += 1
+        return token
+    def peek(self):
+        return self.tokens[self.at] if self.at < len(self.tokens) else ""
+    def header(self):
+        parameters = []
+        while True:
+            is_const = self.peek() == "const"
+            if is_const:
+                self.next()
+            self.next(self.kind)
+            name = self.next()
+            self.next("[")
+            length = int(self.next())
+            self.next("]")
+            parameters.append((name, length, is_const))
+            if self.next(",", ")") == ")":
+                self.next("{")
+                return parameters
+    def run(self, machine):
+        """Executes the statements. `machine` gives numbers their meaning."""
+        start, names = self.at, {}
+        self.machine, self.names = machine, names
+        while self.peek():
+            token = self.next()
+            if token == "(":  # (void)qd;
+                for expected in ("void", ")"):
+                    self.next(expected)
+                self.next()
+                self.next(";")
+            elif token in ("const", self.kind):
+                is_const = token == "const"
+                if is_const:
+                    self.next(self.kind)
+                name = self.next()
+                if name in names or name in dict((p[0], 1) for p in self.parameters):
+                    raise Wrong(f"{name} is declared twice")
+                if is_const:
+                    self.next("=")
+                    literal = self.literal()
+                    names[name] = machine.constant(name, literal) if literal is not None else self.sum()
+                else:
+                    names[name] = None
+                self.next(";")
+            elif token == f"{self.prefix}_sin_cos":
+                self.next("(")
+                angle = self.sum()
+                turn = machine.sin_cos(angle)
+                for value in turn:
+                    self.next(",")
+                    self.next("&")
+                    name = self.next()
+                    if name not in names or (names[name] is not None and name != "unused"):
+                        raise Wrong(f"{name} is written where it may not be")
+                    names[name] = value
+                self.next(")")
+                self.next(";")
+            elif token == self.parameters[-1][0]:
+                self.next("[")
+                index = int(self.next())
+                self.next("]")
+                self.next("=")
+                machine.output(index, self.sum())
+                self.next(";")
+            else:
+                raise Wrong(f"the source has an unknown statement: {token}")
+        self.at = start
+    def literal(self):
+        """A constant alone on the right side: its text, and whether it is negative."""
+        end = self.at + (self.peek() == "-")
+        if self.tokens[end + 1:end + 2] == [";"] and self.tokens[end][0].isdigit():
+            text = "".join(self.tokens[self.at:end + 1])
+            self.at = end + 1
+            return text
+        return None
+    def sum(self):
+        value = self.product()
+        while self.peek() in ("+", "-"):
+            operator, other = self.next(), self.product()
+            value = self.machine.add(value, other if operator == "+" else self.machine.negative(other))
+        return value
+    def product(self):
+        value = self.atom()
+        while self.peek() in ("*", "/"):
+            operator, other = self.next(), self.atom()
+            value = (self.machine.multiply if operator == "*" else self.machine.divide)(value, other)
+        return value
+    def atom(self):
+        token = self.next()
+        if token == "-":
+            return self.machine.negative(self.atom())
+        if token == "(":
+            value = self.sum()
+            self.next(")")
+            return value
+        if self.peek() == "[":
+            self.next()
+            index = int(self.next())
+            self.next("]")
+            lengths = {name: length for name, length, is_const in self.parameters if is_const}
+            if index >= lengths.get(token, 0):
+                raise Wrong(f"{token}[{index}] does not exist")
+            return self.machine.argument(token, index)
+        if token[0].isdigit():
+            return self.machine.number(token)
+        if self.names.get(token) is None:
+            raise Wrong(f"{token} is used before it has a value")
+        return self.names[token]
+
+class Machine:
+    """Arithmetic of a field. A value is (number, turn); a turn is the (sine, cosine) of the value as an angle."""
+    def __init__(self, field, table, constants, literals, kind):
+        self.field, self.p, self.constants, self.literals, self.kind = field, field.p, constants, literals, kind
+        n = len(table["joints"])
+        self.arguments = {name: [random.randrange(self.p) for _ in range(n)] for name in ("q", "qd", "qdd")}
+        self.turns = [field.circle() for _ in range(n)]
+        self.outputs, self.used = {}, set()
+    def constant(self, name, text):
+        if name not in self.constants:
+            raise Wrong(f"the trace does not know the constant {name}")
+        self.used.add(name)
+        if (text.endswith("f")) != (self.kind == "float") or as_literal(text, self.kind) != self.literals[name]:
+            raise Wrong(f"{name} = {text} is not the nearest {self.kind} of its expression, {self.literals[name]!r}")
+        return self.constants[name]
+    def argument(self, name, index):
+        turn = self.turns[index] if name == "q" else None
+        return self.arguments[name][index], turn
+    def number(self, text):
+        if as_literal(text, self.kind) != 0.0:
+            raise Wrong(f"the source has a number without a name: {text}")
+        return 0, None
+    def add(self, a, b):
+        turn = None
+        if a[1] and b[1]:
+            (s, c), (t, d) = a[1], b[1]
+            turn = (s * d + c * t) % self.p, (c * d - s * t) % self.p
+        return (a[0] + b[0]) % self.p, turn
+    def negative(self, a):
+        return -a[0] % self.p, a[1] and (-a[1][0] % self.p, a[1][1])
+    def multiply(self, a, b):
+        return a[0] * b[0] % self.p, None
+    def divide(self, a, b):
+        return a[0] * self.field.inverse(b[0]) % self.p, None
+    def sin_cos(self, angle):
+        if not angle[1]:
+            raise Wrong("the sine of a value that is no angle")
+        return (angle[1][0], None), (angle[1][1], None)
+    def output(self, index, value):
+        if index in self.outputs:
+            raise Wrong(f"output {index} is written twice")
+        self.outputs[index] = value[0]
+
+def as_literal(text, kind):
+    value = Decimal(text.rstrip("fu"))
+    return as_float(value, kind)
+
+# --- recursive Newton-Euler in the axes of frame 0 ------------------------------------------------------------------
+
+def torques(field, table, machine):
+    p = field.p
+    def dot(a, b):
+        return sum(x * y for x, y in zip(a, b)) % p
+    def cross(a, b):
+        return [(a[1] * b[2] - a[2] * b[1]) % p, (a[2] * b[0] - a[0] * b[2]) % p, (a[0] * b[1] - a[1] * b[0]) % p]
+    def add(*vectors):
+        return [sum(parts) % p for parts in zip(*vectors)]
+    def times(k, v):
+        return [k * x % p for x in v]
+    def by(matrix, v):
+        return [dot(row, v) for row in matrix]
+    def product(a, b):
+        return [[dot(row, column) for column in zip(*b)] for row in a]
+    def about_x(turn):
+        s, c = turn
+        return [[1, 0, 0], [0, c, -s % p], [0, s, c]]
+    def about_z(turn):
+        s, c = turn
+        return [[c, -s % p, 0], [s, c, 0], [0, 0, 1]]
+
+    rotation, origin = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 0]
+    omega, alpha = [0, 0, 0], [0, 0, 0]
+    acceleration = [-field.decimal(x) % p for x in table["gravity"]]  # of the origin of the frame, less gravity
+    links = []
+    for index, joint in enumerate(table["joints"]):
+        is_revolute = joint["type"] == "revolute"
+        theta, twist = field.turn(float(joint["theta"])), field.turn(float(joint["alpha"]))
+        slide, a = field.decimal(joint["d"]), field.decimal(joint["a"])
+        if is_revolute:
+            q = machine.turns[index]
+            theta = (theta[0] * q[1] + theta[1] * q[0]) % p, (theta[1] * q[1] - theta[0] * q[0]) % p
+        else:
+            slide = (slide + machine.arguments["q"][index]) % p
+        rate, rate_dot = machine.arguments["qd"][index], machine.arguments["qdd"][index]
+        if table["convention"] == "modified":
+            rotation_before = product(rotation, about_x(twist))  # the axis of the joint comes after alpha and a
+            point = add(origin, by(rotation, [a, 0, 0]))
+            axis = by(rotation_before, [0, 0, 1])
+            step = times(slide, axis)
+            after = product(rotation_before, about_z(theta))
+        else:
+            axis = by(rotation, [0, 0, 1])
+            turned = product(rotation, about_z(theta))
+            point = origin
+            step = add(times(slide, axis), by(turned, [a, 0, 0]))
+            after = product(turned, about_x(twist))
+        # the point moves with the link before; what follows it moves with the joint
+        arm = add(point, times(-1, origin))
+        acceleration = add(acceleration, cross(alpha, arm), cross(omega, cross(omega, arm)))
+        if is_revolute:
+            alpha = add(alpha, times(rate_dot, axis), cross(omega, times(rate, axis)))
+            omega = add(omega, times(rate, axis))
+        else:
+            acceleration = add(acceleration, times(rate_dot, axis), times(2, cross(omega, times(rate, axis))))
+        acceleration = add(acceleration, cross(alpha, step), cross(omega, cross(omega, step)))
+        origin, rotation = add(point, step), after
+        mass = field.decimal(joint["mass"])
+        com = [field.decimal(x) for x in joint["com"]]
+        xx, yy, zz, xy, xz, yz = (field.decimal(x) for x in joint["inertia"])
+        inertia = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+        if joint["inertia_about"] == "origin":  # Steiner
+            square = dot(com, com)
+            inertia = [[(inertia[i][j] - mass * ((square if i == j else 0) - com[i] * com[j])) % p for j in range(3)]
+                       for i in range(3)]
+        arm = by(rotation, com)
+        of_com = add(acceleration, cross(alpha, arm), cross(omega, cross(omega, arm)))
+        inertia = product(product(rotation, inertia), [list(column) for column in zip(*rotation)])
+        force = times(mass, of_com)
+        moment = add(by(inertia, alpha), cross(omega, by(inertia, omega)))
+        links.append((is_revolute, axis, point, add(origin, arm), force, moment))
+    result, force, moment = [], [0, 0, 0], [0, 0, 0]  # moment about the origin of frame 0
+    for is_revolute, axis, point, com, own_force, own_moment in reversed(links):
+        force = add(force, own_force)
+        moment = add(moment, own_moment, cross(com, own_force))
+        about_axis = add(moment, times(-1, cross(point, force)))
+        result.append(dot(axis, about_axis if is_revolute else force))
+    return result[::-1]
+
+# --- all of it ----------------------------------------------------------------------------------------------------
+
+def check(text, trace):
+    table, steps, kind = trace["table"], trace["steps"], trace["real"]
+    source = Source(text, trace)
+    joints = len(table["joints"])
+    if source.parameters != [("q", joints, True), ("qd", joints, True), ("qdd", joints, True), ("tau", joints, False)]:
+        raise Wrong("the function must take q, qd, qdd and write tau, with one element per joint")
+    exact = exact_values(steps)
+    literals = {}
+    for name, of in trace["constants"].items():
+        value = exact[of] if isinstance(of, int) else angle_of(exact[of["sin"]], exact[of["cos"]])
+        literals[name] = as_float(value, kind)
+    points = 0
+    while points < POINTS:
+        field = Field(random_prime())
+        try:
+            values = field_values(steps, field)
+            constants = {}
+            for name, of in trace["constants"].items():
+                is_number = isinstance(of, int)
+                constants[name] = (values[of], None) if is_number else (random.randrange(field.p),
+                                                                       (values[of["sin"]], values[of["cos"]]))
+            machine = Machine(field, table, constants, literals, kind)
+            source.run(machine)
+        except NoRoot:
+            continue
+        expected = torques(field, table, machine)
+        if sorted(machine.outputs) != list(range(joints)):
+            raise Wrong("the function does not write every torque")
+        for index, value in enumerate(expected):
+            if machine.outputs[index] != value:
+                raise Wrong(f"torque {index + 1} is another function than recursive Newton-Euler")
+        points += 1
+    return f"{source.name}: {joints} torques are those of the table at {POINTS} points; {len(literals)} constants are right"
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__)
+        return 2
+    try:
+        with open(sys.argv[1], encoding="utf-8") as file:
+            text = file.read()
+        with open(sys.argv[2], encoding="utf-8") as file:
+            trace = json.load(file)
+    except (OSError, ValueError) as error:
+        print(f"error: {error}")
+        return 2
+    try:
+        print(check(text, trace))
+    except Wrong as error:
+        print(f"wrong: {error}")
+        return 1
+    return 0
+
+if __name__ == "__main__":
+    sys.exit(main())

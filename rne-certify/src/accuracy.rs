@@ -1,0 +1,144 @@
+//! The error of a function in single precision over the limits of an arm, with a rigorous bound at each state.
+//!
+//! At each state of a sample, the program runs in `f32`, as the emitted code does. It also runs on intervals of `f64`
+//! ([`Interval`]), which enclose the exact result. The distance of the `f32` result from the farthest number of the
+//! interval is at least the error. So the bound holds at the states of the sample. It says nothing of other states.
+
+use rne_codegen::{Arguments, Interpreter, Program};
+use rne_model::{JointKind, Robot};
+
+use crate::interval::Interval;
+
+/// The states at which the error is bounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// How many states.
+    pub states: usize,
+    /// The seed of the random numbers.
+    pub seed: u64,
+}
+
+/// The ranges of a joint from which states are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Positions, rad or m.
+    pub position: (f64, f64),
+    /// Largest speed, rad/s or m/s.
+    pub velocity: f64,
+    /// Largest acceleration, rad/s² or m/s².
+    pub acceleration: f64,
+}
+
+/// The error of one number of the result.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Error {
+    /// The largest magnitude of the number in the sample.
+    pub largest: f64,
+    /// The largest bound of its error in the sample.
+    pub bound: f64,
+    /// The state of the sample at which the bound is largest, counted from 0.
+    pub state: usize,
+}
+
+/// Speed and acceleration of a joint without limits.
+const SPEED: f64 = 2.0;
+const ACCELERATION: f64 = 4.0;
+/// Positions of a sliding joint without limits, m.
+const SLIDE: f64 = 1.0;
+
+/// The ranges of the joints: the limits of the robot file, and defaults where it has none.
+#[must_use]
+pub fn ranges(robot: &Robot) -> Vec<Range> {
+    let range = |joint: &rne_model::Joint| Range {
+        position: joint.limits.position.unwrap_or(match joint.row.kind {
+            JointKind::Revolute => (-std::f64::consts::PI, std::f64::consts::PI),
+            JointKind::Prismatic => (-SLIDE, SLIDE),
+        }),
+        velocity: joint.limits.velocity.unwrap_or(SPEED),
+        acceleration: ACCELERATION,
+    };
+    robot.joints.iter().map(range).collect()
+}
+
+/// The errors of the numbers that a program returns; `None` if the interpreter cannot run it with the arguments of
+/// joints alone. `sin_cos` is that of the emitted code.
+#[must_use]
+pub fn errors(
+    robot: &Robot,
+    program: &Program,
+    sample: Sample,
+    sin_cos: impl Fn(f32) -> (f32, f32),
+) -> Option<Vec<Error>> {
+    let interpreter = Interpreter::new(program);
+    let ranges = ranges(robot);
+    let mut rng = fastrand::Rng::with_seed(sample.seed);
+    let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
+    let mut errors = vec![Error::default(); program.outputs.len()];
+    for state in 0..sample.states {
+        let mut between = |(low, high): (f64, f64)| single(low + (high - low) * rng.f64());
+        let q: Vec<f32> = ranges.iter().map(|range| between(range.position)).collect();
+        let qd: Vec<f32> = ranges.iter().map(|range| between((-range.velocity, range.velocity))).collect();
+        let qdd: Vec<f32> = ranges.iter().map(|range| between((-range.acceleration, range.acceleration))).collect();
+        let found = single_precision(robot, &interpreter, [&q, &qd, &qdd], &sin_cos)?;
+        let enclose =
+            |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
+        let [q, qd, qdd, parameters] = [&q, &qd, &qdd, &parameters].map(|numbers| enclose(numbers));
+        let zero = Interval::exactly(0.0);
+        let arguments = Arguments { tau: &qdd, parameters: &parameters, ..Arguments::of_joints(&q, &qd, &qdd, zero) };
+        let exact = interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)?;
+        for ((error, found), exact) in errors.iter_mut().zip(found).zip(exact) {
+            let found = f64::from(found);
+            error.largest = error.largest.max(found.abs());
+            let bound = exact.farthest(found);
+            if bound > error.bound || bound.is_nan() {
+                (error.bound, error.state) = (bound, state);
+            }
+        }
+    }
+    Some(errors)
+}
+
+/// The numbers that a program returns in single precision for joint positions, velocities and accelerations.
+#[must_use]
+pub fn single_precision(
+    robot: &Robot,
+    interpreter: &Interpreter,
+    [q, qd, qdd]: [&[f32]; 3],
+    sin_cos: impl Fn(f32) -> (f32, f32),
+) -> Option<Vec<f32>> {
+    let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
+    let arguments = Arguments { tau: qdd, parameters: &parameters, ..Arguments::of_joints(q, qd, qdd, 0.0) };
+    interpreter.run(&arguments, single, sin_cos)
+}
+
+#[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+fn single(x: f64) -> f32 {
+    x as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use rne_codegen::{Compiler, Form, Function};
+    use rne_model::Robot;
+
+    use super::{Sample, errors};
+
+    /// A pendulum: τ = (I + m c²) q̈ + m g c cos q, by hand.
+    const PENDULUM: &str = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, -9.81, 0], joints: [
+        {type: revolute, dh: {theta: 0, d: 0, a: 0.7, alpha: 0}, link: {mass: 1.3, com: [-0.3, 0, 0]}}]}";
+
+    #[test]
+    fn the_bound_is_that_of_single_precision() {
+        let robot = Robot::from_yaml(PENDULUM).expect("a robot");
+        let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("it compiles");
+        let sample = Sample { states: 2000, seed: 1 };
+        let error = errors(&robot, &program, sample, f32::sin_cos).expect("errors")[0];
+        // 1.3 (9.81 0.4 + 0.4² 4)
+        assert!(error.largest > 5.0 && error.largest < 5.94, "{error:?}");
+        // some roundings of 2⁻²⁴ of the largest torque, and no fewer than half of one
+        assert!(error.bound < 8.0 * 5.94 / f64::from(1 << 24) && error.bound > 1e-7, "{error:?}");
+        // a sine that is wrong by 1e-3 is found
+        let wrong = errors(&robot, &program, sample, |x| (x.sin(), x.cos() + 1e-3)).expect("errors")[0];
+        assert!(wrong.bound > 4e-3, "{wrong:?}");
+    }
+}

@@ -1,0 +1,122 @@
+//! A program in C that calls a function on the boards that QEMU emulates, and what it prints.
+
+use std::fmt::Write as _;
+
+/// The file that starts the processor, reads the timer and prints; it includes [`HEADER`] as `board.h`.
+pub const SOURCE: &str = include_str!("../board/board.c");
+/// Its header.
+pub const HEADER: &str = include_str!("../board/board.h");
+/// The script of the linker.
+pub const LINKER_SCRIPT: &str = include_str!("../board/board.ld");
+/// The states at which [`SOURCE`] calls the functions.
+pub const STATES: u32 = 32;
+/// The largest number of joints that `struct state` holds.
+pub const MOST_JOINTS: usize = 32;
+/// Ticks of the timer (25 MHz) while QEMU executes an instruction, which takes 1024 ns there.
+const TICKS: f64 = 25.6;
+
+/// Positions, velocities and accelerations between -3 and 3, as `state_of` in C computes them: row by row.
+#[must_use]
+pub fn state(number: u32, dof: usize) -> [Vec<f32>; 3] {
+    // G. Marsaglia's generator, Journal of Statistical Software 8 (2003)
+    let mut x = number.wrapping_mul(747_796_405).wrapping_add(2_891_336_453) | 1;
+    let mut next = || {
+        x ^= x << 13;
+        x ^= x >> 17;
+        x ^= x << 5;
+        #[allow(clippy::cast_precision_loss)] // 24 bits fit
+        let number = (x >> 8) as f32;
+        number * (6.0 / 16_777_216.0) - 3.0
+    };
+    [(); 3].map(|()| (0..dof).map(|_| next()).collect())
+}
+
+/// The program that calls a function of C at [`STATES`] states, prints its results and, once, its time and that of a
+/// function that does nothing. `parameters` are the arrays that the function takes, in order, by the members of
+/// `struct state`; `length` is how many numbers it returns.
+#[must_use]
+pub fn cases(header: &str, function: &str, dof: usize, arrays: &[&str], length: usize) -> String {
+    let mut text = format!("#include \"board.h\"\n#include \"{header}\"\n\n");
+    let types = vec!["const float *"; arrays.len()].join(", ");
+    let arguments: String = arrays.iter().fold(String::new(), |text, array| text + "s->" + array + ", ");
+    let unused = (0..arrays.len()).fold(String::new(), |mut text, index| {
+        let _ = write!(text, "const float *a{index}, ");
+        text
+    });
+    let voids = (0..arrays.len()).fold(String::new(), |mut text, index| {
+        let _ = writeln!(text, "    (void)a{index};");
+        text
+    });
+    let _ = write!(
+        text,
+        "typedef void certified({types}, float *);\n\n\
+         __attribute__((noinline, noipa)) static void nothing({unused}float *out)\n{{\n{voids}    (void)out;\n}}\n\n\
+         __attribute__((noinline, noipa)) static void measure(\n    \
+         const char *what, certified *function, const struct state *s, float *out)\n{{\n    \
+         const uint32_t start = timer();\n    function({arguments}out);\n    const uint32_t end = timer();\n    \
+         print_ticks(what, start, end);\n}}\n\n\
+         void run_cases(uint32_t number)\n{{\n    const struct state state = state_of(number, {dof}u);\n    \
+         const struct state *s = &state;\n    float out[{length}];\n    {function}({arguments}out);\n    \
+         print_results(\"results\", number, out, {length}u);\n    if (number == 0u) {{\n        \
+         measure(\"function\", {function}, s, out);\n        measure(\"nothing\", nothing, s, out);\n    }}\n}}\n"
+    );
+    text
+}
+
+/// The results that the program prints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Printed {
+    /// The instructions of the call of the function at the first state.
+    pub instructions: u64,
+    /// The bits of the results, by states.
+    pub results: Vec<Vec<u32>>,
+}
+
+impl Printed {
+    /// Reads the lines; `None` where they are not as [`cases`] prints them.
+    #[must_use]
+    pub fn read(text: &str) -> Option<Self> {
+        let mut printed = Self::default();
+        let (mut function, mut nothing) = (None, None);
+        for line in text.lines() {
+            match line.split_whitespace().collect::<Vec<_>>().as_slice() {
+                ["results", _, bits @ ..] => {
+                    let bits = bits.iter().map(|word| u32::from_str_radix(word, 16).ok());
+                    printed.results.push(bits.collect::<Option<_>>()?);
+                }
+                ["ticks", "function", ticks] => function = Some(ticks.parse::<f64>().ok()?),
+                ["ticks", "nothing", ticks] => nothing = Some(ticks.parse::<f64>().ok()?),
+                _ => return None,
+            }
+        }
+        // a function that does nothing is one instruction: bx lr
+        let instructions = (function? - nothing?) / TICKS + 1.0;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a timer of 24 bits
+        let rounded = instructions.round().max(0.0) as u64;
+        printed.instructions = rounded;
+        Some(printed)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp)] // the same bits
+mod tests {
+    use super::{Printed, state};
+
+    #[test]
+    fn states_are_those_of_the_board() {
+        // by hand: x = 2891336453 | 1 for the first state
+        let [q, ..] = state(0, 1);
+        assert!(q[0].abs() <= 3.0 && state(0, 2)[0][0] == q[0] && state(1, 1)[0] != q);
+    }
+
+    #[test]
+    fn a_log_is_read() {
+        let text = "results 0 3f800000 40000000\nticks function 2560\nticks nothing 128\nresults 1 00000000 80000000\n";
+        let printed = Printed::read(text).expect("a log");
+        assert_eq!(printed.instructions, 96);
+        assert_eq!(printed.results, [[0x3f80_0000, 0x4000_0000], [0, 0x8000_0000]]);
+        assert_eq!(Printed::read("fault\n"), None);
+        assert_eq!(Printed::read("results 0 3f800000\n"), None);
+    }
+}

@@ -1,0 +1,315 @@
+//! The certificate of one function of one arm: its data, and the page.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::misra;
+
+/// Everything that the page says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Certificate {
+    /// The command that makes this certificate.
+    pub command: String,
+    /// The name of the arm.
+    pub robot: String,
+    /// The function, by its name in the code.
+    pub function: String,
+    /// The form of the code.
+    pub form: String,
+    /// The core, as `-mcpu` names it.
+    pub core: String,
+    /// Versions of the tools, by their names.
+    pub tools: BTreeMap<String, String>,
+    /// Options of the compiler.
+    pub options: Vec<String>,
+    /// SHA-256, by what it is of.
+    pub hashes: BTreeMap<String, String>,
+    /// The cost of a call.
+    pub cost: Cost,
+    /// The measurement in QEMU; absent where it is not installed.
+    pub emulation: Option<Emulation>,
+    /// The error of the results.
+    pub accuracy: Accuracy,
+    /// How the code was compared with the recursive Newton-Euler algorithm, a sentence each.
+    pub proof: Vec<String>,
+    /// Rules of MISRA C:2012 and how often the code violates them; absent where cppcheck is not installed.
+    pub misra: Option<BTreeMap<String, usize>>,
+    /// The lines of the code and where they come from.
+    pub trace: Vec<Traced>,
+}
+
+/// The cost of a call.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Cost {
+    /// Instructions of a call, those of the functions that it calls included.
+    pub instructions: u64,
+    /// Cycles of a call in the worst case, by the table of the core.
+    pub cycles: u64,
+    /// Cycles of it in which an instruction waits for the result of the one before.
+    pub waits: u64,
+    /// The kinds of instructions.
+    pub classes: Vec<Class>,
+    /// Instructions that the table of the core does not know.
+    pub unknown: Vec<String>,
+    /// The assumptions of the table.
+    pub assumptions: Vec<String>,
+    /// Bytes of instructions.
+    pub code: u64,
+    /// Bytes of constants.
+    pub constants: u64,
+    /// Bytes of stack of the deepest chain of calls, as the compiler records frames; as the instructions show them for
+    /// a compiler that records none.
+    pub stack: u64,
+    /// The bytes of stack that the instructions show.
+    pub stack_of_listing: u64,
+    /// The functions that are called, and how often.
+    pub calls: BTreeMap<String, usize>,
+}
+
+/// Instructions of one kind.
+#[derive(Clone, Debug, Serialize)]
+pub struct Class {
+    /// The kind in words.
+    pub what: String,
+    /// Their mnemonics.
+    pub mnemonics: Vec<String>,
+    /// How many.
+    pub instructions: u64,
+    /// The cycles of all.
+    pub cycles: u64,
+}
+
+/// The measurement in QEMU.
+#[derive(Clone, Debug, Serialize)]
+pub struct Emulation {
+    /// The board.
+    pub machine: String,
+    /// Instructions of a call by the timer.
+    pub instructions: u64,
+    /// States at which the results have the bits of the host.
+    pub states: usize,
+}
+
+/// The error of the results.
+#[derive(Clone, Debug, Serialize)]
+pub struct Accuracy {
+    /// Number of states.
+    pub states: usize,
+    /// The seed of the random numbers.
+    pub seed: u64,
+    /// The ranges of the joints, in words.
+    pub ranges: Vec<String>,
+    /// The numbers of the result.
+    pub results: Vec<Error>,
+}
+
+/// The error of a number of the result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Error {
+    /// Its name.
+    pub name: String,
+    /// The largest magnitude in the sample.
+    pub largest: f64,
+    /// The largest bound of the error in the sample.
+    pub bound: f64,
+    /// The state with this bound.
+    pub state: usize,
+}
+
+/// A line of the code.
+#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+pub struct Traced {
+    /// Its number in the source.
+    pub line: usize,
+    /// The name that it computes.
+    pub name: String,
+    /// The step, as the code says it.
+    pub step: String,
+    /// The equations of the step.
+    pub equations: String,
+}
+
+/// The statements of a function in emitted C, with the comments above them: the step, and its equations.
+#[must_use]
+pub fn trace(source: &str, function: &str) -> Vec<Traced> {
+    let mut traced = Vec::new();
+    let mut lines = source.lines().enumerate().skip_while(|(_, line)| !line.contains(&format!("{function}(")));
+    let Some((start, _)) = lines.by_ref().find(|(_, line)| line.trim_end() == "{" || line.ends_with('{')) else {
+        return traced;
+    };
+    let (mut step, mut equations) = (String::new(), Vec::<String>::new());
+    let mut is_comment = false;
+    for (index, line) in source.lines().enumerate().skip(start + 1) {
+        if line == "}" {
+            break;
+        }
+        let words = line.trim();
+        if let Some(comment) = words.strip_prefix("// ") {
+            if is_comment {
+                equations.push(comment.to_owned());
+            } else {
+                (step, equations) = (comment.to_owned(), Vec::new());
+            }
+            is_comment = true;
+            continue;
+        }
+        is_comment = false;
+        let name = words.split(" = ").next().and_then(|left| left.split_whitespace().last());
+        let is_statement = words.contains(" = ") || words.ends_with(" =");
+        if let Some(name) = name.filter(|_| is_statement) {
+            let step = if step.is_empty() { "argument".to_owned() } else { step.clone() };
+            traced.push(Traced { line: index + 1, name: name.to_owned(), step, equations: equations.join("; ") });
+        } else if words.contains("_sin_cos(") {
+            let names = words.split(['&', ',', ')']).filter(|word| words.contains(&format!("&{word}")));
+            let name = names.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
+            traced.push(Traced { line: index + 1, name, step: step.clone(), equations: String::new() });
+        }
+    }
+    traced
+}
+
+impl Certificate {
+    /// The page in Markdown.
+    #[must_use]
+    pub fn page(&self) -> String {
+        let mut text = format!(
+            "# Certificate of `{}` of {} on {}\n\nThis command writes the page:\n\n```sh\n{}\n```\n\n",
+            self.function, self.robot, self.core, self.command
+        );
+        self.tools_and_files(&mut text);
+        self.costs(&mut text);
+        self.emulated(&mut text);
+        self.errors(&mut text);
+        text.push_str("\n## Comparison with the recursive Newton-Euler algorithm\n\n");
+        for line in &self.proof {
+            let _ = writeln!(text, "- {line}");
+        }
+        self.rules(&mut text);
+        text.push_str("\n## Trace\n\nEach line of the code with the step that it belongs to.\n\n");
+        text.push_str("| line | name | step | equations |\n|---:|---|---|---|\n");
+        for Traced { line, name, step, equations } in &self.trace {
+            let _ = writeln!(text, "| {line} | `{name}` | {step} | {} |", equations.replace('|', "\\|"));
+        }
+        text
+    }
+
+    fn tools_and_files(&self, text: &mut String) {
+        text.push_str("## Tools and files\n\n| tool | version |\n|---|---|\n");
+        for (tool, version) in &self.tools {
+            let _ = writeln!(text, "| {tool} | {version} |");
+        }
+        let _ = writeln!(text, "\nOptions of the compiler: `{}`\n", self.options.join(" "));
+        text.push_str("| file | SHA-256 |\n|---|---|\n");
+        for (file, hash) in &self.hashes {
+            let _ = writeln!(text, "| {file} | `{hash}` |");
+        }
+    }
+
+    fn costs(&self, text: &mut String) {
+        let cost = &self.cost;
+        let calls: Vec<String> = cost.calls.iter().map(|(name, count)| format!("`{name}` {count}×")).collect();
+        let calls = if calls.is_empty() { "none".to_owned() } else { calls.join(", ") };
+        let _ = write!(
+            text,
+            "\n## Cost of a call\n\n| property | value |\n|---|---|\n\
+             | form | {} |\n| instructions, each of which a call executes once | {} |\n\
+             | cycles, worst case by the assumptions below | {} |\n| bytes of instructions | {} |\n\
+             | bytes of constants | {} |\n| bytes of stack, with the function that is called | {} |\n\
+             | bytes of stack that the instructions show | {} |\n| calls | {calls} |\n\
+             | branches, except over constants | none |\n| double precision | none |\n\n",
+            self.form, cost.instructions, cost.cycles, cost.code, cost.constants, cost.stack, cost.stack_of_listing
+        );
+        text.push_str(
+            "The code has one path, so the number of instructions and the cycles are the same for every input. They \
+             are the worst case, also for NaN and infinities. The cycles hold under these assumptions:\n\n",
+        );
+        for assumption in &cost.assumptions {
+            let _ = writeln!(text, "- {assumption}");
+        }
+        text.push_str("\n| kind | mnemonics | instructions | cycles |\n|---|---|---:|---:|\n");
+        for Class { what, mnemonics, instructions, cycles } in &cost.classes {
+            let _ = writeln!(text, "| {what} | {} | {instructions} | {cycles} |", mnemonics.join(", "));
+        }
+        let _ = writeln!(text, "| wait for the result before | | | {} |", cost.waits);
+        if !cost.unknown.is_empty() {
+            let unknown = cost.unknown.join(", ");
+            let _ = writeln!(text, "\nThe table does not know {unknown}: each counts as 16 cycles.");
+        }
+    }
+
+    fn emulated(&self, text: &mut String) {
+        text.push_str("\n## Emulation\n\n");
+        let _ = match &self.emulation {
+            Some(Emulation { machine, instructions, states }) => writeln!(
+                text,
+                "QEMU runs the code on the board `{machine}`. The timer SysTick measures {instructions} instructions \
+                 for a call, the number that the listing shows. At {states} states, the results have the same bits as \
+                 on the host."
+            ),
+            None => writeln!(text, "Not run: QEMU is not installed (Debian: `apt-get install qemu-system-arm`)."),
+        };
+    }
+
+    fn errors(&self, text: &mut String) {
+        let Accuracy { states, seed, ranges, results } = &self.accuracy;
+        let _ = write!(
+            text,
+            "\n## Error in single precision\n\nThe function runs at {states} random states (seed {seed}). At each \
+             state, interval arithmetic in `f64`, rounded outwards, encloses the exact result for the numbers of the \
+             robot file. The bound is the distance of the `f32` result from the farthest end of this interval, so it \
+             holds at each of these states. It says nothing about other states.\n\nRanges of the states:\n\n"
+        );
+        for range in ranges {
+            let _ = writeln!(text, "- {range}");
+        }
+        text.push_str(
+            "\n| result | largest magnitude | largest bound of the error | at state |\n|---|---:|---:|---:|\n",
+        );
+        for Error { name, largest, bound, state } in results {
+            let _ = writeln!(text, "| {name} | {largest:.4} | {bound:.2e} | {state} |");
+        }
+    }
+
+    fn rules(&self, text: &mut String) {
+        text.push_str("\n## MISRA C:2012\n\n");
+        let Some(violations) = &self.misra else {
+            text.push_str("Not checked: cppcheck is not installed (Debian: `apt-get install cppcheck`).\n");
+            return;
+        };
+        text.push_str("The addon `misra` of cppcheck reports these rules; the texts of the rules are not free.\n\n");
+        text.push_str("| rule | reports | deviation |\n|---|---:|---|\n");
+        for (rule, count) in violations {
+            let why = misra::deviation(rule).unwrap_or("NO DEVIATION IS RECORDED");
+            let _ = writeln!(text, "| {rule} | {count} | {why} |");
+        }
+        let undecided = misra::NOT_DECIDED.join(", ");
+        let _ = writeln!(text, "\nThe addon of cppcheck 2.10 contains no check for these rules: {undecided}.");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::trace;
+
+    #[test]
+    fn lines_have_their_steps() {
+        let source = "// head\nvoid a_f(\n    const float q[1], float tau[1])\n{\n    const float q1 = q[0];\n\n    \
+                      // constants\n    const float k_1 = 0.5f;\n\n    // joint 1, step 1: angular velocity\n    \
+                      // ω1 = z\n    const float w1_z = q1\n        + k_1;\n\n    a_sin_cos(q1, &s1, &c1);\n    \
+                      tau[0] = w1_z;\n}\n";
+        let traced = trace(source, "a_f");
+        let lines: Vec<_> = traced.iter().map(|of| (of.line, of.name.as_str(), of.step.as_str())).collect();
+        let step = "joint 1, step 1: angular velocity";
+        let expected = [
+            (5, "q1", "argument"),
+            (8, "k_1", "constants"),
+            (12, "w1_z", step),
+            (15, "s1, c1", step),
+            (16, "tau[0]", step),
+        ];
+        assert_eq!(lines, expected);
+        assert_eq!(traced[2].equations, "ω1 = z");
+    }
+}

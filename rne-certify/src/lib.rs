@@ -1,0 +1,33 @@
+//! Certificates of generated code on microcontrollers.
+//!
+//! The parts are: the instructions of a function as `objdump` lists them ([`listing`], [`image`]), their cycles on a
+//! processor ([`cycles`]), and the error of its numbers in single precision ([`accuracy`]). [`certificate`] puts them
+//! on one page. Nothing here starts a program or opens a file: callers run compilers and pass what these print.
+#![forbid(unsafe_code)]
+
+pub mod accuracy;
+pub mod board;
+pub mod certificate;
+pub mod cycles;
+pub mod image;
+pub mod interval;
+pub mod listing;
+pub mod misra;
+
+use std::fmt::Write as _;
+
+use sha2::{Digest, Sha256};
+
+/// The SHA-256 of bytes in hexadecimal, as `sha256sum` prints it.
+///
+/// ```
+/// let empty = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+/// assert_eq!(rne_certify::sha256(b""), empty);
+/// ```
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

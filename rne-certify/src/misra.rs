@@ -1,0 +1,55 @@
+//! Violations of MISRA C:2012 that the addon of cppcheck reports.
+//!
+//! The texts of the rules are not free, so only their numbers occur here.
+
+use std::collections::BTreeMap;
+
+/// Rules for which the addon of cppcheck 2.10 contains no check: those without a function in its source.
+pub const NOT_DECIDED: [&str; 28] = [
+    "1.1", "1.2", "1.3", "2.1", "2.6", "5.3", "8.3", "8.13", "9.1", "12.5", "13.2", "14.3", "17.4", "17.5", "18.1",
+    "18.2", "18.3", "18.6", "19.1", "20.6", "21.13", "21.17", "21.18", "22.1", "22.2", "22.3", "22.4", "22.6",
+];
+
+/// Rules that emitted code violates, and why.
+pub const DEVIATIONS: [(&str, &str); 3] = [
+    ("2.5", "advisory; macros that the source does not use: the limits of the joints, for the caller"),
+    (
+        "19.2",
+        "advisory; the sine reads the bits of a float through a union, which C99 defines, and which needs no library",
+    ),
+    (
+        "20.9",
+        "required; the tool does not find FLT_EVAL_METHOD without the system headers; <float.h> defines it, and the \
+         source includes this header",
+    ),
+];
+
+/// How often each rule is violated, from the lines that cppcheck prints with `--template={id}`.
+#[must_use]
+pub fn violations(printed: &str) -> BTreeMap<String, usize> {
+    let mut violations = BTreeMap::new();
+    let ids = printed.split_whitespace().filter_map(|word| word.strip_prefix("misra-c2012-"));
+    for rule in ids {
+        *violations.entry(rule.trim_end_matches(']').to_owned()).or_default() += 1;
+    }
+    violations
+}
+
+/// Why a rule may be violated; `None` where nothing says so.
+#[must_use]
+pub fn deviation(rule: &str) -> Option<&'static str> {
+    DEVIATIONS.iter().find(|(of, _)| *of == rule).map(|(_, why)| *why)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{deviation, violations};
+
+    #[test]
+    fn rules_are_counted() {
+        let printed = "misra-c2012-19.2\nmisra-c2012-2.5\nunusedFunction\nmisra-c2012-19.2\n";
+        let found: Vec<_> = violations(printed).into_iter().collect();
+        assert_eq!(found, [("19.2".to_owned(), 2), ("2.5".to_owned(), 1)]);
+        assert!(deviation("19.2").is_some() && deviation("17.2").is_none());
+    }
+}

@@ -1,0 +1,140 @@
+//! The trace that the independent checker reads: the table of the arm, and the exact expressions of the constants.
+
+use std::fs;
+use std::path::Path;
+
+use rne_codegen::{Derivation, ExactConstant, ExactStep, Function, Program};
+use rne_emit::{Precision, Prefix};
+use rne_model::{Angle, InertiaReference, QuarterTurns, Robot};
+use serde_json::{Value, json};
+
+use crate::commands::certify::{Arguments, Language};
+use crate::files::output_file::{self, Existing};
+use crate::files::plan_file::Compiler;
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+
+/// Writes the C code, its header and the trace of its constants.
+pub(super) fn write(
+    arguments: &Arguments,
+    evidence: &Path,
+    robot: &Robot,
+    program: &Program,
+    source: &str,
+    folder: &Path,
+) -> Result<(), Failure> {
+    if arguments.lang != Language::C || arguments.function != Function::InverseDynamics || robot.has_rotors() {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--evidence{TYPED:#} is for inverse_dynamics in C without rotors: the checker computes this function"
+        )));
+    }
+    let compiler = Compiler::new(&arguments.file, robot);
+    let Some(derivation) = compiler.derivation(program)? else {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are rounded \
+             one operation after another, so they have no exact expressions"
+        )));
+    };
+    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+    let trace = trace(robot, program, &derivation, &prefix, Precision::Single);
+    let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
+    fs::create_dir_all(evidence)
+        .map_err(|error| Failure::input(format_args!("{} cannot be made: {error}", evidence.display())))?;
+    let read = |name: &str| fs::read_to_string(folder.join(name)).map_err(Failure::input);
+    let stem = source.trim_end_matches(".c");
+    let header = format!("{stem}.h");
+    let files = [
+        (evidence.join(source), read(source)?),
+        (evidence.join(&header), read(&header)?),
+        (evidence.join(format!("{stem}.trace.json")), trace),
+    ];
+    for (path, text) in &files {
+        let is_other = match output_file::existing(path) {
+            Existing::Nothing => false,
+            Existing::Text(found) => {
+                found != *text
+                    && !arguments.force
+                    && !found.contains(rne_emit::GENERATED)
+                    && !found.contains("\"steps\"")
+            }
+            _ => true,
+        };
+        if is_other {
+            return Err(Failure::usage(format_args!("{} is not changed: rne did not write it", path.display())));
+        }
+    }
+    output_file::replace_all(&files).map(drop)
+}
+
+/// The trace of a function in C as JSON.
+fn trace(robot: &Robot, program: &Program, derivation: &Derivation, prefix: &Prefix, precision: Precision) -> Value {
+    let steps: Vec<Value> = derivation.steps.iter().map(step).collect();
+    let constants: serde_json::Map<String, Value> = derivation
+        .constants
+        .iter()
+        .map(|(name, exact)| {
+            let exact = match exact {
+                ExactConstant::Number(place) => json!(place),
+                ExactConstant::Angle { sine, cosine } => json!({"sin": sine, "cos": cosine}),
+            };
+            (name.to_string(), exact)
+        })
+        .collect();
+    json!({
+        "prefix": prefix.to_string(),
+        "function": format!("{prefix}_{}", program.function),
+        "real": precision.c_type(),
+        "steps": steps,
+        "constants": constants,
+        "table": table(robot),
+    })
+}
+
+/// A step: its operator, and the places of its operands. Numbers are texts, which keep their digits.
+fn step(step: &ExactStep) -> Value {
+    match step {
+        ExactStep::Decimal(value) => json!(["number", format!("{value:?}")]),
+        ExactStep::Sine(angle) => json!(["sin", format!("{angle:?}")]),
+        ExactStep::Cosine(angle) => json!(["cos", format!("{angle:?}")]),
+        ExactStep::Negative(a) => json!(["-", a]),
+        ExactStep::Sum(a, b) => json!(["+", a, b]),
+        ExactStep::Product(a, b) => json!(["*", a, b]),
+        ExactStep::Inverse(a) => json!(["/", a]),
+        ExactStep::Root(a) => json!(["sqrt", a]),
+    }
+}
+
+/// The Denavit-Hartenberg table with the links, in the numbers that the compiler reads.
+fn table(robot: &Robot) -> Value {
+    let text = |x: f64| format!("{x:?}");
+    // an angle within some units in the last place of a right angle is this right angle
+    let angle = |angle: &Angle| match angle.right {
+        Some(QuarterTurns::Zero) => text(0.0),
+        Some(QuarterTurns::One) => text(std::f64::consts::FRAC_PI_2),
+        Some(QuarterTurns::Two) => text(std::f64::consts::PI),
+        Some(QuarterTurns::Three) => text(-std::f64::consts::FRAC_PI_2),
+        None => text(angle.radians),
+    };
+    let joints: Vec<Value> = robot
+        .joints
+        .iter()
+        .map(|joint| {
+            let (dh, link) = (&joint.row.dh, &joint.row.link);
+            let (inertia, reference) = &joint.written_inertia;
+            let inertia = [inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.xz, inertia.yz];
+            json!({
+                "name": joint.name,
+                "type": joint.row.kind.name(),
+                "theta": angle(&dh.theta),
+                "d": text(dh.d),
+                "a": text(dh.a),
+                "alpha": angle(&dh.alpha),
+                "mass": text(link.mass),
+                "com": link.com.map(text),
+                "inertia": inertia.map(text),
+                "inertia_about": if *reference == InertiaReference::Com { "com" } else { "origin" },
+            })
+        })
+        .collect();
+    json!({"convention": robot.convention.name(), "gravity": robot.gravity.map(text), "joints": joints})
+}

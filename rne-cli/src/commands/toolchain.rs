@@ -1,0 +1,162 @@
+//! The compiler for a microcontroller and the programs that read and run its code.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use rne_certify::cycles::{self, Core};
+use rne_certify::image::{Function, Image};
+use rne_certify::listing;
+
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+
+/// Options of a C compiler that is as strict as a project may be, and that rounds sums and products as written.
+pub(crate) const OPTIONS: [&str; 10] = [
+    "-std=c99",
+    "-pedantic",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Wdouble-promotion",
+    "-Wshadow",
+    "-Werror",
+    "-O2",
+    "-ffp-contract=off",
+];
+
+/// The Debian package of a program.
+fn package(program: &str) -> &'static str {
+    match program {
+        "qemu-system-arm" => "qemu-system-arm",
+        "cppcheck" => "cppcheck",
+        program if program.ends_with("objdump") => "binutils-arm-none-eabi",
+        _ => "gcc-arm-none-eabi libnewlib-arm-none-eabi",
+    }
+}
+
+/// Runs a program and returns the text that it prints; its errors are those of the command.
+pub(crate) fn text(command: &mut Command) -> Result<String, Failure> {
+    Ok(String::from_utf8_lossy(&output(command)?.stdout).into_owned())
+}
+
+fn output(command: &mut Command) -> Result<Output, Failure> {
+    let program = command.get_program().to_string_lossy().into_owned();
+    match command.output() {
+        Ok(output) if output.status.success() => Ok(output),
+        Ok(output) => {
+            let said =
+                [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+            let lines: Vec<&str> = said.lines().collect();
+            let last = lines[lines.len().saturating_sub(20)..].join("\n");
+            Err(Failure::input(format_args!("{program} fails ({}):\n{last}", output.status)))
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound && program == "rustc" => {
+            Err(Failure::input("there is no rustc; https://rustup.rs installs it"))
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(Failure::input(format_args!(
+            "there is no program {program}; on Debian and Ubuntu, {TYPED}apt-get install {}{TYPED:#} installs it",
+            package(&program)
+        ))),
+        Err(error) => Err(Failure::input(format_args!("{program} cannot be started: {error}"))),
+    }
+}
+
+/// The first line of `--version`; `None` where the program is not installed.
+pub(crate) fn version_of(program: &str) -> Option<String> {
+    let output = Command::new(program).arg("--version").output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).lines().next()?.trim().to_owned())
+}
+
+/// The first line of `--version`; an error says how to install the program.
+pub(crate) fn version(program: &str) -> Result<String, Failure> {
+    Ok(text(Command::new(program).arg("--version"))?.lines().next().unwrap_or_default().trim().to_owned())
+}
+
+/// The SHA-256 of a program.
+pub(crate) fn hash(program: &str) -> Option<String> {
+    let folders = std::env::var_os("PATH")?;
+    let path = if program.contains('/') {
+        Path::new(program).to_owned()
+    } else {
+        std::env::split_paths(&folders).map(|folder| folder.join(program)).find(|path| path.is_file())?
+    };
+    Some(rne_certify::sha256(&fs::read(path).ok()?))
+}
+
+/// The program of GNU's binary utilities that belongs to a compiler: `arm-none-eabi-objdump` to `arm-none-eabi-gcc`.
+pub(crate) fn objdump_of(compiler: &str) -> String {
+    match compiler.rsplit_once("gcc") {
+        Some((prefix, _)) => format!("{prefix}objdump"),
+        None => "arm-none-eabi-objdump".to_owned(),
+    }
+}
+
+/// The functions of an image, with their sizes, and with the stack frames that the compiler recorded in files `.su`.
+pub(crate) fn image(objdump: &str, folder: &Path, elf: &str) -> Result<Image, Failure> {
+    let read =
+        |option: &str| text(Command::new(objdump).current_dir(folder).args([option, "--no-show-raw-insn"]).arg(elf));
+    let mut listed = listing::functions(&read("--disassemble")?).map_err(Failure::input)?;
+    let mut functions = BTreeMap::new();
+    for line in read("--syms")?.lines() {
+        // 00000000 g     F .text    0000012c .hidden name
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let (Some(at), Some(name)) = (words.iter().position(|word| *word == "F"), words.last()) else { continue };
+        let size = words.get(at + 2).and_then(|size| u64::from_str_radix(size, 16).ok());
+        if let (Some(size), Some(lines)) = (size, listed.remove(*name)) {
+            functions.insert((*name).to_owned(), Function { size, stack: None, lines });
+        }
+    }
+    let frames = frames(folder);
+    for (name, function) in &mut functions {
+        // rustc records none, so the instructions say it
+        let of_listing = cycles::stack(&function.lines);
+        function.stack = Some(frames.get(name).copied().unwrap_or(of_listing));
+    }
+    Ok(Image::new(functions))
+}
+
+/// The stack frames of functions in the files that `-fstack-usage` writes.
+fn frames(folder: &Path) -> BTreeMap<String, u64> {
+    let mut frames = BTreeMap::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.extension().is_none_or(|extension| extension != "su") {
+            continue;
+        }
+        for line in fs::read_to_string(&path).unwrap_or_default().lines() {
+            // my_arm.c:101:6:my_arm_inverse_dynamics	96	static
+            if let [place, bytes, ..] = line.split('\t').collect::<Vec<_>>().as_slice()
+                && let (Some((_, name)), Ok(bytes)) = (place.rsplit_once(':'), bytes.parse())
+            {
+                frames.insert(name.to_owned(), bytes);
+            }
+        }
+    }
+    frames
+}
+
+/// The text that an image prints in QEMU, where an instruction takes 1024 ns.
+pub(crate) fn emulated(core: Core, folder: &Path, elf: &str) -> Result<String, Failure> {
+    text(
+        Command::new("qemu-system-arm")
+            .current_dir(folder)
+            .args(["-M", core.machine(), "-nographic", "-monitor", "none", "-serial", "null"])
+            .args(["-semihosting-config", "enable=on,target=native", "-icount", "shift=10", "-kernel", elf]),
+    )
+}
+
+/// The text that the addon `misra` of cppcheck prints about a source.
+pub(crate) fn misra(folder: &Path, source: &str) -> Result<String, Failure> {
+    let output = output(Command::new("cppcheck").current_dir(folder).args([
+        "--addon=misra",
+        "--std=c99",
+        "--enable=style",
+        "--quiet",
+        "--template={id}",
+        source,
+    ]))?;
+    Ok([output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat())
+}

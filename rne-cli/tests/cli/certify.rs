@@ -1,0 +1,189 @@
+//! `rne certify`: a certificate of the user's own arm.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::call::{fails, fine, folder, rne};
+
+const ROBOT: &str = "docs/desk_arm.yaml";
+
+/// Whether all tools are there; a line says that the test is skipped.
+fn has_tools() -> bool {
+    let missing: Vec<&str> = ["arm-none-eabi-gcc", "arm-none-eabi-objdump", "qemu-system-arm", "cppcheck"]
+        .into_iter()
+        .filter(|tool| Command::new(tool).arg("--version").output().is_err())
+        .collect();
+    if !missing.is_empty() {
+        println!("not certified: {} is not installed (cargo xtask certificate --install)", missing.join(", "));
+    }
+    missing.is_empty()
+}
+
+#[test]
+fn a_compiler_that_is_missing_is_named_with_its_package() {
+    fails(1, &["certify", ROBOT, "--cc", "no-such-gcc"], &["no-such-gcc", "apt-get install gcc-arm-none-eabi"]);
+    fails(2, &["certify", ROBOT, "--cpu", "cortex-m0"], &["cortex-m4 and cortex-m7"]);
+    fails(2, &["certify", ROBOT, "--function", "jacobian"], &["jacobian", "gravity_torques"]);
+}
+
+#[test]
+fn a_certificate_is_checked_and_a_change_is_found() {
+    if !has_tools() {
+        return;
+    }
+    let folder = folder("certify");
+    let out = folder.join("arm.cert.md");
+    let out = out.to_str().expect("UTF-8");
+    let certify = ["certify", ROBOT, "--states", "100", "-o", out];
+    assert_eq!(rne(&certify).status, 0);
+    let page = fs::read_to_string(out).expect("it was written");
+    for part in ["| double precision | none |", "QEMU runs the code", "| 19.2 | 4 |", "| `tau[0]` |", "SHA-256"] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    let check = ["certify", ROBOT, "--states", "100", "--check", out];
+    assert_eq!(rne(&check).status, 0);
+    fs::write(out, page.replacen("| bytes of constants | ", "| bytes of constants | 1", 1)).expect("written");
+    fails(1, &check, &["1 lines differ", "bytes of constants"]);
+    // another arm, and a file that is no certificate
+    fails(1, &["certify", "planar2", "--states", "100", "--check", out], &["lines differ"]);
+    fs::write(out, "mine").expect("written");
+    fails(2, &certify, &["is no certificate of rne and is not changed", "--force"]);
+    assert_eq!(fs::read_to_string(out).expect("it is there"), "mine");
+}
+
+#[test]
+fn the_figures_of_json_are_those_of_the_page() {
+    if !has_tools() {
+        return;
+    }
+    for cpu in ["cortex-m4", "cortex-m7"] {
+        let certify = ["certify", ROBOT, "--states", "50", "--cpu", cpu];
+        let json: serde_json::Value = serde_json::from_str(&fine(&[&certify[..], &["--json"]].concat())).expect("JSON");
+        let page = fine(&certify);
+        let instructions = json["cost"]["instructions"].as_u64().expect("a number");
+        assert_eq!(json["emulation"]["instructions"].as_u64(), Some(instructions));
+        assert!(page.contains(&format!("a call executes once | {instructions} |")), "{page}");
+        let kinds = json["cost"]["classes"].as_array().expect("kinds").iter();
+        let sum: u64 = kinds.map(|kind| kind["instructions"].as_u64().expect("a number")).sum();
+        assert_eq!(sum, instructions, "each instruction is of one kind");
+        assert_eq!(json["cost"]["stack"], json["cost"]["stack_of_listing"]);
+    }
+}
+
+/// Arms that the repository does not ship.
+const ARMS: [&str; 3] = ["palletizer", "wrist", "lift"];
+
+/// Whether the checker accepts a source with a trace, and what it says.
+fn checked(source: &Path, trace: &Path) -> (bool, String) {
+    let checker = concat!(env!("CARGO_MANIFEST_DIR"), "/../rne-certify/checker/check_c.py");
+    let output = Command::new("python3").arg(checker).arg(source).arg(trace).output().expect("python3 starts");
+    (output.status.code() == Some(0), String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// The places where one part of a source can be changed to another of its kind, with the change: (start, end, new
+/// text).
+fn mutations(source: &str, kind: usize) -> Vec<(usize, usize, String)> {
+    let start = source.find("_inverse_dynamics(").expect("the function");
+    let mut found = Vec::new();
+    let mut names: Vec<&str> = Vec::new();
+    let mut at = start;
+    for line in source[start..].split_inclusive('\n') {
+        let (begin, code) = (at, line.trim_end());
+        at += line.len();
+        let Some(equals) = code.find(" = ").filter(|_| !code.trim_start().starts_with("//")) else { continue };
+        let right = begin + equals + 3;
+        let words = &code[equals + 3..];
+        let constant = words.trim_end_matches([';', 'f']).parse::<f32>().ok();
+        match kind {
+            // an operator
+            0 => {
+                for (operator, other) in [(" + ", " - "), (" - ", " + "), (" * ", " + ")] {
+                    found.extend(
+                        words.match_indices(operator).map(|(i, _)| (right + i, right + i + 3, other.to_owned())),
+                    );
+                }
+            }
+            // an operand
+            1 => {
+                for (index, name) in names.iter().enumerate() {
+                    let is_whole = |i: usize| {
+                        let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+                        !words[..i].ends_with(is_part) && !words[i + name.len()..].starts_with(is_part)
+                    };
+                    let other = names[(index + names.len() / 2) % names.len()];
+                    let places = words.match_indices(name).filter(|(i, _)| is_whole(*i) && other != *name);
+                    found.extend(places.map(|(i, _)| (right + i, right + i + name.len(), other.to_owned())));
+                }
+            }
+            // a sign
+            2 if constant.is_none() && !words.starts_with('-') => found.push((right, right, "-".to_owned())),
+            // an index
+            3 => found.extend(code.find("[0]").map(|i| (begin + i, begin + i + 3, "[1]".to_owned()))),
+            // a literal, by one unit in the last place
+            _ => {
+                let literal = constant.filter(|_| kind == 4);
+                found.extend(literal.map(|x| (right, right + words.len(), format!("{:e}f;", x.next_up()))));
+            }
+        }
+        let name = code[..equals].split_whitespace().last().expect("a name");
+        if !name.contains('[') && constant.is_none() {
+            names.push(name);
+        }
+    }
+    found
+}
+
+#[test]
+fn the_checker_accepts_emitted_code_and_refuses_thirty_mutations_of_thirty() {
+    let has_python = Command::new("python3").arg("--version").output().is_ok();
+    if !has_python || !has_tools() {
+        println!("not checked: there is no python3, or a tool of rne certify is missing");
+        return;
+    }
+    let mut refused = 0;
+    for arm in ARMS {
+        let folder = folder(&format!("checker_{arm}"));
+        let file = format!("rne-cli/tests/cli/arms/{arm}.yaml");
+        let evidence = folder.to_str().expect("UTF-8");
+        fine(&["certify", &file, "--states", "10", "--evidence", evidence]);
+        let (source, trace) = (folder.join(format!("{arm}.c")), folder.join(format!("{arm}.trace.json")));
+        let (is_accepted, said) = checked(&source, &trace);
+        assert!(is_accepted, "{arm}: {said}");
+        let text = fs::read_to_string(&source).expect("it was written");
+        let mutant = folder.join("mutant.c");
+        for kind in 0..5 {
+            let places = mutations(&text, kind);
+            assert!(places.len() > 1, "{arm}: no mutations of kind {kind}");
+            for pick in [1, 2] {
+                let (start, end, new) = &places[places.len() * pick / 3];
+                fs::write(&mutant, format!("{}{new}{}", &text[..*start], &text[*end..])).expect("written");
+                let (is_accepted, said) = checked(&mutant, &trace);
+                let line = text[..*start].lines().last().unwrap_or_default();
+                assert!(!is_accepted, "{arm}, kind {kind}: `{line}` with `{new}` is accepted: {said}");
+                assert!(said.starts_with("wrong: "), "{arm}, kind {kind}: {said}");
+                refused += 1;
+            }
+        }
+    }
+    println!("the checker refuses {refused} of 30 mutations");
+    assert_eq!(refused, 30);
+}
+
+#[test]
+fn the_checker_refuses_another_sine_and_more_code() {
+    let has_python = Command::new("python3").arg("--version").output().is_ok();
+    if !has_python || !has_tools() {
+        return;
+    }
+    let folder = folder("checker_sine");
+    fine(&["certify", ROBOT, "--states", "10", "--evidence", folder.to_str().expect("UTF-8")]);
+    let (source, trace) = (folder.join("desk_arm.c"), folder.join("desk_arm.trace.json"));
+    let text = fs::read_to_string(&source).expect("it was written");
+    for (old, new) in [("4.825592e-4f", "4.825593e-4f"), ("tau[2] = tau3;", ""), ("\n}\n", "\n}\nint more;\n")] {
+        let mutant = folder.join("mutant.c");
+        fs::write(&mutant, text.replace(old, new)).expect("written");
+        let (is_accepted, said) = checked(&mutant, &trace);
+        assert!(!is_accepted && said.starts_with("wrong: "), "{old}: {said}");
+    }
+}
