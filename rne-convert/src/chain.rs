@@ -3,33 +3,17 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use rne_model::{LARGEST_ANGLE, Limits, Motor, Remedy, Report, did_you_mean, one_line};
+use rne_model::{Limits, Motor, Remedy, Report, one_line};
 
 use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
-use crate::scan::LARGEST;
+use crate::selection::{End, Selection, link, locks, path, refuse_value, tip};
 use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted, some};
 use crate::urdf::{Joint, Link, Mimic, Urdf};
 
-/// Largest number of leaves that are listed where the tip must be named.
-const LISTED: usize = 60;
-
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
-
-/// The chain that is taken out of a tree.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Selection {
-    /// The fixed link at the base [default: the root].
-    pub base: Option<String>,
-    /// The link at the end of the arm; needed where the tree has several leaves.
-    pub tip: Option<String>,
-    /// Movable joints that are held, and where: rad or m.
-    pub lock: Vec<(String, f64)>,
-    /// Whether every other movable joint off the chain is held at zero.
-    pub lock_others: bool,
-}
 
 /// A serial arm: joints with bodies between them.
 #[derive(Clone, Debug)]
@@ -172,191 +156,6 @@ pub(crate) fn extract(
 /// The remedy against a joint that must not move.
 fn lock(joint: &str) -> Remedy {
     Remedy::LockJoint { joint: one_line(joint) }
-}
-
-impl Urdf {
-    /// Whether every link and every joint that a selection names is there.
-    ///
-    /// # Errors
-    ///
-    /// The first name that is not, with the one that was probably meant and those that there are.
-    pub fn check_names(&self, selection: &Selection) -> Result<(), Report> {
-        selection.base.as_ref().map_or(Ok(0), |name| link(self, name, "base"))?;
-        selection.tip.as_ref().map_or(Ok(0), |name| link(self, name, "tip"))?;
-        selection.lock.iter().try_for_each(|(name, _)| joint(self, name).map(|_| ()))
-    }
-}
-
-fn link(urdf: &Urdf, name: &str, what: &str) -> Result<usize, Report> {
-    urdf.links.iter().position(|link| link.name == name).ok_or_else(|| {
-        let message = format!("there is no link {} that could be the {what}", quoted(name));
-        let known = if what == "tip" {
-            let leaves = leaves(urdf, urdf.root);
-            format!("the tip can be any link; these links carry no other link:\n{}", listed(urdf, &leaves))
-        } else {
-            format!("the links are {}", names(urdf.links.iter().map(|link| &link.name)))
-        };
-        let help = meant(name, urdf.links.iter().map(|link| link.name.as_str())) + &known;
-        urdf.source.error(&(0..0), message, help)
-    })
-}
-
-/// A joint that is to be locked.
-fn joint(urdf: &Urdf, name: &str) -> Result<usize, Report> {
-    urdf.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
-        let movable = urdf.joints.iter().filter(|joint| joint.kind.has_one_freedom());
-        let movable: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
-        let message = format!("there is no joint {}, so it cannot be locked", quoted(name));
-        let known = format!("the movable joints are {}", names(&movable));
-        urdf.source.error(&(0..0), message, meant(name, movable) + &known)
-    })
-}
-
-/// The question after the name that was probably meant: one that is a slip away, or the only one that has the word in
-/// it, as `panda_hand` has `hand`.
-fn meant<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> String {
-    let known: Vec<&str> = known.into_iter().collect();
-    let lower = word.to_lowercase();
-    let mut longer = known.iter().filter(|name| !lower.is_empty() && name.to_lowercase().contains(&lower));
-    let only = longer.next().copied().filter(|_| longer.next().is_none());
-    let meant = did_you_mean(word, known.iter().copied()).or(only);
-    meant.map_or_else(String::new, |meant| format!("did you mean {}? ", quoted(meant)))
-}
-
-/// Leaves, one per line, with the joints before them.
-fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
-    let listed = leaves.iter().map(|&(leaf, joints)| {
-        let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
-        format!("  {} ({joints})", quoted(&urdf.links[leaf].name))
-    });
-    let more = leaves.len().saturating_sub(LISTED);
-    let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
-    listed.take(LISTED).collect::<Vec<_>>().join("\n") + &more
-}
-
-/// The name that the tip of an arm has by convention: ROS REP 199, and ROS-Industrial before it.
-const TIP: &str = "tool0";
-
-/// The end of a chain.
-struct End {
-    link: usize,
-    /// Leaves behind the same movable joints, if the end was chosen among them.
-    others: Vec<usize>,
-}
-
-/// The link where the chain ends.
-fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End, Report> {
-    let alone = |link| End { link, others: Vec::new() };
-    if let Some(name) = &selection.tip {
-        return link(urdf, name, "tip").map(alone);
-    }
-    let leaves = leaves(urdf, base);
-    if let [(leaf, _)] = leaves[..] {
-        return Ok(alone(leaf));
-    }
-    // leaves without a movable joint are sensors on the base, or marks on it
-    let moved: Vec<usize> = leaves.iter().filter(|(_, joints)| *joints > 0).map(|(leaf, _)| *leaf).collect();
-    let last_joint = |leaf: &usize| last_movable(urdf, base, *leaf);
-    if let Some(first) = moved.first()
-        && moved.iter().all(|leaf| last_joint(leaf) == last_joint(first))
-    {
-        let named = moved.iter().position(|&leaf| urdf.links[leaf].name == TIP);
-        let mut others = moved.clone();
-        let link = others.remove(named.unwrap_or(moved.len() - 1));
-        return Ok(End { link, others });
-    }
-    let message =
-        format!("{} has {} end links, so you must name the tip", quoted(&urdf.links[base].name), leaves.len());
-    let help = format!("the tip is one of these links, or a link before it:\n{}", listed(urdf, &leaves));
-    Err(urdf.source.error_with(&urdf.links[base].span, message, help, &Remedy::NameTip))
-}
-
-/// The last movable joint before a link.
-fn last_movable(urdf: &Urdf, base: usize, mut link: usize) -> Option<usize> {
-    while link != base {
-        let joint = urdf.links[link].parent?;
-        if urdf.joints[joint].kind.has_one_freedom() {
-            return Some(joint);
-        }
-        link = urdf.joints[joint].parent;
-    }
-    None
-}
-
-/// The links behind `base` that carry no other, with the number of movable joints in between.
-fn leaves(urdf: &Urdf, base: usize) -> Vec<(usize, usize)> {
-    let mut leaves = Vec::new();
-    let mut open = vec![(base, 0)];
-    while let Some((link, joints)) = open.pop() {
-        let children = &urdf.links[link].children;
-        if children.is_empty() {
-            leaves.push((link, joints));
-        }
-        let below = |&joint: &usize| {
-            let joint = &urdf.joints[joint];
-            (joint.child, joints + usize::from(joint.kind.has_one_freedom()))
-        };
-        open.extend(children.iter().rev().map(below));
-    }
-    leaves
-}
-
-/// The joints from `base` to `tip`.
-fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, Report> {
-    let mut path = Vec::new();
-    let mut link = tip;
-    while link != base {
-        let Some(joint) = urdf.links[link].parent else {
-            let message = format!(
-                "the link {} does not lead to {}: it is attached to {}",
-                quoted(&urdf.links[base].name),
-                quoted(&urdf.links[tip].name),
-                quoted(&urdf.links[link].name)
-            );
-            let help = "the base must be between the root and the tip".to_owned();
-            return Err(urdf.source.error(&urdf.links[tip].span, message, help));
-        };
-        path.push(joint);
-        link = urdf.joints[joint].parent;
-    }
-    path.reverse();
-    Ok(path)
-}
-
-/// The joints that are held by name.
-fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Report> {
-    let mut locks = HashMap::new();
-    for (name, value) in &selection.lock {
-        let index = joint(urdf, name)?;
-        let joint = &urdf.joints[index];
-        if !joint.kind.has_one_freedom() {
-            let message =
-                format!("the joint {} is {} and cannot be locked at a value", quoted(name), joint.kind.name());
-            return Err(urdf.source.error(&joint.span, message, None));
-        }
-        refuse_value(urdf, joint, *value)?;
-        if locks.insert(index, *value).is_some() {
-            let message = format!("the joint {} is locked twice", quoted(name));
-            return Err(urdf.source.error(&joint.span, message, None));
-        }
-    }
-    Ok(locks)
-}
-
-/// Refuses a value that is not a position of a joint.
-fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
-    let is_angle = joint.kind != crate::urdf::Kind::Prismatic;
-    let is_position = if is_angle { value.abs() < LARGEST_ANGLE } else { value.abs() <= LARGEST };
-    if is_position {
-        return Ok(());
-    }
-    let message = format!("the joint {} cannot be locked at {value}", quoted(&joint.name));
-    let help = if is_angle {
-        format!("an angle is a number below {LARGEST_ANGLE} rad")
-    } else {
-        format!("a displacement is a number of at most {LARGEST:e} m")
-    };
-    Err(urdf.source.error(&joint.span, message, help))
 }
 
 /// A walk through the tree.

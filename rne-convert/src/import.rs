@@ -7,12 +7,13 @@ use rne_model::{
     Transform,
 };
 
-use crate::chain::{Chain, Extracted, Selection, extract};
+use crate::chain::{Chain, Extracted, extract};
 use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
 use crate::frames::{as_identifiers, named_frames};
 use crate::geometry::{Pose, Vector};
 use crate::robot_file;
+use crate::selection::Selection;
 use crate::snap::Snapped;
 use crate::source::{quoted, some};
 use crate::table::{FAR, NEARLY_PARALLEL, Table, table};

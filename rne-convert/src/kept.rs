@@ -57,7 +57,7 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chain::Selection;
+    use crate::selection::Selection;
 
     const ROD: &str = r#"<robot name="rod"><link name="base"/>
 <link name="rod"><inertial><origin xyz="0 0 -0.25"/><mass value="2"/>
