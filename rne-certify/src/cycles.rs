@@ -24,6 +24,7 @@ enum Kind {
     Accumulation,
     Quotient,
     Move,
+    Transfer,
     Load,
     Store,
     Several,
@@ -115,15 +116,18 @@ impl Core {
         assumptions.extend(match self {
             Self::M4 => [
                 "Cycles are those of the Cortex-M4 Technical Reference Manual (Arm 100166, instruction set summary and \
-                 FPU instruction set): vadd, vsub, vmul, vneg, vabs, vmov 1; vmla, vmls, vfma 3; vdiv, vsqrt 14; load \
-                 and store of a word 2; of N words 1 + N; branch 1 + P with P = 3, the largest refill of the pipeline.",
+                 FPU instruction set): vadd, vsub, vmul, vneg, vabs, vmov 1; vmov between the core and the FPU 2; \
+                 vmla, vmls, vfma 3; vdiv, vsqrt 14; load and store of a word 2; of N words 1 + N; branch 1 + P with \
+                 P = 3, the largest refill of the pipeline.",
                 "An arithmetic instruction of the FPU takes one cycle more if the next instruction uses its result.",
                 "Loads and stores in a row may overlap on the processor; the count does not use this.",
             ],
             Self::M7 => [
                 "Arm publishes no table of cycles for the Cortex-M7. The count takes each instruction alone, with its \
-                 whole latency, as if no two instructions overlapped: vadd, vsub, vmul, vneg 3; vmla, vfma 6; vdiv, \
-                 vsqrt 16; load 3; store 1; of N words 2 + N; integer 1; branch 1 + P with P = 8.",
+                 whole latency, as if no two instructions overlapped. Latencies of the FPU are those of LLVM's model \
+                 of this core (ARMScheduleM7.td): vadd, vsub, vmul, vneg 3; vmla, vfma 6; vdiv, vsqrt 16. Estimates \
+                 are: vmov between the core and the FPU 3; load 3; store 1; of N words 2 + N; integer 1; branch 1 + P \
+                 with P = 8.",
                 "The processor executes up to two instructions per cycle, so a measured time is shorter.",
                 "Measure this core with the cycle counter DWT_CYCCNT before you rely on the count.",
             ],
@@ -135,13 +139,14 @@ impl Core {
     const fn cycles(self, kind: Kind, registers: u64) -> u64 {
         match (self, kind) {
             (Self::M4, Kind::Sum | Kind::Product | Kind::Move | Kind::Integer) => 1,
+            (Self::M4, Kind::Transfer) => 2,
             (Self::M4, Kind::Accumulation) => 3,
             (Self::M4, Kind::Quotient) => 14,
             (Self::M4, Kind::Load | Kind::Store) => 2,
             (Self::M4, Kind::Several) => 1 + registers,
             (Self::M4, Kind::Call | Kind::Branch) => 4,
             (Self::M4, Kind::Return) => 4 + registers,
-            (Self::M7, Kind::Sum | Kind::Product | Kind::Load) => 3,
+            (Self::M7, Kind::Sum | Kind::Product | Kind::Load | Kind::Transfer) => 3,
             (Self::M7, Kind::Accumulation) => 6,
             (Self::M7, Kind::Quotient) => 16,
             (Self::M7, Kind::Move | Kind::Store | Kind::Integer) => 1,
@@ -160,6 +165,7 @@ impl Kind {
             Self::Accumulation => "product and sum",
             Self::Quotient => "quotient, square root",
             Self::Move => "move between registers, constant",
+            Self::Transfer => "move between the core and the FPU",
             Self::Load => "load of a word",
             Self::Store => "store of a word",
             Self::Several => "load or store of several words",
@@ -181,9 +187,11 @@ impl Kind {
             "vmul" | "vnmul" => (Self::Product, 1),
             "vmla" | "vmls" | "vnmla" | "vnmls" | "vfma" | "vfms" | "vfnma" | "vfnms" => (Self::Accumulation, 1),
             "vdiv" | "vsqrt" => (Self::Quotient, 1),
+            "vmov" if line.operands().split(',').any(is_core_register) => (Self::Transfer, 1),
             "vmov" => (Self::Move, 1),
             "vldr" | "ldr" | "ldrb" | "ldrh" | "ldrd" if line.operands() == "pc, [sp], #4" => (Self::Return, 1),
             "ldrd" | "strd" => (Self::Several, 2),
+            "vldr" | "vstr" if line.operands().starts_with('d') => (Self::Several, 2),
             "vldr" | "ldr" | "ldrb" | "ldrh" => (Self::Load, 1),
             "vstr" | "str" | "strb" | "strh" => (Self::Store, 1),
             "pop" | "ldmia" if line.operands().contains("pc}") => (Self::Return, registers),
@@ -255,7 +263,10 @@ fn is_read(line: &Line, next: &Line) -> bool {
     let mut operands = next.operands().split([',', '{', '}', '-', ' ']).map(str::trim).filter(|word| !word.is_empty());
     let writes_only = matches!(
         Kind::of(next),
-        Some((Kind::Sum | Kind::Product | Kind::Quotient | Kind::Move | Kind::Load | Kind::Integer, _))
+        Some((
+            Kind::Sum | Kind::Product | Kind::Quotient | Kind::Move | Kind::Transfer | Kind::Load | Kind::Integer,
+            _
+        ))
     ) && !next.name().starts_with("vcmp");
     if writes_only {
         operands.next();
@@ -269,6 +280,14 @@ fn is_read(line: &Line, next: &Line) -> bool {
         })
     };
     operands.any(|word| word == result) || in_range()
+}
+
+/// Whether an operand of `vmov` is a register of the core: neither a register of the FPU, such as `s0` and `d8`, nor a
+/// constant.
+fn is_core_register(operand: &str) -> bool {
+    let operand = operand.trim();
+    let is_of_fpu = operand.strip_prefix(['s', 'd']).is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    !is_of_fpu && !operand.starts_with('#')
 }
 
 /// The number of registers in a list such as `{r4, r5, pc}` or `{s16-s31}`.
@@ -333,6 +352,23 @@ mod tests {
                        118:\tbx\tlr\n";
         assert_eq!(cycles(Core::M4, listing), 27 + 2);
         assert_eq!(cycles(Core::M7, listing), 3 + 3 + 3 + 6 + 16 + 1 + 9);
+    }
+
+    /// The manual has two cycles for a float between the core and the FPU, and three for a load of a double.
+    #[test]
+    fn moves_between_the_core_and_the_fpu_take_two_cycles() {
+        for (instruction, [m4, m7]) in [
+            ("vmov.f32\ts0, s1", [1, 1]),
+            ("vmov.f32\ts0, #112\t@ 0x3f800000", [1, 1]),
+            ("vmov\ts0, r0", [2, 3]),
+            ("vmov\tlr, s15", [2, 3]),
+            ("vldr\ts0, [r0]", [2, 3]),
+            ("vldr\td8, [r0]", [3, 4]),
+        ] {
+            let listing = format!("     100:\t{instruction}\n     104:\tbx\tlr\n");
+            let found = [Core::M4, Core::M7].map(|core| cycles(core, &listing) - cycles(core, "     104:\tbx\tlr\n"));
+            assert_eq!(found, [m4, m7], "{instruction}");
+        }
     }
 
     #[test]
