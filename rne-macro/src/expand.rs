@@ -25,14 +25,10 @@ use crate::warning::{misnamed_golden, warnings};
 /// Every mistake becomes one `compile_error!`; beside them stands an implementation, of the robot as far as it is
 /// known, so that the code that uses it causes no errors of its own.
 pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStream {
-    let item: DeriveInput = match syn::parse2(input) {
-        Ok(item) => item,
+    let Head { item, attribute, parameters, mut errors } = match Head::parse(input) {
+        Ok(head) => head,
         Err(error) => return error.to_compile_error(),
     };
-    let mut errors = Errors::default();
-    is_struct(&item, &mut errors);
-    let attribute = Attribute::parse(&item, &mut errors);
-    let parameters = Parameters::of(&item, &mut errors);
     own_tests::check(&item, &attribute, &parameters, &mut errors);
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
@@ -85,14 +81,10 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
 /// The derive of `FrameKinematics`: the functions of the tip that can be taken at a frame, at each frame. No plan has a
 /// part in them.
 pub(crate) fn frame_kinematics(input: TokenStream) -> TokenStream {
-    let item: DeriveInput = match syn::parse2(input) {
-        Ok(item) => item,
+    let Head { item, attribute, parameters, mut errors } = match Head::parse(input) {
+        Ok(head) => head,
         Err(error) => return error.to_compile_error(),
     };
-    let mut errors = Errors::default();
-    is_struct(&item, &mut errors);
-    let attribute = Attribute::parse(&item, &mut errors);
-    let parameters = Parameters::of(&item, &mut errors);
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
     let target = Target { item: &item, krate: &attribute.krate, inline: attribute.inline };
     let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
@@ -103,6 +95,26 @@ pub(crate) fn frame_kinematics(input: TokenStream) -> TokenStream {
         };
     let (watched, errors) = (loaded.watched, errors.into_tokens());
     quote!(#errors #watched #code)
+}
+
+/// The parts of a derive that do not depend on the robot.
+struct Head {
+    item: DeriveInput,
+    attribute: Attribute,
+    parameters: Parameters,
+    /// The mistakes in these parts.
+    errors: Errors,
+}
+
+impl Head {
+    fn parse(input: TokenStream) -> syn::Result<Self> {
+        let item: DeriveInput = syn::parse2(input)?;
+        let mut errors = Errors::default();
+        is_struct(&item, &mut errors);
+        let attribute = Attribute::parse(&item, &mut errors);
+        let parameters = Parameters::of(&item, &mut errors);
+        Ok(Self { item, attribute, parameters, errors })
+    }
 }
 
 fn is_struct(item: &DeriveInput, errors: &mut Errors) {
