@@ -8,6 +8,19 @@ pub const SOURCE: &str = include_str!("../board/board.c");
 pub const HEADER: &str = include_str!("../board/board.h");
 /// The script of the linker.
 pub const LINKER_SCRIPT: &str = include_str!("../board/board.ld");
+/// Options of a C compiler that is as strict as a project may be, and that rounds sums and products as written.
+pub const OPTIONS: [&str; 10] = [
+    "-std=c99",
+    "-pedantic",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Wdouble-promotion",
+    "-Wshadow",
+    "-Werror",
+    "-O2",
+    "-ffp-contract=off",
+];
 /// The states at which [`SOURCE`] calls the functions.
 pub const STATES: u32 = 32;
 /// The largest number of joints that `struct state` holds.

@@ -6,6 +6,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
+use rne_certify::board;
+use rne_certify::cycles::Core;
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record};
 use rne_emit::{Precision, Prefix, c_code};
@@ -19,25 +21,6 @@ use crate::image;
 use crate::log::{Agreement, Log};
 use crate::table::Row;
 use crate::tools;
-
-/// As strict as a project may be, and with the sums and products of the source.
-const FLAGS: [&str; 15] = [
-    "-std=c99",
-    "-pedantic",
-    "-Wall",
-    "-Wextra",
-    "-Wconversion",
-    "-Wdouble-promotion",
-    "-Wshadow",
-    "-Werror",
-    "-O2",
-    "-ffp-contract=off",
-    "-ffunction-sections",
-    "-mcpu=cortex-m4",
-    "-mthumb",
-    "-mfpu=fpv4-sp-d16",
-    "-mfloat-abi=hard",
-];
 
 /// A robot's C code in a form.
 struct Source {
@@ -56,18 +39,20 @@ pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
         sources.push(write_source(workspace, &folder, robot)?);
     }
     fs::write(folder.join("cases.c"), cases(&sources)?)?;
-    let board = workspace.join("../rne-certify/board");
-    let include = format!("-I{}", board.display());
+    let board_folder = workspace.join("../rne-certify/board");
+    let flags = Core::M4.flags();
+    let include = format!("-I{}", board_folder.display());
     let mut files: Vec<String> = sources.iter().map(|source| format!("{}.c", source.prefix)).collect();
     files.push("cases.c".to_owned());
-    let arguments = FLAGS.iter().map(|&flag| flag.to_owned());
+    let arguments = board::OPTIONS.iter().chain(&["-ffunction-sections"]).chain(&flags).map(|&flag| flag.to_owned());
     tools::gcc(&folder, arguments.clone().chain(["-fstack-usage".to_owned(), "-c".to_owned(), include]).chain(files))?;
     let mut objects: Vec<String> = sources.iter().map(|source| format!("{}.o", source.prefix)).collect();
     objects.push("cases.o".to_owned());
     // the board's own file is GNU C
     let link = ["-std=gnu99", "-nostartfiles", "-Wl,--gc-sections", "-T", "board.ld", "board.c", "-o"];
-    let link = link
-        .map(|word| if word.starts_with("board") { board.join(word).display().to_string() } else { word.to_owned() });
+    let link = link.map(|word| {
+        if word.starts_with("board") { board_folder.join(word).display().to_string() } else { word.to_owned() }
+    });
     let elf = folder.join("board.elf");
     tools::gcc(&folder, arguments.chain(link).chain([elf.display().to_string()]).chain(objects))?;
 

@@ -70,9 +70,9 @@ pub(super) fn build(
         Language::C => {
             text = code.source(&header);
             write(&c_source, &text)?;
-            let own = [&toolchain::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
+            let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
             compile(&own, &[&c_source])?;
-            options = [&toolchain::OPTIONS[..], &["-ffunction-sections"], &flags].concat();
+            options = [&board::OPTIONS[..], &["-ffunction-sections"], &flags].concat();
             hashes = BTreeMap::from([
                 (header, sha256(code.header().as_bytes())),
                 (c_source.clone(), sha256(text.as_bytes())),

@@ -13,20 +13,6 @@ use rne_certify::listing;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// Options of a C compiler that is as strict as a project may be, and that rounds sums and products as written.
-pub(crate) const OPTIONS: [&str; 10] = [
-    "-std=c99",
-    "-pedantic",
-    "-Wall",
-    "-Wextra",
-    "-Wconversion",
-    "-Wdouble-promotion",
-    "-Wshadow",
-    "-Werror",
-    "-O2",
-    "-ffp-contract=off",
-];
-
 /// The Debian package of a program.
 fn package(program: &str) -> &'static str {
     match program {
