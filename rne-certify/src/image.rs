@@ -115,7 +115,7 @@ impl Image {
     /// A function by its name.
     ///
     /// # Errors
-    /// When there is none.
+    /// When the image has no function with this name.
     pub fn function(&self, name: &str) -> Result<&Function, NoFigures> {
         self.functions.get(name).ok_or_else(|| NoFigures::Absent(name.to_owned()))
     }

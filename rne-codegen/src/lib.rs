@@ -193,7 +193,7 @@ impl<'r> Compiler<'r> {
     /// constants are rounded one operation after another, as those of the seven steps are.
     ///
     /// # Errors
-    /// As [`Compiler::compile`].
+    /// The errors of [`Compiler::compile`].
     pub fn derivation(&self, program: &Program) -> Result<Option<Derivation>, CompileError> {
         // the search of a plan computes numbers that no program has
         self.plans();

@@ -311,7 +311,7 @@ impl<S: Constant> DynArm<S> {
         Ok(self.mechanism().jacobian_rate_times_velocity(q, qd))
     }
 
-    /// As [`Kinematics::wrench_torques`]: Jᵀ w, one torque per joint.
+    /// The joint torques Jᵀ w of a wrench; see [`Kinematics::wrench_torques`].
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
@@ -320,7 +320,7 @@ impl<S: Constant> DynArm<S> {
         Ok(self.mechanism().wrench_torques(q, wrench))
     }
 
-    /// As [`Arm::at_frame`]: this arm with the frame `frame` in the place of the tip.
+    /// This arm with the frame `frame` in the place of the tip; see [`Arm::at_frame`].
     ///
     /// `None` when `frame` is on a link that the arm does not have.
     #[must_use]

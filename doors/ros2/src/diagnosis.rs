@@ -25,7 +25,7 @@ pub(crate) struct Report {
     recent: Recent,
 }
 
-/// What happened since the last diagnostics.
+/// Events since the last diagnostics, counted.
 #[derive(Debug, Default)]
 struct Recent {
     received: u64,

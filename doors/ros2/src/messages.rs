@@ -69,7 +69,7 @@ pub struct DiagnosticStatus {
     pub level: u8,
     /// The part of the node.
     pub name: String,
-    /// What is the case, in one sentence.
+    /// The state of this part in one sentence, for people.
     pub message: String,
     /// The name of the robot.
     pub hardware_id: String,

@@ -56,7 +56,8 @@ struct Topics {
 /// Runs the node until `is_ended`; `started` is called with the topics when all of them are there.
 ///
 /// # Errors
-/// When a name is none of ROS, or when the participant, its topics or its sockets cannot be made.
+/// When a name is not a valid name of a ROS topic or node. When the participant, its topics or its sockets cannot be
+/// created.
 pub fn run(
     mut monitor: Monitor,
     options: &Options,

@@ -42,7 +42,7 @@ mod tests {
         assert!(sequences.0.len() <= MOST);
     }
 
-    /// Of publisher 2 the numbers 6 to 1001 are lost; that of publisher 1 was the largest.
+    /// Publisher 2 loses the numbers 6 to 1001. Publisher 1 had the largest number before.
     fn lost_of(publisher: u8) -> u64 {
         if publisher == 2 { 996 } else { 0 }
     }

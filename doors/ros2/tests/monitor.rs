@@ -45,7 +45,7 @@ fn message(names: &[&str], ms: i64) -> JointState {
     }
 }
 
-/// What is done to a good message.
+/// A change that makes a good message a bad one.
 type Change = fn(&mut JointState);
 
 const JOINTS: [&str; 6] = ["j1", "j2", "j3", "j4", "j5", "j6"];
@@ -350,7 +350,7 @@ fn silence_is_told_with_its_reason() {
     assert_eq!([count(&states, "not published"), count(&states, "lost")], [1, 3]);
 }
 
-/// Whatever comes: no panic, and no number that is not finite goes out.
+/// No message causes a panic, and the node publishes finite numbers only.
 #[test]
 fn any_message_is_survived() {
     let mut random = 0x9E37_79B9_7F4A_7C15_u64;

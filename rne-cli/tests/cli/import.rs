@@ -131,7 +131,7 @@ fn every_command_takes_a_urdf_with_one_arm() {
     assert!(!fs::exists(plan).expect("a folder"));
 }
 
-/// What is not clear in a URDF is said as by `rne import`, which has the options to choose.
+/// A command that takes a URDF with two possible tips names `rne import`, which has the option `--tip`.
 #[test]
 fn a_urdf_with_two_ends_names_the_command_that_chooses() {
     let urdf = folder("import_told").join("arm.urdf");

@@ -52,7 +52,7 @@ impl CsvRows {
     /// Reads the header. With `quoting`, a cell in quotes may hold delimiters; without, a line is always a row.
     ///
     /// # Errors
-    /// What is wrong with the header.
+    /// The reason, in words, if the header cannot be read.
     pub fn open(file: Box<dyn BufRead>, delimiter: u8, quoting: bool) -> Result<Self, String> {
         let file = Bounded { file, given: 0, end: LONGEST_LINE, quoting, is_line: true };
         let mut builder = csv::ReaderBuilder::new();
