@@ -188,12 +188,7 @@ impl fmt::Display for CompileError {
                 name.joint
             ),
             Self::NotIdentical { function, output, suspect } => {
-                let what = if function.returns_torques() {
-                    "the torque of joint"
-                } else {
-                    "in the list of returned \
-                                                                                           numbers, number"
-                };
+                let what = if function.returns_torques() { "the torque of joint" } else { "the returned number" };
                 write!(
                     f,
                     "this form of `{function}` does not compute the same as the seven steps: {what} {output} differs. \

@@ -70,9 +70,9 @@ pub(crate) enum Way {
 
 thread_local! {
     static IS_ON: Cell<bool> = const { Cell::new(false) };
-    /// By images without their signs: whether the way leads to the negative one, and the way.
     /// The constants of the programs that are lowered.
     static LOWERED: RefCell<Vec<Exactly>> = const { RefCell::new(Vec::new()) };
+    /// By images without their signs: whether the way leads to the negative image, and the way.
     static WAYS: RefCell<HashMap<Residue, (bool, Way)>> = RefCell::new(HashMap::new());
 }
 
