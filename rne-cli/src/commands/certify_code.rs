@@ -8,7 +8,7 @@ use std::process::Command;
 use rne_certify::certificate::Emulation;
 use rne_certify::{accuracy, board, sha256};
 use rne_codegen::{Function, Interpreter, Program};
-use rne_emit::{Origin, Precision, Prefix};
+use rne_emit::{Additions, Origin, Precision, Prefix};
 use rne_model::Robot;
 
 use crate::commands::certify::{Arguments, Language, file_name};
@@ -51,7 +51,8 @@ pub(super) fn build(
         arguments.file.file_stem().map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned());
     let origin = Origin::new(&name, &sha256(bytes));
     let programs = std::slice::from_ref(program);
-    let code = rne_emit::c_code_of_file(robot, programs, Precision::Single, &prefix, Some(&origin))
+    let additions = Additions { origin: Some(&origin), ..Additions::default() };
+    let code = rne_emit::c_code_with(robot, programs, Precision::Single, &prefix, &additions)
         .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
     let (header, c_source) = (format!("{stem}.h"), format!("{stem}.c"));
     let gcc = if arguments.lang == Language::C { compiler } else { "arm-none-eabi-gcc" };
