@@ -74,6 +74,64 @@ fn the_figures_of_json_are_those_of_the_page() {
 /// Arms that the repository does not ship.
 const ARMS: [&str; 3] = ["palletizer", "wrist", "lift"];
 
+/// The listing, QEMU and the interpreter agree on each number of an update; the bound is that of roundings of the
+/// momentum, times the rate of the updates.
+#[test]
+fn the_observer_of_each_arm_has_a_certificate() {
+    if !has_tools() {
+        return;
+    }
+    for (arm, joints, turning) in ARMS.into_iter().zip([4, 6, 4]).zip([4, 6, 3]).map(|((a, n), t)| (a, n, t)) {
+        let file = format!("rne-cli/tests/cli/arms/{arm}.yaml");
+        for cpu in ["cortex-m4", "cortex-m7"] {
+            let certify = ["certify", &file, "--observer", "--states", "200", "--cpu", cpu];
+            let json: serde_json::Value =
+                serde_json::from_str(&fine(&[&certify[..], &["--json"]].concat())).expect("JSON");
+            assert_eq!(json["function"], "observer_update", "{arm}");
+            let cost = &json["cost"];
+            assert_eq!(json["emulation"]["instructions"], cost["instructions"], "{arm}, {cpu}");
+            assert_eq!(json["emulation"]["states"], 32);
+            assert_eq!(cost["stack"], cost["stack_of_listing"], "{arm}, {cpu}");
+            assert_eq!(cost["calls"][format!("{arm}_momentum_and_rate")], 1, "{arm}: {}", cost["calls"]);
+            let sines = cost["calls"][format!("{arm}_sin_cos")].as_u64().expect("sines");
+            assert!(sines > 0 && sines <= turning, "{arm}: {sines}");
+            let kinds = cost["classes"].as_array().expect("kinds").iter();
+            let sum: u64 = kinds.map(|kind| kind["instructions"].as_u64().expect("a number")).sum();
+            assert_eq!(Some(sum), cost["instructions"].as_u64(), "{arm}: each instruction is of one kind");
+            // more than momentum and rate alone
+            let function = ["certify", &file, "--function", "gravity_torques", "--states", "5", "--cpu", cpu, "--json"];
+            let function: serde_json::Value = serde_json::from_str(&fine(&function)).expect("JSON");
+            assert!(cost["instructions"].as_u64() > function["cost"]["instructions"].as_u64());
+            let results = json["accuracy"]["results"].as_array().expect("results");
+            assert_eq!(results.len(), joints, "{arm}");
+            for result in results {
+                let [largest, bound] = ["largest", "bound"].map(|key| result[key].as_f64().expect("a number"));
+                assert!(largest > 0.1 && bound > 1e-8 && bound < 1e-2 * largest, "{arm}: {result}");
+            }
+            let traced = json["trace"].as_array().expect("lines").iter();
+            let last = traced.filter(|line| line["name"] == format!("external[{}]", joints - 1)).count();
+            assert_eq!(last, 1, "{arm}: the last number is traced once");
+        }
+        // twice the gain lets more errors through
+        let bound = |gain: &str| {
+            let certify = ["certify", &file, "--observer", "--gain", gain, "--states", "200", "--json"];
+            let json: serde_json::Value = serde_json::from_str(&fine(&certify)).expect("JSON");
+            json["accuracy"]["results"][0]["bound"].as_f64().expect("a number")
+        };
+        assert!(bound("200") > bound("20"), "{arm}");
+    }
+}
+
+#[test]
+fn options_of_the_observer_are_checked() {
+    fails(2, &["certify", ROBOT, "--observer", "--lang", "rust"], &["--observer", "rne::ObserverState"]);
+    fails(2, &["certify", ROBOT, "--observer", "--evidence", "e"], &["--evidence", "momenta"]);
+    fails(2, &["certify", ROBOT, "--observer", "--gain", "0"], &["--gain is 0", "1e-6"]);
+    fails(2, &["certify", ROBOT, "--observer", "--period", "-1"], &["--period"]);
+    fails(2, &["certify", ROBOT, "--gain", "20"], &["--observer"]);
+    fails(2, &["certify", ROBOT, "--observer", "--function", "gravity_torques"], &["--observer", "--function"]);
+}
+
 /// Whether the checker accepts a source with a trace, and what it says.
 fn checked(source: &Path, trace: &Path) -> (bool, String) {
     let checker = concat!(env!("CARGO_MANIFEST_DIR"), "/../rne-certify/checker/check_c.py");
