@@ -19,10 +19,10 @@
 use nalgebra::{DMatrix, DVector, Matrix4};
 
 use crate::least_squares::LeastSquares;
-use crate::parameters::PER_LINK;
 use crate::prior::{self, Scales};
 use crate::pseudo_inertia;
 use crate::structure::{FRICTION, Structure};
+use rne_model::PER_LINK;
 
 /// How γ decreases, and from where.
 const START: f64 = 1e6;

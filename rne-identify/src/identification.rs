@@ -10,12 +10,13 @@ use crate::feasible::Feasible;
 use crate::friction::{FrictionExcitation, HeldFriction};
 use crate::information::{Information, MotionError, Rejected, Weighting};
 use crate::least_squares::LeastSquares;
-use crate::parameters::{PER_LINK, Parameters};
+use crate::parameters::Parameters;
 use crate::prediction::{JointError, Prediction};
 use crate::prior::Scales;
 use crate::pseudo_inertia;
 use crate::steady::steady;
 use crate::structure::{FRICTION, Options, Structure};
+use rne_model::PER_LINK;
 
 /// Passes over the logs: one to begin with, and two in which rows that are far off count less.
 const PASSES: usize = 3;

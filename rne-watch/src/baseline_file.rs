@@ -20,7 +20,7 @@ const KIND: Kind = Kind { name: "a baseline file", format: FORMAT };
 const KEYS_OF_SPAN: [&str; 2] = ["quiet_since", "quiet_until"];
 
 /// No number of a baseline is larger.
-const LARGEST: f64 = 1e18;
+const LARGEST: f64 = 1e60;
 
 /// Two values of the robot file that differ by a smaller part of themselves are the same.
 const SAME: f64 = 1e-9;

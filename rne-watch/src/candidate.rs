@@ -1,7 +1,8 @@
 //! The parameters that may have changed: friction, offset and gain of each joint, a payload at the tip, and the delay.
 
 use nalgebra::DMatrix;
-use rne_identify::{FittedModel, FrictionParameter, Structure};
+use rne_identify::{FittedModel, FrictionParameter, LEAST_FRICTION, LIGHT_ARM, SLOWEST, Structure};
+use rne_model::PER_LINK;
 
 /// A parameter of the arm that may differ between two logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -83,9 +84,6 @@ impl Candidate {
     }
 }
 
-/// Inertial parameters of a link: the mass, three first moments, six numbers of the inertia.
-const PER_LINK: usize = 10;
-
 /// Numbers of a payload that a log tells: its mass and its first moments. Its inertia is too small a part of torques.
 pub(crate) const MOMENTS: usize = 4;
 
@@ -150,7 +148,7 @@ impl Scale {
 
     /// A mass, kg; for an arm that is lighter than a person can lift, in proportion to its own mass.
     fn payload(&self, mass: f64) -> f64 {
-        if self.mass > 0.0 { mass.min(mass * self.mass / LIGHT) } else { mass }
+        if self.mass > 0.0 { mass.min(mass * self.mass / LIGHT_ARM) } else { mass }
     }
 }
 
@@ -169,12 +167,3 @@ fn mean_square(structure: &Structure, joint: usize, total: &DMatrix<f64>, column
     let at = column.unwrap_or(structure.count());
     if ones > 0.0 { total[(at, at)] / ones } else { 0.0 }
 }
-
-/// The least friction of a joint, as a part of its effort.
-const LEAST_FRICTION: f64 = 0.02;
-
-/// rad/s or m/s: a joint that is slower tells nothing about viscous friction.
-pub(crate) const SLOWEST: f64 = 1e-3;
-
-/// kg: for a lighter arm the smallest payload is in proportion to the mass of the arm.
-const LIGHT: f64 = 4.0;

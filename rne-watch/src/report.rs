@@ -275,27 +275,16 @@ fn touches(robot: &Robot, noise: &ContactNoise, run: u64, contacts: Vec<Contact>
         others.sort_unstable();
         others.dedup();
         Some(Event {
-            cause: Cause::Contact,
             joint: Some(most.joint),
             parameter: "external",
             value: most.peak,
-            file_value: 0.0,
-            baseline_value: 0.0,
             deviation: noise.joints[most.joint].deviation,
-            half_interval: f64::NAN,
-            threshold: f64::NAN,
             unit: unit(robot, Candidate::Offset(most.joint)),
             run,
             since: group.iter().fold(f64::INFINITY, |start, of| start.min(of.start)),
             until: group.iter().fold(f64::NEG_INFINITY, |end, of| end.max(of.end)),
-            is_whole: false,
-            lasts: false,
-            since_time: None,
-            until_time: None,
-            not_before: None,
-            not_after: None,
             others,
-            rivals: Vec::new(),
+            ..Event::blank(Cause::Contact)
         })
     };
     groups.into_iter().filter_map(event).collect()
@@ -306,29 +295,7 @@ mod tests {
     use super::*;
 
     fn event(cause: Cause, joint: usize) -> Event {
-        Event {
-            cause,
-            joint: Some(joint),
-            parameter: "external",
-            value: 1.0,
-            file_value: 0.0,
-            baseline_value: 0.0,
-            deviation: f64::NAN,
-            half_interval: f64::NAN,
-            threshold: f64::NAN,
-            unit: "N m",
-            run: 0,
-            since: 1.0,
-            until: 2.0,
-            is_whole: false,
-            lasts: false,
-            since_time: None,
-            until_time: None,
-            not_before: None,
-            not_after: None,
-            others: Vec::new(),
-            rivals: Vec::new(),
-        }
+        Event { joint: Some(joint), value: 1.0, since: 1.0, until: 2.0, ..Event::blank(cause) }
     }
 
     fn causes(events: &[Event]) -> Vec<(Cause, Option<usize>)> {

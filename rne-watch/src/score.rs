@@ -17,15 +17,9 @@
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
-use rne_identify::{FittedModel, Stretch, Structure, inverse_of_information};
+use rne_identify::{FittedModel, LIGHTEST_PAYLOAD, PAYLOAD_REACH, Stretch, Structure, inverse_of_information};
 
 use crate::candidate::{Candidate, MOMENTS};
-
-/// m: how far from the last frame the centre of a payload is supposed to be, one deviation.
-const REACH: f64 = 0.1;
-
-/// kg: the mass from which on the first moments of a payload may be as large as `REACH` allows.
-const LIGHTEST: f64 = 0.05;
 
 /// Rounds in which the first moments of a payload follow its mass.
 const ROUNDS: usize = 4;
@@ -250,8 +244,8 @@ impl Score {
         for round in 0..if payloads.is_empty() { 1 } else { ROUNDS } {
             let mut held = gram.clone();
             for &at in &payloads {
-                let mass = if round == 0 { 1.0 } else { values[at].abs().max(LIGHTEST) };
-                (at + 1..at + MOMENTS).for_each(|moment| held[(moment, moment)] += (REACH * mass).powi(-2));
+                let mass = if round == 0 { 1.0 } else { values[at].abs().max(LIGHTEST_PAYLOAD) };
+                (at + 1..at + MOMENTS).for_each(|moment| held[(moment, moment)] += (PAYLOAD_REACH * mass).powi(-2));
             }
             covariance = inverse_of_information(&held)?;
             values = &covariance * &slope;

@@ -9,8 +9,9 @@ use rne_logs::median;
 
 use crate::Baseline;
 use crate::baseline::Residual;
-use crate::candidate::{Candidate, SLOWEST, Scale, speeds};
+use crate::candidate::{Candidate, Scale, speeds};
 use crate::score::{Change, Estimate, Projected, Score};
+use rne_identify::SLOWEST;
 
 /// A change is an event from this many deviations on.
 const DEVIATIONS: f64 = 3.0;
