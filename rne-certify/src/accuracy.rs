@@ -114,7 +114,8 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
     interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
 }
 
-/// The numbers that a program returns in single precision for joint positions, velocities, and accelerations or torques.
+/// The numbers that a program returns in single precision for joint positions, velocities, and accelerations or
+/// torques.
 #[must_use]
 pub fn single_precision(
     robot: &Robot,

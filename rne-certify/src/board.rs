@@ -79,7 +79,7 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
     let names = list(&|index, _| format!("a{index}, "));
     let voids = list(&|index, _| format!("    (void)a{index};\n"));
     let values = list(&|_, (_, value)| format!("{value}, "));
-    let before: String = before.iter().map(|line| format!("    {line}\n")).collect();
+    let before: String = before.iter().flat_map(|line| ["    ", line, "\n"]).collect();
     format!(
         "#include \"board.h\"\n#include \"{header}\"\n\n\
          typedef void certified({types}float *);\n\n\

@@ -35,6 +35,9 @@ pub struct Function {
     pub lines: Vec<Line>,
 }
 
+/// A function in a chain of calls, with its name.
+type Called<'a> = (&'a str, &'a Function);
+
 /// Why a function has no figures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoFigures {
@@ -137,8 +140,8 @@ impl Image {
         &'a self,
         name: &str,
         may_be_called: &dyn Fn(&str) -> bool,
-        path: &mut Vec<(&'a str, &'a Function)>,
-        visit: &mut dyn FnMut(&[(&'a str, &'a Function)]),
+        path: &mut Vec<Called<'a>>,
+        visit: &mut dyn FnMut(&[Called<'a>]),
     ) -> Result<(), NoFigures> {
         let Some((name, function)) = self.functions.get_key_value(name) else {
             return Err(NoFigures::Absent(name.to_owned()));

@@ -51,7 +51,7 @@ impl LowPass {
         Call { function: update, arguments, length: dof, before }
     }
 
-    /// What [`call`](Self::call) writes at a state; `None` if the interpreter cannot run the program.
+    /// The numbers that [`call`](Self::call) writes at a state; `None` if the interpreter cannot run the program.
     #[must_use]
     pub fn result(
         self,

@@ -79,7 +79,7 @@ fn by_hand(motor: [f64; 5], qd: f64) -> f64 {
 }
 
 #[test]
-#[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+#[allow(clippy::cast_possible_truncation, clippy::unreadable_literal)] // rounding to f32; numbers as the file has them
 fn friction_and_limits_are_those_of_the_runtime_and_of_closed_forms() {
     let slider = path(&folder("joints"), "slider.yaml");
     fs::write(&slider, SLIDER).expect("written");

@@ -69,7 +69,7 @@ pub fn c_code(
     c_code_with(robot, programs, precision, prefix, &Additions::default())
 }
 
-/// What a file of C contains beside the programs.
+/// The parts of a file of C beside the programs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Additions<'a> {
     /// The robot file that the heading names.
