@@ -138,8 +138,8 @@ pub(super) fn declarations(file: &File) -> String {
         text.push_str(&comment(
             "///",
             "friction: positive for a positive speed; N m or N, at the joint. viscous is G^2 B, odd is |G| (Tc+ - \
-             Tc-)/2, even is |G| (Tc+ + Tc-)/2, and width is coulomb_width, all of the robot file. The error of s is below 4 \
-             ulp. Speeds up to 1e18 are allowed.",
+             Tc-)/2, even is |G| (Tc+ + Tc-)/2, and width is coulomb_width, all of the robot file. The error of s is \
+             below 4 ulp. Speeds up to 1e18 are allowed.",
         ));
         let _ = writeln!(text, "{};", friction_head(file));
     }
