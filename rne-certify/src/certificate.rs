@@ -95,6 +95,8 @@ pub struct Emulation {
 /// The error of the results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Accuracy {
+    /// How the states are chosen, in words.
+    pub how: String,
     /// Number of states.
     pub states: usize,
     /// The seed of the random numbers.
@@ -216,7 +218,7 @@ impl Certificate {
             "\n## Cost of a call\n\n| property | value |\n|---|---|\n\
              | form | {} |\n| instructions, each of which a call executes once | {} |\n\
              | cycles, worst case by the assumptions below | {} |\n| bytes of instructions | {} |\n\
-             | bytes of constants | {} |\n| bytes of stack, with the function that is called | {} |\n\
+             | bytes of constants | {} |\n| bytes of stack, with the functions that are called | {} |\n\
              | bytes of stack that the instructions show | {} |\n| calls | {calls} |\n\
              | branches, except over constants | none |\n| double precision | none |\n\n",
             self.form, cost.instructions, cost.cycles, cost.code, cost.constants, cost.stack, cost.stack_of_listing
@@ -253,10 +255,10 @@ impl Certificate {
     }
 
     fn errors(&self, text: &mut String) {
-        let Accuracy { states, seed, ranges, results } = &self.accuracy;
+        let Accuracy { how, ranges, results, .. } = &self.accuracy;
         let _ = write!(
             text,
-            "\n## Error in single precision\n\nThe function runs at {states} random states (seed {seed}). At each \
+            "\n## Error in single precision\n\n{how} At each \
              state, interval arithmetic in `f64`, rounded outwards, encloses the exact result for the numbers of the \
              robot file. The bound is the distance of the `f32` result from the farthest end of this interval, so it \
              holds at each of these states. It says nothing about other states.\n\nRanges of the states:\n\n"
