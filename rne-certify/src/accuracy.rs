@@ -6,6 +6,7 @@
 
 use rne_codegen::{Argument, Arguments, Interpreter, Program};
 use rne_model::{JointKind, Robot};
+use serde::Serialize;
 
 use crate::interval::Interval;
 
@@ -32,7 +33,7 @@ pub struct Range {
 }
 
 /// The error of one number of the result.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Error {
     /// The largest magnitude of the number in the sample.
     pub largest: f64,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use rne_certify::accuracy::{self, Sample};
 use rne_certify::board::{self, Call};
-use rne_certify::certificate::{Accuracy, Certificate, Class, Cost, Error, trace};
+use rne_certify::certificate::{Accuracy, Certificate, Cost, NamedError, trace};
 use rne_certify::cycles::{self, Core, Counter};
 use rne_certify::image::Image;
 use rne_certify::observer::{self, LowPass};
@@ -104,7 +104,7 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "output")]
     pub(super) force: bool,
     /// Write nothing; check that this certificate is what rne would write now
-    #[arg(long, value_name = "OUT", conflicts_with = "output")]
+    #[arg(long, value_name = "OUT", conflicts_with_all = ["output", "evidence"])]
     pub(super) check: Option<PathBuf>,
 }
 
@@ -299,7 +299,7 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         accuracy: accuracy(arguments, &robot, &program)?,
         proof,
         misra,
-        trace: code.functions.iter().flat_map(|name| trace(&code.text, name)).collect(),
+        trace: code.heads.iter().flat_map(|head| trace(&code.text, head)).collect(),
     })
 }
 
@@ -323,7 +323,7 @@ fn cost(core: Core, image: &Image, code: &Code) -> Result<Cost, Failure> {
         instructions: figures.instructions,
         cycles: worst.total,
         waits: worst.waits,
-        classes: worst.classes.into_iter().map(class).collect(),
+        classes: worst.classes,
         unknown: worst.unknown,
         assumptions: core.assumptions().into_iter().map(str::to_owned).collect(),
         code: figures.code,
@@ -332,11 +332,6 @@ fn cost(core: Core, image: &Image, code: &Code) -> Result<Cost, Failure> {
         stack_of_listing: stack,
         calls: called,
     })
-}
-
-fn class(of: cycles::Class) -> Class {
-    let cycles::Class { what, mnemonics, instructions, cycles } = of;
-    Class { what: what.to_owned(), mnemonics, instructions, cycles }
 }
 
 pub(super) fn file_name(path: &Path) -> String {
@@ -438,12 +433,7 @@ fn accuracy(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<A
     } else {
         program.outputs.iter().map(|output| output.name.to_string()).collect()
     };
-    let results = errors.iter().zip(names).map(|(error, name)| Error {
-        name,
-        largest: error.largest,
-        bound: error.bound,
-        state: error.state,
-    });
+    let results = errors.into_iter().zip(names).map(|(error, name)| NamedError { name, error });
     let (ranges, results) = (ranges.collect(), results.collect());
     Ok(Accuracy { how, states: sample.states, seed: sample.seed, ranges, results })
 }
@@ -467,7 +457,7 @@ fn command(arguments: &Arguments) -> String {
         arguments.seed
     );
     if let Some(compiler) = &arguments.cc {
-        let _ = write!(command, " --cc {compiler}");
+        let _ = write!(command, " --cc {}", robot_file::shell(Path::new(compiler)));
     }
     if let Some(prefix) = &arguments.prefix {
         let _ = write!(command, " --prefix {prefix}");

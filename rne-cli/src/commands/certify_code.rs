@@ -23,6 +23,8 @@ pub(super) struct Code {
     pub(super) symbol: String,
     /// The functions of the certificate: those that it calls, without the sine, then itself.
     pub(super) functions: Vec<String>,
+    /// The beginnings of these functions in the text of the code.
+    pub(super) heads: Vec<String>,
     /// The file with the function, and how the certificate names it.
     pub(super) source: String,
     /// SHA-256 of the files.
@@ -96,13 +98,15 @@ pub(super) fn build(
             object = "arm.o".to_owned();
             source = format!("{stem}.rs");
             let options = options.iter().map(|&option| option.to_owned()).chain([cpu]).collect();
+            let heads = vec![format!("fn {}<", arguments.function)];
             link(&compile, &object)?;
-            return Ok(Code { symbol, functions, source, hashes, text, elf: "board.elf".to_owned(), options });
+            return Ok(Code { symbol, functions, heads, source, hashes, text, elf: "board.elf".to_owned(), options });
         }
     }
     link(&compile, &object)?;
     let options = options.iter().map(|&option| option.to_owned()).collect();
-    Ok(Code { symbol, functions, source, hashes, text, elf: "board.elf".to_owned(), options })
+    let heads = functions.iter().map(|name| format!("{name}(")).collect();
+    Ok(Code { symbol, functions, heads, source, hashes, text, elf: "board.elf".to_owned(), options })
 }
 
 /// The code in C as `rne emit` writes it.
@@ -170,6 +174,13 @@ pub(super) fn emulate(
         return Err(Failure::input(format_args!(
             "QEMU executes {} instructions in a call, but the listing shows {instructions}",
             printed.instructions
+        )));
+    }
+    if printed.results.len() != board::STATES as usize {
+        return Err(Failure::input(format_args!(
+            "QEMU prints the results of {} states instead of {}",
+            printed.results.len(),
+            board::STATES
         )));
     }
     let interpreter = Interpreter::new(program);

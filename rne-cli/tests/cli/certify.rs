@@ -71,6 +71,27 @@ fn the_figures_of_json_are_those_of_the_page() {
     }
 }
 
+/// Functions in both languages: the trace names each number of the result, and the options that do not fit are refused.
+#[test]
+fn both_languages_and_other_functions_have_a_trace() {
+    fails(2, &["certify", ROBOT, "--check", "x.md", "--evidence", "x"], &["cannot be used with"]);
+    let has_rust = Command::new("rustup").args(["target", "list", "--installed"]).output();
+    let has_rust = has_rust.is_ok_and(|out| String::from_utf8_lossy(&out.stdout).contains("thumbv7em-none-eabihf"));
+    if !has_tools() {
+        return;
+    }
+    for lang in ["c", "rust"].into_iter().filter(|lang| *lang == "c" || has_rust) {
+        for function in ["inverse_dynamics", "forward_dynamics"] {
+            let page = fine(&["certify", ROBOT, "--states", "20", "--lang", lang, "--function", function]);
+            let (_, trace) = page.split_once("\n## Trace\n").expect("a trace");
+            assert!(trace.lines().count() > 40, "{lang} {function}: {trace}");
+            assert!(trace.contains("| joint 3, "), "{lang} {function}: {trace}");
+            assert_eq!(page.contains("the rules are for C"), lang == "rust", "{page}");
+            assert!(!page.contains("cppcheck is not installed"), "{page}");
+        }
+    }
+}
+
 /// Arms that the repository does not ship.
 const ARMS: [&str; 3] = ["palletizer", "wrist", "lift"];
 
