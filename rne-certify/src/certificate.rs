@@ -267,10 +267,10 @@ impl Certificate {
     fn rules(&self, text: &mut String) {
         text.push_str("\n## MISRA C:2012\n\n");
         let Some(violations) = &self.misra else {
-            text.push_str(if self.language != "c" {
-                "Not checked: the rules are for C.\n"
-            } else {
+            text.push_str(if self.language == "c" {
                 "Not checked: cppcheck is not installed (Debian: `apt-get install cppcheck`).\n"
+            } else {
+                "Not checked: the rules are for C.\n"
             });
             return;
         };
