@@ -36,13 +36,17 @@ joints:
 
 const SAMPLES: usize = 128;
 /// Steps that are planned ahead.
-const STEPS: usize = 40;
+const STEPS: usize = 30;
 /// s, duration of a step.
 const STEP: f64 = 0.025;
-/// N m, standard deviation of the variations of each torque.
+/// N m, the largest torques of the motors.
+const EFFORT: [f64; 2] = [5.0, 4.0];
+/// N m, standard deviation of the largest variations of each torque.
 const DEVIATION: [f64; 2] = [2.5, 2.0];
-/// Cost of a variation that has the weight 1/e of the best one.
-const TEMPERATURE: f64 = 4.0;
+/// Steps that a variation lasts.
+const HELD: usize = 6;
+/// What a variation costs more than the best one if its weight is 1/e of the best one's.
+const TEMPERATURE: f64 = 0.1;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (time, [q1, q2]) = swing_up(1)?;
@@ -65,8 +69,9 @@ fn swing_up(seed: u64) -> Result<(f64, [f64; 2]), Box<dyn std::error::Error>> {
     for cycle in 1..=400_u16 {
         // the first sample is the plan itself
         let mut tau = plan.repeat(SAMPLES);
-        for sample in tau.chunks_mut(STEPS).skip(1) {
-            vary(&mut rng, sample);
+        for (index, sample) in (0_u16..).zip(tau.chunks_mut(STEPS)).skip(1) {
+            // large variations swing the arm up, small ones balance it
+            vary(&mut rng, sample, 0.96_f64.powi(index.into()));
         }
         let [mut positions, mut velocities] = [(); 2].map(|()| vec![0.0; SAMPLES * STEPS * 2]);
         let start = Arguments::new().q(Array::Same(&q)).qd(Array::Same(&qd)).tau(Array::Rows(tau.as_flattened()));
@@ -102,12 +107,12 @@ fn swing_up(seed: u64) -> Result<(f64, [f64; 2]), Box<dyn std::error::Error>> {
     Err(format!("the arm is not upright after 400 cycles: {q:?} rad, {qd:?} rad/s").into())
 }
 
-/// Adds variations that last some steps to torques.
-fn vary(rng: &mut Rng, torques: &mut [[f64; 2]]) {
-    for (torques, deviation) in torques.chunks_mut(4).map(|torques| (torques, DEVIATION)) {
-        let variation = deviation.map(|deviation| deviation * normal(rng));
+/// Adds random variations to torques; the motors cannot do more than `EFFORT`.
+fn vary(rng: &mut Rng, torques: &mut [[f64; 2]], scale: f64) {
+    for torques in torques.chunks_mut(HELD) {
+        let variation = DEVIATION.map(|deviation| scale * deviation * normal(rng));
         for torque in torques {
-            *torque = [torque[0] + variation[0], torque[1] + variation[1]];
+            *torque = [0, 1].map(|joint| (torque[joint] + variation[joint]).clamp(-EFFORT[joint], EFFORT[joint]));
         }
     }
 }
@@ -129,7 +134,8 @@ fn cost(positions: &[f64], velocities: &[f64]) -> f64 {
     let of_state = |(q, qd): (&[f64], &[f64])| {
         let speed = qd[0] * qd[0] + qd[1] * qd[1];
         let missing = 1.0 - height(q);
-        4.0 * missing + 0.02 * speed + if missing < 0.2 { 0.1 * speed } else { 0.5 }
+        // near the upright position the arm is to be slow
+        4.0 * missing + 0.005 * speed + 0.05 * (1.0 - missing).max(0.0).powi(2) * speed
     };
     states.map(of_state).sum()
 }

@@ -35,9 +35,8 @@ impl Samples {
     /// Random states, and torques for random accelerations of these states.
     fn random(rng: &mut Rng, arm: &DynArm, rollout: Rollout, samples: usize) -> Self {
         let dof = arm.dof();
-        let mut numbers = |count: usize, size: f64| -> Vec<f64> {
-            (0..count).map(|_| (2.0 * rng.f64() - 1.0) * size).collect()
-        };
+        let mut numbers =
+            |count: usize, size: f64| -> Vec<f64> { (0..count).map(|_| (2.0 * rng.f64() - 1.0) * size).collect() };
         let [q, qd] = [3.0, 2.0].map(|size| numbers(samples * dof, size));
         let mut tau = Vec::new();
         for (q, qd) in q.chunks(dof).zip(qd.chunks(dof)) {
@@ -83,9 +82,9 @@ impl Samples {
 
     fn payload_of(&self, sample: usize) -> Payload<f64> {
         let none = Payload::none();
-        self.payload.as_ref().map_or(none, |payload| {
-            Payload::from_array(payload[10 * sample..][..10].try_into().expect("ten numbers"))
-        })
+        self.payload
+            .as_ref()
+            .map_or(none, |payload| Payload::from_array(payload[10 * sample..][..10].try_into().expect("ten numbers")))
     }
 }
 
@@ -257,8 +256,7 @@ fn a_rollout_has_the_bits_of_single_calls() {
     let arm = CompiledArm::from_yaml(file.yaml).expect("a shipped robot");
     let rollout = Rollout::new(3, 1e-3);
     // more than a block of any unit, and no multiple of a register
-    let samples =
-        Samples::random(&mut Rng::with_seed(33), &DynArm::from_robot(arm.robot()), rollout, 131);
+    let samples = Samples::random(&mut Rng::with_seed(33), &DynArm::from_robot(arm.robot()), rollout, 131);
     compare::<f64>(&arm, &rollout, &samples);
     compare::<f32>(&arm, &rollout, &samples);
 }
@@ -291,7 +289,10 @@ fn a_rod_moves_by_closed_forms() {
     let [q, qd] = of_rod(&rod(""), Rollout::new(50, h), [0.0, 0.0], &[0.6; 50]);
     for (index, (q, qd)) in q.iter().zip(&qd).enumerate() {
         let k = f64::from(u8::try_from(index + 1).expect("few"));
-        assert!((qd - k * h * 0.6 / INERTIA).abs() < 1e-12 && (q - k * (k + 1.0) / 2.0 * h * h * 0.6 / INERTIA).abs() < 1e-12);
+        assert!(
+            (qd - k * h * 0.6 / INERTIA).abs() < 1e-12
+                && (q - k * (k + 1.0) / 2.0 * h * h * 0.6 / INERTIA).abs() < 1e-12
+        );
     }
     // viscous friction G² B: q̇ = (1 - h G² B/J)^k q̇0; a negative ratio has no meaning
     let arm = rod(", motor: {gear_ratio: -10, viscous: 0.004}");
@@ -420,7 +421,10 @@ fn samples_do_not_notice_each_other() {
         };
         assert!(before, "sample {sample}");
         let last = &of(&found, sample, 1).map(|numbers| numbers[174..].to_vec());
-        assert!(last.iter().all(|numbers| numbers.iter().any(|number| number.is_nan()) == is_nan), "{sample}: {last:?}");
+        assert!(
+            last.iter().all(|numbers| numbers.iter().any(|number| number.is_nan()) == is_nan),
+            "{sample}: {last:?}"
+        );
     }
 }
 

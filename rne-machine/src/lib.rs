@@ -46,8 +46,8 @@ pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use results::Derivatives;
 pub use rne_codegen::{Argument, Form, Function, Layout, Record};
-pub use rollout::{FrictionWidth, Rollout, RolloutError, RolloutLimits};
 pub use rne_search::{PlanFile, SearchError, SearchOptions};
+pub use rollout::{FrictionWidth, Rollout, RolloutError, RolloutLimits};
 pub use search::SearchProgress;
 
 use rne_codegen::{Name, Program};

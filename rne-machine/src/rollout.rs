@@ -207,8 +207,7 @@ impl CompiledArm {
         }
         let joints = rollout.joints(self.robot())?;
         let is_loaded = place("payload").is_some_and(|place| arguments.at(place).is_some());
-        let function =
-            if is_loaded { Function::ForwardDynamicsWithPayload } else { Function::ForwardDynamics };
+        let function = if is_loaded { Function::ForwardDynamicsWithPayload } else { Function::ForwardDynamics };
         let compiled = self.function(function)?;
         let size = steps.checked_mul(joints.len()).and_then(|size| size.checked_mul(samples));
         for (array, numbers) in ["positions", "velocities"].into_iter().zip(&states) {

@@ -272,13 +272,7 @@ fn drive<T: BatchScalar>(joints: &[RolloutJoint<T>], width: usize, rows: &mut [T
 
 /// Moves states on by a step; rows of positions, then of velocities.
 #[inline(always)]
-fn move_on<T: BatchScalar>(
-    joints: &[RolloutJoint<T>],
-    step: T,
-    width: usize,
-    states: &mut [T],
-    accelerations: &[T],
-) {
+fn move_on<T: BatchScalar>(joints: &[RolloutJoint<T>], step: T, width: usize, states: &mut [T], accelerations: &[T]) {
     let (positions, velocities) = states.split_at_mut(joints.len() * width);
     let rows = positions.chunks_exact_mut(width).zip(velocities.chunks_exact_mut(width));
     let rows = rows.zip(accelerations.chunks_exact(width));
