@@ -9,8 +9,9 @@ use rne_logs::median;
 
 use crate::Baseline;
 use crate::baseline::Residual;
-use crate::candidate::{Candidate, SLOWEST, Scale, speeds};
+use crate::candidate::{Candidate, Scale, speeds};
 use crate::score::{Change, Estimate, Projected, Score};
+use rne_identify::SLOWEST;
 
 /// A change is an event from this many deviations on.
 const DEVIATIONS: f64 = 3.0;
@@ -117,28 +118,28 @@ pub(crate) struct Selection<'a> {
 impl<'a> Selection<'a> {
     /// The changes of a log; `None` where the log and the baseline together tell nothing.
     pub(crate) fn of(structure: &'a Structure, baseline: &'a Baseline, stretches: &'a [Stretch]) -> Option<Self> {
-        let mut one = Self::selected(structure, baseline, stretches.iter().collect())?;
+        let mut selection = Self::selected(structure, baseline, stretches.iter().collect())?;
         for _ in 0..ROUNDS {
-            let contacts = one.outliers();
-            if contacts.is_empty() || 4 * (one.stretches.len() - contacts.len()) < 3 * stretches.len() {
+            let contacts = selection.outliers();
+            if contacts.is_empty() || 4 * (selection.stretches.len() - contacts.len()) < 3 * stretches.len() {
                 break;
             }
-            let kept = one.stretches.iter().enumerate().filter(|(at, _)| !contacts.contains(at));
-            one = Self::selected(structure, baseline, kept.map(|(_, stretch)| *stretch).collect())?;
+            let kept = selection.stretches.iter().enumerate().filter(|(at, _)| !contacts.contains(at));
+            selection = Self::selected(structure, baseline, kept.map(|(_, stretch)| *stretch).collect())?;
         }
-        Some(one)
+        Some(selection)
     }
 
     /// Selects changes, without the moments that explain one alone: a log has few of them, so half of it must remain.
     fn selected(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
         let count = stretches.len();
-        let mut one = Self::empty(structure, baseline, stretches)?;
-        while 2 * one.stretches.len() > count {
-            let Some(moment) = one.select() else { break };
-            let rest = one.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
-            one = Self::empty(structure, baseline, rest.map(|(_, stretch)| *stretch).collect())?;
+        let mut selection = Self::empty(structure, baseline, stretches)?;
+        while 2 * selection.stretches.len() > count {
+            let Some(moment) = selection.select() else { break };
+            let rest = selection.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
+            selection = Self::empty(structure, baseline, rest.map(|(_, stretch)| *stretch).collect())?;
         }
-        Some(one)
+        Some(selection)
     }
 
     /// The stretches that stand out from the others, with all changes that were found: somebody touches the arm there.
@@ -257,11 +258,11 @@ impl<'a> Selection<'a> {
     }
 
     fn is_event(&self, change: &Change, estimate: &Estimate) -> bool {
-        let of = |change: &Change| self.candidate(change.candidate);
+        let columns = |change: &Change| self.candidate(change.candidate);
         let is_gain = |candidate: Candidate| matches!(candidate, Candidate::Gain(_));
         // the effort of a joint whose gain has changed tells nothing else
         let excludes = |given: &Projected| {
-            let (one, other) = (of(&given.change), of(change));
+            let (one, other) = (columns(&given.change), columns(change));
             one == other || (one.joint().is_some() && one.joint() == other.joint() && (is_gain(one) || is_gain(other)))
         };
         let is_given = self.given.iter().any(excludes);
@@ -410,12 +411,12 @@ impl<'a> Selection<'a> {
         let whole = 0..self.score.len();
         let estimates = self.score.estimates(&whole, &self.given).into_iter().enumerate();
         let is_given = |candidate: &usize| self.given.iter().any(|given| given.change.candidate == *candidate);
-        let each = estimates.filter(|(candidate, _)| !is_given(candidate)).filter_map(|(candidate, estimate)| {
+        let statistics = estimates.filter(|(candidate, _)| !is_given(candidate)).filter_map(|(candidate, estimate)| {
             let change = Change { candidate, window: whole.clone() };
             Some(self.statistic(&change, &estimate?))
         });
         let small = self.estimated().map(|found| found.statistic).filter(|statistic| statistic.ratio() <= 1.0);
-        each.chain(small).collect()
+        statistics.chain(small).collect()
     }
 
     /// Whether a joint moves far less than in the quiet logs, or hardly at all.

@@ -445,9 +445,9 @@ mod tests {
 
     /// Columns of as many joints, with a torque and a current, with names and others.
     fn wide(joints: usize) -> Vec<String> {
-        let of = |joint| [format!("a{joint}_position"), format!("a{joint}_torque"), format!("a{joint}_current")];
+        let names_of = |joint| [format!("a{joint}_position"), format!("a{joint}_torque"), format!("a{joint}_current")];
         let others = (0..joints).map(|other| format!("temperature {other}"));
-        ["t".to_owned()].into_iter().chain((0..joints).flat_map(of)).chain(others).collect()
+        ["t".to_owned()].into_iter().chain((0..joints).flat_map(names_of)).chain(others).collect()
     }
 
     #[test]
