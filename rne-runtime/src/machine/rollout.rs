@@ -164,13 +164,13 @@ impl Code {
         }
         let rows = 4 * rollout.joints.len() + rollout.constants.len();
         T::with_memory((self.slots + rows) * WIDEST * BLOCK, |memory| {
-            unit.run(Samples { code: self, memory, rollout, samples, states });
+            unit.run(Task { code: self, memory, rollout, samples, states });
         });
     }
 }
 
 /// Samples to be rolled out.
-struct Samples<'a, T> {
+struct Task<'a, T> {
     code: &'a Code,
     memory: &'a mut [T],
     rollout: &'a Rollout<'a, T>,
@@ -178,7 +178,7 @@ struct Samples<'a, T> {
     states: [&'a mut [T]; 2],
 }
 
-impl<T: BatchScalar> Work<T> for Samples<'_, T> {
+impl<T: BatchScalar> Work<T> for Task<'_, T> {
     #[inline(always)]
     fn run<V: Vector<Element = T>>(self, unit: V::Unit) {
         let Self { code, memory, rollout, samples, states: [positions, velocities] } = self;
@@ -199,7 +199,7 @@ impl<T: BatchScalar> Work<T> for Samples<'_, T> {
             for index in 0..steps {
                 block.read(&tau[index * dof..][..dof], &mut rows[2 * dof * width..][..dof * width]);
                 drive(joints, width, &mut rows[dof * width..3 * dof * width]);
-                let mut port = Rows::<V, BLOCK> { unit, rows: slots::<V, BLOCK>(rows), inputs, accelerations };
+                let mut port = StatePort::<V, BLOCK> { unit, rows: slots::<V, BLOCK>(rows), inputs, accelerations };
                 // one loop for both parts, so that its code is there once
                 for (part, instructions) in [&code.angles, &code.rest].into_iter().enumerate() {
                     if part == 1 {
@@ -264,7 +264,7 @@ fn drive<T: BatchScalar>(joints: &[RolloutJoint<T>], width: usize, rows: &mut [T
         }
         if let Some(friction) = joint.friction {
             for (torque, velocity) in torques.iter_mut().zip(velocities) {
-                *torque = *torque - friction.torque(*velocity);
+                *torque -= friction.torque(*velocity);
             }
         }
     }
@@ -278,7 +278,7 @@ fn move_on<T: BatchScalar>(joints: &[RolloutJoint<T>], step: T, width: usize, st
     let rows = rows.zip(accelerations.chunks_exact(width));
     for (joint, ((positions, velocities), accelerations)) in joints.iter().zip(rows) {
         for (velocity, acceleration) in velocities.iter_mut().zip(accelerations) {
-            *velocity = *velocity + step * *acceleration;
+            *velocity += step * *acceleration;
         }
         if let Some(largest) = joint.velocity {
             for velocity in &mut *velocities {
@@ -286,7 +286,7 @@ fn move_on<T: BatchScalar>(joints: &[RolloutJoint<T>], step: T, width: usize, st
             }
         }
         for (position, velocity) in positions.iter_mut().zip(&*velocities) {
-            *position = *position + step * *velocity;
+            *position += step * *velocity;
         }
         if let Some(ends) = joint.position {
             for (position, velocity) in positions.iter_mut().zip(&mut *velocities) {
@@ -300,7 +300,7 @@ fn move_on<T: BatchScalar>(joints: &[RolloutJoint<T>], step: T, width: usize, st
 }
 
 /// The rows of a block as inputs and outputs of the code.
-struct Rows<'a, V: Vector, const N: usize> {
+struct StatePort<'a, V: Vector, const N: usize> {
     unit: V::Unit,
     rows: &'a mut [[V::Numbers; N]],
     inputs: &'a [usize],
@@ -308,7 +308,7 @@ struct Rows<'a, V: Vector, const N: usize> {
     accelerations: usize,
 }
 
-impl<V: Vector<Element: BatchScalar>, const N: usize> Port<V, N> for Rows<'_, V, N> {
+impl<V: Vector<Element: BatchScalar>, const N: usize> Port<V, N> for StatePort<'_, V, N> {
     #[inline(always)]
     fn input(&mut self, index: usize) -> [V; N] {
         let row = &self.rows[self.inputs[index]];
