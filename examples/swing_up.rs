@@ -3,9 +3,9 @@
 //!
 //! `cargo run --release --example swing_up`
 //!
-//! Each cycle rolls out some hundred random variations of the planned torques, and takes their mean, in which a variation
-//! with a lower cost has a greater weight (G. Williams, A. Aldrich, E. Theodorou, Model predictive path integral control
-//! using covariance variable importance sampling, 2015). The first torque of the plan moves the arm.
+//! Each cycle rolls out some hundred random variations of the planned torques, and takes their mean, in which a
+//! variation with a lower cost has a greater weight (G. Williams, A. Aldrich, E. Theodorou, Model predictive path
+//! integral control using covariance variable importance sampling, 2015). The first torque of the plan moves the arm.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,7 +1,7 @@
 //! Rollouts against Euler's method, written out here, on the runtime's arm, which loops over links with nalgebra.
 //!
-//! Motions of arms are chaotic: rounding grows from step to step. So each step is compared by itself, from the state that
-//! the rollout has reached before it.
+//! Motions of arms are chaotic: rounding grows from step to step. So each step is compared by itself, from the state
+//! that the rollout has reached before it.
 
 #[path = "random/arms.rs"]
 mod arms;

@@ -66,10 +66,10 @@ pub struct Rollout {
     pub steps: usize,
     /// The duration h of a step, s; above zero.
     pub step: f64,
-    /// Friction of the joints, by the `motor` keys of the robot file, and about which speed Coulomb friction changes its
-    /// sign; `None`: no friction.
+    /// Friction of the joints, by the `motor` keys of the robot file, and the speed about which Coulomb friction
+    /// changes its sign; `None`: no friction.
     pub friction: Option<FrictionWidth>,
-    /// Which limits of the robot file hold.
+    /// The limits of the robot file that hold.
     pub limits: RolloutLimits,
 }
 
@@ -82,7 +82,7 @@ pub enum FrictionWidth {
     Of(f64),
 }
 
-/// Which limits of the robot file hold in a rollout. A joint without a limit in the file has none.
+/// The limits of the robot file that hold in a rollout. A joint without a limit in the file has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RolloutLimits {
     /// The torque of the actuator is not beyond ± the key `effort`.
@@ -108,7 +108,7 @@ impl Rollout {
         Self { steps, step, friction: None, limits: RolloutLimits::NONE }
     }
 
-    /// What acts on the joints of a robot.
+    /// Limits and friction of the joints of a robot.
     fn joints<T: Number>(&self, robot: &Robot) -> Result<Vec<RolloutJoint<T>>, RolloutError> {
         let limit = |holds: bool, limit: Option<f64>| limit.filter(|_| holds).map(T::from_f64);
         let of_joint = |(index, joint): (usize, &Joint)| {
@@ -163,10 +163,11 @@ fn usable<T: Number>(value: f64) -> Option<T> {
 impl CompiledArm {
     /// Moves samples of states on under torques, step by step, on the widest vector unit. [`Rollout`] describes a step.
     ///
-    /// `arguments` has the initial positions `q` and velocities `qd` of n joints, the torques `tau` of steps × n numbers
-    /// for each sample, step after step, and, where the tip carries something, a `payload`. In [`Array::Same`](crate::Array::Same) all
-    /// samples have the same ones. `positions` and `velocities` get the states after each step, samples × steps × n
-    /// numbers: joint beside joint, step after step, sample after sample. The initial state is not among them.
+    /// `arguments` has the initial positions `q` and velocities `qd` of n joints, the torques `tau` of steps × n
+    /// numbers for each sample, step after step, and, where the tip carries something, a `payload`. An argument in
+    /// [`Array::Same`](crate::Array::Same) is that of all samples. `positions` and `velocities` get the states after
+    /// each step, samples × steps × n numbers: joint beside joint, step after step, sample after sample. The initial
+    /// state is not among them.
     ///
     /// A sample has the same bits whatever samples are beside it, and on any number of threads: those that calls of
     /// `forward_dynamics`, one for each step, and the arithmetic of [`Rollout`] give. A NaN stays in its sample, as do
@@ -174,9 +175,10 @@ impl CompiledArm {
     /// allocated.
     ///
     /// # Errors
-    /// When the step is not above zero, a joint has Coulomb friction without a width above zero, an argument is missing
-    /// or has another size, the payload of a sample has a mass below zero, `positions` or `velocities` has another size,
-    /// or forward dynamics cannot be compiled. Nothing is written then.
+    /// When the step is not above zero, a joint has Coulomb friction without a width above zero, the friction of a
+    /// joint depends on run-time parameters, an argument is missing or has another size, the payload of a sample has a
+    /// mass below zero, `positions` or `velocities` has another size, or forward dynamics cannot be compiled. Nothing
+    /// is written then.
     pub fn rollout<T: Number>(
         &self,
         rollout: &Rollout,

@@ -16,8 +16,8 @@ use crate::functions::arguments;
 impl Arm {
     /// States of N samples after each of T steps under torques, by semi-implicit Euler.
     ///
-    /// For predictive control by sampling, such as MPPI. A step takes q, qd and a torque to the next state. It does this,
-    /// in this order:
+    /// For predictive control by sampling, such as MPPI. A step takes q, qd and a torque to the next state. It does
+    /// this, in this order:
     ///
     /// 1. limits: the torque is brought between -effort and +effort.
     /// 2. friction: the friction at the velocity before the step is subtracted from the torque.

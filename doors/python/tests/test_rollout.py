@@ -17,7 +17,9 @@ import rne
 from oracle import RandomArm
 
 ROOT = Path(__file__).parents[3]
-ARMS, SAMPLES, STEPS, STEP = 500, 2, 2, 2e-3
+# All of them with CI_FULL=1.
+ARMS = 500 if os.environ.get("CI_FULL") else 100
+SAMPLES, STEPS, STEP = 2, 2, 2e-3
 # Of the larger of 1 and the numbers of the step. Where the mass matrix has a greater condition, accelerations are rounding.
 TOLERANCE, CONDITION = 1e-12, 1e5
 
@@ -91,7 +93,11 @@ def test_random_arms_beside_pinocchio():
     assert compared >= 0.9 * ARMS
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "benches/peers/models").glob("*.json")), ids=lambda path: path.stem)
+# The mass matrix of the Stanford arm, with published inertias that no body has, has a condition above 2e5 everywhere.
+MODELS = [path for path in sorted((ROOT / "benches/peers/models").glob("*.json")) if path.stem != "stanford"]
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
 def test_real_arms_beside_pinocchio(path):
     arm = rne.load(path.with_suffix(".yaml"))
     compared = sum(compare(arm, *of_pinocchio(json.loads(path.read_text())), path.stem) for _ in range(5))

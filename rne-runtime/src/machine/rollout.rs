@@ -37,7 +37,7 @@ pub struct Rollout<'a, T> {
     pub steps: usize,
     /// The duration h of a step, s.
     pub step: T,
-    /// What acts on each joint.
+    /// Limits and friction of each joint.
     pub joints: &'a [RolloutJoint<T>],
     /// The place of each input of the code in the list of arguments: the position of every joint, the velocity of every
     /// joint, the torque of every joint, and then `constants`.
@@ -52,7 +52,7 @@ pub struct Rollout<'a, T> {
     pub constants: &'a [Source<'a, T>],
 }
 
-/// What acts on a joint during a rollout, beside the dynamics of the arm.
+/// Limits and friction of a joint during a rollout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutJoint<T> {
     /// The largest torque of the actuator, N m or N.
@@ -100,14 +100,14 @@ fn bounded<T: BatchScalar>(value: T, [lower, upper]: [T; 2]) -> T {
 }
 
 impl Code {
-    /// Rolls out samples: this code computes the accelerations of the joints. `positions` and `velocities` get the states
-    /// after each step: sample by sample, step by step, joint by joint.
+    /// Rolls out samples: this code computes the accelerations of the joints. `states` get the positions and the
+    /// velocities after each step: sample by sample, step by step, joint by joint.
     ///
     /// With the feature `rayon`, on all cores for more than some thousand states.
     ///
     /// # Errors
-    /// When a source has too few numbers, the code has other inputs or outputs, or the room for the states is of another
-    /// size. Nothing is written then.
+    /// When a source has too few numbers, the code has other inputs or outputs, or the room for the states is of
+    /// another size. Nothing is written then.
     pub fn roll_out<T: BatchScalar>(
         &self,
         unit: VectorUnit,
