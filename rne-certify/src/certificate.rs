@@ -18,6 +18,8 @@ pub struct Certificate {
     pub robot: String,
     /// The function, by its name in the code.
     pub function: String,
+    /// The language of the code: `c` or `rust`.
+    pub language: &'static str,
     /// The form of the code.
     pub form: String,
     /// The core, as `-mcpu` names it.
@@ -265,7 +267,7 @@ impl Certificate {
     fn rules(&self, text: &mut String) {
         text.push_str("\n## MISRA C:2012\n\n");
         let Some(violations) = &self.misra else {
-            text.push_str(if self.command.contains(" --lang rust") {
+            text.push_str(if self.language != "c" {
                 "Not checked: the rules are for C.\n"
             } else {
                 "Not checked: cppcheck is not installed (Debian: `apt-get install cppcheck`).\n"

@@ -216,7 +216,8 @@ impl Residual {
 /// The squared statistics of stretches, compared with the model of all others.
 fn left_out(structure: &Structure, model: &FittedModel, stretches: &[Stretch]) -> Option<Vec<f64>> {
     let others = model.without(structure, stretches)?;
-    let score = Score::new(structure, &others, stretches)?;
+    let stretches: Vec<&Stretch> = stretches.iter().collect();
+    let score = Score::new(structure, &others, &stretches, &vec![false; structure.dof()])?;
     let estimates = score.estimates(&(0..score.len()), &[]);
     let square =
         |estimate: Option<Estimate>| estimate.map_or(0.0, |estimate| (estimate.value() / estimate.deviation).powi(2));

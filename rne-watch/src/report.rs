@@ -196,6 +196,10 @@ pub fn changes(
             progress,
         )
         .map_err(WatchError::from)?;
+    let is_silent = |joint: usize| stretches.list().iter().all(|stretch| stretch.is_silent(joint));
+    if stretches.rows() > 0 && (0..structure.dof()).all(is_silent) {
+        return Err(WatchError::NoEffort);
+    }
     if stretches.rows() >= FEWEST
         && let Some(mut found) = Changes::of(structure, baseline, &stretches)
     {

@@ -72,19 +72,20 @@ pub(crate) struct Projected {
 }
 
 impl Score {
-    /// `None` where the information is not positive.
-    pub(crate) fn new<'a>(
+    /// `None` where the information is not positive. `is_dead` says of each joint whether its effort is zero.
+    pub(crate) fn new(
         structure: &Structure,
         model: &FittedModel,
-        stretches: impl IntoIterator<Item = &'a Stretch>,
+        stretches: &[&Stretch],
+        is_dead: &[bool],
     ) -> Option<Self> {
         let (count, dof) = (structure.count(), structure.dof());
         let size = count + dof;
         let (mut of_columns, mut rest) = (DMatrix::zeros(size, size), DVector::zeros(size));
         let (mut products, mut left) = (vec![of_columns.clone()], vec![rest.clone()]);
         for stretch in stretches {
-            for joint in 0..dof {
-                add(structure, model, stretch, joint, &mut of_columns, &mut rest);
+            for (joint, is_dead) in is_dead.iter().enumerate() {
+                add(structure, model, stretch, (joint, *is_dead), &mut of_columns, &mut rest);
             }
             products.push(of_columns.clone());
             left.push(rest.clone());
@@ -261,7 +262,7 @@ fn add(
     structure: &Structure,
     model: &FittedModel,
     stretch: &Stretch,
-    joint: usize,
+    (joint, is_dead): (usize, bool),
     products: &mut DMatrix<f64>,
     left: &mut DVector<f64>,
 ) {
@@ -272,6 +273,13 @@ fn add(
     let with_torques = of_columns * &model.solution;
     let rest = total.view((0, count), (count, 1)).column(0) - &with_torques;
     let gain = count + joint;
+    if is_dead {
+        // its rows say that the gain is 0, which is 1 less than before, and nothing else
+        let product = model.solution.dot(&with_torques);
+        products[(gain, gain)] += product;
+        left[gain] -= product;
+        return;
+    }
     products.view_mut((0, 0), (count, count)).zip_apply(&of_columns, |sum, product| *sum += product);
     for (at, product) in with_torques.iter().enumerate() {
         products[(at, gain)] += product;

@@ -159,9 +159,25 @@ impl<'a> Selection<'a> {
     }
 
     fn empty(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
-        let score = Score::new(structure, &baseline.model, stretches.iter().copied())?;
+        let is_dead: Vec<bool> = (0..structure.dof()).map(|joint| is_dead(baseline, &stretches, joint)).collect();
+        let score = Score::new(structure, &baseline.model, &stretches, &is_dead)?;
         let ratios = speed_ratios(structure, baseline, &stretches);
-        Some(Self { structure, baseline, stretches, score, given: Vec::new(), speed_ratios: ratios })
+        let mut selection = Self { structure, baseline, stretches, score, given: Vec::new(), speed_ratios: ratios };
+        selection.given = selection.dead_channels();
+        Some(selection)
+    }
+
+    /// A gain of zero for each effort that is zero throughout the log, but not in the quiet log: no other change can
+    /// explain it, and without it the torques that are missing would be changes of other joints.
+    fn dead_channels(&self) -> Vec<Projected> {
+        let window = 0..self.score.len();
+        let candidates = self.score.candidates().iter().enumerate();
+        let dead = candidates.filter(|(_, (of, _))| matches!(of, Candidate::Gain(joint) if self.is_dead(*joint)));
+        dead.map(|(candidate, _)| self.score.projected(Change { candidate, window: window.clone() })).collect()
+    }
+
+    fn is_dead(&self, joint: usize) -> bool {
+        is_dead(self.baseline, &self.stretches, joint)
     }
 
     /// Selects changes, until no further one is an event; or returns the moment that explains the last one.
@@ -292,13 +308,20 @@ impl<'a> Selection<'a> {
             Candidate::Delay => median(self.speed_ratios.iter().map(|ratio| 1.0 / ratio).collect()).max(1.0),
             _ => 1.0,
         };
-        // a gain is known no better than the model explains the effort
+        // a gain is known no better than the model explains the effort, unless there is none
         let unexplained = match candidate {
-            Candidate::Gain(joint) if scale.effort[joint] > 0.0 => UNEXPLAINED * residual[joint] / scale.effort[joint],
+            Candidate::Gain(joint) if scale.effort[joint] > 0.0 && !self.is_dead(joint) => {
+                UNEXPLAINED * residual[joint] / scale.effort[joint]
+            }
             _ => 0.0,
         };
         let model = unlike * alike * doubt * scale.model_error(candidate).max(unexplained);
-        let deviation = (inflation[change.candidate] * estimate.deviation).hypot(model);
+        // errors of the model average out over the joints; with dead channels there are fewer of them
+        let dof = self.structure.dof();
+        let alive = (0..dof).filter(|joint| !self.is_dead(*joint)).count().max(1);
+        #[allow(clippy::cast_precision_loss)] // some joints
+        let fewer = if candidate.joint().is_none() { (dof as f64 / alive as f64).sqrt() } else { 1.0 };
+        let deviation = fewer * (inflation[change.candidate] * estimate.deviation).hypot(model);
         let threshold = (deviations * deviation).max(size * scale.least(candidate));
         Statistic { candidate, change: estimate.value(), deviation, threshold }
     }
@@ -378,7 +401,9 @@ impl<'a> Selection<'a> {
         }
         let moment = best?.1;
         let rest = self.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
-        let score = Score::new(self.structure, &self.baseline.model, rest.map(|(_, stretch)| *stretch))?;
+        let rest: Vec<&Stretch> = rest.map(|(_, stretch)| *stretch).collect();
+        let is_dead: Vec<bool> = (0..self.structure.dof()).map(|joint| self.is_dead(joint)).collect();
+        let score = Score::new(self.structure, &self.baseline.model, &rest, &is_dead)?;
         let without = |window: &Range<usize>| {
             let before = |at: usize| at - moment.clone().filter(|of| *of < at).count();
             before(window.start)..before(window.end)
@@ -446,6 +471,11 @@ impl<'a> Selection<'a> {
     pub(crate) fn changes(&self) -> Vec<(Range<usize>, DVector<f64>)> {
         self.score.changes(&self.given).unwrap_or_default()
     }
+}
+
+/// Whether the effort of a joint is zero throughout, but not in the quiet log.
+fn is_dead(baseline: &Baseline, stretches: &[&Stretch], joint: usize) -> bool {
+    baseline.scale.effort[joint] > 0.0 && stretches.iter().all(|stretch| stretch.is_silent(joint))
 }
 
 /// The unknowns of one joint's torque, of all unknowns and gains: a gain changes the whole torque of the baseline.

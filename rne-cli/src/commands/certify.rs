@@ -114,6 +114,15 @@ pub(super) enum Language {
     Rust,
 }
 
+impl Language {
+    fn name(self) -> &'static str {
+        match self {
+            Self::C => "c",
+            Self::Rust => "rust",
+        }
+    }
+}
+
 impl Arguments {
     /// The function whose program is compiled.
     pub(super) fn program(&self) -> Function {
@@ -289,6 +298,7 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         command: command(arguments),
         robot: robot.name.clone(),
         function: arguments.name().to_owned(),
+        language: arguments.lang.name(),
         form: arguments.form.to_string(),
         core: arguments.cpu.name().to_owned(),
         tools,
@@ -440,10 +450,7 @@ fn accuracy(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<A
 
 /// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
 fn command(arguments: &Arguments) -> String {
-    let lang = match arguments.lang {
-        Language::C => "c",
-        Language::Rust => "rust",
-    };
+    let lang = arguments.lang.name();
     let function = match arguments.low_pass() {
         None => format!("--function {}", arguments.function),
         Some(LowPass { gain, period }) => format!("--observer --gain {gain} --period {period}"),
