@@ -225,6 +225,12 @@ class Arm:
     ) -> Floats:
         """Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes."""
     # <!-- end -->
+    def rollout(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, step: float, *,
+        friction: bool | float | None = ..., limits: bool | str | Sequence[str] | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """States of N samples after each of T steps under torques, by semi-implicit Euler."""
     def inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
     def operations(self, function: str = ..., form: Form | None = ...) -> dict[str, int]: ...
