@@ -225,6 +225,18 @@ class Arm:
     ) -> Floats:
         """Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes."""
     # <!-- end -->
+    def operational_space_inertia(
+        self, q: ArrayLike, *,
+        frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The operational-space inertia (J M⁻¹ Jᵀ)⁻¹ at the tip or at a frame, symmetric (Khatib, 1987)."""
+    def dynamically_consistent_inverse(
+        self, q: ArrayLike, *,
+        frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The dynamically consistent inverse M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ of the Jacobian at the tip or at a frame (Khatib, 1987)."""
     def inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
     def operations(self, function: str = ..., form: Form | None = ...) -> dict[str, int]: ...
