@@ -184,6 +184,11 @@ pub mod compiled {
 #[doc = include_str!("../docs/robot-file.md")]
 pub mod robot_file {}
 
+/// Runs the example of states that are arrays.
+#[cfg(all(doctest, feature = "compiled"))]
+#[doc = include_str!("../docs/run-time.md")]
+mod run_time {}
+
 /// Runs the examples in the documentation of the derives.
 #[cfg(doctest)]
 mod derives {
