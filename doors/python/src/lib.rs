@@ -30,7 +30,7 @@ mod _rne {
     #[pymodule_export]
     use super::arm::Arm;
     #[pymodule_export]
-    use super::errors::{EvaluationError, RobotFileError};
+    use super::errors::{EvaluationError, RobotFileError, RobotFileWarning};
     #[pymodule_export]
     use super::excitation::exciting;
     #[pymodule_export]

@@ -21,6 +21,9 @@ class RobotFileError(ValueError):
     line: int | None
     column: int | None
 
+class RobotFileWarning(UserWarning):
+    """A robot file or a URDF is valid, but its numbers are probably not those of the arm."""
+
 class EvaluationError(ValueError):
     """A function cannot be computed for this arm or these arguments."""
 
