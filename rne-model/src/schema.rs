@@ -53,6 +53,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         without_effect(cx);
         lint::inertias(cx, node, convention, &joints);
         lint::placeholders(cx, node, &joints);
+        lint::light_for_reach(cx, node, &joints);
     }
     let run_time = cx.run_time.take();
     Some(Robot {

@@ -92,8 +92,8 @@ impl Arm {
                 }
             }
         } else {
-            let robot = origin.read(&name, origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
-            CompiledArm::from_robot(&robot)
+            let checked = origin.read(&name, origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
+            CompiledArm::from_robot(&checked.robot)
         };
         let arm = arm.in_form(origin.form.0);
         let arm = if origin.rotors { arm.with_rotors() } else { arm };

@@ -37,7 +37,7 @@ def test_arm(name, options, convention):
     if path is None:
         pytest.skip(f"{name} is not installed")
     given = keywords(options)
-    arm = rne.load(path, convention=convention, **given)
+    arm = rne.load(path, convention=convention, snap=False, **given)
     random = np.random.default_rng(7)
     q, qd, qdd = random.uniform(-1.5, 1.5, size=(3, N, arm.dof))
     tip = given.get("tip") or "link2"

@@ -190,8 +190,8 @@ fn baseline_of(robot: &Robot, known: Option<Known>, log: &MotionLog) -> Result<K
         return Ok(known);
     }
     let bar = reading::bar("read", false);
-    let baseline = Baseline::of_file(robot, log.log(), &mut |share| reading::show(&bar, share))
-        .map_err(|error| match error {
+    let baseline =
+        Baseline::of_file(robot, log.log(), &mut |share| reading::show(&bar, share)).map_err(|error| match error {
             WatchError::ShortBaseline { .. } => Failure::input(format_args!(
                 "{}: {error}. A longer log of the arm without any fault, given with {TYPED}--quiet{TYPED:#}, can be \
                  its baseline",
