@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rne_identify::{FittedModel, FrictionParameter, MotionError, Stretch, Stretches, Structure};
-use rne_logs::Motion;
+use rne_logs::{Motion, median};
 
 use crate::Baseline;
 use crate::baseline::Residual;
@@ -36,6 +36,9 @@ pub struct Changes {
     /// Root mean square of the torque of each joint that the baseline's model with all changes does not explain, N m
     /// or N.
     pub residual: Vec<f64>,
+    /// The root mean square of the efforts over that of the quiet logs, in the median over the joints. Far from 1, the
+    /// efforts have another unit.
+    pub effort_ratio: f64,
     windows: Vec<Window>,
 }
 
@@ -73,7 +76,8 @@ impl Changes {
         };
         let changes = selection.changes().into_iter();
         let windows = changes.map(|(window, change)| Window { ends: ends(&window), change }).collect();
-        Some(Self { events, statistics: selection.statistics(), residual, windows })
+        let effort_ratio = effort_ratio(structure, baseline, log);
+        Some(Self { events, statistics: selection.statistics(), residual, effort_ratio, windows })
     }
 
     /// The torques that the changes add along a motion of a run, joint by joint, N m or N.
@@ -120,6 +124,21 @@ impl Changes {
         let watched = self.statistics.iter().filter(|statistic| scale.is_watched(statistic));
         watched.max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
     }
+}
+
+/// The efforts of a log over those of the baseline, in the median over the joints that have efforts in both.
+fn effort_ratio(structure: &Structure, baseline: &Baseline, log: &Stretches) -> f64 {
+    let size = structure.count() + 1;
+    let total = |joint: usize| {
+        let mut total = DMatrix::zeros(size, size);
+        log.list().iter().for_each(|stretch| stretch.add_joint(structure, joint, &mut total));
+        total
+    };
+    let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
+    let now = Scale::of(structure, &baseline.model, &totals).effort;
+    let ratios = now.iter().zip(&baseline.scale.effort).map(|(now, before)| now / before);
+    let ratios: Vec<f64> = ratios.filter(|ratio| *ratio > 0.0 && ratio.is_finite()).collect();
+    if ratios.is_empty() { 1.0 } else { median(ratios) }
 }
 
 /// Values that come later by a delay, s.

@@ -22,7 +22,7 @@ use crate::render::watch_dates::{LogName, LogNames};
 use crate::render::watch_reply::{Reply, TrendReply};
 use crate::render::watch_report;
 use crate::values::log_arguments::{self, LogArguments};
-use crate::values::numbers::above_zero;
+use crate::values::numbers::{above_zero, rounded};
 
 /// Find changes of an arm in its logs: friction, payload, contacts
 #[derive(Args)]
@@ -222,6 +222,24 @@ fn events(
     drop(bar);
     if let Some(path) = &arguments.plot {
         remark += &draw(path, arguments, robot, &report, settings, &log.words(), sources)?;
+    }
+    let ratio = report.changes.effort_ratio;
+    if !UNIT.contains(&ratio) {
+        warn(
+            &mut remark,
+            &format!(
+                "the efforts are {} times as large as in the quiet log: do they have another unit, or another torque \
+                 constant? Then the events mean nothing",
+                rounded(ratio, 2)
+            ),
+        );
+    }
+    if arguments.logs.len() > 1 && arguments.quiet.is_empty() && arguments.baseline.is_none() {
+        warn(
+            &mut remark,
+            "the logs are joined to one, so a change between them can be hidden; --quiet names the log to compare with, \
+             and --by log compares each with the first",
+        );
     }
     let judged = log.judged()?;
     let errors = prediction(robot, &judged, Part::All)?;
@@ -436,6 +454,9 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
     }
     Ok(())
 }
+
+/// The efforts of a log over those of the quiet log, where both have one unit: loads differ, and motions.
+const UNIT: std::ops::Range<f64> = 0.2..5.0;
 
 /// Why a robot file explains nothing: a file of the geometry alone predicts no torques.
 fn doubt(robot: &Robot, question: &'static str) -> &'static str {

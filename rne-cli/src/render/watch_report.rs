@@ -118,8 +118,13 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
         Cause::Friction => {
             let change = event.change();
             let sign = if change < 0.0 { "" } else { "+" };
+            let impossible = if event.value < 0.0 {
+                "; friction cannot be negative: suspect the sensor of this joint, or a unit"
+            } else {
+                ""
+            };
             format!(
-                "friction of {joint}: {} {sign}{}{}, from {} to {}{}",
+                "friction of {joint}: {} {sign}{}{}, from {} to {}{}{impossible}",
                 friction(event.parameter),
                 with_unit(&with_deviation(change, event.deviation), unit),
                 percent(event.baseline_value),
