@@ -237,8 +237,8 @@ fn events(
     if arguments.logs.len() > 1 && arguments.quiet.is_empty() && arguments.baseline.is_none() {
         warn(
             &mut remark,
-            "the logs are joined to one, so a change between them can be hidden; --quiet names the log to compare with, \
-             and --by log compares each with the first",
+            "the logs are joined to one, so a change between them can be hidden; --quiet names the log to compare \
+             with, and --by log compares each with the first",
         );
     }
     let judged = log.judged()?;
