@@ -47,7 +47,8 @@ pub(crate) struct Arguments {
     worksheets: Vec<PathBuf>,
     #[command(flatten)]
     states: Chosen,
-    /// Points only for these steps, such as 1,2,7: 1 angular velocity, …, 7 torque [default: the steps of the worksheet]
+    /// Points only for these steps, such as 1,2,7: 1 angular velocity, …, 7 torque
+    /// [default: the steps of the worksheet]
     #[arg(long = "step", value_name = "S", value_parser = choice::step, value_delimiter = ',')]
     steps: Vec<Step>,
     /// Points also for values that are right for the student's own earlier, wrong values

@@ -139,7 +139,7 @@ pub(crate) struct Filled {
     pub(crate) steps: Option<Vec<u8>>,
 }
 
-/// What the first line of a worksheet says.
+/// Contents of the first line of a worksheet.
 #[derive(Default)]
 struct Head {
     student: Option<String>,

@@ -31,7 +31,7 @@ pub struct Comparison {
     pub compared: usize,
     /// Number of values that differ.
     pub differing: usize,
-    /// What each given value is, by the index of its line in [`Worksheet::lines`] and its own index.
+    /// The verdict on each given value, by the index of its line in [`Worksheet::lines`] and its own index.
     pub verdicts: BTreeMap<(usize, usize), Verdict>,
     /// The steps, 1 to 7, of which no value is given.
     pub steps_not_given: Vec<u8>,
@@ -39,7 +39,7 @@ pub struct Comparison {
     pub first: Option<Difference>,
 }
 
-/// What a given value is.
+/// A verdict on a given value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// It agrees.
@@ -193,7 +193,7 @@ impl<'a> Ordered<'a> {
         off.abs() <= self.allowed(place)
     }
 
-    /// What each given value is. Line by line in the order of computation, the formula takes the values that are given
+    /// The verdict on each given value. Line by line in the order of computation, the formula takes the values that are given
     /// before it, and its own results where none is given.
     fn verdicts(&self, robot: &Robot, at: &Situation) -> Result<BTreeMap<Place, Verdict>, WrongLength> {
         let of_place = |(place, _): (&Place, _)| {
