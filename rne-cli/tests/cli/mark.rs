@@ -31,7 +31,8 @@ impl Pendulum {
 /// A mistake of a student, and what the mark says of it.
 type Mistake = (fn(&mut Pendulum, [f64; 3]), u64, Option<(&'static str, u64)>, &'static str);
 
-/// Mistakes that students make; points of the 5 values that are not always zero, the first wrong quantity with its step, and the likely cause.
+/// Mistakes that students make; points of the 5 values that are not always zero, the first wrong quantity with its
+/// step, and the likely cause.
 const MISTAKES: [Mistake; 8] = [
     (|_, _| {}, 5, None, ""),
     (|all, _| all.acceleration[0] = 0.0, 4, Some(("acceleration", 4)), "the term ω1 × (ω1 × d1) is left out"),

@@ -193,8 +193,8 @@ impl<'a> Ordered<'a> {
         off.abs() <= self.allowed(place)
     }
 
-    /// The verdict on each given value. Line by line in the order of computation, the formula takes the values that are given
-    /// before it, and its own results where none is given.
+    /// The verdict on each given value. Line by line in the order of computation, the formula takes the values that are
+    /// given before it, and its own results where none is given.
     fn verdicts(&self, robot: &Robot, at: &Situation) -> Result<BTreeMap<Place, Verdict>, WrongLength> {
         let of_place = |(place, _): (&Place, _)| {
             (*place, if self.agrees(*place, self.sheet.value(*place)) { Verdict::Right } else { Verdict::Wrong })

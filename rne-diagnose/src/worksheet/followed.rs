@@ -46,8 +46,8 @@ impl Worksheet {
 }
 
 impl Formulas<'_> {
-    /// The line of a quantity of a joint, counted from 1, by its formula: its inputs are the values of the links. `None`
-    /// where no formula of the seven steps gives it.
+    /// The line of a quantity of a joint, counted from 1, by its formula: its inputs are the values of the links.
+    /// `None` where no formula of the seven steps gives it.
     pub(super) fn by_formula(&self, joint: usize, quantity: Quantity) -> Option<Line> {
         let mut line = self.line(joint, quantity)?;
         let handed_on = matches!(quantity, Quantity::NextForce | Quantity::NextMoment);
