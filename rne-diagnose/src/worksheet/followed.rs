@@ -24,7 +24,8 @@ impl Worksheet {
         for state in 0..STATES {
             // numbers without a relation that would make a sum of terms vanish
             let list = |from: usize| {
-                let angle = |joint: usize| (1.0 + 3.7 * (7 * state + from + 3 * joint) as f64).sin();
+                let number = |joint: usize| u32::try_from(7 * state + from + 3 * joint).map_or(0.0, f64::from);
+                let angle = |joint: usize| (1.0 + 3.7 * number(joint)).sin();
                 (0..robot.dof()).map(|joint| 0.3_f64.copysign(angle(joint)) + angle(joint)).collect::<Vec<f64>>()
             };
             let there = Situation { q: list(0), qd: list(1), qdd: list(2), ..at.clone() };
