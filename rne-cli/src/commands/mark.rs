@@ -22,6 +22,7 @@ use crate::values::choice;
 
 /// Mark the worksheets of a class: points and first errors
 #[derive(Args)]
+#[allow(clippy::struct_excessive_bools)] // switches of the command line
 #[command(after_help = "\
 Examples:
   rne mark planar1 --states docs/lecture/class/key.csv docs/lecture/class/*.csv
