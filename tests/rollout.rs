@@ -15,7 +15,7 @@ use rne::{DynArm, Payload, VectorUnit};
 /// rad/s or m/s: about which Coulomb friction changes its sign.
 const WIDTH: f64 = 0.05;
 
-/// Of the larger of 1 and the numbers of a step.
+/// The allowed error of a step, relative to its largest number, or to 1 if that is larger.
 const TOLERANCE: f64 = 1e-12;
 
 /// Beyond this condition of the mass matrix a step is not compared: its accelerations are rounding.

@@ -163,7 +163,7 @@ impl Observer {
     }
 }
 
-/// The same numbers in intervals that enclose the exact ones.
+/// The observer computed with intervals, which enclose the exact numbers.
 struct Enclosure {
     before: Option<[Vec<Interval>; 2]>,
     external: Vec<Interval>,

@@ -222,7 +222,7 @@ fn c_code(robot: &Robot, program: &rne_codegen::Program) -> String {
     code.one_file()
 }
 
-/// What an address asks for that the page does not know is told with what it knows.
+/// The page names each unknown key of an address, and lists the keys that it knows.
 #[test]
 fn addresses_that_the_page_does_not_know_are_told() {
     const SCRIPT: &str = "

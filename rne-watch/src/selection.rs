@@ -308,7 +308,7 @@ impl<'a> Selection<'a> {
             Candidate::Delay => median(self.speed_ratios.iter().map(|ratio| 1.0 / ratio).collect()).max(1.0),
             _ => 1.0,
         };
-        // a gain is known no better than the model explains the effort, unless there is none
+        // errors of the model are errors of a gain, too; an effort of zero has no such error
         let unexplained = match candidate {
             Candidate::Gain(joint) if scale.effort[joint] > 0.0 && !self.is_dead(joint) => {
                 UNEXPLAINED * residual[joint] / scale.effort[joint]
