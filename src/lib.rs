@@ -175,8 +175,8 @@ pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, SearchError,
-        SearchOptions, SearchProgress,
+        EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, Rollout,
+        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress,
     };
 }
 

@@ -159,7 +159,6 @@ fn headline() -> String {
         };
         robots.map(find).join(" | ")
     };
-    let [rewritten_puma, rewritten_panda] = robots.map(|robot| cell(&operations, "rne, reduced", robot));
     format!(
         "| one call, form `reduced` | PUMA 560 | Franka Panda |\n|---|---:|---:|\n\
          | operations | {} |\n\
@@ -168,11 +167,8 @@ fn headline() -> String {
          | time in ns, default build | {} |\n\
          | time in ns, best peer, native build | {} |\n\
          | time in ns, Pinocchio | {} |\n\
-         | instructions on a Cortex-M4F, `f32`, current version | {} |\n\n\
-         Operations and times of rne are for the same program of an earlier version. The current version also\n\
-         rewrites it by rules of algebra ({rewritten_puma} and {rewritten_panda} operations); the instructions are for \
-         this version.\n",
-        of(&operations, "rne, planned"),
+         | instructions on a Cortex-M4F, `f32` | {} |\n",
+        of(&operations, "rne, reduced"),
         best(&operations).join(" | "),
         of(&times, "rne_reduced_native"),
         of(&times, "rne_reduced_default"),

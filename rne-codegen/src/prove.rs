@@ -206,13 +206,14 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
 fn rounding(reference: &Reference<'_>, program: &Program) -> Proof {
     let mut proof = Proof {
         points: usize::try_from(POINTS).unwrap_or_default(),
-        states: STATES,
+        states: 0,
         rounding: 0.0,
         single: 0.0,
         single_of_seven_steps: 0.0,
         before: reference.faithful.fold_report.before(),
     };
     for errors in errors(reference, program, STATES) {
+        proof.states += 1;
         proof.rounding = larger(proof.rounding, errors.double);
         proof.single = larger(proof.single, errors.single);
         proof.single_of_seven_steps = larger(proof.single_of_seven_steps, errors.single_of_seven_steps);
@@ -236,6 +237,12 @@ struct Errors {
     single_of_seven_steps: f64,
 }
 
+/// The range of the positions of a joint at which programs are compared: within ±3 where the limits allow it.
+fn positions(limits: Option<(f64, f64)>) -> (f64, f64) {
+    let (low, high) = limits.unwrap_or((-3.0, 3.0));
+    if low.max(-3.0) <= high.min(3.0) { (low.max(-3.0), high.min(3.0)) } else { (low, high) }
+}
+
 /// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
 /// without limits, |q̇| ≤ 2, |q̈| ≤ 4.
 #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
@@ -256,8 +263,8 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             .joints
             .iter()
             .map(|joint| {
-                let (low, high) = joint.limits.position.unwrap_or((-3.0, 3.0));
-                between(low.max(-3.0), high.min(3.0))
+                let (low, high) = positions(joint.limits.position);
+                between(low, high)
             })
             .collect();
         let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
@@ -312,4 +319,20 @@ fn state<'a, T: Copy>(
 /// The larger of two; what is no number is larger than any.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn positions_are_within_the_limits() {
+        let cases = [
+            (None, (-3.0, 3.0)),
+            (Some((-1.0, 7.0)), (-1.0, 3.0)),
+            (Some((3.5, 6.0)), (3.5, 6.0)),
+            (Some((-9.0, -4.0)), (-9.0, -4.0)),
+        ];
+        for (limits, expected) in cases {
+            assert_eq!(super::positions(limits), expected);
+        }
+    }
 }

@@ -24,11 +24,16 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
             fields of 2^61 - 1 and 2^61 - 31.",
             proof.points
         ),
-        format!(
-            "Rounding at {} random states, in parts of the largest {largest}: {:.1e} (f64), {:.1e} (f32; seven steps \
-            {:.1e}).",
-            proof.states, proof.rounding, proof.single, proof.single_of_seven_steps
-        ),
+        match proof.states {
+            0 => format!(
+                "Rounding was measured at no state: each {largest} is zero or not finite at every random state."
+            ),
+            states => format!(
+                "Rounding at {states} random states, in parts of the largest {largest}: {:.1e} (f64), {:.1e} (f32; \
+                 seven steps {:.1e}).",
+                proof.rounding, proof.single, proof.single_of_seven_steps
+            ),
+        },
     ];
     if let Some(Scales { length, force }) = program.scales {
         lines.push(format!(

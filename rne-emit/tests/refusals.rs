@@ -37,6 +37,16 @@ fn a_mass_matrix_that_is_always_singular_is_told() {
     }
 }
 
+/// The Jacobian of a gantry is constant, so there are no accelerations whose rounding could be measured.
+#[test]
+fn rounding_that_cannot_be_measured_is_told() {
+    let robot = robot("robots/gantry_ppp");
+    let program = reduced(&robot, Function::JacobianRateTimesVelocity);
+    for text in files(&robot, &program) {
+        assert!(text.contains("Rounding was measured at no state"), "{text}");
+    }
+}
+
 /// Masses and lengths of eighteen orders of magnitude.
 #[test]
 fn rounding_that_is_refused_is_told() {

@@ -10,13 +10,10 @@
 //! of just 60° couples would be found to have more base parameters than it has.
 
 use rne_codegen::{ExactFunction, Function, Name, Quantity, Residue};
-use rne_model::Robot;
-
-/// Inertial parameters of a link.
-const PARAMETERS: usize = 10;
+use rne_model::{PER_LINK, Robot};
 
 /// The order in which a link's parameters are kept: J, m c, m, so that Jxx stays where Jyy or Jzz goes.
-const ORDER: [usize; PARAMETERS] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
+const ORDER: [usize; PER_LINK] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
 
 /// Points that must not add to the rank before it is believed; one would do.
 const IDLE: usize = 2;
@@ -106,7 +103,7 @@ impl Regressor {
         let output = |at: usize| outputs[at];
         let acceleration = |joint: usize| self.function.argument(point, Name::scalar(Quantity::RateDot, joint + 1));
         let element = |joint: usize, parameter: &Parameter| match *parameter {
-            Parameter::Link(link, place) => output((joint * self.dof + link) * PARAMETERS + place),
+            Parameter::Link(link, place) => output((joint * self.dof + link) * PER_LINK + place),
             Parameter::Rotor(of) if of == joint => acceleration(joint),
             Parameter::Rotor(_) => Residue::ZERO,
         };

@@ -13,11 +13,11 @@ use rne_model::TransitionSign;
 
 use crate::design::run;
 use crate::least_squares::effort;
-use crate::parameters::PER_LINK;
 use crate::prior::Scales;
 use crate::r_factor::RFactor;
 use crate::smoothing::{Kernel, Weights};
 use crate::structure::Structure;
+use rne_model::PER_LINK;
 
 pub(crate) use instants::instants;
 use instants::{between, slope};

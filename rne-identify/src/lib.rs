@@ -46,7 +46,7 @@ pub use information::{Information, MotionError, Rejected, Weighting, WrongNumber
 pub use least_squares::{LeastSquares, student};
 pub use motion_limits::{AskedLimits, MotionLimits};
 pub use parameters::{Base, Parameters};
-pub use payload::{Payload, PayloadNumber};
+pub use payload::{LEAST_FRICTION, LIGHT_ARM, LIGHTEST_PAYLOAD, PAYLOAD_REACH, Payload, PayloadNumber, SLOWEST};
 pub use prediction::{JointError, Prediction, SPEEDS, Standstill, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use stretches::{Stretch, Stretches};

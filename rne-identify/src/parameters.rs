@@ -4,13 +4,10 @@ use std::fmt::Write as _;
 
 use crate::identifiability::{Identifiability, Parameter, Visibility};
 use nalgebra::{DMatrix, DVector};
-use rne_model::{Link, Robot};
+use rne_model::{Link, PER_LINK, Robot};
 use rne_runtime::{DynArm, LinkParameter};
 
 use crate::random::Random;
-
-/// Inertial parameters of a link.
-pub(crate) const PER_LINK: usize = 10;
 
 /// Random states from which factors are computed that are no small whole numbers.
 const STATES: usize = 60;

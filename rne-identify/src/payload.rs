@@ -24,19 +24,19 @@ use rne_runtime::DynArm;
 use crate::fitted_model::{FittedModel, FrictionParameter, inverse_of_information};
 use crate::identification::{UNKNOWN, link, over_logs};
 use crate::information::MotionError;
-use crate::parameters::PER_LINK;
 use crate::pseudo_inertia;
 use crate::stretches::Stretches;
 use crate::structure::{FRICTION, Options, Structure};
+use rne_model::PER_LINK;
 
 /// m: the distance of a payload's centre of mass from the last frame, one deviation, and its radius of gyration.
-const REACH: f64 = 0.1;
+pub const PAYLOAD_REACH: f64 = 0.1;
 
 /// kg: the deviation of the mass before any log.
 const MASS: f64 = 1e3;
 
-/// kg: from this mass on, first moments and inertia may be as large as `REACH` allows.
-const LIGHTEST: f64 = 0.05;
+/// kg: from this mass on, first moments and inertia may be as large as `PAYLOAD_REACH` allows.
+pub const LIGHTEST_PAYLOAD: f64 = 0.05;
 
 /// Rounds in which prior knowledge follows the mass, and the noise follows what is left.
 const ROUNDS: usize = 10;
@@ -56,17 +56,20 @@ const OFFSET: f64 = 0.25;
 const AT_REST: f64 = 1.0 / 3.0;
 
 /// The least Coulomb friction of a joint, as a part of its effort.
-const LEAST_FRICTION: f64 = 0.02;
+pub const LEAST_FRICTION: f64 = 0.02;
 
 /// rad/s or m/s: a slower joint does not determine viscous friction.
-const SLOWEST: f64 = 1e-3;
+pub const SLOWEST: f64 = 1e-3;
 
 /// s: no torque lags more.
 const LONGEST_DELAY: f64 = 0.05;
 
-/// kg: the error of the model as a mass at the last link; for an arm lighter than `LIGHT` in proportion to its mass.
+/// kg: the error of the model as a mass at the last link; for an arm lighter than [`LIGHT_ARM`] in proportion to its
+/// mass.
 const MODEL_ERROR: f64 = 0.05;
-const LIGHT: f64 = 4.0;
+
+/// kg: for a lighter arm, the smallest payload and the error of the model are in proportion to the mass of the arm.
+pub const LIGHT_ARM: f64 = 4.0;
 
 /// m/s² or rad/s²: the acceleration by which an error of the model's torque becomes one of first moments and inertia.
 const ACCELERATION: f64 = 10.0;
@@ -147,9 +150,9 @@ impl Payload {
     /// kg m².
     fn of(robot: &Robot, all: &Estimate, jackknife: &Numbers, moment: f64) -> Self {
         let arm: f64 = robot.joints.iter().map(|joint| joint.row.link.mass).sum();
-        let error = if arm > 0.0 { MODEL_ERROR * (arm / LIGHT).min(1.0) } else { MODEL_ERROR };
+        let error = if arm > 0.0 { MODEL_ERROR * (arm / LIGHT_ARM).min(1.0) } else { MODEL_ERROR };
         let mass = all.numbers[0];
-        let size = mass.abs().max(LIGHTEST);
+        let size = mass.abs().max(LIGHTEST_PAYLOAD);
         let deviation = |at: usize, error: f64| all.variances[at].max(jackknife[at]).sqrt().hypot(error);
         let of_mass = deviation(0, error);
         let is_known = of_mass < UNKNOWN * mass.abs().max(SMALL * arm);
@@ -163,8 +166,10 @@ impl Payload {
         };
         Self {
             mass: PayloadNumber { value: mass, deviation: of_mass, is_excited: is_known },
-            com: std::array::from_fn(|axis| number(1 + axis, moment.max(REACH * error) / size, REACH)),
-            inertia: std::array::from_fn(|at| number(4 + at, moment.max(REACH * REACH * error), REACH * REACH * size)),
+            com: std::array::from_fn(|axis| number(1 + axis, moment.max(PAYLOAD_REACH * error) / size, PAYLOAD_REACH)),
+            inertia: std::array::from_fn(|at| {
+                number(4 + at, moment.max(PAYLOAD_REACH * PAYLOAD_REACH * error), PAYLOAD_REACH * PAYLOAD_REACH * size)
+            }),
             delay: 0.0,
             rows: 0,
         }
@@ -334,9 +339,10 @@ impl Equations {
             row.rows_mut(0, size).copy_from(&-solution);
             for joint in 0..self.factors.len() {
                 let offset = PER_LINK + FRICTION * joint + FrictionParameter::Offset as usize;
-                let of = |part: &Vec<DMatrix<f64>>| (row.dot(&(&part[joint] * &row)), part[joint][(offset, offset)]);
+                let products =
+                    |part: &Vec<DMatrix<f64>>| (row.dot(&(&part[joint] * &row)), part[joint][(offset, offset)]);
                 let (squares, weight) =
-                    self.parts.iter().map(of).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
+                    self.parts.iter().map(products).fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
                 let mean = squares / weight / self.noise[joint].powi(2);
                 self.factors[joint] = if mean > 1.0 { 1.0 / mean } else { 1.0 };
             }
@@ -356,12 +362,12 @@ impl Equations {
         for _ in 0..ROUNDS {
             let (mass, com) = found.as_ref().map_or((1.0, Vector3::zeros()), |(values, _)| centre(values));
             let (mut held, mut target) = (gram.clone(), slope.clone());
-            let size = mass.abs().max(LIGHTEST);
+            let size = mass.abs().max(LIGHTEST_PAYLOAD);
             let inertia = shifted(mass, &com);
             for at in 1..PER_LINK {
                 let (expected, deviation) = match at.checked_sub(4) {
-                    None => (0.0, REACH * size),
-                    Some(number) => (inertia[TENSOR[number]], REACH * REACH * size),
+                    None => (0.0, PAYLOAD_REACH * size),
+                    Some(number) => (inertia[TENSOR[number]], PAYLOAD_REACH * PAYLOAD_REACH * size),
                 };
                 held[(at, at)] += deviation.powi(-2);
                 target[at] += expected * deviation.powi(-2);
@@ -420,7 +426,7 @@ fn errors(structure: &Structure, model: &FittedModel, joint: usize, total: &DMat
 fn centre(values: &DVector<f64>) -> (f64, Vector3<f64>) {
     let mass = values[0];
     // a payload that is hardly there has no centre that is far away
-    let size = if mass < 0.0 { mass.min(-LIGHTEST) } else { mass.max(LIGHTEST) };
+    let size = if mass < 0.0 { mass.min(-LIGHTEST_PAYLOAD) } else { mass.max(LIGHTEST_PAYLOAD) };
     (mass, Vector3::new(values[1], values[2], values[3]) / size)
 }
 

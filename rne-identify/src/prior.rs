@@ -3,9 +3,10 @@
 use nalgebra::{DVector, Matrix4, Vector3};
 use rne_model::{Convention, Robot};
 
-use crate::parameters::{PER_LINK, Parameters};
+use crate::parameters::Parameters;
 use crate::pseudo_inertia;
 use crate::structure::{FRICTION, Structure};
+use rne_model::PER_LINK;
 
 /// kg: a link of which nothing is known.
 const MASS: f64 = 3.0;

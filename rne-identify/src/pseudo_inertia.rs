@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix4, SymmetricEigen};
 
-use crate::parameters::PER_LINK;
+use rne_model::PER_LINK;
 
 /// The pseudo-inertia of (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz) about the origin of the link frame.
 #[must_use]

@@ -13,11 +13,16 @@ use crate::structure::Structure;
 /// Stretches that are kept apart, at most.
 const MOST: usize = 256;
 
+/// The square of an effort that no sensor measures, over the variance of its noise.
+const SILENT: f64 = 1e-12;
+
 /// The normal equations of a stretch of time.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// The number of the run, from 0.
+    /// The number of the run in which it begins, from 0.
     pub run: u64,
+    /// The number of the run in which it ends: stretches of several runs are joined where a log has many runs.
+    pub last_run: u64,
     /// The first instant, s.
     pub start: f64,
     /// The last instant, s.
@@ -93,7 +98,7 @@ impl Stretches {
                     row.tr_mul(&row)
                 });
                 let products = products.collect();
-                self.take(Stretch { run, start: *instant, end: *instant, rows: 1, products });
+                self.take(Stretch { run, last_run: run, start: *instant, end: *instant, rows: 1, products });
             }
         }
         Ok(())
@@ -102,7 +107,7 @@ impl Stretches {
     fn take(&mut self, stretch: Stretch) {
         let length = self.length;
         match self.list.last_mut() {
-            Some(last) if last.run == stretch.run && last.rows < length => last.join(stretch),
+            Some(last) if last.last_run == stretch.run && last.rows < length => last.join(stretch),
             _ => self.list.push(stretch),
         }
         while self.list.len() > MOST {
@@ -130,11 +135,19 @@ impl Stretches {
 
 impl Stretch {
     fn join(&mut self, other: Self) {
-        self.end = other.end;
+        (self.last_run, self.end) = (other.last_run, other.end);
         self.rows += other.rows;
         for (sum, products) in self.products.iter_mut().zip(other.products) {
             *sum += products;
         }
+    }
+
+    /// Whether the effort of a joint is zero throughout, as that of a channel that measures nothing.
+    #[must_use]
+    pub fn is_silent(&self, joint: usize) -> bool {
+        let products = &self.products[joint];
+        // over the variance of the noise: real sensors have noise
+        products[(products.nrows() - 1, products.ncols() - 1)] <= SILENT
     }
 
     /// Adds the products of all unknowns and of the torque, which is last.

@@ -42,7 +42,8 @@ mod table;
 
 pub use angle::{Angle, LARGEST_ANGLE, QuarterTurns};
 pub use table::{
-    Convention, Dh, FixedFrame, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, Row, Transform, parent,
+    Convention, Dh, FixedFrame, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, PER_LINK, Row, Transform,
+    parent,
 };
 
 #[cfg(feature = "std")]

@@ -110,6 +110,9 @@ impl<S: Copy> Inertia<S> {
 /// the origin of the link frame.
 pub const INERTIAL_PARAMETERS: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
 
+/// The number of inertial parameters of a link: the mass, three first moments, six numbers of the inertia.
+pub const PER_LINK: usize = INERTIAL_PARAMETERS.len();
+
 /// The inertial data of one link, in its link frame.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Link<S = f64> {

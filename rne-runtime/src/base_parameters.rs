@@ -12,13 +12,12 @@
 use std::{array, fmt};
 
 use nalgebra::DVector;
-use rne_model::{INERTIAL_PARAMETERS, JointKind, Link, Row};
+use rne_model::{INERTIAL_PARAMETERS, JointKind, Link, PER_LINK, Row};
 
-use crate::regressor::PARAMETERS;
 use crate::{DynArm, WrongLength};
 
 /// The order in which a link's parameters are kept, as they are counted in the regressor: J, m c, m.
-const ORDER: [usize; PARAMETERS] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
+const ORDER: [usize; PER_LINK] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
 
 /// Random states: each gives a row per joint, and there are ten columns per joint.
 const STATES: usize = 40;
@@ -67,7 +66,7 @@ impl DynArm {
     /// The inertial parameters of every link, as the regressor counts them, about the origin of its link frame and in
     /// its axes.
     #[must_use]
-    pub fn inertial_parameters(&self) -> Vec<[f64; PARAMETERS]> {
+    pub fn inertial_parameters(&self) -> Vec<[f64; PER_LINK]> {
         self.rows().iter().map(|row| about_the_origin(&row.link)).collect()
     }
 
@@ -83,7 +82,7 @@ impl DynArm {
         let values = self.inertial_parameters();
         let value = |parameter: LinkParameter| values[parameter.link][parameter.index];
         for parameter in order {
-            let column = &columns[parameter.link * PARAMETERS + parameter.index];
+            let column = &columns[parameter.link * PER_LINK + parameter.index];
             if column.norm() <= TOLERANCE * largest {
                 found.without_effect.push(parameter);
                 continue;
@@ -121,7 +120,7 @@ impl DynArm {
 
     /// The columns of the regressor at many random states, one below the other.
     fn stacked_regressor(&self) -> Vec<DVector<f64>> {
-        let mut columns = vec![Vec::new(); self.dof() * PARAMETERS];
+        let mut columns = vec![Vec::new(); self.dof() * PER_LINK];
         let mut random = Random(1);
         for _ in 0..STATES {
             let q: Vec<f64> = self.rows().iter().map(|row| random.position(row)).collect();
@@ -162,7 +161,7 @@ impl BaseParameters {
     /// As [`DynArm::regressor`].
     pub fn regressor(&self, arm: &DynArm, q: &[f64], qd: &[f64], qdd: &[f64]) -> Result<Vec<Vec<f64>>, WrongLength> {
         let matrix = arm.regressor(q, qd, qdd)?;
-        let columns = |torque: Vec<[f64; PARAMETERS]>| {
+        let columns = |torque: Vec<[f64; PER_LINK]>| {
             self.parameters.iter().map(move |base| torque[base.kept.link][base.kept.index])
         };
         Ok(matrix.into_iter().map(|torque| columns(torque).collect()).collect())
@@ -255,7 +254,7 @@ fn cleaned(coefficient: f64) -> f64 {
 }
 
 /// Parameters about the origin of the link frame.
-fn about_the_origin(link: &Link) -> [f64; PARAMETERS] {
+fn about_the_origin(link: &Link) -> [f64; PER_LINK] {
     let Link { mass: m, com: [x, y, z], inertia: i, first_moment: [hx, hy, hz] } = *link;
     let body = [
         m,

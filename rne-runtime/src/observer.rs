@@ -183,7 +183,7 @@ impl<T: Scalar> DynObserverState<T> {
     pub fn advance(&mut self, period: f64, momentum: Vec<T>, rate: Vec<T>) -> Result<Vec<T>, WrongLength> {
         let expected = self.external.len();
         if momentum.len() != expected {
-            return Err(WrongLength { argument: "q", expected, found: momentum.len() });
+            return Err(WrongLength { argument: "momentum", expected, found: momentum.len() });
         }
         if rate.len() != expected {
             return Err(WrongLength { argument: "rate", expected, found: rate.len() });

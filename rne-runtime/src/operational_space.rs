@@ -83,8 +83,8 @@ where
     for k in 0..jacobian.len() {
         let mut solved = jacobian[k].clone();
         solve(mass, pivots.as_ref(), solved.as_mut());
-        for l in k..jacobian.len() {
-            let products = solved.as_ref().iter().zip(jacobian[l].as_ref());
+        for (l, row) in jacobian.iter().enumerate().skip(k) {
+            let products = solved.as_ref().iter().zip(row.as_ref());
             let sum = products.fold(T::zero(), |sum, (&x, &j)| sum + x * j);
             mobility.as_mut()[k].as_mut()[l] = sum;
             mobility.as_mut()[l].as_mut()[k] = sum;

@@ -16,7 +16,7 @@
 use core::array;
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Convention, Link, Row};
+use rne_model::{Convention, Link, PER_LINK, Row};
 
 use crate::joint::JointLaws;
 use crate::link_frame::{Chain, LinkFrame, rotation_x};
@@ -28,14 +28,11 @@ use crate::{Arm, Constant, Regressor, Scalar};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
-/// Inertial parameters of a link.
-pub(crate) const PARAMETERS: usize = 10;
-
 /// Row and column of Jxx, Jxy, Jxz, Jyy, Jyz, Jzz.
 const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    pub(crate) fn regressor<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> Square<J, [T; PARAMETERS]> {
+    pub(crate) fn regressor<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> Square<J, [T; PER_LINK]> {
         let rows = self.per_joint.of(|i| empty(&self.rows[i]));
         let links = self.per_joint.of(|i| LinkFrame::new(self.convention, rows.as_ref(), i));
         let tip = Mount::of_tip(self.convention, rows.as_ref(), self.tool);
@@ -44,7 +41,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let motions = bare.motions(JointMotions::new(q, qd, qdd), &self.fixed_base());
         let motions = motions.as_ref();
 
-        let mut matrix = self.per_joint.all(&self.per_joint.all(&[T::zero(); PARAMETERS]));
+        let mut matrix = self.per_joint.all(&self.per_joint.all(&[T::zero(); PER_LINK]));
         for (j, motion) in motions.iter().enumerate() {
             let mut wrenches = unit_wrenches(motion, &self.link_axes(j));
             // The link itself: from its link frame's origin to its joint.
@@ -86,7 +83,7 @@ fn empty<S: Constant>(row: &Row<S>) -> Row<S> {
 }
 
 /// Force and moment of each parameter set to one, about the origin of the link frame, in the axes of form P.
-fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [ForceMoment<T>; PARAMETERS] {
+fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [ForceMoment<T>; PER_LINK] {
     let omega = axes.tr_mul(&motion.omega);
     let omega_dot = axes.tr_mul(&motion.omega_dot);
     let acceleration = axes.tr_mul(&(motion.acceleration - motion.gravity));
@@ -111,7 +108,7 @@ fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [Force
 }
 
 impl<const DOF: usize, S: Constant> Regressor<DOF> for Arm<DOF, S> {
-    fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; PARAMETERS]; DOF]; DOF] {
+    fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; PER_LINK]; DOF]; DOF] {
         self.mechanism().regressor(q, qd, qdd)
     }
 }
@@ -122,7 +119,7 @@ impl<S: Constant> DynArm<S> {
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
-    pub fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Vec<[T; PARAMETERS]>>, WrongLength> {
+    pub fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Vec<[T; PER_LINK]>>, WrongLength> {
         self.joints(q, qd, qdd)?;
         Ok(self.mechanism().regressor(q, qd, qdd))
     }

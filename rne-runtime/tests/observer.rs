@@ -87,7 +87,7 @@ fn a_tick_may_have_any_length() {
         assert_eq!(seen, fixed.update(&arm, &q, &qd, &[1.0]));
     }
     let wrong = observer.advance(1e-3, vec![0.0; 2], vec![0.0; 2]).expect_err("two joints");
-    assert_eq!((wrong.expected, wrong.found), (1, 2));
+    assert_eq!((wrong.argument, wrong.expected, wrong.found), ("momentum", 1, 2));
     assert_eq!(observer.advance(1e-3, vec![0.0], vec![0.0; 3]).expect_err("three rates").argument, "rate");
 }
 

@@ -20,7 +20,7 @@ const KIND: Kind = Kind { name: "a baseline file", format: FORMAT };
 const KEYS_OF_SPAN: [&str; 2] = ["quiet_since", "quiet_until"];
 
 /// No number of a baseline is larger.
-const LARGEST: f64 = 1e18;
+const LARGEST: f64 = 1e60;
 
 /// Two values of the robot file that differ by a smaller part of themselves are the same.
 const SAME: f64 = 1e-9;
@@ -242,11 +242,11 @@ impl Reading<'_> {
         if items.len() != dof {
             return self.numbers("noise", dof);
         }
-        let of = |item: &std::rc::Rc<Node>| match &item.content {
+        let number = |item: &std::rc::Rc<Node>| match &item.content {
             Content::Scalar(scalar) if scalar.text == ".inf" => Ok(f64::INFINITY),
             _ => self.number_of(item).and_then(|noise| self.check("noise", noise, noise > 0.0)),
         };
-        items.iter().map(of).collect()
+        items.iter().map(number).collect()
     }
 
     fn triangle(&self, key: &str, count: usize) -> Result<DMatrix<f64>, Report> {

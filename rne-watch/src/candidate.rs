@@ -1,7 +1,8 @@
 //! The parameters that may have changed: friction, offset and gain of each joint, a payload at the tip, and the delay.
 
 use nalgebra::DMatrix;
-use rne_identify::{FittedModel, FrictionParameter, Structure};
+use rne_identify::{FittedModel, FrictionParameter, LEAST_FRICTION, LIGHT_ARM, SLOWEST, Structure};
+use rne_model::PER_LINK;
 
 /// A parameter of the arm that may differ between two logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,8 +25,9 @@ impl Candidate {
     /// Every candidate of an arm.
     #[must_use]
     pub fn all(dof: usize) -> Vec<Self> {
-        let each = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
-        each.flat_map(|of| (0..dof).map(of))
+        let parameters = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
+        parameters
+            .flat_map(|parameter| (0..dof).map(parameter))
             .chain([Self::Payload, Self::Delay])
             .chain((0..dof).map(Self::Gain))
             .collect()
@@ -82,9 +84,6 @@ impl Candidate {
         }
     }
 }
-
-/// Inertial parameters of a link: the mass, three first moments, six numbers of the inertia.
-const PER_LINK: usize = 10;
 
 /// Numbers of a payload that a log tells: its mass and its first moments. Its inertia is too small a part of torques.
 pub(crate) const MOMENTS: usize = 4;
@@ -150,17 +149,17 @@ impl Scale {
 
     /// A mass, kg; for an arm that is lighter than a person can lift, in proportion to its own mass.
     fn payload(&self, mass: f64) -> f64 {
-        if self.mass > 0.0 { mass.min(mass * self.mass / LIGHT) } else { mass }
+        if self.mass > 0.0 { mass.min(mass * self.mass / LIGHT_ARM) } else { mass }
     }
 }
 
 /// Root mean square of each joint's speed, rad/s or m/s, by the products of all rows of each joint.
 pub(crate) fn speeds(structure: &Structure, totals: &[DMatrix<f64>]) -> Vec<f64> {
-    let of = |(joint, total): (usize, &DMatrix<f64>)| {
+    let speed = |(joint, total): (usize, &DMatrix<f64>)| {
         let at = FittedModel::place(structure, joint, FrictionParameter::Viscous);
         mean_square(structure, joint, total, at).sqrt()
     };
-    totals.iter().enumerate().map(of).collect()
+    totals.iter().enumerate().map(speed).collect()
 }
 
 /// The mean square of a column of a joint's rows; without a column that of its efforts.
@@ -169,12 +168,3 @@ fn mean_square(structure: &Structure, joint: usize, total: &DMatrix<f64>, column
     let at = column.unwrap_or(structure.count());
     if ones > 0.0 { total[(at, at)] / ones } else { 0.0 }
 }
-
-/// The least friction of a joint, as a part of its effort.
-const LEAST_FRICTION: f64 = 0.02;
-
-/// rad/s or m/s: a joint that is slower tells nothing about viscous friction.
-pub(crate) const SLOWEST: f64 = 1e-3;
-
-/// kg: for a lighter arm the smallest payload is in proportion to the mass of the arm.
-const LIGHT: f64 = 4.0;

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rne_identify::{FittedModel, FrictionParameter, MotionError, Stretch, Stretches, Structure};
-use rne_logs::Motion;
+use rne_logs::{Motion, median};
 
 use crate::Baseline;
 use crate::baseline::Residual;
@@ -36,6 +36,9 @@ pub struct Changes {
     /// Root mean square of the torque of each joint that the baseline's model with all changes does not explain, N m
     /// or N.
     pub residual: Vec<f64>,
+    /// The root mean square of the efforts over that of the quiet logs, in the median over the joints. Far from 1, the
+    /// efforts have another unit.
+    pub effort_ratio: f64,
     windows: Vec<Window>,
 }
 
@@ -62,16 +65,19 @@ impl Changes {
         }
         let ends = |window: &Range<usize>| {
             let list = &selection.stretches[window.clone()];
-            let first = list.first().map_or((0, f64::NEG_INFINITY), |first| (first.run, first.start));
-            let last = list.last().map_or((0, f64::INFINITY), |last| (last.run, last.end));
-            // a change that is there from the beginning is there before the first row, too
-            let first = if window.start == 0 { (first.0, f64::NEG_INFINITY) } else { first };
-            let is_last = window.end == selection.stretches.len();
-            [first, if is_last { (last.0, f64::INFINITY) } else { last }]
+            // a change that is there from the first row to the last is also there before and after them, in runs that
+            // are too short to have rows
+            let begin = list.first().filter(|_| window.start > 0);
+            let end = list.last().filter(|_| window.end < selection.stretches.len());
+            [
+                begin.map_or((0, f64::NEG_INFINITY), |first| (first.run, first.start)),
+                end.map_or((u64::MAX, f64::INFINITY), |last| (last.last_run, last.end)),
+            ]
         };
         let changes = selection.changes().into_iter();
         let windows = changes.map(|(window, change)| Window { ends: ends(&window), change }).collect();
-        Some(Self { events, statistics: selection.statistics(), residual, windows })
+        let effort_ratio = effort_ratio(structure, baseline, log);
+        Some(Self { events, statistics: selection.statistics(), residual, effort_ratio, windows })
     }
 
     /// The torques that the changes add along a motion of a run, joint by joint, N m or N.
@@ -120,6 +126,21 @@ impl Changes {
     }
 }
 
+/// The efforts of a log over those of the baseline, in the median over the joints that have efforts in both.
+fn effort_ratio(structure: &Structure, baseline: &Baseline, log: &Stretches) -> f64 {
+    let size = structure.count() + 1;
+    let total = |joint: usize| {
+        let mut total = DMatrix::zeros(size, size);
+        log.list().iter().for_each(|stretch| stretch.add_joint(structure, joint, &mut total));
+        total
+    };
+    let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
+    let now = Scale::of(structure, &baseline.model, &totals).effort;
+    let ratios = now.iter().zip(&baseline.scale.effort).map(|(now, before)| now / before);
+    let ratios: Vec<f64> = ratios.filter(|ratio| *ratio > 0.0 && ratio.is_finite()).collect();
+    if ratios.is_empty() { 1.0 } else { median(ratios) }
+}
+
 /// Values that come later by a delay, s.
 fn late(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
     let mut next = 0;
@@ -162,7 +183,6 @@ fn event(structure: &Structure, baseline: &Baseline, selection: &Selection<'_>, 
     let [file_value, baseline_value] = values(structure, baseline, candidate);
     let (run, since, until) = times(&selection.stretches[window.clone()]);
     Event {
-        cause: Cause::of(candidate),
         joint: candidate.joint(),
         parameter: candidate.parameter(),
         value: baseline_value + statistic.change,
@@ -177,12 +197,8 @@ fn event(structure: &Structure, baseline: &Baseline, selection: &Selection<'_>, 
         until,
         is_whole: *window == (0..selection.stretches.len()),
         lasts: window.end == selection.stretches.len(),
-        since_time: None,
-        until_time: None,
-        not_before: None,
-        not_after: None,
-        others: Vec::new(),
         rivals: selection.rivals(found).into_iter().map(Candidate::parameter).collect(),
+        ..Event::blank(Cause::of(candidate))
     }
 }
 
@@ -194,14 +210,11 @@ fn times(list: &[&Stretch]) -> (u64, f64, f64) {
 fn grown(structure: &Structure, selection: &Selection<'_>, joint: usize, [value, baseline_value]: [f64; 2]) -> Event {
     let (run, since, until) = times(&selection.stretches);
     Event {
-        cause: Cause::Model,
         joint: Some(joint),
         parameter: "residual",
         value,
         file_value: baseline_value,
         baseline_value,
-        deviation: f64::NAN,
-        half_interval: f64::NAN,
         threshold: (GROWN - 1.0) * baseline_value,
         unit: unit(structure.robot(), Candidate::Offset(joint)),
         run,
@@ -209,12 +222,7 @@ fn grown(structure: &Structure, selection: &Selection<'_>, joint: usize, [value,
         until,
         is_whole: true,
         lasts: true,
-        since_time: None,
-        until_time: None,
-        not_before: None,
-        not_after: None,
-        others: Vec::new(),
-        rivals: Vec::new(),
+        ..Event::blank(Cause::Model)
     }
 }
 
@@ -224,8 +232,8 @@ fn residual(baseline: &Baseline, selection: &Selection<'_>) -> Vec<f64> {
     let unknowns = selection.unknowns();
     let of_joint = |joint: usize| {
         let stretches = selection.stretches.iter().zip(&unknowns);
-        let each = stretches.map(|(stretch, unknowns)| selection.residual(joint, stretch, unknowns));
-        let sum = each.fold(Residual::default(), Residual::plus);
+        let residuals = stretches.map(|(stretch, unknowns)| selection.residual(joint, stretch, unknowns));
+        let sum = residuals.fold(Residual::default(), Residual::plus);
         sum.root_mean_square().unwrap_or(baseline.residual[joint])
     };
     (0..baseline.residual.len()).map(of_joint).collect()

@@ -105,6 +105,33 @@ pub struct Event {
 }
 
 impl Event {
+    /// An event of a cause of which nothing else is known: values and times are 0, deviations are not numbers.
+    pub(crate) fn blank(cause: Cause) -> Self {
+        Self {
+            cause,
+            joint: None,
+            parameter: "external",
+            value: 0.0,
+            file_value: 0.0,
+            baseline_value: 0.0,
+            deviation: f64::NAN,
+            half_interval: f64::NAN,
+            threshold: f64::NAN,
+            unit: "N m",
+            run: 0,
+            since: 0.0,
+            until: 0.0,
+            is_whole: false,
+            lasts: false,
+            since_time: None,
+            until_time: None,
+            not_before: None,
+            not_after: None,
+            others: Vec::new(),
+            rivals: Vec::new(),
+        }
+    }
+
     /// The change of the value against the baseline.
     #[must_use]
     pub fn change(&self) -> f64 {

@@ -196,6 +196,10 @@ pub fn changes(
             progress,
         )
         .map_err(WatchError::from)?;
+    let is_silent = |joint: usize| stretches.list().iter().all(|stretch| stretch.is_silent(joint));
+    if stretches.rows() > 0 && (0..structure.dof()).all(is_silent) {
+        return Err(WatchError::NoEffort);
+    }
     if stretches.rows() >= FEWEST
         && let Some(mut found) = Changes::of(structure, baseline, &stretches)
     {
@@ -244,7 +248,7 @@ fn each_signals(
         Err(WatchError::TooFew { .. }) => Ok(false),
         other => other.map(|()| true),
     };
-    let mut one = |run: u64, motion: &Motion| -> Result<(), WatchError> {
+    let mut take_motion = |run: u64, motion: &Motion| -> Result<(), WatchError> {
         let added = explain(run, motion)?;
         let mut rest = motion.clone();
         for (tau, added) in rest.tau.iter_mut().zip(&added) {
@@ -254,7 +258,7 @@ fn each_signals(
         pieces += u64::from(unless_short(taken)?);
         Ok(())
     };
-    log.pass_runs(Part::All, &mut one, progress).map_err(WatchError::from)?;
+    log.pass_runs(Part::All, &mut take_motion, progress).map_err(WatchError::from)?;
     if pieces == 0 { Err(WatchError::TooFew { found: 0, needed: 1 }) } else { Ok(()) }
 }
 
@@ -275,27 +279,16 @@ fn touches(robot: &Robot, noise: &ContactNoise, run: u64, contacts: Vec<Contact>
         others.sort_unstable();
         others.dedup();
         Some(Event {
-            cause: Cause::Contact,
             joint: Some(most.joint),
             parameter: "external",
             value: most.peak,
-            file_value: 0.0,
-            baseline_value: 0.0,
             deviation: noise.joints[most.joint].deviation,
-            half_interval: f64::NAN,
-            threshold: f64::NAN,
             unit: unit(robot, Candidate::Offset(most.joint)),
             run,
             since: group.iter().fold(f64::INFINITY, |start, of| start.min(of.start)),
             until: group.iter().fold(f64::NEG_INFINITY, |end, of| end.max(of.end)),
-            is_whole: false,
-            lasts: false,
-            since_time: None,
-            until_time: None,
-            not_before: None,
-            not_after: None,
             others,
-            rivals: Vec::new(),
+            ..Event::blank(Cause::Contact)
         })
     };
     groups.into_iter().filter_map(event).collect()
@@ -306,29 +299,7 @@ mod tests {
     use super::*;
 
     fn event(cause: Cause, joint: usize) -> Event {
-        Event {
-            cause,
-            joint: Some(joint),
-            parameter: "external",
-            value: 1.0,
-            file_value: 0.0,
-            baseline_value: 0.0,
-            deviation: f64::NAN,
-            half_interval: f64::NAN,
-            threshold: f64::NAN,
-            unit: "N m",
-            run: 0,
-            since: 1.0,
-            until: 2.0,
-            is_whole: false,
-            lasts: false,
-            since_time: None,
-            until_time: None,
-            not_before: None,
-            not_after: None,
-            others: Vec::new(),
-            rivals: Vec::new(),
-        }
+        Event { joint: Some(joint), value: 1.0, since: 1.0, until: 2.0, ..Event::blank(cause) }
     }
 
     fn causes(events: &[Event]) -> Vec<(Cause, Option<usize>)> {
@@ -348,7 +319,7 @@ mod tests {
         // friction from 5 s on: a contact where it begins is what it leaves, a later one is none
         let friction = Event { since: 5.0, until: 20.0, lasts: true, ..event(Cause::Friction, 2) };
         let at = |since: f64| Event { since, until: since + 0.2, ..event(Cause::Contact, 2) };
-        let of = causes(&[friction, at(4.9), at(9.0)]);
-        assert_eq!(of, [(Cause::Friction, Some(2)), (Cause::Contact, Some(2))]);
+        let found = causes(&[friction, at(4.9), at(9.0)]);
+        assert_eq!(found, [(Cause::Friction, Some(2)), (Cause::Contact, Some(2))]);
     }
 }

@@ -6,10 +6,10 @@ mod common;
 use common::simulated::Simulated;
 use common::{Fault, PUBLIC, baseline, changes, noisy, public, split, with};
 use fastrand::Rng;
-use rne_identify::Structure;
+use rne_identify::{Stretches, Structure};
 use rne_logs::Motion;
 use rne_model::Robot;
-use rne_watch::{Baseline, Cause, Event};
+use rne_watch::{Baseline, Cause, Changes, Event};
 
 /// The arm of a public log: its robot, its equations, its motion.
 struct Arm {
@@ -225,4 +225,74 @@ fn simulated_quiet_logs_have_no_event() {
         found.extend(changes(&simulated.structure, &quiet, &simulated.watched).events);
     }
     assert_eq!(found, [], "of {arms} logs");
+}
+
+/// A payload that the arm carries in the whole log is also subtracted in runs that have too few rows to be compared.
+#[test]
+fn a_change_of_the_whole_log_is_in_every_run() {
+    let arm = arm("ur10");
+    let [quiet, watched] = split(&arm.motion, 0.5, false);
+    let quiet = baseline(&arm.structure, &quiet);
+    let watched = with(&arm.robot, &watched, Fault::Payload(2.0), ALWAYS);
+    let mut stretches = Stretches::new(&arm.structure, &quiet.model);
+    stretches.absorb(&arm.structure, 1, &watched).expect("a motion of the arm");
+    let found = Changes::of(&arm.structure, &quiet, &stretches).expect("long enough");
+    let torques = |run| found.torques(&arm.structure, &quiet, run, &watched).expect("a motion of the arm");
+    assert!(torques(1)[1].iter().any(|torque| torque.abs() > 10.0), "{:?}", found.events);
+    assert_eq!([torques(0), torques(2)], [torques(1), torques(1)]);
+}
+
+/// Stretches that are joined over many short runs begin and end in the runs of their rows.
+#[test]
+fn joined_stretches_name_both_runs() {
+    let arm = arm("ur10");
+    let [quiet, watched] = split(&arm.motion, 0.5, false);
+    let quiet = baseline(&arm.structure, &quiet);
+    let mut stretches = Stretches::new(&arm.structure, &quiet.model);
+    for run in 0..700 {
+        stretches.absorb(&arm.structure, run, &watched).expect("a motion of the arm");
+    }
+    let list = stretches.list();
+    assert_eq!(list.first().map(|first| first.run), Some(0));
+    assert_eq!(list.last().map(|last| last.last_run), Some(699));
+    assert!(list.iter().any(|stretch| stretch.run < stretch.last_run));
+    assert!(list.windows(2).all(|pair| pair[0].last_run <= pair[1].run));
+}
+
+/// A log without noise determines the parameters so well that the numbers of its baseline are huge.
+#[test]
+fn a_baseline_without_noise_is_read_back() {
+    let arm = arm("ur10");
+    let model = baseline(&arm.structure, &arm.motion).model;
+    let tau = model.torques(&arm.structure, &arm.motion, &model.solution).expect("a motion of the arm");
+    let quiet = baseline(&arm.structure, &Motion { tau: tau.clone(), recorded: tau, ..arm.motion.clone() });
+    let text = quiet.to_yaml(&arm.robot, "a log without noise");
+    let read = Baseline::from_yaml("arm.baseline.yaml", &text, &arm.robot).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(read.to_yaml(&arm.robot, "a log without noise"), text);
+}
+
+/// A channel without any effort is one event, and the torques that are missing are no changes of other joints. With the
+/// channel, the other changes lose data: one of them, which is near its threshold in the whole log, exceeds it a
+/// little.
+#[test]
+fn a_dead_channel_of_each_joint_is_one_event() {
+    let mut others = Vec::new();
+    for (name, _) in PUBLIC {
+        let arm = arm(name);
+        for (fraction, is_reversed) in [(0.5, false), (0.6, false), (0.6, true)] {
+            let [quiet, watched] = split(&arm.motion, fraction, is_reversed);
+            let quiet = baseline(&arm.structure, &quiet);
+            for joint in 0..arm.robot.dof() {
+                let found = events(&arm, &quiet, &watched, Fault::Gain(joint, 0.0), ALWAYS);
+                let is_gain = |event: &&Event| (event.parameter, event.joint) == ("gain", Some(joint));
+                assert_eq!(found.iter().filter(is_gain).count(), 1, "{name} {fraction} {is_reversed}: {found:#?}");
+                let rest = found.iter().filter(|event| !is_gain(event));
+                others.extend(
+                    rest.map(|event| (name, joint, event.parameter, event.joint, event.change() / event.threshold)),
+                );
+            }
+        }
+    }
+    println!("{others:#?}");
+    assert!(others.len() <= 1 && others.iter().all(|(.., ratio)| ratio.abs() < 1.1), "{others:#?}");
 }

@@ -185,6 +185,7 @@ fn arrays_and_vectors_have_the_same_bits_in_double_and_single_precision() {
     assert_eq!(inertia, found.map(|row| row.to_vec()));
     let inverse = dynamically_consistent_inverse(&mass, &jacobian);
     assert_eq!(rows.concat(), (0..6).flat_map(|row| inverse.map(|of_joint| of_joint[row])).collect::<Vec<_>>());
+    #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
     let q = q.map(|angle| angle as f32);
     let single = operational_space_inertia(&arm.mass_matrix(&q), &arm.jacobian(&q));
     let largest = found.as_flattened().iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));

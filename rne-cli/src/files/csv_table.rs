@@ -162,7 +162,12 @@ fn cells(line: &str, start: usize, separator: char) -> Result<Vec<Cell<'_>>, usi
 }
 
 /// A number with a decimal point where it has a decimal comma, as spreadsheets write it in half of Europe: `0,5`.
+/// U+2212 is a minus sign, as they write it, too.
 pub(crate) fn with_point(number: &str) -> Cow<'_, str> {
+    if number.contains('\u{2212}') {
+        let ascii = number.replace('\u{2212}', "-");
+        return Cow::Owned(with_point(&ascii).into_owned());
+    }
     let is_plain = number.chars().all(|c| c.is_ascii_digit() || "+-eE,".contains(c));
     if is_plain && number.matches(',').count() == 1 {
         return Cow::Owned(number.replace(',', "."));

@@ -91,7 +91,12 @@ pub(crate) fn of_student(
 ) -> String {
     let separator = if comma { ';' } else { ',' };
     let columns = COLUMNS.join(separator.encode_utf8(&mut [0; 4]));
-    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}, student {student}\n{columns}\n", robot.name);
+    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}", robot.name);
+    if steps.len() < 7 {
+        let steps: Vec<String> = steps.iter().map(ToString::to_string).collect();
+        let _ = write!(text, ", steps {}", steps.join(" "));
+    }
+    let _ = writeln!(text, ", student {student}\n{columns}");
     for row in rows(sheet, Narrowed::default()) {
         let is_state = ["q", "qd", "qdd"].contains(&row.quantity);
         if !is_state && !steps.contains(&row.step) {
@@ -130,6 +135,15 @@ pub(crate) struct Filled {
     pub(crate) axes: Option<Axes>,
     /// The student whom the file names.
     pub(crate) student: Option<String>,
+    /// The steps that the file asks for, where it names them.
+    pub(crate) steps: Option<Vec<u8>>,
+}
+
+/// Contents of the first line of a worksheet.
+#[derive(Default)]
+struct Head {
+    student: Option<String>,
+    steps: Option<Vec<u8>>,
 }
 
 /// The cells of a row, by their columns.
@@ -146,23 +160,23 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
     let text = text_of(&name, &bytes)?;
     let mut mistakes = Mistakes::new(&name, text);
     let is_json = text.trim_start().starts_with(['{', '[']);
-    let mut student = None;
+    let mut head = Head::default();
     let rows = if is_json {
         json_rows(&name, text, robot, &mut mistakes)?
     } else {
-        csv_rows(text, robot, &mut student, &mut mistakes)
+        csv_rows(text, robot, &mut head, &mut mistakes)
     };
     if mistakes.are_there() {
-        return mistakes.finish(Filled { values: Vec::new(), axes: None, student: None });
+        return mistakes.finish(Filled { values: Vec::new(), axes: None, student: None, steps: None });
     }
     let reading = Reading { robot, mistakes, axes, seen: HashMap::new(), values: Vec::new(), text };
-    Ok(Filled { student, ..reading.rows(&rows)? })
+    Ok(Filled { student: head.student, steps: head.steps, ..reading.rows(&rows)? })
 }
 
 fn csv_rows<'a>(
     text: &'a str,
     robot: &Robot,
-    student: &mut Option<String>,
+    head: &mut Head,
     mistakes: &mut Mistakes<'_>,
 ) -> Vec<(Cells<'a>, Range<usize>)> {
     let mut lines = Vec::new();
@@ -175,13 +189,21 @@ fn csv_rows<'a>(
             csv_table::Line::Row(row) => lines.push(row),
             csv_table::Line::OpenQuote(span) => mistakes.push(span, OPEN_QUOTE, None),
             csv_table::Line::Comment(comment, span) => {
-                if let Some(about) = comment.strip_prefix("rne worksheet,") {
-                    // a spreadsheet ends each line with the separators of the other columns
-                    let about = about.trim_end_matches([';', ',', '"', ' ']);
-                    let word =
-                        |key: &str| about.split(',').find_map(|part| part.trim().strip_prefix(key).map(str::trim));
+                if let Some(about) = comment.strip_prefix("rne worksheet") {
+                    // a spreadsheet has other separators, ends each line with those of the other columns, and may put
+                    // each part in quotes
+                    let word = |key: &str| {
+                        let mut parts = about.split([',', ';']).map(|part| part.trim_matches(['"', ' ']));
+                        parts.find_map(|part| part.strip_prefix(key).map(str::trim))
+                    };
                     is_ours(word("format "), word("robot "), &span, robot, mistakes);
-                    *student = word("student ").map(str::to_owned);
+                    head.student = word("student ").map(str::to_owned);
+                    let named = word("steps ");
+                    head.steps = named.and_then(steps_of);
+                    if named.is_some() && head.steps.is_none() {
+                        let help = "write numbers from 1 to 7 with blanks between them, such as `steps 1 2 7`";
+                        mistakes.push(span, "the steps in this line are not steps", Some(help));
+                    }
                 }
             }
         }
@@ -228,6 +250,11 @@ fn csv_rows<'a>(
         rows.push((cells.collect(), row.span.clone()));
     }
     rows
+}
+
+/// The steps of a text such as `1 2 7`.
+fn steps_of(text: &str) -> Option<Vec<u8>> {
+    text.split_whitespace().map(|step| step.parse().ok().filter(|step| (1..=7).contains(step))).collect()
 }
 
 fn too_many(span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) {
@@ -354,7 +381,7 @@ impl Reading<'_> {
             let help = "each row has a joint, a quantity, its component and a value; empty values are left out";
             self.mistakes.push(0..0, "the worksheet has no value to compare", Some(help));
         }
-        let filled = Filled { values: self.values, axes: self.axes, student: None };
+        let filled = Filled { values: self.values, axes: self.axes, student: None, steps: None };
         self.mistakes.finish(filled)
     }
 

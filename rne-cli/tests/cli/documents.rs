@@ -316,7 +316,7 @@ fn commands_of_documents_work() {
                 }
                 renewed.extend(["```text\n", &printed, "```\n<!-- end -->\n"]);
             } else if block.is_none() {
-                for command in in_prose(line) {
+                for command in in_prose(line).filter(|command| !is_left_out(command)) {
                     // `rne eval` is the name of a command
                     if !command.starts_with("rne ") || command.split(' ').count() > 2 {
                         tried(&folder, document, command);

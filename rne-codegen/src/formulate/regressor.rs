@@ -8,21 +8,19 @@
 //! ```
 
 use rne_model::JointKind::{Prismatic, Revolute};
+use rne_model::PER_LINK;
 
 use crate::formulate::{Arm, JointState, Motion, Turning};
 use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
-
-/// Parameters of a link.
-pub(crate) const PARAMETERS: usize = 10;
 
 /// Y by torque, link and parameter; zero where a link is nearer to the base than the joint.
 pub(crate) fn regressor<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     motions: &[Motion<'s>],
-) -> Vec<Vec<[Symbol<'s>; PARAMETERS]>> {
+) -> Vec<Vec<[Symbol<'s>; PER_LINK]>> {
     let (builder, dof) = (arm.builder, states.len());
-    let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PARAMETERS]; dof]; dof];
+    let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PER_LINK]; dof]; dof];
     let zeros = builder.zeros(Cause::JointAxis);
     // acceleration of the joint's point less gravity, in the axes of its parent
     let mut point = -arm.gravity;
@@ -79,7 +77,7 @@ fn columns<'s>(
     [omega, omega_dot, a]: [Vector<'s>; 3],
     gradient: Matrix<'s>,
     [u, v]: [Vector<'s>; 2],
-) -> [Symbol<'s>; PARAMETERS] {
+) -> [Symbol<'s>; PER_LINK] {
     let mass = v.dot(a);
     let [hx, hy, hz] = (gradient.transpose() * v + a.cross(u)).0;
     let ([ux, uy, uz], [dx, dy, dz]) = (u.0, omega_dot.0);

@@ -106,6 +106,21 @@ impl Formulas<'_> {
         Here { i: index + 1, kind, row, link, rotation: link.rotation_matrix(), turn, e, q, before }
     }
 
+    /// The line of a quantity of steps 1 to 7 of a joint, counted from 1.
+    pub(super) fn line(&self, joint: usize, quantity: Quantity) -> Option<Line> {
+        let here = self.here(joint.checked_sub(1)?, &orientations(self.fixed));
+        let lines = if quantity.is_inward() { self.inward(&here) } else { self.outward(&here) };
+        lines.into_iter().find(|line| line.quantity == quantity)
+    }
+
+    /// A vector in the axes of the joint after this one, in the axes of this one, counted from 1.
+    pub(super) fn turned(&self, joint: usize, own: [f64; 3]) -> Vec<f64> {
+        match self.links.get(joint).filter(|_| self.axes != Axes::Base) {
+            Some(next) => list(&(next.rotation_matrix() * V::from(own))),
+            None => own.to_vec(),
+        }
+    }
+
     /// The lines of the inputs of the steps.
     fn given(&self, here: &Here<'_>, orientations: &[Matrix3<f64>]) -> Vec<Line> {
         let Here { i, kind, row, link, turn, .. } = here;
@@ -258,10 +273,11 @@ impl Formulas<'_> {
     fn outward(&self, here: &Here<'_>) -> Vec<Line> {
         let own = |quantity| here.part(quantity);
         let (p, (motion, r)) = (here.i - 1, &here.before);
-        let of = |quantity: Quantity, value: [f64; 3]| Part::new(&quantity.symbol(p), value, quantity.unit(here.kind));
-        let omega_p = of(Quantity::Omega, motion.omega);
-        let omega_dot_p = of(Quantity::OmegaDot, motion.omega_dot);
-        let r_p = of(Quantity::R, (*r).into());
+        let part =
+            |quantity: Quantity, value: [f64; 3]| Part::new(&quantity.symbol(p), value, quantity.unit(here.kind));
+        let omega_p = part(Quantity::Omega, motion.omega);
+        let omega_dot_p = part(Quantity::OmegaDot, motion.omega_dot);
+        let r_p = part(Quantity::R, (*r).into());
         let (omega, omega_dot, d, e) =
             (own(Quantity::Omega), own(Quantity::OmegaDot), own(Quantity::D), self.axis(here));
         let [rate, rate_dot] = [(Quantity::Qd, here.q[1]), (Quantity::Qdd, here.q[2])]
@@ -276,12 +292,12 @@ impl Formulas<'_> {
         let spin = of_revolute(&[e.times(&rate_dot), omega.cross(&e).times(&rate)]);
         let step_2 = self.sum(here, Quantity::OmegaDot, std::slice::from_ref(&omega_dot_p), &spin);
 
-        let before = [of(Quantity::Velocity, motion.velocity), omega_p.cross(&r_p)];
+        let before = [part(Quantity::Velocity, motion.velocity), omega_p.cross(&r_p)];
         let step_3 =
             self.sum(here, Quantity::Velocity, &before, &with_prismatic(&[omega.cross(&d)], &[e.times(&rate)]));
 
         let before = [
-            of(Quantity::Acceleration, motion.acceleration),
+            part(Quantity::Acceleration, motion.acceleration),
             omega_dot_p.cross(&r_p),
             omega_p.cross(&omega_p.cross(&r_p)),
         ];
@@ -294,7 +310,7 @@ impl Formulas<'_> {
         let slide = [e.times(&rate_dot), coriolis];
         let step_4 = self.sum(here, Quantity::Acceleration, &before, &with_prismatic(&about_joint, &slide));
 
-        let step_5 = self.sum(here, Quantity::Gravity, &[of(Quantity::Gravity, motion.gravity)], &[]);
+        let step_5 = self.sum(here, Quantity::Gravity, &[part(Quantity::Gravity, motion.gravity)], &[]);
         vec![step_1, step_2, step_3, step_4, step_5]
     }
 

@@ -228,6 +228,12 @@ class Arm:
     ) -> Floats:
         """Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes."""
     # <!-- end -->
+    def rollout(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, step: float, *,
+        friction: bool | float | None = ..., limits: bool | str | Sequence[str] | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """States of N samples after each of T steps under torques, by semi-implicit Euler."""
     def operational_space_inertia(
         self, q: ArrayLike, *,
         frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
