@@ -41,7 +41,11 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.carried.of(arguments.rotors.robot(&arguments.file)?)?;
-    let reduced = Compiler::new(&arguments.file, &robot).compile(Function::InverseDynamics, Form::Reduced)?;
+    let compiler = match arguments.carried.payload {
+        Some(_) => Compiler::without_file(&arguments.file, &robot),
+        None => Compiler::new(&arguments.file, &robot),
+    };
+    let reduced = compiler.compile(Function::InverseDynamics, Form::Reduced)?;
     let page = rne_report::page(&robot, Some(&reduced))
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
     let output = Output { out: Some(arguments.out.clone()), force: arguments.force };
