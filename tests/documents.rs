@@ -101,7 +101,8 @@ fn control() -> String {
     let program = read(&root().join("examples/control.rs"));
     let between = |start: &str, end: &str| {
         let lines = program.lines().skip_while(|line| !line.contains(start)).take_while(|line| !line.contains(end));
-        lines.filter(|line| !line.is_empty()).map(|line| format!("{}\n", line.trim())).collect::<String>()
+        let lines = lines.map(str::trim).filter(|line| !line.is_empty());
+        lines.fold(String::new(), |text, line| text + line + "\n")
     };
     let derive = between("#[derive", "fn main").replace("../robots/puma560.yaml", "arm.yaml");
     let calls = between("let gravity", "println!");

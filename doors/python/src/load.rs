@@ -64,7 +64,7 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// Warns
 /// -----
 /// RobotFileWarning
-///     For numbers that are allowed but probably wrong, such as links without mass or with placeholder inertias.
+///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=true,
     keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
