@@ -23,7 +23,7 @@ use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::{self, Compiler};
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Frames};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
@@ -231,7 +231,7 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
 }
 
 fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[])?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped)?;
     let robot = arguments.rotors.of(checked.robot);
     let program = Compiler::new(&arguments.file, &robot).compile(arguments.program(), arguments.form)?;
     let call = call(arguments, &robot, &program)?;

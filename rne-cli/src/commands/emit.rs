@@ -14,7 +14,7 @@ use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::Compiler;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Frames};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
@@ -174,7 +174,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names)?;
+    let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf)?;
     let robot = arguments.rotors.of(checked.robot);
     let programs = programs(arguments, &robot)?;
     let c_code = || c_code(arguments, &robot, &programs, &bytes);

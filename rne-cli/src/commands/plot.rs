@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     for Setting { name, value } in &arguments.arm.set {
         let _ = write!(about, ", {name} = {value}");
     }
-    if arguments.arm.payload.is_some() {
+    if arguments.arm.carried.payload.is_some() {
         about.push_str(", with a payload");
     }
     if robot.has_rotors() {
