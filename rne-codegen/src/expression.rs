@@ -1,7 +1,7 @@
 //! The values of a program as they are written: a value with a name by that name, another one where it is used.
 
-use crate::ir::Name;
-use crate::values::{Negated, Operator, Value, ValueId, Values};
+use crate::ir::{Name, Operator};
+use crate::values::{Negated, Value, ValueId, Values};
 
 /// A value of a program, as it is written in one place.
 #[derive(Clone, Copy, Debug, PartialEq)]

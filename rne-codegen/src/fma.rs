@@ -16,10 +16,10 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::ir::Name;
+use crate::ir::{Name, Operator, Sign};
 use crate::latency::{self, Latency};
 use crate::program::{Output, Program, Statement};
-use crate::values::{Contraction, Operator, Sign, Value, ValueId, Values};
+use crate::values::{Contraction, Value, ValueId, Values};
 
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
 ///

@@ -2,9 +2,9 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::ir::{Component, Name, Quantity};
+use crate::ir::{Component, Name, Operator, Quantity};
 use crate::program::Program;
-use crate::values::{Contraction, Negated, Operator, Value, ValueId, Values};
+use crate::values::{Contraction, Negated, Value, ValueId, Values};
 
 /// The arguments of a function. What a function does not use may be empty or zero.
 #[derive(Clone, Copy, Debug)]

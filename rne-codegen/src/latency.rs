@@ -4,8 +4,9 @@
 //! A fused multiply-add is one instruction, but a sum that waits for its last term waits longer for it than for an
 //! addition. So a product is fused where that is sooner, or where nothing waits for the sum.
 
+use crate::ir::Operator;
 use crate::program::Program;
-use crate::values::{Contraction, Operator, Value, ValueId};
+use crate::values::{Contraction, Value, ValueId};
 
 /// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of
 /// these years.

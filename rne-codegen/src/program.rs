@@ -2,16 +2,16 @@
 //!
 //! One `Program`, many renderers: tokens, text, counts, an interpreter, a machine.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use crate::CompileError;
 use crate::equation::Equation;
 use crate::expression::Expression;
 use crate::function::{Form, Function};
-use crate::ir::{Causes, ExactAngle, FoldReport, Name, Number, Place};
+use crate::ir::{Causes, FoldReport, Name, Operator, Place, Sign};
 use crate::reduced::Algorithm;
 use crate::refusal::Refusal;
-use crate::values::{Operator, Sign, Value, ValueId, Values};
+use crate::values::{Value, ValueId, Values};
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,9 +95,6 @@ impl Default for Scales {
         Self { length: 1.0, force: 1.0 }
     }
 }
-
-/// The exact constants of a program: each as a number and, if it is an angle, as a turn.
-pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A named constant. A number that is two entries of the table stands under each name that the statements use.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,8 +9,8 @@ use rne_model::{JointKind, Robot};
 use crate::exact::ExactFunction;
 use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
-use crate::ir::{Axis, Embedding, Input, Name, Quantity, Residue, SamplePoint, operators};
-use crate::program::{Exactly, Program, Proof};
+use crate::ir::{Axis, Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, operators};
+use crate::program::{Program, Proof};
 use crate::refusal::largest_rounding;
 use crate::{CompileError, Suspect};
 

@@ -4,7 +4,7 @@
 //! native code take it as it is, text nests a value without a name where it is used
 //! ([`Expression`](crate::Expression)).
 
-use crate::ir::Name;
+use crate::ir::{Name, Operator};
 
 /// A value of a program, by its place in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -45,28 +45,6 @@ pub enum Value {
     Fused(Contraction),
     /// One of two values by the sign of the first: positive, negative; 0 where that is 0.
     BySign([ValueId; 3]),
-}
-
-/// An operator between two operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Operator {
-    /// a + b
-    Sum,
-    /// a - b
-    Difference,
-    /// a · b
-    Product,
-    /// a / b
-    Quotient,
-}
-
-/// Whether a value enters as itself or negated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// As itself.
-    Plus,
-    /// Negated.
-    Minus,
 }
 
 /// A sum or difference as x y + z, which may be one instruction.

@@ -23,8 +23,8 @@ use crate::files::output_file::{
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, WARNING};
+use crate::remedy;
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
-use crate::render::remedy;
 use crate::values::numbers::{List, checked, rounded};
 
 /// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.

@@ -258,7 +258,7 @@ fn events(
         remark += &output_file::write_new(path, &table, sources, arguments.force)?;
     }
     if arguments.json {
-        let reply = Reply::of(robot, &log, &words, &baseline, &report, &errors);
+        let reply = Reply::of(robot, log.words(), log.read_to(), &words, &baseline, &report, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
     }
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), baseline.cutoff);

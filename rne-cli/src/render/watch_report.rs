@@ -5,9 +5,8 @@ use std::fmt::Write as _;
 use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Candidate, Cause, Changes, Event, Report, Statistic, Trend, TrendValue, unit};
 
-use crate::files::motion_file::cell;
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
-use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::render::layout::{Align, PAGE, cell, push_table, shortened, wrap};
 use crate::render::watch_dates::{LogNames, times};
 use crate::render::watch_reply::name;
 use crate::values::numbers::{rounded, with_deviation};

@@ -2,7 +2,7 @@
 
 use super::table::{Capability, Function};
 use super::{Answer, Argument, Returned};
-use crate::ir::Quantity;
+use crate::quantity::Quantity;
 
 /// The signature of a function, and the words for its callers.
 #[derive(Debug)]

@@ -8,8 +8,8 @@ mod table;
 
 use rne_model::{FrameId, Robot};
 
-use crate::ir::Quantity;
 use crate::named::named;
+use crate::quantity::Quantity;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
 pub use argument::{Argument, ArgumentPart};

@@ -5,8 +5,8 @@
 //! capability, so that the others keep their places, which are the ids of the C library.
 
 use super::{Answer, AnswerTable, Argument, Entry, Labels, MatrixUnit, Own, Returned, Signature};
-use crate::ir::Quantity;
 use crate::named::named;
+use crate::quantity::Quantity;
 
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
 /// what it returns, and what it computes. `at NAME` follows what is returned where the function of the tip can be taken

@@ -6,10 +6,10 @@ use rne_model::{Angle, Joint};
 
 use super::{
     Axis, Birth, Cause, CausesId, Definition, Embedding, ExactAngle, Graph, Input, Matrix, Name, Number, Operation,
-    Outcome, Place, Policy, Quantity, Ref, Symbol, TermId, Trace, Traced, Vector, WithRespectTo, Written, WrittenTerms,
+    Operator, Outcome, Place, Policy, Quantity, Ref, Symbol, TermId, Trace, Traced, Vector, WithRespectTo, Written,
+    WrittenTerms,
 };
 use crate::function::Function;
-use crate::values::Operator;
 
 /// The motion of the joints in the formulas that are being written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,28 @@
 //! Formulas as they were written, kept beside the graph: terms that folded away have no node in the graph.
 
 use super::{CausesId, Name, Outcome, Ref};
-use crate::values::Operator;
+
+/// An operator between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// a + b
+    Sum,
+    /// a - b
+    Difference,
+    /// a · b
+    Product,
+    /// a / b
+    Quotient,
+}
+
+/// Whether a value enters as itself or negated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// As itself.
+    Plus,
+    /// Negated.
+    Minus,
+}
 
 /// A term that was written down; [`TermId::NONE`] is a leaf, of which the graph knows all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,10 +2,11 @@
 
 use rne_model::{JointKind, Robot};
 
+use crate::CompileError;
 use crate::formulate::Outputs;
+use crate::formulation::Formulation;
 use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Number, Policy, Ref, number_values};
-use crate::pipeline::Formulation;
 use crate::plan::{OriginShift, Plan, Scale};
 use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
@@ -127,6 +128,19 @@ impl FramedRobot {
         let [length, force] = [parameters.lambda, parameters.mu].map(Number::to_f64);
         let scales = Some(Scales { length, force }).filter(|scales| *scales != Scales::default());
         Some(Formulation { names, traced: traced.numbered(), scales })
+    }
+}
+
+impl Formulation {
+    /// A function written by one algorithm under a plan, every value once.
+    ///
+    /// # Errors
+    /// When the plan does not fit the robot.
+    pub fn by_plan(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Result<Self, CompileError> {
+        let sphere = plan.gyrostat && !function.takes(Argument::Payload);
+        let plan = &Plan { gyrostat: sphere, ..plan.clone() };
+        let written = frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
+        written.ok_or_else(|| CompileError::PlanDoesNotFit { robot: robot.name.clone() })
     }
 }
 

@@ -11,11 +11,10 @@ mod rewritten;
 mod tests;
 mod trick;
 
+pub use crate::formulation::Formulation;
 pub use crate::ir::Cost;
-pub use crate::pipeline::Formulation;
 pub use crate::prove::{Reference, divides_by_zero};
 pub use crate::reduced::choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
-pub(crate) use cost::frame;
 pub use cost::{OpenChoices, OpenJoint};
 pub use descent::Descent;
 pub use plan_set::PlanSet;

@@ -3,9 +3,9 @@
 use rne_model::Robot;
 
 use crate::CompileError;
+use crate::formulation::Formulation;
 use crate::function::Function;
 use crate::ir::Cost;
-use crate::pipeline::Formulation;
 use crate::plan::{Plan, graph_text};
 use crate::program::Proof;
 use crate::reduced::algorithm::Algorithm;

@@ -7,11 +7,10 @@ use rne_model::{Reader, Robot};
 
 use super::*;
 use crate::fma::{contracted, ordered_for_latency};
-use crate::ir::{Embedding, Graph, Traced};
-use crate::plan::cost::Evaluator;
+use crate::ir::{Embedding, Exactly, Graph, Traced};
+use crate::plan::cost::{Evaluator, frame};
 use crate::plan::descent::default_plan;
 use crate::plan::rewriting::Annealing;
-use crate::program::Exactly;
 use crate::prove;
 use crate::reduced::Algorithm;
 use crate::{CompileError, Compiler, Form, Function, Operator, Program, Value};
