@@ -138,7 +138,8 @@ fn mistakes_in_a_graph_name_their_word() {
         ("constants /1", 2, "the graph defines no value `1`"),
     ] {
         let read = graph_text::read(text, &plain.graph, Function::InverseDynamics);
-        let Err((at, message)) = read else { panic!("{text}") };
+        let Err((at, mistake)) = read else { panic!("{text}") };
+        let message = mistake.to_string();
         assert!(message.contains(what), "{text}: {message}");
         assert_eq!(at, word, "{text}");
     }

@@ -185,7 +185,7 @@ impl PlanFile {
     #[must_use]
     pub fn located(name: &str, text: &str, (function, plans): (Function, &PlanSet), error: &CompileError) -> Report {
         let (place, message) = match error {
-            CompileError::Graph { word, message, .. } => (word_of_graph(text, function, *word), message.clone()),
+            CompileError::Graph { word, mistake, .. } => (word_of_graph(text, function, *word), mistake.to_string()),
             _ if !plans.rewritten.contains_key(&function) => (value_of(text, &["reduced", "plan"]), error.to_string()),
             CompileError::NotIdentical { .. } => {
                 (value_of(text, &["rewritten", function.name(), "graph"]), error.to_string())
