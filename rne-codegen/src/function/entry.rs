@@ -1,7 +1,7 @@
 //! Entries of the table of functions.
 
-use super::table::{Capability, Function};
 use super::{Answer, Argument, Returned};
+use super::{Capability, Function};
 use crate::quantity::Quantity;
 
 /// The signature of a function, and the words for its callers.
