@@ -192,20 +192,20 @@ impl<'p> Sums<'p> {
     }
 
     fn term(&mut self, id: ValueId, value: Value) -> Term {
-        let of = |id: ValueId| self.terms[id.index()];
+        let term = |id: ValueId| self.terms[id.index()];
         let node = 2 * id.index();
         match value {
-            Value::Same(a) if !self.is_leaf(id) => of(a),
-            Value::Negative(a) if !self.is_leaf(id) => of(a).opposite(),
+            Value::Same(a) if !self.is_leaf(id) => term(a),
+            Value::Negative(a) if !self.is_leaf(id) => term(a).opposite(),
             Value::Binary(Operator::Sum, a, b) if !self.is_leaf(id) => {
-                self.terms_of[node] = Some(vec![of(a), of(b)]);
+                self.terms_of[node] = Some(vec![term(a), term(b)]);
                 Term::plus(node)
             }
             Value::Binary(Operator::Difference, a, b) if !self.is_leaf(id) => {
-                self.terms_of[node] = Some(vec![of(a), of(b).opposite()]);
+                self.terms_of[node] = Some(vec![term(a), term(b).opposite()]);
                 Term::plus(node)
             }
-            Value::Binary(_, a, b) if !self.is_leaf(id) => Term::plus(node).with(of(a).sign).with(of(b).sign),
+            Value::Binary(_, a, b) if !self.is_leaf(id) => Term::plus(node).with(term(a).sign).with(term(b).sign),
             _ => Term::plus(node),
         }
     }
@@ -378,7 +378,8 @@ impl<'p> Sums<'p> {
                 statements.push(Statement { place: *place, name: *name, value });
             }
         }
-        let mut output = |of: &Output| Output { name: of.name, value: writing.operand(self.terms[of.value.index()]) };
+        let mut output =
+            |Output { name, value }: &Output| Output { name: *name, value: writing.operand(self.terms[value.index()]) };
         let outputs = program.outputs.iter().map(&mut output).collect();
         Program { values: writing.values, statements, outputs, ..program.clone() }.in_written_order()
     }

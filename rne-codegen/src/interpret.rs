@@ -112,28 +112,28 @@ impl Interpreter {
         // the cosine of an angle comes after its sine
         let mut turn: Option<(ValueId, (T, T))> = None;
         for (id, value) in self.values.iter() {
-            let of = |id: ValueId| slots[id.index()];
+            let number = |id: ValueId| slots[id.index()];
             let mut turned = |angle: ValueId| match turn {
                 Some((of, pair)) if of == angle => pair,
-                _ => turn.insert((angle, sin_cos(of(angle)))).1,
+                _ => turn.insert((angle, sin_cos(number(angle)))).1,
             };
             let number = match value {
                 Value::Argument => arguments.input(self.values.name(id)?, &sin_cos)?,
                 Value::Constant(number) => constant(self.values.name(id), number)?,
                 Value::Sine(angle) => turned(angle).0,
                 Value::Cosine(angle) => turned(angle).1,
-                Value::Same(a) => of(a),
-                Value::Negative(a) => -of(a),
-                Value::Binary(Operator::Sum, a, b) => of(a) + of(b),
-                Value::Binary(Operator::Difference, a, b) => of(a) - of(b),
-                Value::Binary(Operator::Product, a, b) => of(a) * of(b),
-                Value::Binary(Operator::Quotient, a, b) => of(a) / of(b),
+                Value::Same(a) => number(a),
+                Value::Negative(a) => -number(a),
+                Value::Binary(Operator::Sum, a, b) => number(a) + number(b),
+                Value::Binary(Operator::Difference, a, b) => number(a) - number(b),
+                Value::Binary(Operator::Product, a, b) => number(a) * number(b),
+                Value::Binary(Operator::Quotient, a, b) => number(a) / number(b),
                 Value::Fused(Contraction { factors: [x, y], addend, negated }) => match negated {
-                    None => of(addend) + of(x) * of(y),
-                    Some(Negated::Factor) => of(addend) - of(x) * of(y),
-                    Some(Negated::Addend) => of(x) * of(y) - of(addend),
+                    None => number(addend) + number(x) * number(y),
+                    Some(Negated::Factor) => number(addend) - number(x) * number(y),
+                    Some(Negated::Addend) => number(x) * number(y) - number(addend),
                 },
-                Value::BySign([x, a, b]) => of(x).by_sign(of(a), of(b)),
+                Value::BySign([x, a, b]) => number(x).by_sign(number(a), number(b)),
             };
             slots.push(number);
         }

@@ -243,14 +243,14 @@ impl Program {
             moving.value(id);
         }
         let angles = moving.statements(&self.angles);
-        let mut turn = |of: &SineCosine| SineCosine { angle: moving.value(of.angle), ..of.clone() };
+        let mut turn = |old: &SineCosine| SineCosine { angle: moving.value(old.angle), ..old.clone() };
         let sines_and_cosines = self.sines_and_cosines.iter().map(&mut turn).collect();
         let is_turn = |(_, value): &(ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
         for (id, _) in self.values.iter().filter(is_turn) {
             moving.value(id);
         }
         let statements = moving.statements(&self.statements);
-        let mut output = |of: &Output| Output { value: moving.value(of.value), ..of.clone() };
+        let mut output = |old: &Output| Output { value: moving.value(old.value), ..old.clone() };
         let outputs = self.outputs.iter().map(&mut output).collect();
         let values = moving.values;
         Self { values, angles, sines_and_cosines, statements, outputs, ..self }
@@ -330,6 +330,6 @@ impl Moving<'_> {
     }
 
     fn statements(&mut self, old: &[Statement]) -> Vec<Statement> {
-        old.iter().map(|of| Statement { value: self.value(of.value), ..of.clone() }).collect()
+        old.iter().map(|old| Statement { value: self.value(old.value), ..old.clone() }).collect()
     }
 }

@@ -82,18 +82,18 @@ impl Value {
 
     /// The same value with other operands.
     #[must_use]
-    pub fn map(self, mut of: impl FnMut(ValueId) -> ValueId) -> Self {
+    pub fn map(self, mut change: impl FnMut(ValueId) -> ValueId) -> Self {
         match self {
             Self::Argument | Self::Constant(_) => self,
-            Self::Sine(a) => Self::Sine(of(a)),
-            Self::Cosine(a) => Self::Cosine(of(a)),
-            Self::Same(a) => Self::Same(of(a)),
-            Self::Negative(a) => Self::Negative(of(a)),
-            Self::Binary(operator, a, b) => Self::Binary(operator, of(a), of(b)),
+            Self::Sine(a) => Self::Sine(change(a)),
+            Self::Cosine(a) => Self::Cosine(change(a)),
+            Self::Same(a) => Self::Same(change(a)),
+            Self::Negative(a) => Self::Negative(change(a)),
+            Self::Binary(operator, a, b) => Self::Binary(operator, change(a), change(b)),
             Self::Fused(Contraction { factors, addend, negated }) => {
-                Self::Fused(Contraction { addend: of(addend), factors: factors.map(of), negated })
+                Self::Fused(Contraction { addend: change(addend), factors: factors.map(change), negated })
             }
-            Self::BySign(operands) => Self::BySign(operands.map(of)),
+            Self::BySign(operands) => Self::BySign(operands.map(change)),
         }
     }
 }

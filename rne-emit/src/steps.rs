@@ -20,14 +20,14 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
     };
     let has_kind = |kind| robot.rows().any(|row| row.kind == kind);
     let has_first_moment = robot.rows().any(|row| row.link.has_first_moment());
-    let of = |step, kind| match recursion {
+    let written = |step, kind| match recursion {
         Form::SevenSteps => formulas(step, kind, ANY, has_first_moment),
         Form::Reduced => reduced_formulas(step, kind, ANY),
     };
     let mut lines = Vec::new();
     for step in Step::ALL.into_iter().filter(|&step| has(step)) {
         for kind in [JointKind::Revolute, JointKind::Prismatic].into_iter().filter(|&kind| has_kind(kind)) {
-            for formula in of(step, kind) {
+            for formula in written(step, kind) {
                 let line = format!("{} {}", step.number(), formula.text);
                 if lines.contains(&line) {
                     continue;

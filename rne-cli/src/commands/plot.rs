@@ -156,8 +156,8 @@ fn peaks(robot: &Robot, history: &TorqueHistory) -> String {
 /// Everything that the picture shows, as numbers.
 fn csv(robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory) -> String {
     let names = ["tau", "inertia", "velocity", "gravity", "power"];
-    let of = |name: &&str| (1..=robot.dof()).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
-    let mut text = format!("t,{}\n", names.iter().flat_map(of).collect::<Vec<_>>().join(","));
+    let columns = |name: &&str| (1..=robot.dof()).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
+    let mut text = format!("t,{}\n", names.iter().flat_map(columns).collect::<Vec<_>>().join(","));
     for ((time, parts), powers) in trajectory.time.iter().zip(&history.parts).zip(&history.powers) {
         text.push_str(&exact_digits(*time));
         let numbers = [&parts.total, &parts.inertia, &parts.velocity, &parts.gravity, powers].into_iter().flatten();

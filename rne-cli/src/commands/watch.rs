@@ -315,12 +315,12 @@ fn groups(arguments: &Arguments, robot: &Robot, known: Option<&Known>, by: &str)
         let options = arguments.reading.options();
         let values = Log::values(&arguments.logs, by, &options, |share| reading::show(&bar, share))
             .map_err(|error| log_arguments::failure(&error, &[]))?;
-        let of = |found: LabelValue| Group {
+        let group = |found: LabelValue| Group {
             paths: arguments.logs.clone(),
             rows: Some((by.to_owned(), found.value.clone())),
             name: found.value,
         };
-        return Ok(values.into_iter().map(of).collect());
+        return Ok(values.into_iter().map(group).collect());
     }
     let mut groups: Vec<Group> = Vec::new();
     for path in &arguments.logs {
@@ -375,7 +375,7 @@ fn trend(
     let (mut events, mut names) = (Vec::new(), Vec::new());
     let mut first_failure = None;
     for group in groups {
-        let mut one = || -> Result<Changes, Failure> {
+        let mut compare = || -> Result<Changes, Failure> {
             let log = open(arguments, &group, robot, Some(&known))?;
             remark += &log.remark_beside(&known.remarks, PAGE);
             known.remarks.extend(log.log().remarks().iter().cloned());
@@ -383,7 +383,7 @@ fn trend(
             changes(&structure, &known.baseline, log.log(), &mut |share| reading::show(&bar, share))
                 .map_err(|error| watch_failure(&error, &log.words()))
         };
-        match one() {
+        match compare() {
             Ok(found) => {
                 names.push(group.log_name());
                 trend.push(group.name, &found);

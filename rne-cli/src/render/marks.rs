@@ -70,7 +70,7 @@ impl Mark {
         };
         let all = sheet.lines.iter().enumerate();
         let all = all.flat_map(|(index, line)| (0..line.values.len()).map(move |component| (index, component)));
-        let of = all.filter(counts).count();
+        let most = all.filter(counts).count();
         let of_verdict = |verdict| {
             let counted = comparison.verdicts.iter().filter(|(place, own)| counts(place) && **own == verdict);
             counted.count()
@@ -96,7 +96,7 @@ impl Mark {
                 explains_everything: reason.is_some_and(|reason| reason.reach == Reach::Everything),
             }
         });
-        Self { points, of, carried, missing: of.saturating_sub(given), first_error }
+        Self { points, of: most, carried, missing: most.saturating_sub(given), first_error }
     }
 }
 
@@ -262,15 +262,15 @@ struct Row {
 }
 
 pub(crate) fn json(all: &[Marked], hint: bool) -> Reply {
-    let of = |one: &Marked| {
+    let row = |marked: &Marked| {
         let first_error = |mark: &Mark| {
             let first = mark.first_error.clone()?;
             Some(FirstError { right: first.right.filter(|_| !hint), ..first })
         };
-        let mark = one.mark.as_ref().ok().map(|mark| Mark { first_error: first_error(mark), ..*mark });
-        let refused = one.mark.as_ref().err().map(Failure::sentence);
-        Row { student: one.student.clone(), file: one.file.clone(), mark, refused }
+        let mark = marked.mark.as_ref().ok().map(|mark| Mark { first_error: first_error(mark), ..*mark });
+        let refused = marked.mark.as_ref().err().map(Failure::sentence);
+        Row { student: marked.student.clone(), file: marked.file.clone(), mark, refused }
     };
     let most = all.iter().filter_map(|one| one.mark.as_ref().ok()).map(|mark| mark.of).max().unwrap_or(0);
-    Reply { of: most, marks: all.iter().map(of).collect() }
+    Reply { of: most, marks: all.iter().map(row).collect() }
 }

@@ -166,8 +166,8 @@ fn friction(parameter: &str) -> &'static str {
 
 /// Other causes that the log cannot tell from the change.
 fn rivals(event: &Event) -> String {
-    let of = |rival: &&'static str| format!("; {} would explain it almost as well", friction(rival));
-    event.rivals.iter().map(of).collect::<Vec<_>>().concat()
+    let sentence = |rival: &&'static str| format!("; {} would explain it almost as well", friction(rival));
+    event.rivals.iter().map(sentence).collect::<Vec<_>>().concat()
 }
 
 /// The reason for which an effort can have another gain.

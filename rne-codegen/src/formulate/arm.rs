@@ -217,16 +217,16 @@ pub(crate) fn number<'s>(builder: &'s Builder, robot: &Robot, entry: Entry, valu
 }
 
 fn formula<'s>(builder: &'s Builder, written: &Formula) -> Symbol<'s> {
-    let of = |written: &Formula| formula(builder, written);
+    let symbol = |written: &Formula| formula(builder, written);
     match written {
         Formula::Number(value) => builder.constant(*value, Cause::Arithmetic),
         Formula::Parameter(index) => builder.argument(Name::scalar(Quantity::Parameter, index + 1)),
-        Formula::Negative(a) => -of(a),
-        Formula::Sum(a, b) => of(a) + of(b),
-        Formula::Difference(a, b) => of(a) - of(b),
-        Formula::Product(a, b) => of(a) * of(b),
+        Formula::Negative(a) => -symbol(a),
+        Formula::Sum(a, b) => symbol(a) + symbol(b),
+        Formula::Difference(a, b) => symbol(a) - symbol(b),
+        Formula::Product(a, b) => symbol(a) * symbol(b),
         Formula::Quotient(a, b) => {
-            let (a, b) = (of(a), of(b));
+            let (a, b) = (symbol(a), symbol(b));
             builder.quotient(a, b)
         }
     }

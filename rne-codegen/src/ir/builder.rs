@@ -79,7 +79,7 @@ impl Builder {
     }
 
     fn caused(&self, at: Ref, cause: Cause) -> Symbol<'_> {
-        let causes = self.trace.as_ref().map_or(CausesId::ARITHMETIC, |trace| trace.borrow_mut().causes.one(cause));
+        let causes = self.trace.as_ref().map_or(CausesId::ARITHMETIC, |trace| trace.borrow_mut().causes.single(cause));
         Symbol { builder: self, at, causes, term: TermId::NONE }
     }
 
@@ -181,7 +181,7 @@ impl Builder {
         let graph = self.graph.borrow();
         // the two halves of a symmetric tensor are zero because of one number of the table
         let told = if graph.is_zero(symbol.at) { name.of_upper_half() } else { name };
-        let causes = if is_entry { trace.causes.one(Cause::Table(told)) } else { symbol.causes };
+        let causes = if is_entry { trace.causes.single(Cause::Table(told)) } else { symbol.causes };
         let after = graph.len();
         let told = trace.causes.get(causes).clone();
         let place = if name.quantity.step().is_some() { trace.place() } else { None };

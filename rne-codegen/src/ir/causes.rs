@@ -23,15 +23,15 @@ pub(crate) struct KnownCauses {
 
 impl Default for KnownCauses {
     fn default() -> Self {
-        let arithmetic = Alternatives::one(Cause::Arithmetic);
+        let arithmetic = Alternatives::single(Cause::Arithmetic);
         let ids = HashMap::from([(arithmetic.clone(), CausesId::ARITHMETIC)]);
         Self { list: vec![arithmetic], ids, joined: HashMap::new() }
     }
 }
 
 impl KnownCauses {
-    pub(crate) fn one(&mut self, cause: Cause) -> CausesId {
-        self.id(Alternatives::one(cause))
+    pub(crate) fn single(&mut self, cause: Cause) -> CausesId {
+        self.id(Alternatives::single(cause))
     }
 
     fn id(&mut self, alternatives: Alternatives) -> CausesId {

@@ -69,7 +69,7 @@ impl fmt::Display for Cause {
 pub struct Causes(Arc<[Cause]>);
 
 impl Causes {
-    pub(crate) fn one(cause: Cause) -> Self {
+    pub(crate) fn single(cause: Cause) -> Self {
         Self(Arc::new([cause]))
     }
 
@@ -126,8 +126,8 @@ impl Alternatives {
     /// Sets that are kept; the fewest causes are found among them.
     const MOST: usize = 8;
 
-    pub(crate) fn one(cause: Cause) -> Self {
-        Self(vec![Causes::one(cause)])
+    pub(crate) fn single(cause: Cause) -> Self {
+        Self(vec![Causes::single(cause)])
     }
 
     /// The best of them.

@@ -187,16 +187,16 @@ impl Graph {
 
     /// The residue of a node at a point, when those before it are `images`.
     pub(crate) fn image_at(&self, op: Op, residues: &[Residue], point: &SamplePoint) -> Residue {
-        let of = |at: Ref| at.residue(residues);
+        let residue = |at: Ref| at.residue(residues);
         match op {
             Op::Constant(place) => self.numbers.get(place).0.residue,
             Op::Input(input) => point.argument(input),
             Op::Sine(angle) => self.turn_image(angle, point).0,
             Op::Cosine(angle) => self.turn_image(angle, point).1,
-            Op::Sum(a, b) => of(a) + of(b),
-            Op::Product(a, b) => of(a) * of(b),
-            Op::Quotient(a, b) => of(a) * of(b).inverse().unwrap_or(Residue::ZERO),
-            Op::BySign(operands) => Residue::by_sign(operands.map(of)),
+            Op::Sum(a, b) => residue(a) + residue(b),
+            Op::Product(a, b) => residue(a) * residue(b),
+            Op::Quotient(a, b) => residue(a) * residue(b).inverse().unwrap_or(Residue::ZERO),
+            Op::BySign(operands) => Residue::by_sign(operands.map(residue)),
         }
     }
 

@@ -120,7 +120,7 @@ impl Trace {
             // the other operand is left
             (Operation::Sum, Outcome::Zero(Side::Right)) | (_, Outcome::One(Side::Right)) => (a, b),
             (Operation::Sum, Outcome::Zero(Side::Left)) | (_, Outcome::One(Side::Left)) => (b, a),
-            (Operation::Sum, _) if graph.is_zero(at) => (self.causes.one(Cause::Cancellation), none),
+            (Operation::Sum, _) if graph.is_zero(at) => (self.causes.single(Cause::Cancellation), none),
             // a product is zero when either is
             (Operation::Product, Outcome::Zero(side)) => {
                 let either = match side {

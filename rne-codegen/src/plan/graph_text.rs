@@ -139,9 +139,9 @@ impl Constants<'_> {
             Source::Given => String::from("1"),
             Source::Sum(a, b) => self.made(a, "+", b),
             Source::Product(a, b) => self.made(a, "*", b),
-            Source::Inverse(of) => {
-                let of = self.number(of);
-                format!("/{}", self.places.len() + 1 - of)
+            Source::Inverse(inverted) => {
+                let number = self.number(inverted);
+                format!("/{}", self.places.len() + 1 - number)
             }
         };
         self.places.push(place);
@@ -270,9 +270,9 @@ fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, R
             let (a, b) = (operand(graph, a), operand(graph, b));
             graph.product(a, b).0
         }
-        Source::Inverse(of) => {
-            let of = operand(graph, Ref::new(of as usize));
-            graph.constant_inverse(of).unwrap_or_else(|| graph.zero())
+        Source::Inverse(inverted) => {
+            let value = operand(graph, Ref::new(inverted as usize));
+            graph.constant_inverse(value).unwrap_or_else(|| graph.zero())
         }
     };
     // a place holds the magnitude
