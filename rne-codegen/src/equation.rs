@@ -21,7 +21,7 @@ pub struct Equation {
 pub enum Term {
     /// Another component, an argument or a number of the table.
     Variable(Name),
-    /// A number, and because of what it is that one.
+    /// A number, and the reasons for its value.
     Number(f64, Causes),
     /// -a
     Negative(Box<Term>),

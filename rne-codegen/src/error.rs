@@ -129,7 +129,7 @@ pub enum Remedy {
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Suspect {
-    /// It was written by the plan of a plan file.
+    /// The plan of a plan file was used.
     pub planned: bool,
     /// A number of the robot whose products leave the range of double precision.
     pub number: Option<Extreme>,

@@ -54,11 +54,11 @@ pub fn ordered_for_latency(program: &Program) -> Program {
 #[must_use]
 pub fn instructions(program: &Program) -> usize {
     let instructions = program.values.iter().skip(program.before_statements()).map(|(id, value)| match value {
-        // its product is counted by itself
+        // the product is counted as an instruction of its own
         Value::Binary(..) => usize::from(program.values.contraction(id).is_none()),
         Value::Fused(_) => 1,
         Value::BySign(_) => 2,
-        // a minus goes into the instruction that uses it, but for an output
+        // a minus is part of the instruction that uses the value; only an output needs an instruction for it
         _ => 0,
     });
     instructions.sum()
@@ -117,7 +117,7 @@ fn soonest(program: &Program) -> Vec<Option<(Contraction, ValueId)>> {
     contractions
 }
 
-/// A value by its place among the nodes of [`Sums`], and the sign it enters with.
+/// A value by its place among the nodes of [`Sums`], and the sign with which a sum uses it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Term {
     sign: Sign,
@@ -150,7 +150,7 @@ enum Named {
 /// the value itself, and behind it a sum of one term for a statement that gives a value another name.
 struct Sums<'p> {
     program: &'p Program,
-    /// How many values come before the statements: counted once, for it is asked of every value.
+    /// The number of values before the statements. It is stored, because it is needed for every value.
     before_statements: usize,
     /// By value: its node.
     terms: Vec<Term>,
@@ -271,7 +271,7 @@ impl<'p> Sums<'p> {
         }
     }
 
-    /// Sums that are used in one sum alone become terms of it. Nodes stand behind what they use.
+    /// Sums that are used in only one sum become terms of this sum. A node comes after the nodes that it uses.
     fn flatten(&mut self, which: Named) {
         for index in 0..self.terms_of.len() {
             let Some(terms) = self.terms_of[index].take() else { continue };
@@ -303,7 +303,7 @@ impl<'p> Sums<'p> {
         let mut is_computed: Vec<_> = (0..nodes)
             .map(|node| self.is_computed[node] && !(in_sums[node] == self.uses[node] && self.may_be_fused(node)))
             .collect();
-        // sums that nothing begins yet, by their terms, and how many of them each term is in
+        // for each node, the sums without a computed term that contain it, and the number of these sums
         let mut is_started: Vec<_> = sums.iter().map(|terms| terms.iter().any(|term| is_computed[term.node])).collect();
         let mut sums_of: Vec<Vec<usize>> = vec![Vec::new(); nodes];
         let mut counts = vec![0_usize; nodes];
@@ -313,7 +313,7 @@ impl<'p> Sums<'p> {
                 sums_of[term.node].push(index);
             }
         }
-        // the first of those that begin most sums; counts fall, so what is too high in the queue goes back
+        // the node in the most of these sums comes first; counts become smaller, so an outdated entry is put back
         let counted = counts.iter().enumerate().filter(|(_, count)| **count > 0);
         let mut queue: BinaryHeap<_> = counted.map(|(node, &count)| (count, Reverse(node))).collect();
         while let Some((count, Reverse(node))) = queue.pop() {
@@ -362,7 +362,7 @@ impl<'p> Sums<'p> {
         }
     }
 
-    /// The program that the sums have become.
+    /// The program after the sums have been rearranged.
     fn program(&self) -> Program {
         let program = self.program;
         let mut writing = Writing {
@@ -389,7 +389,7 @@ impl<'p> Sums<'p> {
 struct Writing<'s> {
     sums: &'s Sums<'s>,
     values: Values,
-    /// By node: where it has been written under its name.
+    /// For each node, the value that was written under its name.
     known: Vec<Option<ValueId>>,
 }
 
@@ -416,7 +416,7 @@ impl Writing<'_> {
         if self.sums.is_leaf(id) {
             return id;
         }
-        // the sign of a product is outside
+        // the sign of a product is applied after the product
         let is_scaled = matches!(value, Value::Binary(..));
         let value = value.map(|operand| {
             let term = self.sums.terms[operand.index()];

@@ -31,7 +31,7 @@ pub struct Arguments<'a, T> {
 }
 
 impl<'a, T: Copy> Arguments<'a, T> {
-    /// Motion of the joints; everything else is `zero` or absent.
+    /// Arguments with the motion of the joints only. All other arguments are `zero` or absent.
     #[must_use]
     pub const fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T], zero: T) -> Self {
         let zeros = [zero; 3];

@@ -18,7 +18,7 @@ pub(crate) const SUM: usize = 3;
 /// Cycles of a division.
 const QUOTIENT: usize = 14;
 
-/// Cycles after which sines and cosines are there.
+/// Number of cycles until sines and cosines are computed.
 const TURN: usize = 50;
 
 /// A sum with no more time to spare than this is waited for.

@@ -106,7 +106,7 @@ impl<'r> Compiler<'r> {
         Self { plans: OnceLock::from(plans.into()), ..self }
     }
 
-    /// Arranged for another target.
+    /// Arranges the programs for another target.
     #[must_use]
     pub fn for_target(self, target: Target) -> Self {
         Self { target, ..self }

@@ -24,7 +24,7 @@ pub struct Program {
     pub parameters: usize,
     /// The function.
     pub function: Function,
-    /// The frame that it is taken at instead of the tip: the name in the robot file.
+    /// The frame of the function, by its name in the robot file; `None` for the tip.
     pub frame: Option<String>,
     /// The name of its code: that of the function, or at a frame `jacobian_of_camera`.
     pub name: String,
@@ -96,7 +96,7 @@ impl Default for Scales {
     }
 }
 
-/// A named constant. A number that is two entries of the table stands under each name that the statements use.
+/// A named constant. A number that is two entries of the table has each of the names that the statements use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     /// Its name.

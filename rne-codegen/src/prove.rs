@@ -14,7 +14,7 @@ use crate::program::{Program, Proof};
 use crate::refusal::largest_rounding;
 use crate::{CompileError, Suspect};
 
-/// Points of the fields at which torques are compared.
+/// Number of random points in each field at which torques are compared.
 const POINTS: u64 = 4;
 /// States at which rounding is measured when code is generated.
 const STATES: usize = 24;

@@ -24,7 +24,7 @@ impl ValueId {
     }
 }
 
-/// How a value is computed. Its operands stand before it in the list.
+/// How a value is computed. Its operands come before it in the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// An argument of the function.
@@ -35,7 +35,7 @@ pub enum Value {
     Sine(ValueId),
     /// The cosine of an angle.
     Cosine(ValueId),
-    /// Another name of a value.
+    /// The same value under another name.
     Same(ValueId),
     /// -a
     Negative(ValueId),
@@ -47,14 +47,14 @@ pub enum Value {
     BySign([ValueId; 3]),
 }
 
-/// A sum or difference as x y + z, which may be one instruction.
+/// A sum or difference with a product, x y + z, which a processor may compute by one instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contraction {
     /// x and y.
     pub factors: [ValueId; 2],
     /// z.
     pub addend: ValueId,
-    /// The part that a difference negates.
+    /// The part that a difference negates; `None` for a sum.
     pub negated: Option<Negated>,
 }
 
@@ -98,7 +98,7 @@ impl Value {
     }
 }
 
-/// The values of a program. A value without a name is used once.
+/// The values of a program. A value without a name is used only once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Values {
     list: Vec<Value>,
@@ -135,7 +135,7 @@ impl Values {
         self.list.iter().enumerate().map(|(index, value)| (ValueId::at(index), *value))
     }
 
-    /// Writes a value behind the others.
+    /// Adds a value to the end of the list.
     ///
     /// # Panics
     /// When there are 2³² values already.

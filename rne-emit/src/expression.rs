@@ -7,7 +7,7 @@ use rne_codegen::{Expression, ExpressionKind, Negated, Operator};
 use super::annotated::{Annotated, Part};
 use super::syntax::Syntax;
 
-/// Where an operand stands.
+/// The position of an operand in an expression.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Position {
     /// Left of + or -.
@@ -24,7 +24,7 @@ pub(super) enum Position {
 
 /// How an operator is written.
 pub(super) trait Infix {
-    /// As Rust and C write it.
+    /// The character of the operator in Rust and C.
     fn sign(self) -> char;
     /// With a blank on each side.
     fn between_blanks(self) -> &'static str;
@@ -96,7 +96,7 @@ pub(super) struct Measured {
 pub(super) struct Measure {
     /// The columns that it takes on one line. Code is ASCII.
     pub(super) width: usize,
-    /// Whether it begins with a parenthesis.
+    /// Whether the text begins with a parenthesis.
     pub(super) opens: bool,
     pub(super) kind: Kind,
 }

@@ -111,7 +111,7 @@ fn of_joint(templates: Templates, joint: usize) -> Vec<Formula> {
     written(templates, [joint, joint.saturating_sub(1), joint + 1].map(|of| of.to_string())).map(formula).collect()
 }
 
-/// In the place of a joint's number: letters, i for the joint, h = i - 1 and j = i + 1 for its neighbours.
+/// The letters in the place of a joint's number: i for the joint, h = i - 1 and j = i + 1 for its neighbours.
 pub(super) const ANY: usize = usize::MAX;
 
 fn written(templates: Templates, [i, p, n]: [String; 3]) -> impl Iterator<Item = (Quantity, String)> {

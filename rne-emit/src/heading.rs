@@ -20,7 +20,7 @@ pub struct Heading {
     pub frames: String,
     /// Where base and tool are, if they are not where the table begins and ends: a line each.
     pub ends: Vec<String>,
-    /// Its Denavit-Hartenberg table: a line per joint.
+    /// The Denavit-Hartenberg table of the robot: a line for each joint.
     pub table: String,
 }
 

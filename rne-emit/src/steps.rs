@@ -32,7 +32,7 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
                 if lines.contains(&line) {
                     continue;
                 }
-                // what only one of two kinds of joint does
+                // a formula that only one of two kinds of joint has
                 let is_other = kind == JointKind::Prismatic && has_kind(JointKind::Revolute);
                 lines.push(if is_other { format!("{line}   (prismatic)") } else { line });
             }

@@ -62,7 +62,7 @@ fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     text
 }
 
-/// The type of the last argument of what depends on run-time parameters.
+/// The type of the last argument of a function that depends on run-time parameters.
 fn record_of_parameters(robot: &Robot) -> String {
     let parameters = Parameter::of(robot, parameters::OF_RUST);
     let (mut fields, mut values) = (String::new(), String::new());

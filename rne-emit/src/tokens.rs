@@ -22,7 +22,7 @@ pub struct Body<'a> {
     scalar: &'a TokenStream,
     /// The path of what has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
     arithmetic: &'a TokenStream,
-    /// Where the types of records are; tuples stand for them without.
+    /// The path of the record types; without it, records are tuples.
     library: Option<&'a TokenStream>,
 }
 

@@ -21,7 +21,7 @@ use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 pub(crate) struct Mount<'s> {
     /// Turns components in the axes of the joint at θ = 0, or of the tip frame, into components in those of the parent.
     pub(crate) rotation: Matrix<'s>,
-    /// From the parent's centre of mass to the joint or the tip; of the base, from the origin of frame 0.
+    /// Vector from the parent's centre of mass to the joint or the tip; for the base, from the origin of frame 0.
     pub(crate) r: Vector<'s>,
     /// To the same point from the end of the parent's offset, where the link frame of the table stands.
     pub(crate) lever: Vector<'s>,
@@ -281,7 +281,7 @@ pub(crate) fn identity(builder: &Builder) -> Matrix<'_> {
     Matrix::from_rows([[one, zero, zero], [zero, one, zero], [zero, zero, one]])
 }
 
-/// Gravity in frame 0; a component that is zero says so.
+/// Gravity in frame 0. The trace records that a zero component is due to the direction of gravity.
 fn gravity<'s>(builder: &'s Builder, robot: &Robot) -> Vector<'s> {
     let [x, y, z] = robot.gravity;
     let component = |axis: Axis, value| {

@@ -23,7 +23,7 @@ pub(crate) struct Payload<'s> {
 }
 
 impl<'s> Payload<'s> {
-    /// The argument of the function that is being written, if it has one.
+    /// The payload among the arguments of the function that is being written, if the function has one.
     pub(crate) fn argument(builder: &'s Builder, dof: usize) -> Option<Self> {
         if !builder.function.takes(Argument::Payload) {
             return None;

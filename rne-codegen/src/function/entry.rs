@@ -92,7 +92,7 @@ impl Own {
         Self { quantity, heading, meaning: None }
     }
 
-    /// An argument whose names stand for something of this function.
+    /// An argument whose names have a special meaning in this function.
     pub(super) const fn names(quantity: Quantity, meaning: &'static str) -> Self {
         Self::meaning(quantity, meaning, |_| String::new())
     }

@@ -348,7 +348,7 @@ pub(crate) struct JointLines<'s> {
     pub(crate) builder: &'s Builder,
     /// The joint at whose place the lines stand.
     joint: usize,
-    /// The joint whose name the quantities bear.
+    /// The joint whose number is in the names of the quantities.
     named: usize,
 }
 

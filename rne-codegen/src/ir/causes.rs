@@ -9,7 +9,7 @@ use super::{Alternatives, Cause, Causes};
 pub(crate) struct CausesId(u32);
 
 impl CausesId {
-    /// The first: constants that happen to give it.
+    /// The id of the set that contains only the cause `Arithmetic`. It is the first set.
     pub(crate) const ARITHMETIC: Self = Self(0);
 }
 

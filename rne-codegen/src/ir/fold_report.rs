@@ -228,7 +228,7 @@ pub enum Operation {
 pub enum Fold {
     /// It stands in the generated code.
     Kept,
-    /// A factor or summand is zero, mainly because of this.
+    /// A factor or summand is zero; the cause is the main reason.
     Zero(Cause),
     /// A factor is 1 or -1, because of this.
     One(Cause),
@@ -238,7 +238,7 @@ pub enum Fold {
     Cancelled,
     /// The same value had been computed before.
     Shared,
-    /// Nothing the function returns depends on it.
+    /// No returned number depends on it.
     Unused,
 }
 
@@ -255,7 +255,7 @@ pub struct Place {
     pub by: Option<WithRespectTo>,
 }
 
-/// How many operations at one place met one fate.
+/// How many operations of one place have the same fate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Where.

@@ -137,7 +137,7 @@ impl Graph {
         self.nodes[at.index()].residue.signed(at.is_negative())
     }
 
-    /// Whether it is the constant 0: the number, not what rounds to it.
+    /// Whether a node is the constant 0: exactly zero, not a number that rounds to zero.
     pub(crate) fn is_zero(&self, at: Ref) -> bool {
         match self.policy {
             Policy::Structure => self.number(at).is_some_and(|number| number.is_zero() && number.to_f64() == 0.0),

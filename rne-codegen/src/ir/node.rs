@@ -52,7 +52,7 @@ impl Neg for Ref {
 /// The operation of a node. Operands always stand before the nodes that use them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Op {
-    /// A constant, never negative: its place among the numbers.
+    /// A constant by its place among the numbers; it is never negative.
     Constant(u32),
     /// An argument of the function.
     Input(Input),

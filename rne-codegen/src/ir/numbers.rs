@@ -9,7 +9,7 @@ use super::{Number, Ref, Residue};
 pub(crate) enum Source {
     /// From the robot and the plan.
     Given,
-    /// From two others by their places: negative factors and summands are references with a sign.
+    /// The sum of two constants, by their places. The sign of a summand is in its reference.
     Sum(Ref, Ref),
     Product(Ref, Ref),
     /// One over another.

@@ -60,7 +60,7 @@ impl Trace {
         place: Option<Place>,
         axis: Option<Axis>,
     ) -> (Option<Place>, Option<Axis>) {
-        // leaves and constants of the table that came before belong to no step
+        // leaves and table constants that were made before belong to no step
         self.births.resize_with(nodes, || None);
         (std::mem::replace(&mut self.place, place), std::mem::replace(&mut self.axis, axis))
     }

@@ -41,7 +41,7 @@ impl Traced {
 impl Traced {
     /// A graph of the same values that knows less: names and places of those values go over to it.
     pub(crate) fn told_by(mut self, other: &Self) -> Self {
-        // what is new has no place among the seven steps
+        // a new node belongs to none of the seven steps
         let place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term, by: None };
         self.trace.births.resize(self.graph.len(), None);
         for (birth, node) in self.trace.births.iter_mut().zip(&self.graph.nodes) {

@@ -1,5 +1,5 @@
 //! Plans: which choices the reduced form makes for a robot, what they cost, and the short search of a build that finds
-//! no plan file. A long search and plan files are the crate `rne-search`.
+//! no plan file. The crate `rne-search` has the long search and the plan files.
 
 mod cost;
 mod descent;

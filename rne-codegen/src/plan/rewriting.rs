@@ -318,7 +318,7 @@ fn factored_one(graph: &mut Graph, (a, p): (Ref, Pair), b: Ref) -> Option<Ref> {
     None
 }
 
-/// A quotient of two constants that is neither huge nor tiny.
+/// The quotient of two constants; `None` if it is huge or tiny.
 fn bounded_quotient(graph: &mut Graph, a: Ref, b: Ref) -> Option<Ref> {
     let quotient = graph.number(a)?.to_f64() / graph.number(b)?.to_f64();
     if !FACTORS.contains(&quotient.abs()) {

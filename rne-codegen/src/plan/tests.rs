@@ -196,7 +196,7 @@ fn a_wrong_literal_is_refused_by_rounding() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
     let (mut program, exactly, embedding) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
-    // the proof does not see how a constant was rounded, the states in double precision do
+    // the proof does not see how a constant was rounded; the states in double precision do
     let numbers = program.values.iter().filter_map(|(id, value)| match value {
         Value::Constant(number) => Some((id, number)),
         _ => None,

@@ -1,4 +1,4 @@
-//! Every discrete choice of the reduced form, as data.
+//! The choices of the reduced form, as data.
 
 use std::fmt;
 use std::str::FromStr;
@@ -30,11 +30,11 @@ pub struct Plan {
 pub struct JointPlan {
     /// The three parameters that the rods on this axis annul (section 4.5).
     pub targets: [RegroupingTarget; 3],
-    /// Where on its axis the frame's origin sits (section 5.4).
+    /// The position of the frame's origin on the joint axis (section 5.4).
     pub origin_shift: OriginShift,
     /// Where the offset along the axis acts on the way out (section 5.2).
     pub outward_offset: Side,
-    /// Where it acts on the way back.
+    /// Where this offset acts on the way back.
     pub inward_offset: Side,
     /// The moment of the link (section 3.3).
     pub moment: Moment,
@@ -70,9 +70,9 @@ macro_rules! switches {
 switches! {
     /// U z is the same for both links of this axis (section 5.3).
     axis_column,
-    /// The twist on the way out with seven products (section 5.1).
+    /// Vectors are rotated with seven products on the way out (section 5.1).
     scaled_twist_outward,
-    /// The twist on the way back with seven products.
+    /// Vectors are rotated with seven products on the way back (section 5.1).
     scaled_twist_inward,
     /// The next joint's origin is accelerated in the frame that does not turn with this joint (section 5.7).
     origin_unturned,

@@ -72,7 +72,7 @@ struct Tests<'a> {
 }
 
 impl Tests<'_> {
-    /// Rounding of the number type and of its constants, of sums of hundreds of terms.
+    /// The rounding errors of the number type, its constants, and sums of hundreds of terms.
     const fn tolerance(&self) -> &'static str {
         match self.precision {
             Precision::Single => "1e-4",

@@ -118,7 +118,7 @@ fn scalar(text: &str, indent: usize) -> String {
     quoted
 }
 
-/// Whether every character is of ASCII and shows itself.
+/// Whether every character is a visible ASCII character.
 fn is_visible(text: &str) -> bool {
     text.chars().all(|c| matches!(c, ' '..='~')) && !text.ends_with(' ')
 }
