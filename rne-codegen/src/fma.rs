@@ -91,7 +91,7 @@ pub fn fused(program: &Program, fusing: Fusing) -> Program {
     fused.in_written_order()
 }
 
-/// Those contractions for which nothing waits longer, by value.
+/// The contractions that make no value wait longer, by value.
 fn soonest(program: &Program) -> Vec<Option<(Contraction, ValueId)>> {
     let (values, latency) = (&program.values, Latency::of(program));
     let mut contractions = vec![None; values.len()];
@@ -152,14 +152,14 @@ struct Sums<'p> {
     program: &'p Program,
     /// The number of values before the statements. It is stored, because it is needed for every value.
     before_statements: usize,
-    /// By value: its node.
+    /// The node of each value.
     terms: Vec<Term>,
-    /// By node: the terms of a sum.
+    /// For each node, the terms of the sum, if it is a sum.
     terms_of: Vec<Option<Vec<Term>>>,
-    /// By node: the name under which a statement computes it, if one does.
+    /// For each node, the name of the statement that computes it, if there is one.
     names: Vec<Option<Name>>,
     uses: Vec<usize>,
-    /// By node: computed by itself. What is not is a term of a longer sum or fused with all sums that it is in.
+    /// For each node, whether it is computed by itself. Other nodes are terms of sums, or fused with all their sums.
     is_computed: Vec<bool>,
 }
 
@@ -224,7 +224,7 @@ impl<'p> Sums<'p> {
             }
             (Some(_), Sign::Plus) if is_free => node,
             (None, Sign::Plus) if is_free && is_product => node,
-            // another name of what has one, or its negative
+            // the value has a name already: this is a second name, or its negative
             _ => {
                 let node = 2 * id.index() + 1;
                 self.terms_of[node] = Some(vec![term]);
@@ -345,7 +345,7 @@ impl<'p> Sums<'p> {
     }
 
     fn sort_terms(&mut self) {
-        // nodes stand behind what they use
+        // nodes come after the nodes that they use
         let mut known: Vec<usize> = Vec::with_capacity(self.terms_of.len());
         for node in 0..self.terms_of.len() {
             let at = if let Some(terms) = &mut self.terms_of[node] {

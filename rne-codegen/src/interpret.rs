@@ -142,7 +142,7 @@ impl Interpreter {
 }
 
 impl<T: Copy> Arguments<'_, T> {
-    /// The argument of a name. Sines and cosines that are arguments are those of the positions.
+    /// The argument with this name. Arguments that are sines and cosines belong to the joint positions.
     fn input(&self, name: Name, sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
         match name.quantity {
             Quantity::Sine => Some(sin_cos(self.position(name.joint)?).0),

@@ -78,7 +78,7 @@ impl Latency {
             latency.known.push(at);
         }
         latency.total = program.outputs.iter().map(|output| latency.known[output.value.index()]).max().unwrap_or(0);
-        // a value stands behind its operands, so all that follows it is known
+        // a value comes after its operands, so in this direction all its uses are known
         for (id, value) in values.iter().skip(first).rev() {
             let rest = latency.rests[id.index()];
             if let Some((contraction, _)) = values.contraction(id) {
@@ -98,7 +98,7 @@ impl Latency {
         self.rests[id.index()]
     }
 
-    /// Whether the product of a contraction is better fused with what it is added to; `rest` follows the sum.
+    /// Whether it is faster to fuse the product of a contraction with the addend; `rest` is the wait after the sum.
     pub(crate) fn is_fused(&self, contraction: &Contraction, rest: usize) -> bool {
         let Ways { fused, apart } = self.ways(contraction);
         fused <= apart || apart + rest + SPARE < self.total

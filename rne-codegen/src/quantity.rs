@@ -164,7 +164,7 @@ struct Row {
     meaning: &'static str,
 }
 
-/// The enumeration of the quantities and the table of what is known of each, from one row per quantity.
+/// Makes the enumeration of the quantities and the table of their properties from one row for each quantity.
 macro_rules! quantities {
     ($(
         $quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $letter:literal,
@@ -177,7 +177,7 @@ macro_rules! quantities {
             $(#[doc = $meaning] $quantity,)*
         }
 
-        /// By quantity, in the order of the variants.
+        /// The row of each quantity, in the order of the variants.
         const TABLE: &[Row] = &[$(Row {
             prefix: $prefix,
             indices: Indices::$indices,

@@ -41,9 +41,9 @@ pub enum Value {
     Negative(ValueId),
     /// Two operands with an operator between them.
     Binary(Operator, ValueId, ValueId),
-    /// A product and what it is added to, rounded once where the processor can.
+    /// A product plus an addend, rounded once if the processor has this instruction.
     Fused(Contraction),
-    /// One of two values by the sign of the first: positive, negative; 0 where that is 0.
+    /// `[x, a, b]`: a where x is positive, b where x is negative, 0 where x is 0.
     BySign([ValueId; 3]),
 }
 

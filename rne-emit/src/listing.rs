@@ -19,7 +19,7 @@ use super::table::angle;
 use super::text::returned;
 use super::wrap::{TIED, WIDTH, fill};
 
-/// The part of a program to list, and how much to say.
+/// The part of a program to list, and how much of it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Selection {
     /// One joint only, counted from 1.
@@ -49,7 +49,7 @@ pub struct Listing<'a> {
     pub sections: Vec<Section<'a>>,
 }
 
-/// Lines that stand together: what one step has to say of one joint.
+/// Lines of one section: the statements of one step for one joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section<'a> {
     /// The joint and the step, and of which variable the statements are derivatives; `None` for what belongs to no
@@ -70,7 +70,7 @@ pub enum Line<'a> {
     Constant(Constant),
     /// A sine and cosine at the head of the function.
     SineCosine(&'a SineCosine, Expression<'a>),
-    /// A statement and what it computes.
+    /// A statement and its value.
     Statement(&'a Statement, Expression<'a>),
     /// The fate of components that have no statement.
     Resolution {
@@ -99,7 +99,7 @@ pub struct Folds {
 }
 
 impl Listing<'_> {
-    /// Whether nothing stands there.
+    /// Whether the text is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.sections.is_empty()
@@ -200,7 +200,7 @@ impl fmt::Display for Folds {
     }
 }
 
-/// The statements of a program with what there is to say of each joint and step.
+/// The statements of a program, with the headings and explanations of each joint and step.
 #[must_use]
 pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Listing<'a> {
     // only what returns torques keeps to joints and steps
@@ -310,7 +310,7 @@ fn shown_place(program: &Program, statement: &Statement) -> Place {
     let Statement { name, place, .. } = statement;
     let has_own_form = program.form != Form::SevenSteps && Function::TORQUES.contains(&program.function);
     match name.quantity.step() {
-        // the last row of the solution is what is returned
+        // the last row of the solution is the result
         _ if name.quantity == Quantity::RateDot => {
             Place { joint: name.joint, step: Step::Beyond, quantity: Quantity::Scaled, by: None }
         }
@@ -413,7 +413,7 @@ fn resolutions<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -
 
 fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
     let words = match found {
-        // the statement says it
+        // the statement shows it
         ResolvedAs::Computed => return None,
         ResolvedAs::Same(..) if name.quantity == Quantity::Torque => return None,
         ResolvedAs::Same(other, sign) => {

@@ -20,7 +20,7 @@ use super::syntax::Syntax;
 pub struct Body<'a> {
     program: Cow<'a, Program>,
     scalar: &'a TokenStream,
-    /// The path of what has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
+    /// The path of the type with `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, if no other type is given.
     arithmetic: &'a TokenStream,
     /// The path of the record types; without it, records are tuples.
     library: Option<&'a TokenStream>,
@@ -159,14 +159,14 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The statements and what is returned.
+    /// The statements and the results.
     fn beyond_turns(&self) -> TokenStream {
         let statements = self.statements(&self.program.statements);
         let outputs = self.returned();
         quote!(#statements #outputs)
     }
 
-    /// The results, in their layout; what was asked to be kept as well makes it a list.
+    /// The results in their layout; with additional kept values, they are a list.
     fn returned(&self) -> TokenStream {
         let outputs = || self.program.outputs.iter().map(|output| self.used(output.value));
         let layout = self.program.function.layout(self.program.dof);

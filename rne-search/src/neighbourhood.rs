@@ -9,7 +9,7 @@ use rne_model::Robot;
 pub struct Neighbourhood(OpenChoices);
 
 impl Neighbourhood {
-    /// From the choices that a robot leaves open.
+    /// Makes it from the choices that a robot leaves open.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         Self(Descent::new(robot, &[]).open_choices().clone())
@@ -194,7 +194,7 @@ impl Neighbourhood {
         }
     }
 
-    /// One to three random changes.
+    /// Makes one to three random changes.
     #[must_use]
     pub fn random(&self, plan: &Plan, rng: &mut fastrand::Rng) -> Plan {
         let mut other = plan.clone();

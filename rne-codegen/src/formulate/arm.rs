@@ -35,7 +35,7 @@ pub(crate) struct Link<'s> {
     pub(crate) kind: JointKind,
     /// The constant part of the joint angle.
     pub(crate) theta: Angle,
-    /// Its sine and cosine, where they are known at run time only.
+    /// The sine and cosine of the angle, if they are known at run time only.
     pub(crate) varying_turn: Option<[Symbol<'s>; 2]>,
     /// (a_i, 0, b_i) of a standard, (0, 0, b_i) of a modified row; b_i without the joint variable.
     pub(crate) offset: Vector<'s>,
@@ -96,7 +96,7 @@ impl<'s> Arm<'s> {
             let mount = Mount { rotation, r: from_com(builder, &links, parent, lever), lever };
             let com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
             let inertia = inertia(builder, robot, index);
-            // the twist behind joint i of a standard table is that of its own row
+            // in a standard table, the twist after joint i is in row i
             let (length, table_axes) = match robot.convention {
                 Convention::Standard => (number(Entry::A(index), row.dh.a), Some(twists[index])),
                 Convention::Modified => (zero(), None),
@@ -173,7 +173,7 @@ fn from_com<'s>(builder: &'s Builder, links: &[Link<'s>], parent: Option<usize>,
     }
 }
 
-/// The mass of a link. A constant says of itself which one it is.
+/// The mass of a link. A constant mass has its name as the cause.
 fn mass<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Symbol<'s> {
     let name = Name::scalar(Quantity::Mass, index + 1);
     match robot.run_time.formula(Entry::Mass(index)) {
@@ -260,7 +260,7 @@ fn turn_about_x<'s>(builder: &'s Builder, robot: &Robot, index: usize, alpha: &A
     turned(builder, Axis::X, (s, c), Cause::TurnAboutX)
 }
 
-/// A turn about an axis by sine and cosine; `cause` tells why it leaves the axis alone.
+/// A rotation about an axis by sine and cosine; `cause` is the reason why it does not change the axis.
 pub(crate) fn turned<'s>(
     builder: &'s Builder,
     axis: Axis,

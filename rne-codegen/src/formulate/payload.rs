@@ -16,7 +16,7 @@ use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
 #[derive(Clone, Copy)]
 pub(crate) struct Payload<'s> {
     pub(crate) mass: Symbol<'s>,
-    /// From the origin of the tip frame.
+    /// The centre of mass from the origin of the tip frame.
     pub(crate) com: Vector<'s>,
     /// About the centre of mass.
     pub(crate) inertia: Matrix<'s>,
@@ -87,7 +87,7 @@ impl<'s> Payload<'s> {
 /// The load of the last link at the tip.
 #[derive(Clone, Copy)]
 pub(crate) enum AtTip<'s> {
-    /// Nothing.
+    /// The tip is free.
     Nothing,
     /// A wrench, which the last link exerts on the environment.
     Wrench(Wrench<'s>),

@@ -27,7 +27,7 @@ pub(crate) enum Moving {
 pub(crate) struct Builder {
     pub(crate) graph: RefCell<Graph>,
     trace: Option<RefCell<Trace>>,
-    /// The function that is being written: what it does not take is zero.
+    /// The function that is being written. Arguments that this function does not have are zero.
     pub(crate) function: Function,
     /// The variable of the derivatives that are being written.
     by: Cell<Option<WithRespectTo>>,
@@ -64,7 +64,7 @@ impl Builder {
         self.trace.is_some()
     }
 
-    /// Starts anew, for another reading of the numbers.
+    /// Clears the graph, to use another embedding of the numbers.
     pub(crate) fn restart(&mut self, embedding: Embedding) {
         self.graph.get_mut().clear(embedding);
     }
@@ -149,7 +149,7 @@ impl Builder {
         }
     }
 
-    /// A number that stands for itself; `cause` tells why it is what it is.
+    /// A number without a name; `cause` is the reason for its value.
     pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
         let number = self.embedding().decimal(value);
         self.caused(self.graph.borrow_mut().constant(number), cause)
@@ -346,14 +346,14 @@ impl Builder {
 #[derive(Clone, Copy)]
 pub(crate) struct JointLines<'s> {
     pub(crate) builder: &'s Builder,
-    /// The joint at whose place the lines stand.
+    /// The joint to which the lines belong.
     joint: usize,
     /// The joint whose number is in the names of the quantities.
     named: usize,
 }
 
 impl<'s> JointLines<'s> {
-    /// The same lines, for quantities that bear the number of another joint.
+    /// The same lines, for quantities with the number of another joint in their names.
     pub(crate) fn named(self, joint: usize) -> Self {
         Self { named: joint, ..self }
     }

@@ -17,7 +17,7 @@ impl CausesId {
 pub(crate) struct KnownCauses {
     list: Vec<Alternatives>,
     ids: HashMap<Alternatives, CausesId>,
-    /// By two of them, and whether both are needed.
+    /// The joint causes of two of them, and whether both are needed.
     joined: HashMap<(CausesId, CausesId, bool), CausesId>,
 }
 

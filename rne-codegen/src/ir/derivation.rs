@@ -52,7 +52,7 @@ pub enum ExactConstant {
 /// The exact expressions of the constants of a program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Derivation {
-    /// The steps. An operand stands before the step that uses it.
+    /// The steps. An operand comes before the step that uses it.
     pub steps: Vec<ExactStep>,
     /// The constants, by their names.
     pub constants: Vec<(Name, ExactConstant)>,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::{Axis, Name, Quantity, Step, WithRespectTo};
 
-/// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
+/// Why a number is exactly zero or one. Of two causes, the later variant is reported, because it explains more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Cause {
     /// Constants that happen to give it.
@@ -31,9 +31,9 @@ pub enum Cause {
     AtRest,
     /// The function is for an arm that does not accelerate, q̈ = 0.
     NoAcceleration,
-    /// One joint accelerates, the others do not.
+    /// The function is for one joint that accelerates; all other joints do not.
     UnitAcceleration,
-    /// The joint is behind the frame, on the side of the tip.
+    /// The joint is between the frame and the tip, so it does not move the frame.
     BehindFrame,
     /// The function has nothing to do with gravity.
     NoGravity,
@@ -111,7 +111,7 @@ impl Causes {
         self.iter().filter(|cause| !cause.is_geometry())
     }
 
-    /// Whether it says no more than the other, so that the other can be left out.
+    /// Whether the other set contains this set, so that the other set is not needed.
     fn is_within(&self, other: &Self) -> bool {
         self.facts().all(|fact| other.0.contains(&fact))
     }

@@ -37,9 +37,9 @@ pub(crate) enum Outcome {
     Computed,
     /// The same node was there before.
     Shared,
-    /// One operand is zero; which one.
+    /// This operand is zero.
     Zero(Side),
-    /// One factor is 1 or -1; which one.
+    /// This factor is 1 or -1.
     One(Side),
     /// Both operands are constants.
     Constants,
@@ -54,7 +54,7 @@ pub(crate) enum Side {
     Right,
 }
 
-/// Nodes in order of creation, which is an order of evaluation too, and what is returned of them.
+/// The nodes in the order of their creation, which is also an order of evaluation, and the results among them.
 #[derive(Clone, Debug)]
 pub(crate) struct Graph {
     pub(crate) nodes: Vec<Node>,

@@ -83,7 +83,7 @@ impl Number {
         if self.is_negative() { -self } else { self }
     }
 
-    /// Zero has no dust: what is zero in the fields is zero.
+    /// The value of a number whose residue is zero becomes exactly zero.
     fn settled(self) -> Self {
         if self.residue.is_zero() { Self::ZERO } else { self }
     }
@@ -144,7 +144,7 @@ impl ExactAngle {
     pub(crate) fn angle(self) -> Number {
         let radians = self.sin.to_f64().atan2(self.cos.to_f64());
         let (sin, cos) = Double::new(radians).sin_cos();
-        // one step of Newton: the sine of what is left
+        // one step of Newton's method: the sine of the remaining angle
         let rest = self.sin.value * cos - self.cos.value * sin;
         // an angle has no image, so any will do that changes its sign with the turn
         let two = Residue::integer(2);

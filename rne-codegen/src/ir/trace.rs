@@ -19,11 +19,11 @@ pub(crate) struct Definition {
     pub(crate) after: usize,
     /// The formula that got the name.
     pub(crate) term: TermId,
-    /// Where its operations are counted.
+    /// The place at which its operations are counted.
     pub(crate) place: Option<Place>,
 }
 
-/// Where a node was created.
+/// The place at which a node was created.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Birth {
     pub(crate) place: Place,
@@ -35,7 +35,7 @@ pub(crate) struct Birth {
 pub(crate) struct Trace {
     pub(crate) fold_report: FoldReport,
     pub(crate) definitions: Vec<Definition>,
-    /// By node; `None` for what belongs to no step.
+    /// The place of each node; `None` for a node that belongs to no step.
     pub(crate) births: Vec<Option<Birth>>,
     /// As what a constant entered a node: (node, constant) → its name there.
     pub(crate) roles: HashMap<(Ref, Ref), Name>,

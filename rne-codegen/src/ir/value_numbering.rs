@@ -28,7 +28,7 @@ impl Traced {
         });
         let after = numbered.len();
         for definition in told.definitions {
-            // zero and one are called what they are
+            // values that are zero or one keep no name
             let at = numbered.valued(graph.residue(definition.at)).filter(|at| at.index() > 1);
             if let Some(at) = at {
                 trace.definitions.push(Definition { at, after, ..definition });

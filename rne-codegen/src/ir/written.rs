@@ -18,7 +18,7 @@ pub enum Operator {
 /// Whether a value enters as itself or negated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
-    /// As itself.
+    /// The value itself.
     Plus,
     /// Negated.
     Minus,
@@ -29,7 +29,7 @@ pub enum Sign {
 pub(crate) struct TermId(u32);
 
 impl TermId {
-    /// Nothing but a node of the graph.
+    /// A term that is only a node of the graph.
     pub(crate) const NONE: Self = Self(0);
 }
 
@@ -44,7 +44,7 @@ pub(crate) enum Written {
     Negative(TermId),
     /// An operation, the node that it became and how, and why it folded; `counted` if it belongs to a step.
     Operation { operator: Operator, operands: [TermId; 2], at: Ref, outcome: Outcome, reason: CausesId, counted: bool },
-    /// One of two values by the sign of the first.
+    /// The first term selects one of the other two by its sign.
     BySign([TermId; 3]),
 }
 

@@ -1,4 +1,4 @@
-//! The cost of a plan: the form is written, equal values are merged, and what is left is counted.
+//! The cost of a plan: writes the form, merges equal values, and counts the remaining operations.
 
 use rne_model::{JointKind, Robot};
 
@@ -12,7 +12,7 @@ use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
 use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
 
-/// A table and what it offers.
+/// A table and the choices that it offers.
 #[derive(Clone, Debug)]
 pub(crate) struct FramedRobot {
     frames: FrameChoice,

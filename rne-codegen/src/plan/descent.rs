@@ -60,7 +60,7 @@ impl<'v> Descent<'v> {
         self.counted
     }
 
-    /// From now on no plan becomes the best that `veto` is true of.
+    /// From now on, no plan for which `veto` is true becomes the best plan.
     pub fn refuse(&mut self, veto: impl Fn(&Plan) -> bool + 'v) {
         self.veto = Some(Box::new(veto));
     }

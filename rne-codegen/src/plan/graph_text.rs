@@ -233,7 +233,7 @@ fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
     angle.signed(at.is_negative())
 }
 
-/// A graph that was read, with the numbers of its plan in their places and its own behind them.
+/// A graph that was read: first the numbers of its plan in their places, then the graph's own numbers.
 pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
     let mut graph = plan.clone();
     graph.clear_nodes();
@@ -250,7 +250,7 @@ pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
     graph
 }
 
-/// Makes a constant of another graph from what it was made of there.
+/// Computes a constant of another graph again, from the same operands as there.
 fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, Ref>, place: u32) -> Ref {
     if let Some(&known) = places.get(&place) {
         return known;

@@ -68,7 +68,7 @@ pub(super) struct Annealing<C> {
     current: Graph,
     next: Graph,
     live: Vec<bool>,
-    /// By node: whether it is live otherwise than as an angle.
+    /// For each node, whether something other than an angle needs it.
     computed: Vec<bool>,
     map: Vec<Ref>,
     cost: C,
@@ -95,7 +95,7 @@ impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Annealing<C> {
         }
     }
 
-    /// Anneals until the clock says that all of its time is over.
+    /// Anneals until the clock returns that the time is over.
     pub(super) fn anneal(&mut self, hottest: f64, clock: &mut dyn FnMut(Cost) -> Option<f64>) -> ControlFlow<()> {
         let mut weight = (self.cost)(&self.current, &mut self.live).weight();
         let mut over = 0.0;

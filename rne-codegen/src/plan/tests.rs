@@ -1,4 +1,4 @@
-//! Whatever a search may find is the function of the seven steps, and what is not is refused.
+//! Every program that a search can find computes the function of the seven steps; every other program is refused.
 
 mod algorithms;
 mod unusual;

@@ -93,7 +93,7 @@ fn initialiser(name: &str, numbers: &[String]) -> String {
     if start.len() + numbers.len() < WIDTH {
         return format!("{start}{numbers}}}\n");
     }
-    // a definition goes on behind a backslash
+    // a backslash continues the definition on the next line
     let lines = fill(&numbers, WIDTH - 2, "    ", "    ").replace('\n', " \\\n");
     format!("{start} \\\n{lines}}}\n")
 }

@@ -81,7 +81,7 @@ impl Tests<'_> {
     }
 
     fn numbers(&self, numbers: &[f64]) -> String {
-        // what is too large for the type is infinite, and found to be wrong
+        // a number that is too large for the type becomes infinite, and the test fails
         let numbers = numbers.iter().map(|&number| self.precision.literal(number).unwrap_or("(1.0f / 0.0f)".into()));
         numbers.collect::<Vec<_>>().join(", ")
     }
@@ -195,7 +195,7 @@ impl Tests<'_> {
         let (dof, states, real) = (self.robot.dof(), self.golden.len(), self.precision.c_type());
         let words = law.name().replace('_', " ");
         let body = match law {
-            // what it needs are differences of energies, of which single precision leaves nothing
+            // it needs differences of energies, which single precision cannot represent
             Law::Power => return None,
             Law::Symmetry => format!(
                 "{}        for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < i; ++j) {{\n                \

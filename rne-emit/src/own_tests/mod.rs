@@ -55,7 +55,7 @@ impl Law {
     const ALL: [Self; 6] =
         [Self::Symmetry, Self::Linearity, Self::Gravity, Self::Bias, Self::KineticEnergy, Self::Power];
 
-    /// The functions of which it speaks.
+    /// The functions that the law contains.
     const fn functions(self) -> &'static [Function] {
         match self {
             Self::Symmetry => &[Function::MassMatrix],

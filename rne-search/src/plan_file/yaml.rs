@@ -5,7 +5,7 @@ use std::fmt::Write;
 /// A value of a plan file.
 #[derive(Debug)]
 pub(super) enum Value {
-    /// One line that means itself.
+    /// A text of one line that is written without quotes.
     Plain(String),
     /// A text.
     Text(String),
