@@ -296,7 +296,7 @@ mod tests {
                       // ω1 = z\n    const float w1_z = q1\n        + k_1;\n\n    a_sin_cos(q1, &s1, &c1);\n    \
                       tau[0] = w1_z;\n}\n";
         let traced = trace(source, "a_f(");
-        let lines: Vec<_> = traced.iter().map(|of| (of.line, of.name.as_str(), of.step.as_str())).collect();
+        let lines: Vec<_> = traced.iter().map(|line| (line.line, line.name.as_str(), line.step.as_str())).collect();
         let step = "joint 1, step 1: angular velocity";
         let expected = [
             (5, "q1", "argument"),

@@ -157,7 +157,7 @@ impl<T: Copy> Arguments<'_, T> {
 
     fn get(&self, name: Name) -> Option<T> {
         if let Quantity::Mass | Quantity::Com | Quantity::Inertia = name.quantity {
-            let index = Name::of_payload(name.joint).iter().position(|of| *of == name)?;
+            let index = Name::of_payload(name.joint).iter().position(|known| *known == name)?;
             return Some(self.payload[index]);
         }
         let Component::Vector(axis) = name.component else {

@@ -108,7 +108,9 @@ fn of_joint(templates: Templates, joint: usize) -> Vec<Formula> {
     if joint == ANY {
         return written(templates, ["i", "h", "j"].map(str::to_owned)).map(formula).collect();
     }
-    written(templates, [joint, joint.saturating_sub(1), joint + 1].map(|of| of.to_string())).map(formula).collect()
+    written(templates, [joint, joint.saturating_sub(1), joint + 1].map(|number| number.to_string()))
+        .map(formula)
+        .collect()
 }
 
 /// The letters in the place of a joint's number: i for the joint, h = i - 1 and j = i + 1 for its neighbours.

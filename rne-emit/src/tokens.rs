@@ -192,8 +192,8 @@ impl<'a> Body<'a> {
             let tokens = self.expression(operand);
             if needs_parentheses(Syntax::Rust, operand, position) { quote!((#tokens)) } else { tokens }
         };
-        let minus = |of: Expression<'_>| {
-            let tokens = operand(of, Position::Negated);
+        let minus = |negated: Expression<'_>| {
+            let tokens = operand(negated, Position::Negated);
             quote!(-#tokens)
         };
         let (scalar, arithmetic) = (self.scalar, self.arithmetic);
@@ -207,7 +207,7 @@ impl<'a> Body<'a> {
                 quote!(#a #sign #b)
             }
             ExpressionKind::Fused([x, y], addend, negated) => {
-                let signed = |of, part| if negated == Some(part) { minus(of) } else { self.expression(of) };
+                let signed = |factor, part| if negated == Some(part) { minus(factor) } else { self.expression(factor) };
                 let (x, y, addend) = (signed(x, Negated::Factor), self.expression(y), signed(addend, Negated::Addend));
                 quote!(#arithmetic::mul_add(#x, #y, #addend))
             }

@@ -11,8 +11,7 @@ use std::ffi::c_char;
 use std::ptr;
 
 use rne_convert::Selection;
-use rne_machine::Function;
-use rne_machine::Number;
+use rne_machine::{Function, Number};
 
 use pointer::{checked, give, made, reference, slice, slice_mut, text};
 
@@ -471,7 +470,8 @@ unsafe fn evaluate<T: Number + Send + Sync, I: Raw<T>>(
             // SAFETY: the caller's promise of the name and of the numbers, which nobody writes to during the call: they
             // are apart from the room for the outputs, which is checked below before the slice is used.
             let given = unsafe {
-                let name = text(name, "name of an input").map_err(|failure| of_input(index, failure))?;
+                let name = text(name, "name of an input")
+                    .map_err(|Failure { status, message }| Failure::new(status, format!("input {index}: {message}")))?;
                 let within = checked(data, count, name)?;
                 if within.start < room.end && room.start < within.end {
                     let message = format!("`outputs` and `{name}` share memory");
@@ -495,9 +495,4 @@ unsafe fn evaluate<T: Number + Send + Sync, I: Raw<T>>(
             Extent::Threads(states, threads) => evaluation::on_threads(arm, id, (states, threads), given, outputs),
         }
     })
-}
-
-fn of_input(index: usize, failure: Failure) -> Failure {
-    let Failure { status, message } = failure;
-    Failure::new(status, format!("input {index}: {message}"))
 }

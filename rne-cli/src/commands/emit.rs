@@ -287,7 +287,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     let compiler = Compiler::new(&arguments.file, robot);
     let functions = functions(arguments, robot);
-    let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|it| it.of_frame().is_some());
+    let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
     let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
     let mut programs: Vec<Program> =
         of_tip.iter().map(|&function| compiler.compile(function, arguments.form())).collect::<Result<_, _>>()?;

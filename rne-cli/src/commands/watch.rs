@@ -336,7 +336,7 @@ fn groups(arguments: &Arguments, robot: &Robot, known: Option<&Known>, by: &str)
                 ))
             })?;
         }
-        match groups.iter_mut().find(|of| by == "day" && of.name == group.name) {
+        match groups.iter_mut().find(|known| by == "day" && known.name == group.name) {
             Some(of) => of.paths.push(path.clone()),
             None => groups.push(group),
         }

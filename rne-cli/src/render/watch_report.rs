@@ -147,7 +147,7 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             rounded(event.baseline_value, 3)
         ),
         Cause::Contact => {
-            let others: Vec<String> = event.others.iter().map(|of| one_line(&robot.joints[*of].name)).collect();
+            let others: Vec<String> = event.others.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect();
             let too = if others.is_empty() { String::new() } else { format!(" (also at {})", others.join(", ")) };
             format!("contact at {joint}{too}: external torque up to {} {unit}", rounded(event.value, 3))
         }
@@ -232,7 +232,7 @@ pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>], names: 
     let joints = changing(trend);
     let mut cells = vec![vec!["  log".to_owned(), "events".to_owned(), "payload, kg".to_owned()]];
     cells[0].extend(joints.iter().map(|joint| shortened(&one_line(&robot.joints[*joint].name), 14)));
-    let with = |of: TrendValue| with_deviation(of.value, of.deviation);
+    let with = |found: TrendValue| with_deviation(found.value, found.deviation);
     for row in &trend.rows {
         let mut line = vec![format!("  {}", shortened(&row.name, 20)), row.events.to_string(), with(row.payload)];
         line.extend(joints.iter().map(|joint| with(row.friction[*joint])));

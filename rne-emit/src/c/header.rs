@@ -107,10 +107,25 @@ fn limits(file: &File, upper: &str) -> String {
     };
     let limits = || file.robot.joints.iter().map(|joint| joint.limits);
     let kinds: [(&str, &str, f64, Vec<Option<f64>>); 4] = [
-        ("POSITION_LOWER", "Lowest positions, rad or m", -largest, limits().map(|of| Some(of.position?.0)).collect()),
-        ("POSITION_UPPER", "Highest positions, rad or m", largest, limits().map(|of| Some(of.position?.1)).collect()),
-        ("VELOCITY_LIMIT", "Largest speeds, rad/s or m/s", largest, limits().map(|of| of.velocity).collect()),
-        ("EFFORT_LIMIT", "Largest torques or forces, N m or N", largest, limits().map(|of| of.effort).collect()),
+        (
+            "POSITION_LOWER",
+            "Lowest positions, rad or m",
+            -largest,
+            limits().map(|limits| Some(limits.position?.0)).collect(),
+        ),
+        (
+            "POSITION_UPPER",
+            "Highest positions, rad or m",
+            largest,
+            limits().map(|limits| Some(limits.position?.1)).collect(),
+        ),
+        ("VELOCITY_LIMIT", "Largest speeds, rad/s or m/s", largest, limits().map(|limits| limits.velocity).collect()),
+        (
+            "EFFORT_LIMIT",
+            "Largest torques or forces, N m or N",
+            largest,
+            limits().map(|limits| limits.effort).collect(),
+        ),
     ];
     let mut text = String::new();
     for (name, about, none, values) in kinds {
