@@ -76,13 +76,13 @@ impl Neighbourhood {
         if row.kind != Revolute {
             return;
         }
-        for &side in Side::ALL {
+        for side in Side::ALL {
             put(&|plan| plan.joints[index].outward_offset = side);
         }
         for side in [Side::Link, Side::Parent] {
             put(&|plan| plan.joints[index].inward_offset = side);
         }
-        for &moment in Moment::ALL {
+        for moment in Moment::ALL {
             put(&|plan| plan.joints[index].moment = moment);
         }
         for switch in 0..Switches::NAMES.len() {
