@@ -121,7 +121,7 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "certify",
-        about: "certificates of three arms, thirty mutations of their C code before the checker, a firmware that builds",
+        about: "certificates of three arms, thirty mutations of C code before the checker, a firmware that builds",
         variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &[
             "cargo",
