@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::call::{ROOT, fails, fine, folder, rne};
+use crate::call::{ROOT, fails, fine, folder, rne, rne_reading};
 
 const ROBOT: &str = "docs/desk_arm.yaml";
 
@@ -45,7 +45,14 @@ fn a_certificate_is_checked_and_a_change_is_found() {
     assert_eq!(rne(&check).status, 0);
     fs::write(out, page.replacen("| bytes of constants | ", "| bytes of constants | 1", 1)).expect("written");
     fails(1, &check, &["1 lines differ", "bytes of constants"]);
+    // the compiler of the default, by its name
+    fs::write(out, &page).expect("written");
+    assert_eq!(rne(&[&check[..], &["--cc", "arm-none-eabi-gcc"]].concat()).status, 0);
+    fs::write(out, "").expect("written");
+    fails(1, &check, &["is empty", "-o"]);
+    fails(2, &["certify", ROBOT, "--cc", "python3"], &["python3 is no GCC", "--cc"]);
     // another arm, and a file that is no certificate
+    fs::write(out, &page).expect("written");
     fails(1, &["certify", "planar2", "--states", "100", "--check", out], &["lines differ"]);
     fs::write(out, "mine").expect("written");
     fails(2, &certify, &["is no certificate of rne and is not changed", "--force"]);
@@ -69,6 +76,33 @@ fn the_figures_of_json_are_those_of_the_page() {
         assert_eq!(sum, instructions, "each instruction is of one kind");
         assert_eq!(json["cost"]["stack"], json["cost"]["stack_of_listing"]);
     }
+}
+
+/// The code of the certificate is a file that anybody can write: by its command, and of a robot file on standard input.
+#[test]
+fn the_code_of_a_certificate_is_what_its_command_writes() {
+    if !has_tools() {
+        return;
+    }
+    let folder = folder("certify_emit");
+    for more in
+        [&[][..], &["--observer"], &["--function", "gravity_torques", "--form", "seven_steps", "--prefix", "my"]]
+    {
+        let certify = [&["certify", ROBOT, "--states", "5", "--json"], more].concat();
+        let json: serde_json::Value = serde_json::from_str(&fine(&certify)).expect("JSON");
+        let command = json["emit"].as_str().expect("a command");
+        let (command, name) = command.rsplit_once(" -o ").expect("a file");
+        let source = folder.join(name);
+        let words = command.strip_prefix("rne ").expect("rne").replace("desk_arm.yaml", ROBOT);
+        let words = words.split(' ').chain(["-o", source.to_str().expect("UTF-8"), "--force"]).collect::<Vec<_>>();
+        assert_eq!(rne(&words).status, 0, "{words:?}");
+        let text = fs::read(&source).expect("it was written");
+        assert_eq!(json["hashes"][name], rne_certify::sha256(&text), "{more:?}");
+    }
+    let yaml = fs::read_to_string(Path::new(ROOT).join(ROBOT)).expect("an arm");
+    let called = rne_reading(&["certify", "-", "--states", "5"], &yaml);
+    assert_eq!(called.status, 0, "{called:?}");
+    assert!(called.out.contains("| robot file | `"), "{}", called.out);
 }
 
 /// Functions in both languages: the trace names each number of the result, and the options that do not fit are refused.
