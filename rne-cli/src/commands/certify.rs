@@ -155,9 +155,16 @@ fn core(text: &str) -> Result<Core, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     is_observer_of_c(arguments)?;
-    let certificate = certificate(arguments)?;
+    let (certificate, lints) = certificate(arguments)?;
+    let mut outcome = written(arguments, &certificate)?;
+    outcome.remark += &lints;
+    Ok(outcome)
+}
+
+/// The certificate on standard output or in a file, or the check of a file.
+fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, Failure> {
     let text = if arguments.json {
-        serde_json::to_string_pretty(&certificate).map_err(Failure::input)? + "\n"
+        serde_json::to_string_pretty(certificate).map_err(Failure::input)? + "\n"
     } else {
         certificate.page()
     };
@@ -250,7 +257,8 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
     )))
 }
 
-fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
+/// The certificate, and a remark where the robot file has warnings.
+fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped)?;
     let robot = arguments.rotors.of(checked.robot);
     let program = Compiler::new(&arguments.file, &robot).compile(arguments.program(), arguments.form)?;
@@ -318,7 +326,7 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         },
         |proof| rne_emit::evidence(&program, proof),
     );
-    Ok(Certificate {
+    let certificate = Certificate {
         command: command(arguments),
         emit: emit(arguments, &code.source),
         robot: robot.name.clone(),
@@ -335,7 +343,8 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         proof,
         misra,
         trace: code.heads.iter().flat_map(|head| trace(&code.text, head)).collect(),
-    })
+    };
+    Ok((certificate, robot_file::lint_remark(&checked.lints, &arguments.file)))
 }
 
 /// The cost of a call: of the function and of those that it calls.

@@ -8,7 +8,7 @@ use rne_codegen::{Form, Function, Program};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
-use crate::commands::emit_c::{c_code, header_beside};
+use crate::commands::emit_c::{Header, c_code, header_beside};
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
@@ -177,10 +177,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf)?;
     let robot = arguments.rotors.of(checked.robot);
-    let programs = programs(arguments, &robot)?;
-    let c_code = || c_code(arguments, &robot, &programs, &bytes);
+    let mut outcome = emitted(arguments, &robot, &bytes, out, header)?;
+    outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);
+    Ok(outcome)
+}
+
+/// The code in files or on standard output, or the check of files.
+fn emitted(
+    arguments: &Arguments,
+    robot: &Robot,
+    bytes: &[u8],
+    out: Option<&Path>,
+    header: Option<Header>,
+) -> Result<Outcome, Failure> {
+    let programs = programs(arguments, robot)?;
+    let c_code = || c_code(arguments, robot, &programs, bytes);
     let rust_file = if arguments.with_sin_cos { rne_emit::rust_file_with_sin_cos } else { rne_emit::rust_file };
-    let rust = || Ok::<_, Failure>(rust_file(&robot, &programs) + &rust_tests(arguments, &robot, &programs)?);
+    let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &rust_tests(arguments, robot, &programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {

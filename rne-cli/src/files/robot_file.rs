@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rne_convert::{Account, Description, OpenError, Options};
-use rne_model::{Checked, Reader, Robot};
+use rne_model::{Checked, Reader, Report, Robot};
 
 use crate::files::input_file;
 use crate::outcome::Failure;
@@ -117,7 +117,24 @@ pub(crate) fn not_opened(error: &OpenError) -> Failure {
     }
 }
 
-/// A valid robot. `rne check` tells of its lints, the other commands do not.
+/// A line for standard error where a robot file has warnings; code for a machine is written of it all the same.
+pub(crate) fn lint_remark(lints: &Report, path: &Path) -> String {
+    match lints.warnings().count() {
+        0 => String::new(),
+        1 => format!(
+            "{TITLE}note{TITLE:#}: 1 warning in the robot file; {TYPED}rne check {}{TYPED:#} shows it\n",
+            shell(path)
+        ),
+        count => {
+            format!(
+                "{TITLE}note{TITLE:#}: {count} warnings in the robot file; {TYPED}rne check {}{TYPED:#} shows them\n",
+                shell(path)
+            )
+        }
+    }
+}
+
+/// A valid robot. `rne check` prints its lints; `rne emit` and `rne certify` count its warnings; others say nothing.
 pub(crate) fn robot(path: &Path) -> Result<Robot, Failure> {
     Ok(read(path)?.robot)
 }
