@@ -53,7 +53,7 @@ pub struct Cost {
     pub instructions: u64,
     /// Cycles of a call in the worst case, by the table of the core.
     pub cycles: u64,
-    /// What the cycles are, in words: a worst case, or an estimate of it.
+    /// The meaning of the cycles in words: a worst case, or an estimate of it.
     pub bound: &'static str,
     /// Cycles of it in which an instruction waits for the result of the one before.
     pub waits: u64,
@@ -199,8 +199,8 @@ impl Certificate {
         let _ = writeln!(text, "\nOptions of the compiler: `{}`\n", self.options.join(" "));
         let _ = writeln!(
             text,
-            "This command writes the code. A file with more functions has another hash, and this page is not about it:\n\n\
-             ```sh\n{}\n```\n",
+            "This command writes the code. A file with more functions has another hash, and this page is not about \
+             it:\n\n```sh\n{}\n```\n",
             self.emit
         );
         text.push_str("| file | SHA-256 |\n|---|---|\n");

@@ -108,7 +108,7 @@ impl Core {
         }
     }
 
-    /// What the cycles are, in words: a worst case, or an estimate of it.
+    /// The meaning of the cycles in words: a worst case, or an estimate of it.
     #[must_use]
     pub const fn bound(self) -> &'static str {
         match self {

@@ -29,8 +29,9 @@ impl Arm {
     /// world axes. Units: kg between linear rows, kg m² between angular rows, kg m between both.
     ///
     /// rows: the m rows of the Jacobian that the task controls, such as [0, 1, 2] for the position alone. None is all
-    /// six. If n joints move the tip or the frame, at most n rows are independent; more are a ValueError. At a singular pose, where the
-    /// rows are linearly dependent, the elements are not finite, or so large that they contain only rounding errors.
+    /// six. If n joints move the tip or the frame, at most n rows are independent; more are a ValueError. At a singular
+    /// pose, where the rows are linearly dependent, the elements are not finite, or so large that they contain only
+    /// rounding errors.
     ///
     /// frame: the name of a frame in the place of the tip: a frame in the list `frames` of the robot file, or a joint
     /// for its link frame. payload: a body at the tip, shape (10,) or (N, 10); `rne.payload` makes one.
@@ -55,8 +56,8 @@ impl Arm {
     /// The dynamically consistent inverse M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ of the Jacobian at the tip or at a frame (Khatib, 1987).
     ///
     /// The result J̄ has J J̄ = 1. The joint velocities J̄ v move the tip with the velocity v and have less kinetic
-    /// energy than all other joint velocities that do so. Torques (1 - Jᵀ J̄ᵀ) τ do not accelerate the tip, for any τ. Row i belongs to joint
-    /// i, column k to row k of `rows`: rad/s or m/s of the joint per m/s or rad/s of the tip.
+    /// energy than all other joint velocities that do so. Torques (1 - Jᵀ J̄ᵀ) τ do not accelerate the tip, for any τ.
+    /// Row i belongs to joint i, column k to row k of `rows`: rad/s or m/s of the joint per m/s or rad/s of the tip.
     ///
     /// The arguments, the errors and the results at a singular pose are those of `operational_space_inertia`.
     ///

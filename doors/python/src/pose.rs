@@ -28,12 +28,12 @@ pub(crate) fn pose_log<'py>(py: Python<'py>, pose: &Bound<'py, PyAny>) -> PyResu
 impl Arm {
     /// How far the tip or a frame is from a target pose, in world axes.
     ///
-    /// Its numbers are in the order of the rows of `jacobian`: x, y, z of the target's position minus the tip's (m), then
-    /// the rotation vector of R_target Rᵀ (rad). Joint velocities with J q̇ = k · error lead to the target.
+    /// Its numbers are in the order of the rows of `jacobian`: x, y, z of the target's position minus the tip's (m),
+    /// then the rotation vector of R_target Rᵀ (rad). Joint velocities with J q̇ = k · error lead to the target.
     ///
     /// target: homogeneous matrices as `forward_kinematics` returns them, shape (4, 4), which holds for all states, or
-    /// (N, 4, 4). frame: the name of a frame in the place of the tip: a frame in the list `frames` of the robot file, or
-    /// a joint for its link frame.
+    /// (N, 4, 4). frame: the name of a frame in the place of the tip: a frame in the list `frames` of the robot file,
+    /// or a joint for its link frame.
     ///
     /// Returns shape (6,) or (N, 6).
     #[pyo3(signature = (q, target, *, frame=None, parameters=None))]
@@ -57,8 +57,8 @@ impl Arm {
             _ => {
                 let (found, states) = (targets.shape(), of_poses.iter().product::<usize>());
                 return Err(PyValueError::new_err(format!(
-                    "`target` has the shape {found:?}, but `q` has {states} states: give one target, (4, 4), or one for \
-                     each state, ({states}, 4, 4)"
+                    "`target` has the shape {found:?}, but `q` has {states} states: give one target, (4, 4), or one \
+                     for each state, ({states}, 4, 4)"
                 )));
             }
         };

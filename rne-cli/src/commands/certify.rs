@@ -267,8 +267,8 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let version = toolchain::version(&compiler)?;
     if arguments.lang == Language::C && !toolchain::is_gcc(&compiler) {
         return Err(Failure::usage(format_args!(
-            "{compiler} is no GCC ({version}); {TYPED}--cc{TYPED:#} takes GCC for Arm: its option -fstack-usage and its \
-             binary utilities give the numbers of the certificate"
+            "{compiler} is no GCC ({version}); {TYPED}--cc{TYPED:#} takes GCC for Arm: its option -fstack-usage and \
+             its binary utilities give the numbers of the certificate"
         )));
     }
     let objdump = match arguments.lang {
