@@ -15,7 +15,7 @@ use crate::files::chosen_arm::{AtFrame, ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
 use crate::files::plan_file;
 use crate::files::states;
-use crate::files::worksheet_file;
+use crate::files::worksheet_text;
 use crate::outcome::{Failure, Outcome};
 use crate::render::answer;
 use crate::render::answer::not_finite;
@@ -212,10 +212,10 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     let axes = arguments.axes.unwrap_or(Axes::Link).into();
     let sheet = Worksheet::new(&robot, &situation, axes).map_err(Failure::usage)?;
     if arguments.csv {
-        return Ok(Outcome { remark, ..Outcome::text(worksheet_file::csv(&robot, &sheet, narrowed)) });
+        return Ok(Outcome { remark, ..Outcome::text(worksheet_text::csv(&robot, &sheet, narrowed)) });
     }
     if arguments.json {
-        let text = worksheet_file::json(&robot, &sheet, narrowed, &result())?;
+        let text = worksheet_text::json(&robot, &sheet, narrowed, &result())?;
         return Ok(Outcome { remark, ..Outcome::text(text) });
     }
     let mut text = worksheet::text(&robot, &sheet, narrowed, &state, arguments.letters);

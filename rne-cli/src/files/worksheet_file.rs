@@ -1,131 +1,28 @@
-//! Worksheets in files: a row per joint, step, quantity and component, as CSV and as JSON.
+//! Worksheets that are read: a row per joint, step, quantity and component, as CSV and as JSON.
 //!
-//! What `rne eval --trace` writes, `--compare` reads, and any part of it.
+//! `rne eval --trace` and `rne worksheet` write them by [`worksheet_text`](super::worksheet_text); any part of one can be
+//! read.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
-use rne_diagnose::worksheet::{Axes, GivenValue, Line, Quantity, Worksheet};
-use rne_model::{Report, Robot, did_you_mean, exact_digits};
-use serde::Serialize;
+use rne_diagnose::worksheet::{Axes, GivenValue, Quantity};
+use rne_model::{Report, Robot, did_you_mean};
 use serde_json::value::RawValue;
 
 use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of, with_point};
 use crate::files::input_file;
+use crate::files::worksheet_text::{COLUMNS, FORMAT};
 use crate::outcome::Failure;
-use crate::render::worksheet::Narrowed;
 use crate::values::numbers::resolution;
-
-/// The version of both shapes.
-const FORMAT: u32 = 1;
-
-/// The columns of CSV, the keys of a row in JSON.
-const COLUMNS: [&str; 7] = ["joint", "step", "quantity", "component", "value", "unit", "frame"];
 
 /// A worksheet of 64 joints has half a megabyte.
 const LONGEST: usize = 4 << 20;
 
 /// More rows than any worksheet has for a joint.
 const MOST: usize = 200;
-
-/// One number of a worksheet.
-#[derive(Serialize)]
-struct Row {
-    joint: usize,
-    step: u8,
-    quantity: &'static str,
-    component: &'static str,
-    value: f64,
-    unit: &'static str,
-    frame: &'static str,
-}
-
-impl Row {
-    /// Appends a line of CSV with a text for the value.
-    fn write(&self, text: &mut String, separator: char, value: &str) {
-        let Self { joint, step, quantity, component, unit, frame, .. } = self;
-        let s = separator;
-        let _ = writeln!(text, "{joint}{s}{step}{s}{quantity}{s}{component}{s}{value}{s}{unit}{s}{frame}");
-    }
-}
-
-fn rows(sheet: &Worksheet, narrowed: Narrowed) -> impl Iterator<Item = Row> {
-    let of_line = |line: &Line| {
-        let (joint, quantity, unit) = (line.joint, line.quantity, line.unit());
-        let frame = if quantity.has_axes() { sheet.axes.name() } else { "" };
-        let row = move |(component, value): (&&'static str, &f64)| Row {
-            joint,
-            step: quantity.step(),
-            quantity: quantity.name(),
-            component,
-            value: *value,
-            unit,
-            frame,
-        };
-        quantity.components().iter().zip(&line.values).map(row).collect::<Vec<_>>()
-    };
-    sheet.lines.iter().filter(move |line| narrowed.has(line)).flat_map(of_line)
-}
-
-/// The worksheet as CSV.
-pub(crate) fn csv(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed) -> String {
-    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}\n{}\n", robot.name, COLUMNS.join(","));
-    for row in rows(sheet, narrowed) {
-        row.write(&mut text, ',', &exact_digits(row.value));
-    }
-    text
-}
-
-/// A student's worksheet as CSV: the state is filled in, and with `answers` everything else, too. `comma` writes
-/// numbers with a decimal comma and semicolons between the columns.
-pub(crate) fn of_student(
-    robot: &Robot,
-    sheet: &Worksheet,
-    student: &str,
-    steps: &[u8],
-    answers: bool,
-    comma: bool,
-) -> String {
-    let separator = if comma { ';' } else { ',' };
-    let columns = COLUMNS.join(separator.encode_utf8(&mut [0; 4]));
-    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}", robot.name);
-    if steps.len() < 7 {
-        let steps: Vec<String> = steps.iter().map(ToString::to_string).collect();
-        let _ = write!(text, ", steps {}", steps.join(" "));
-    }
-    let _ = writeln!(text, ", student {student}\n{columns}");
-    for row in rows(sheet, Narrowed::default()) {
-        let is_state = ["q", "qd", "qdd"].contains(&row.quantity);
-        if !is_state && !steps.contains(&row.step) {
-            continue;
-        }
-        let value = if is_state || answers { exact_digits(row.value) } else { String::new() };
-        row.write(&mut text, separator, &if comma { value.replace('.', ",") } else { value });
-    }
-    text
-}
-
-/// The worksheet as JSON has it, beside the result of the function: a row on each line.
-pub(crate) fn json(
-    robot: &Robot,
-    sheet: &Worksheet,
-    narrowed: Narrowed,
-    result: &serde_json::Value,
-) -> Result<String, Failure> {
-    let rows: Vec<String> = rows(sheet, narrowed)
-        .map(|row| serde_json::to_string(&row))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::input)?;
-    let rows = rows.join(",\n      ");
-    let (name, axes) = (serde_json::Value::from(robot.name.as_str()), sheet.axes.name());
-    let about = format!(r#""format": {FORMAT}, "robot": {name}, "axes": "{axes}""#);
-    Ok(format!(
-        "{{\n  \"result\": {result},\n  \"trace\": {{\n    {about},\n    \"rows\": [\n      {rows}\n    ]\n  }}\n}}\n"
-    ))
-}
 
 /// A worksheet that a student filled in.
 #[derive(Debug)]

@@ -46,7 +46,10 @@ const MISTAKES: [Mistake; 8] = [
 
 /// Fills in the rows of a blank worksheet; every other one with commas and semicolons as a German spreadsheet.
 fn filled(blank: &str, mistake: fn(&mut Pendulum, [f64; 3])) -> String {
-    let separator = if blank.lines().nth(1).expect("a header").contains(';') { ';' } else { ',' };
+    // the numbers of the arm stand above the header
+    assert!(blank.contains("\n# link 1: m = ") && blank.contains("# acceleration of gravity in frame 0: "), "{blank}");
+    let header = blank.lines().find(|line| line.starts_with("joint")).expect("a header");
+    let separator = if header.contains(';') { ';' } else { ',' };
     let cells = |line: &str| line.split(separator).map(str::to_owned).collect::<Vec<_>>();
     let given = |quantity: &str| {
         let row = blank.lines().map(cells).find(|row| row.len() == 7 && row[2] == quantity).expect("a row");
