@@ -101,8 +101,10 @@ class Address {
   }
 
   show(fragment) {
-    const { words, unknown } = readAddress(fragment);
+    const { words, unknown, cell } = readAddress(fragment);
     const wrong = words.size || unknown.length || fragment.includes("=") ? showAddress(this.page, fragment) : [];
+    // where everything stands below each other, the cell that is asked for is far below
+    if (cell && matchMedia("(max-width: 900px)").matches) byId("cell").scrollIntoView();
     byId("address-notice").hidden = wrong.length === 0;
     byId("address-notice").textContent = wrong.length ? `The address is not shown as it stands: ${wrong.join("; ")}.` : "";
   }
