@@ -1,7 +1,7 @@
 //! Worksheets that are read: a row per joint, step, quantity and component, as CSV and as JSON.
 //!
-//! `rne eval --trace` and `rne worksheet` write them by [`worksheet_text`](super::worksheet_text); any part of one can be
-//! read.
+//! `rne eval --trace` and `rne worksheet` write them by [`worksheet_text`](super::worksheet_text); any part of one can
+//! be read.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap};

@@ -83,11 +83,11 @@ fn arm(robot: &Robot) -> String {
         }
         lines.push(format!("{} kg m²", line.trim_end_matches(',')));
     }
-    lines.iter().map(|line| format!("# {line}\n")).collect()
+    format!("# {}\n", lines.join("\n# "))
 }
 
-/// A student's worksheet as CSV: the arm and the state is filled in, and with `answers` everything else, too. `comma` writes
-/// numbers with a decimal comma and semicolons between the columns.
+/// A student's worksheet as CSV: the arm and the state are filled in, and with `answers` everything else, too. `comma`
+/// writes numbers with a decimal comma and semicolons between the columns.
 pub(crate) fn of_student(
     robot: &Robot,
     sheet: &Worksheet,

@@ -231,8 +231,8 @@ impl Tests<'_> {
         let table = self.table(&format!("    static const {real} expected[{states}][{dof}]"), &rows);
         let text = format!(
             "static void test_{what}(void)\n{{\n{tables}{}    unsigned state;\n    \
-             for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        {real} found[{dof}];\n        \
-             {call}\n        for (i = 0u; i < {dof}u; ++i) {{\n            \
+             for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        \
+             {real} found[{dof}];\n        {call}\n        for (i = 0u; i < {dof}u; ++i) {{\n            \
              test_compare(\"{what}\", state, i, (double)found[i], (double)expected[state][i],\n                \
              {allowed});\n        }}\n    }}\n}}\n",
             table.replace("\n};", "\n    };"),
