@@ -100,6 +100,14 @@ impl Format {
             "mcap" => Some(Self::Mcap),
             "parquet" => Some(Self::Parquet),
             "npy" => Some(Self::Npy),
+            "yaml" | "yml" | "urdf" | "xacro" => {
+                let what = format!(
+                    "a file with the extension .{extension} describes a robot or a bag and contains no log: give a \
+                     robot file in the place of the robot, and a bag by its folder; a log is a bag of ROS 2, or a \
+                     table in Parquet, CSV or npy"
+                );
+                return Err(LogError::file(path, what));
+            }
             _ => None,
         };
         match promised {
