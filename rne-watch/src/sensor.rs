@@ -144,6 +144,11 @@ impl Frozen {
     }
 }
 
+/// Whether the effort of a joint is zero throughout, but not in the quiet log.
+pub(crate) fn is_dead(baseline: &Baseline, stretches: &[&Stretch], joint: usize) -> bool {
+    baseline.scale.effort[joint] > 0.0 && stretches.iter().all(|stretch| stretch.is_silent(joint))
+}
+
 /// The two joints whose efforts are exchanged in a log, counted from 0, the smaller first: the log explains little as it
 /// is, and nearly all if they are exchanged back. `exchanged` gives the equations of the log with the efforts of two
 /// joints exchanged.
