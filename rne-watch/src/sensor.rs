@@ -17,7 +17,7 @@ const SHORTEST: f64 = 1.5;
 const REPEATED: f64 = 1e-3;
 
 /// The deviation of the predicted torque meanwhile, in residuals of the quiet log.
-const MOVES: f64 = 3.0;
+const MOVES: f64 = 1.5;
 
 /// Cut-off periods of the low-pass over which it spreads a step.
 const SPREAD: f64 = 2.0;
@@ -27,7 +27,7 @@ const SPREAD: f64 = 2.0;
 const FALLS: f64 = 16.0;
 
 /// A joint may have another effort if its residual is so many times that of the quiet log.
-const SUSPECT: f64 = 3.0;
+const SUSPECT: f64 = 1.5;
 
 /// Joints that may have another effort, at most.
 const MOST: usize = 4;
@@ -96,7 +96,8 @@ impl Frozen {
         for (at, stretch) in list.iter().enumerate() {
             let own = Sums::of(structure, &baseline.model, joint, stretch);
             let joined = sums.plus(own);
-            (start, sums) = if joined.deviation(joined.effort) <= REPEATED * residual { (start, joined) } else { (at, own) };
+            (start, sums) =
+                if joined.deviation(joined.effort) <= REPEATED * residual { (start, joined) } else { (at, own) };
             if longest.as_ref().is_none_or(|(_, longest)| sums.rows > longest.rows) {
                 longest = Some((start..at + 1, sums));
             }
