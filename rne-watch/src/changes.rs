@@ -43,7 +43,7 @@ pub struct Changes {
     /// The root mean square of the efforts over that of the quiet logs, in the median over the joints. Far from 1, the
     /// efforts have another unit.
     pub effort_ratio: f64,
-    /// The joints whose efforts are exchanged in the log, counted from 0: everything else is told of the log with these
+    /// The joints whose efforts are exchanged in the log, counted from 0: all other results are of the log with these
     /// efforts exchanged back.
     pub exchanged: Option<[usize; 2]>,
     windows: Vec<Window>,

@@ -26,7 +26,7 @@ const SPREAD: f64 = 2.0;
 /// alone by the square root of it.
 const FALLS: f64 = 16.0;
 
-/// A joint may have another effort if its residual is so many times that of the quiet log.
+/// A joint may have another effort if its residual is larger than that of the quiet log by this factor.
 const SUSPECT: f64 = 1.5;
 
 /// Joints that may have another effort, at most.
@@ -150,8 +150,8 @@ pub(crate) fn is_dead(baseline: &Baseline, stretches: &[&Stretch], joint: usize)
     baseline.scale.effort[joint] > 0.0 && stretches.iter().all(|stretch| stretch.is_silent(joint))
 }
 
-/// The two joints whose efforts are exchanged in a log, counted from 0, the smaller first: the log explains little as it
-/// is, and nearly all if they are exchanged back. `exchanged` gives the equations of the log with the efforts of two
+/// The two joints whose efforts are exchanged in a log, counted from 0, the smaller first: the model explains little of
+/// the log as it is, and nearly all if the efforts are exchanged back. `exchanged` gives the equations of the log with the efforts of two
 /// joints exchanged.
 ///
 /// # Errors

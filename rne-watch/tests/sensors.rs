@@ -74,8 +74,8 @@ fn exchanged(structure: &Structure, quiet: &Baseline, motion: &Motion) -> Option
     found.map(|(joints, _)| joints)
 }
 
-/// The efforts of each two of the first five joints of a real arm. The torque of the last joint is nearly noise: with it,
-/// not every pair is found.
+/// The efforts of each two of the first five joints of a real arm. The torque of the last joint is nearly
+/// noise: with it, not every pair is found.
 #[test]
 fn exchanged_efforts_are_named() {
     let (name, cutoff) = PUBLIC[0];
