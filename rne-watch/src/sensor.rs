@@ -151,8 +151,8 @@ pub(crate) fn is_dead(baseline: &Baseline, stretches: &[&Stretch], joint: usize)
 }
 
 /// The two joints whose efforts are exchanged in a log, counted from 0, the smaller first: the model explains little of
-/// the log as it is, and nearly all if the efforts are exchanged back. `exchanged` gives the equations of the log with the efforts of two
-/// joints exchanged.
+/// the log as it is, and nearly all if the efforts are exchanged back. `exchanged` gives the equations of the log with
+/// the efforts of two joints exchanged.
 ///
 /// # Errors
 /// Those of `exchanged`.

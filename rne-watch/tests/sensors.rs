@@ -18,7 +18,7 @@ fn frozen(motion: &Motion, joint: usize, from: usize) -> Motion {
     frozen
 }
 
-fn is_frozen(event: &&Event) -> bool {
+fn is_frozen(event: &Event) -> bool {
     event.parameter == "frozen"
 }
 
@@ -34,14 +34,14 @@ fn an_effort_that_repeats_a_value_is_one_event() {
         for from in [0, watched.len() / 2] {
             let log = frozen(&watched, joint, from);
             let events = changes(&structure, &quiet, &log).events;
-            let found: Vec<&Event> = events.iter().filter(is_frozen).collect();
+            let found: Vec<&Event> = events.iter().filter(|event| is_frozen(event)).collect();
             assert_eq!(found.len(), 1, "{joint} {from}: {events:#?}");
             assert_eq!((found[0].cause, found[0].joint, found[0].lasts), (Cause::Sensor, Some(joint), true));
             assert_eq!(found[0].is_whole, from == 0);
             let (value, since) = (watched.tau[joint][from], watched.time[from]);
             assert!((found[0].value - value).abs() < 1e-3 * value.abs(), "{value}: {found:#?}");
             assert!((found[0].since - since).abs() < 1.5, "{since}: {found:#?}");
-            assert!(events.iter().all(|event| event.joint != Some(joint) || is_frozen(&event)), "{events:#?}");
+            assert!(events.iter().all(|event| event.joint != Some(joint) || is_frozen(event)), "{events:#?}");
         }
     }
 }
