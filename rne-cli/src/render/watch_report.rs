@@ -139,6 +139,18 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             // no minus before zero
             (1e3 * event.baseline_value).round() / 1e3 + 0.0
         ),
+        Cause::Sensor if event.parameter == "frozen" => {
+            let value = with_unit(&rounded(event.value, 3), unit);
+            format!("sensor of {joint}: the effort stays at {value}, although the joint moves: the channel is frozen")
+        }
+        Cause::Sensor if event.parameter == "exchanged" => {
+            let others: Vec<String> = event.others.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect();
+            let other = others.join(", ");
+            format!(
+                "sensors: the efforts of {joint} and {other} look exchanged; the other results hold for the efforts \
+                 exchanged back"
+            )
+        }
         Cause::Sensor if event.parameter == "gain" => {
             format!("sensor of {joint}: the effort is {value} of the torque{}", gain(event))
         }

@@ -421,6 +421,11 @@ fn other_schemas_are_told() {
             "line 3: a line has more than a million bytes",
         ),
         ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not increase"),
+        (
+            "shuffled.csv",
+            b"time,q1\n0.3,1\n0.1,2\n0.4,1\n0.0,2\n0.2,3\n".to_vec(),
+            "in the first 5 rows, time goes back 2 times; sort the rows by their time",
+        ),
         ("binary.csv", vec![1, 0, 2, 0], "bytes with the value zero"),
         ("ints.npy", npy(&times()[..3], true, "<i8"), "the numbers are"),
         ("wide.npy", npy(&times()[..3], false, "<f8"), "which does not fit the order time,q,qd,tau"),
