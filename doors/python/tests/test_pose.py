@@ -79,7 +79,7 @@ def test_shapes_and_names_are_told():
     with pytest.raises(ValueError, match="shape \\(4, 4\\) or \\(N, 4, 4\\)"):
         arm.pose_error([0] * 6, [0.1, 0.2, 0.3])
     with pytest.raises(ValueError, match="one for each state, \\(2, 4, 4\\)"):
-        arm.pose_error(np.zeros((2, 6)), np.zeros((3, 4, 4)))
+        arm.pose_error(np.zeros((2, 6)), np.stack([np.eye(4)] * 3))
     with pytest.raises(ValueError, match="elbo"):
         arm.pose_error([0] * 6, np.eye(4), frame="elbo")
     with pytest.raises(ValueError, match="`pose` has the shape"):
