@@ -35,8 +35,7 @@ Examples:
 Without --function rne writes the functions of the trait InverseDynamics. If the
 file of --check is out of date, rne exits with status 1 and prints the command
 that updates the file. C code needs no library. On standard output, the C header
-and the C source are one file. In C, momentum_and_rate brings the momentum
-observer along: PREFIX_observer_update. A C compiler with the option -DRNE_TEST makes a
+and the C source are one file. A C compiler with the option -DRNE_TEST makes a
 program that runs the tests.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
