@@ -79,7 +79,11 @@ impl Arm {
         given.extend(self.given_parameters(py, parameters)?);
         // lists follow the arrays among the arguments
         let is_single = are_single(&given);
-        let steps = flat_torques(&mut given[2], dof)?;
+        let shapes = [shape_of(&given[0])?, shape_of(&given[1])?];
+        let (steps, samples) = flat_torques(&mut given[2], dof)?;
+        for (name, shape) in ["q", "qd"].into_iter().zip(shapes) {
+            agree(name, &shape, samples, steps, dof)?;
+        }
         let friction = friction.map(width).transpose()?.flatten();
         let limits = limits.map(which).transpose()?.unwrap_or_default();
         let rollout = Rollout { friction, limits, ..Rollout::new(steps, step) };
@@ -92,17 +96,18 @@ impl Arm {
     }
 }
 
-/// Puts the torques of all steps of a sample side by side, and returns the number of steps.
-fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<usize> {
+/// Puts the torques of all steps of a sample side by side, and returns the number of steps, and that of samples where
+/// the array has this axis.
+fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<usize>)> {
     refuse_masked("tau", &given.value)?;
     let numpy = given.value.py().import("numpy")?;
     let array = numpy
         .call_method1("asarray", (&given.value,))
         .map_err(|_| PyTypeError::new_err("`tau` is not an array of real numbers"))?;
     let shape = array.cast::<PyUntypedArray>()?.shape().to_vec();
-    let (steps, flat) = match shape[..] {
-        [steps, joints] if joints == dof => (steps, vec![steps * dof]),
-        [samples, steps, joints] if joints == dof => (steps, vec![samples, steps * dof]),
+    let (steps, samples, flat) = match shape[..] {
+        [steps, joints] if joints == dof => (steps, None, vec![steps * dof]),
+        [samples, steps, joints] if joints == dof => (steps, Some(samples), vec![samples, steps * dof]),
         _ => {
             let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
             return Err(PyValueError::new_err(format!(
@@ -113,7 +118,27 @@ fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<usize> {
     };
     given.elements = steps * dof;
     given.value = array.call_method1("reshape", (PyTuple::new(array.py(), flat)?,))?;
-    Ok(steps)
+    Ok((steps, samples))
+}
+
+/// The shape of an argument of numpy; none of what numpy does not take, which is refused later.
+fn shape_of(given: &Given<'_>) -> PyResult<Vec<usize>> {
+    let numpy = given.value.py().import("numpy")?;
+    let Ok(array) = numpy.call_method1("asarray", (&given.value,)) else { return Ok(Vec::new()) };
+    Ok(array.cast::<PyUntypedArray>()?.shape().to_vec())
+}
+
+/// Refuses torques of another number of samples than a state has: their axes may be in another order.
+fn agree(name: &str, shape: &[usize], samples: Option<usize>, steps: usize, dof: usize) -> PyResult<()> {
+    match (shape, samples) {
+        (&[states, joints], Some(samples)) if joints == dof && states > 1 && states != samples => {
+            Err(PyValueError::new_err(format!(
+                "`tau` has the shape ({samples}, {steps}, {dof}), but `{name}` has the shape ({states}, {dof}): the axes \
+                 of `tau` are samples, steps, joints, (N, T, {dof}), and N is {states} here"
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Warns where limits or friction are asked for and no joint has any.
