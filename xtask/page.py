@@ -301,6 +301,28 @@ def address(driver, page):
     print("  an address opens the exact view")
 
 
+def headings(driver, page, inspection):
+    """No heading of a cell says what the title, the formula or the letter before it has said."""
+    opened(driver, page)
+    plain = lambda text: re.sub(r"[ ()\xa0]", "", text)
+    seen = 0
+    for cell in inspection["cells"]:
+        heads = driver.execute_script(
+            "document.querySelector(`[data-cell=\"${arguments[0]}\"]`).click();"
+            "return [...document.querySelectorAll('#cell h4')].map(of => "
+            "  [of.firstChild.textContent, of.querySelector('.group-meaning').textContent])",
+            f"{cell['joint']}-{cell['step']}")
+        for sign, words in heads:
+            seen += bool(words)
+            isFormula = "=" in sign
+            told = words.split(";")[0]
+            check(told != cell["title"] and not (isFormula and re.match(r"^[fn] = ", told))
+                  and not (plain(told) and (plain(told) == plain(sign) or told.startswith(f"{plain(sign)} "))),
+                  f"{page.stem}: step {cell['step']} says {words!r} twice, behind {sign!r}")
+    check(seen > 0, f"{page.stem}: no heading says what its quantity is")
+    print("  headings say nothing twice")
+
+
 def teaching(driver, rne, page, folder):
     """What a lecturer and a student use: the figure, large equations, cells that are not needed, a text to hand in."""
     def at(fragment):
@@ -764,6 +786,7 @@ def main():
             narrow(driver, f"{robot}, desk")
             quiet(driver, robot)
             views(driver, page)
+            headings(driver, page, inspection)
             if robot == "planar2":
                 address(driver, page)
                 teaching(driver, rne, page, folder)
