@@ -301,6 +301,54 @@ def address(driver, page):
     print("  an address opens the exact view")
 
 
+# the torques of the bars, and those of the curve at the cursor; whether the cursor is shown
+CURSOR = """
+  const ends = (of) => document.querySelector(of).getAttribute("d").match(/-?[0-9.]+/g).map(Number);
+  const hand = document.querySelector("#plot .hand"), curve = ends("#plot .curve.total");
+  const [x] = ends("#plot .hand");
+  const at = curve.findIndex((value, index) => index % 2 === 0 && value >= x - 0.02);
+  const marks = [...document.querySelectorAll("#plot .plot-axes text.end")].filter(of => of.textContent !== "time, s");
+  const [low, high] = [marks[0], marks.at(-1)].map(of => [Number(of.textContent.replace("−", "-")), Number(of.getAttribute("y")) - 4]);
+  const read = low[0] + (curve[at + 1] - low[1]) * (high[0] - low[0]) / (high[1] - low[1]);
+  return { shown: !hand.hasAttribute("hidden"), read, span: high[0] - low[0], words: document.getElementById("plot-words").textContent,
+           bar: rne.total()[Number(document.querySelector("#joints [aria-pressed=true]").dataset.plot) - 1] };
+"""
+
+
+def cursor(driver, page):
+    """Where the cursor of the plot is shown, its curve has the torque of the bar, also with a force at the tip."""
+    opened(driver, page)
+    where = page.stem
+
+    def moved(of, value):
+        driver.execute_script("const of = document.querySelector(arguments[0]); of.value = arguments[1];"
+                              "of.dispatchEvent(new Event('input', { bubbles: true }))", of, value)
+
+    def agrees(shown, what):
+        found = driver.execute_script(CURSOR)
+        check(found["shown"] == shown, f"{where}: the cursor is {'not ' if shown else ''}shown {what}")
+        check(("not on this motion" in found["words"]) != shown, f"{where}: {what} the plot says {found['words']!r}")
+        if shown:
+            check(abs(found["read"] - found["bar"]) <= 0.01 * found["span"], f"{where}: {what} the curve has {found['read']} and the bar {found['bar']}")
+
+    agrees(False, "at first, where the arm moves at the start")
+    for time in (0.3, 0.7):
+        moved("#time", time)
+        agrees(True, f"at {time} of the motion")
+    moved("#duration", -0.3)
+    agrees(True, "with another duration")
+    moved('[data-tip="fy"]', 7)
+    agrees(True, "with a force at the tip")
+    moved('input[data-of="qd"][data-joint="1"]', 0.9)
+    agrees(False, "with another velocity")
+    moved("#time", 1)
+    agrees(True, "at the end")
+    driver.execute_script("document.getElementById('home').click()")
+    agrees(False, "after a reset")
+    quiet(driver, where)
+    print("  the cursor of the plot stands where the bars are")
+
+
 def headings(driver, page, inspection):
     """No heading of a cell says what the title, the formula or the letter before it has said."""
     opened(driver, page)
@@ -786,6 +834,7 @@ def main():
             narrow(driver, f"{robot}, desk")
             quiet(driver, robot)
             views(driver, page)
+            cursor(driver, page)
             headings(driver, page, inspection)
             if robot == "planar2":
                 address(driver, page)
