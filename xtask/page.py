@@ -275,7 +275,8 @@ def address(driver, page):
     angle = driver.execute_script("return rne.view().state.q[1]")
     check(abs(angle + math.pi / 8) < 1e-15, f"address: -22,5 degrees are {angle} rad")
     field = driver.find_element(By.CSS_SELECTOR, '[data-field="q"][data-name="q1"]')
-    for typed, value in (("pi/4", math.pi / 4), ("-2pi/3", -2 * math.pi / 3), ("30deg", math.pi / 6), ("pie", math.pi / 6)):
+    for typed, value in (("pi/4", math.pi / 4), ("-2pi/3", -2 * math.pi / 3), ("30deg", math.pi / 6), ("pie", math.pi / 6),
+                         ("-deg(22.5)", -math.pi / 8), ("45 °", math.pi / 4)):
         field.clear()
         field.send_keys(typed, Keys.ENTER)
         angle = driver.execute_script("return rne.view().state.q[0]")
