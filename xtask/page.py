@@ -298,6 +298,16 @@ def address(driver, page):
     for part in ("q has 3 numbers, and 2 are needed", "qd has something that is no number", "there is no cell 7.1"):
         check(part in said, f"address: {part!r} is not said: {said!r}")
     check(state["qdd"] == [0.5, 0.25], f"address: q̈ is {state['qdd']}")
+    # what a part of a state leaves open is said, until it changes
+    note = "const of = document.getElementById('state-note'); return of.hidden ? '' : of.textContent"
+    for fragment, parts in (("#cell=2.4", []), ("#q=0.6,1.3&qd=1,0&qdd=0,0", []),
+                            ("#q=0.6,1.3&qd=1,-0.5", ["does not give qdd, so", "q̈ = (1, −1.5)", "add qdd=0,0 to"]),
+                            ("#q=0.6,1.3", ["qd and qdd", "q̇ = (0.5, 0.8) and q̈ = (1, −1.5)", "qd=0,0&qdd=0,0"])):
+        at(fragment)
+        said = driver.execute_script(note)
+        check(bool(said) == bool(parts) and all(part in said for part in parts), f"address: {fragment}: the state says {said!r}")
+    driver.execute_script("document.getElementById('rest').click()")
+    check(driver.execute_script(note) == "", "address: the note on q̈ stays when q̈ has changed")
     quiet(driver, "address")
     print("  an address opens the exact view")
 
