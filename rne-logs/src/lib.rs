@@ -44,6 +44,7 @@ pub use crate::formats::guard::is_guarded;
 #[cfg(feature = "parquet")]
 pub use crate::formats::motion_parquet::MotionParquet;
 pub use crate::formats::npy::Npy;
+pub use crate::log::frozen_position::FrozenPosition;
 pub use crate::log::motion::Motion;
 pub use crate::log::motions::{Motions, Piece};
 pub use crate::log::pass::{Counts, Interruption, InvalidSample};

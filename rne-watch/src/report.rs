@@ -1,8 +1,8 @@
 //! Watching the logs of an arm: changes of its parameters first, then contacts in what these leave.
 
 use rne_identify::{ArmLog, Part, Stretches, Structure};
-use rne_logs::Motion;
-use rne_model::Robot;
+use rne_logs::{FrozenPosition, Motion};
+use rne_model::{JointKind, Robot};
 
 use crate::contact::{Contact, ContactNoise, contacts};
 use crate::dates::Dates;
@@ -155,8 +155,29 @@ pub fn watch(
     for (run, of_run) in found {
         events.extend(touches(robot, &contact, run, Contact::joined(of_run, JOINED)));
     }
+    let frozen: Vec<Event> = log.survey().frozen_positions.iter().map(|frozen| of_position(robot, frozen)).collect();
+    if !frozen.is_empty() {
+        // every torque that the model predicts needs the position
+        events = frozen;
+    }
     Dates::of(log, baseline.span).give(&mut events);
     Ok(Report { events: one_cause(&events), changes, contact, signals, explained, is_cut })
+}
+
+/// A position that keeps one value while its joint moves.
+fn of_position(robot: &Robot, frozen: &FrozenPosition) -> Event {
+    let [since, until] = frozen.times;
+    Event {
+        joint: Some(frozen.joint),
+        parameter: "frozen_position",
+        value: frozen.value,
+        unit: if robot.joints[frozen.joint].row.kind == JointKind::Revolute { "rad" } else { "m" },
+        run: frozen.run,
+        since,
+        until,
+        is_whole: frozen.is_whole,
+        ..Event::blank(Cause::Sensor)
+    }
 }
 
 /// Contacts of one joint that are more than a person or an obstacle makes.

@@ -149,13 +149,13 @@ fn known_baseline(
     let bar = reading::bar("read", false);
     let baseline = Baseline::of_logs(robot, quiet.log(), settings, &mut |share| reading::show(&bar, share))
         .map_err(|error| watch_failure(&error, &quiet.words()))?;
-    let names = unexplained(robot, &prediction(robot, &quiet, Part::All)?);
-    if !names.is_empty() {
+    let joints = unexplained(robot, &prediction(robot, &quiet, Part::All)?);
+    if !joints.is_empty() {
         warn(
             remark,
             &format!(
                 "the model explains nothing of the torques of {} in the quiet log: {}",
-                names.join(", "),
+                names(robot, &joints),
                 doubt(robot, "is it a log of this arm?")
             ),
         );
@@ -243,13 +243,14 @@ fn events(
     }
     let judged = log.judged()?;
     let errors = prediction(robot, &judged, Part::All)?;
-    let names = unexplained(robot, &errors);
-    if !names.is_empty() {
-        let names = names.join(", ");
+    let mut unexplained = unexplained(robot, &errors);
+    unexplained.retain(|joint| !has_faulty_channel(&report, *joint));
+    if !unexplained.is_empty() {
+        let names = names(robot, &unexplained);
         let what = doubt(robot, "does FILE describe this arm, with its friction?");
         warn(&mut remark, &format!("the model explains nothing of the torques of {names}: {what}"));
     }
-    let at_fault = !(report.events.is_empty() && names.is_empty());
+    let at_fault = !(report.events.is_empty() && unexplained.is_empty());
     if let Some(path) = &arguments.csv {
         let table = watch_report::parameters_csv(robot, &baseline, &report.changes);
         if output_file::is_standard_output(path) {
@@ -470,15 +471,30 @@ fn doubt(robot: &Robot, question: &'static str) -> &'static str {
 /// N m or N: what is left of an effort where nothing is.
 const NOTHING: f64 = 1e-9;
 
+/// Whether an event says already that a channel of a joint is wrong, so that the model cannot explain its torques.
+fn has_faulty_channel(report: &Report, joint: usize) -> bool {
+    report.events.iter().any(|event| match event.parameter {
+        "frozen" => event.joint == Some(joint),
+        "exchanged" => event.joint == Some(joint) || event.others.contains(&joint),
+        // the model needs it for every joint
+        "frozen_position" => true,
+        _ => false,
+    })
+}
+
 /// The joints whose torques are no better predicted than by their mean, or not at all; but those of which the file says
 /// that nothing is known.
-fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<String> {
-    let each = robot.joints.iter().zip(errors).zip(Identification::not_excited(robot));
+fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<usize> {
+    let each = errors.iter().zip(Identification::not_excited(robot)).enumerate();
     // what is no number is no prediction
-    let found = each.filter(|((_, error), unknown)| {
+    let found = each.filter(|(_, (error, unknown))| {
         // an effort that does not change, and is what the model says, is explained
         let is_nothing = error.deviation == 0.0 && error.residual <= NOTHING;
         !unknown && !is_nothing && (error.error >= 1.0 || error.error.is_nan())
     });
-    found.map(|((joint, _), _)| one_line(&joint.name)).collect()
+    found.map(|(joint, _)| joint).collect()
+}
+
+fn names(robot: &Robot, joints: &[usize]) -> String {
+    joints.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect::<Vec<_>>().join(", ")
 }

@@ -52,7 +52,12 @@ pub(crate) fn tables(found: &Identification) -> String {
         cells.push([name, value, "±".to_owned(), deviation, percent, rounded(report.written, 4), unit]);
     }
     let align = [Align::Left, Align::Right, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
-    push_table(&mut text, "base parameters: by least squares, and as written to the robot file", &align, &cells);
+    push_table(
+        &mut text,
+        "base parameters: by least squares, ± one standard deviation, and as written to the robot file",
+        &align,
+        &cells,
+    );
     friction(&mut text, found);
     inertia_of_rotors(&mut text, found);
     text

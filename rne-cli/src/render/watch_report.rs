@@ -56,10 +56,15 @@ pub(crate) fn events(
     if events.len() > SHOWN {
         let _ = writeln!(text, "  and {} more; --json prints all of them", events.len() - SHOWN);
     }
+    if events.iter().take(SHOWN).any(|event| event.deviation.is_finite()) {
+        let _ = writeln!(text, "  {QUIET}{DEVIATION}{QUIET:#}");
+    }
     if events.iter().any(|event| event.cause == Cause::Friction) {
         let _ = writeln!(text, "  {QUIET}{}{QUIET:#}", wrap(RIVALS, PAGE - 2, "  "));
     }
-    if let Some(nearest) = report.changes.nearest(&baseline.scale) {
+    // the others are not known where a position is wrong
+    let is_known = !events.iter().any(|event| event.parameter == "frozen_position");
+    if let Some(nearest) = report.changes.nearest(&baseline.scale).filter(|_| is_known) {
         let others = if events.is_empty() { "largest change" } else { "largest change of the others" };
         let said = format!("{others}: {}", margin(robot, nearest));
         let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&said, PAGE, "  "));
@@ -75,6 +80,9 @@ pub(crate) fn events(
     }
     text
 }
+
+/// Said below changes with a deviation.
+const DEVIATION: &str = "± is one standard deviation.";
 
 /// Said below changes of friction.
 const RIVALS: &str = "Temperature and speed change friction, too: compare with a quiet log of the same motion and of a \
@@ -142,6 +150,13 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
         Cause::Sensor if event.parameter == "frozen" => {
             let value = with_unit(&rounded(event.value, 3), unit);
             format!("sensor of {joint}: the effort stays at {value}, although the joint moves: the channel is frozen")
+        }
+        Cause::Sensor if event.parameter == "frozen_position" => {
+            let value = with_unit(&rounded(event.value, 3), unit);
+            format!(
+                "sensor of {joint}: the position stays at {value}, although the velocity says that the joint moves: \
+                 the channel is frozen; rne looks for no other event, because the model needs this position"
+            )
         }
         Cause::Sensor if event.parameter == "exchanged" => {
             let others: Vec<String> = event.others.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect();

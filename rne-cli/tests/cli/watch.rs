@@ -333,7 +333,7 @@ fn a_dead_channel_is_not_in_order() {
     for (columns, effort, said) in [
         (8..9, "0", "shoulder: does FILE"),
         (7..10, "0", "the efforts of all joints are zero"),
-        (8..9, "3.3", "shoulder: does FILE"),
+        (8..9, "3.3", "although the joint moves"),
     ] {
         let dead = log.lines().enumerate().map(|(at, line)| {
             let cell = |(index, cell)| if at > 0 && columns.contains(&index) { effort } else { cell };
@@ -441,4 +441,41 @@ fn what_cannot_be_watched_is_said() {
     let massless = write("massless.yaml", &(massless.join("\n") + "\n"));
     let said = rne(&["watch", &massless, WORN, "--quiet", QUIET]).err;
     assert!(said.contains("FILE contains no masses"), "{said}");
+}
+
+/// A position that keeps its last value while its velocity goes on is one event, and a warning of every command that
+/// reads logs.
+#[test]
+fn a_frozen_position_is_one_event() {
+    let (folder, text) = (folder("frozen_position"), fs::read_to_string(ROOT.to_owned() + "/" + QUIET).expect("a log"));
+    let frozen = |from: usize| {
+        let mut last = String::new();
+        let lines = text.lines().enumerate().map(|(row, line)| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            if row > from {
+                cells[3] = &last;
+            } else {
+                cells[3].clone_into(&mut last);
+            }
+            cells.join(",")
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    for (from, since) in [(1, 0.0), (150, 5.96)] {
+        let path = folder.join(format!("{from}.csv"));
+        fs::write(&path, frozen(from)).expect("a file");
+        let path = path.to_str().expect("text");
+        let reply = json(&[path, "--quiet", QUIET], 1);
+        assert_eq!(events(&reply).len(), 1, "{reply}");
+        let event = &events(&reply)[0];
+        assert_eq!((&event["cause"], &event["name"]), (&"sensor".into(), &"elbow".into()));
+        assert_eq!((&event["parameter"], &event["unit"]), (&"frozen_position".into(), &"rad".into()));
+        assert!((number(event, "since") - since).abs() < 0.05, "{event}");
+        for command in [&["watch", ARM, path, "--quiet", QUIET][..], &["log", path], &["identify", ARM, path]] {
+            let called = rne(command);
+            let err = (called.out + &called.err).split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(err.contains("the position of elbow keeps one value from"), "{err}");
+            assert!(!err.contains("inf %") && !err.contains("explains nothing"), "{err}");
+        }
+    }
 }

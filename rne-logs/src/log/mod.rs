@@ -1,6 +1,7 @@
 //! A log: its files, what is read of them and by which names.
 
 pub(crate) mod chain;
+pub(crate) mod frozen_position;
 pub(crate) mod joints;
 pub(crate) mod motion;
 pub(crate) mod motions;

@@ -40,6 +40,13 @@ pub enum Remark {
         /// Root mean square of the difference over that of the derivative.
         share: f64,
     },
+    /// A position keeps one value while the joint moves.
+    PositionFrozen {
+        /// The joint by the log's name.
+        joint: String,
+        /// The times of the first and of the last sample with the value, s.
+        times: [f64; 2],
+    },
     /// The log has no velocities that are read: they are derived from positions.
     VelocitiesDerived,
     /// Efforts of these joints are currents by the names of columns, and no torque constant is given.
@@ -69,6 +76,7 @@ impl Remark {
             Self::File(_) | Self::IgnoredJoints(_) | Self::VelocitiesDerived | Self::TakenForTorques => false,
             Self::MayBeDegrees { .. }
             | Self::VelocitiesDisagree { .. }
+            | Self::PositionFrozen { .. }
             | Self::Currents(_)
             | Self::TimeGoesBack { .. }
             | Self::Spikes { .. }
@@ -93,11 +101,21 @@ impl fmt::Display for Remark {
                 }
             }
             Self::IgnoredJoints(names) => write!(f, "joints of the log that are not read: {}", names.join(", ")),
+            Self::VelocitiesDisagree { joint, share } if share.is_infinite() => write!(
+                f,
+                "the positions of {joint} do not change, and its measured velocity is not zero: its velocities may have \
+                 a constant error"
+            ),
             Self::VelocitiesDisagree { joint, share } => write!(
                 f,
                 "measured velocities differ from the derivative of positions by {:.0} % at {joint}: stamps may be \
                  wrong, or velocities are filtered or in another unit",
                 share * 100.0
+            ),
+            Self::PositionFrozen { joint, times: [since, until] } => write!(
+                f,
+                "the position of {joint} keeps one value from {since:.1} s to {until:.1} s, although its velocity says \
+                 that it moves: the channel is frozen, and every result of this log is wrong"
             ),
             Self::VelocitiesDerived => f.write_str("velocities are derived from positions"),
             Self::Currents(names) => {
@@ -203,7 +221,13 @@ impl Log {
         if !layout.ignored.is_empty() {
             remarks.push(Remark::IgnoredJoints(layout.ignored.clone()));
         }
-        let worst = survey.disagreement.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        for frozen in &survey.frozen_positions {
+            let joint = layout.joints[frozen.joint].clone();
+            remarks.push(Remark::PositionFrozen { joint, times: frozen.times });
+        }
+        let is_frozen = |joint: usize| survey.frozen_positions.iter().any(|frozen| frozen.joint == joint);
+        let known = survey.disagreement.iter().enumerate().filter(|(joint, _)| !is_frozen(*joint));
+        let worst = known.max_by(|a, b| a.1.total_cmp(b.1));
         if let Some((joint, share)) = worst.filter(|(_, share)| **share > DISAGREEMENT) {
             remarks.push(Remark::VelocitiesDisagree { joint: layout.joints[joint].clone(), share: *share });
         }

@@ -2,6 +2,7 @@
 
 use crate::columns::quantity::Quantity;
 use crate::limits::{FEW_ROWS, MOST_FILLED};
+use crate::log::frozen_position::{FrozenPosition, FrozenPositions};
 use crate::log::pass::{Counts, Interruption, InvalidSample};
 use crate::number::short;
 use crate::options::Angles;
@@ -75,6 +76,8 @@ pub struct Survey {
     /// By joint: how far velocities are from the differences of positions, root mean square, of those differences;
     /// empty where the log has no velocities.
     pub disagreement: Vec<f64>,
+    /// Positions that keep one value while the measured velocity says that the joint moves.
+    pub frozen_positions: Vec<FrozenPosition>,
     /// The cut-off of the filter.
     pub cutoff: Cutoff,
     /// States at each end of a run that the filter drops; a run with no more than twice as many gives none.
@@ -141,6 +144,7 @@ impl Survey {
         let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); layout.width()];
         let mut spikes = Spikes::new(if layout.has_efforts { joints } else { 0 });
         let mut agreement = Agreement::new(if layout.has_velocities { joints } else { 0 });
+        let mut frozen_positions = FrozenPositions::new(if layout.has_velocities { joints } else { 0 });
         let mut runs = Runs::default();
         let mut grid: Option<Grid> = None;
         let mut pass = log.pass()?;
@@ -163,10 +167,12 @@ impl Survey {
                 spikes.end_run();
                 runs.begin(log.seconds(state.time), begins);
                 agreement.previous = None;
+                frozen_positions.begin_run(count == 1);
             } else {
                 runs.push(log.seconds(state.time), layout.step);
             }
             agreement.push(state.time, &state.numbers);
+            frozen_positions.push(log.seconds(state.time), &state.numbers);
             spikes.push(message, log.seconds(state.time), &state.numbers[efforts.clone()]);
             let grid = grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
             grid.push(state.time, &state.numbers, &mut |row| {
@@ -218,6 +224,7 @@ impl Survey {
             velocities,
             efforts,
             disagreement,
+            frozen_positions: frozen_positions.end(),
             cutoff,
             dropped,
         })

@@ -1,0 +1,158 @@
+//! Positions that keep one value while the measured velocity says that the joint moves.
+
+/// s: a position keeps its value at least as long.
+const SHORTEST: f64 = 1.0;
+
+/// rad or m: the velocity meanwhile moves the joint at least as far in one direction.
+const TRAVEL: f64 = 0.1;
+
+/// rad/s or m/s: the mean of the speed meanwhile. The velocity of a joint at rest may have a small constant error.
+const SPEED: f64 = 0.05;
+
+/// A position that keeps one value while the joint moves: the longest time of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FrozenPosition {
+    /// The joint, counted from 0.
+    pub joint: usize,
+    /// The value, rad or m.
+    pub value: f64,
+    /// The number of its run, from 0.
+    pub run: u64,
+    /// The times of the first and of the last sample with the value, s.
+    pub times: [f64; 2],
+    /// Whether the whole log has this value.
+    pub is_whole: bool,
+}
+
+/// The samples of one joint since its position has changed last.
+#[derive(Clone, Copy)]
+struct Window {
+    value: f64,
+    start: f64,
+    end: f64,
+    velocity: f64,
+    /// ∫ velocity dt, its least and its greatest value, and ∫ |velocity| dt.
+    travel: f64,
+    least: f64,
+    most: f64,
+    path: f64,
+}
+
+impl Window {
+    fn at(time: f64, value: f64, velocity: f64) -> Self {
+        Self { value, start: time, end: time, velocity, travel: 0.0, least: 0.0, most: 0.0, path: 0.0 }
+    }
+
+    fn push(&mut self, time: f64, velocity: f64) {
+        let moved = (time - self.end) * (velocity + self.velocity) / 2.0;
+        (self.end, self.velocity) = (time, velocity);
+        self.travel += moved;
+        self.path += moved.abs();
+        (self.least, self.most) = (self.least.min(self.travel), self.most.max(self.travel));
+    }
+
+    fn duration(&self) -> f64 {
+        self.end - self.start
+    }
+
+    fn is_frozen(&self) -> bool {
+        let (duration, range) = (self.duration(), self.most - self.least);
+        duration >= SHORTEST && range >= TRAVEL && self.path >= SPEED * duration
+    }
+}
+
+/// Looks for frozen positions in the states of a log that has measured velocities.
+pub(crate) struct FrozenPositions {
+    run: u64,
+    windows: Vec<Option<Window>>,
+    longest: Vec<Option<(u64, Window)>>,
+    changes: Vec<bool>,
+}
+
+impl FrozenPositions {
+    /// Of no joints where the log has no velocities.
+    pub(crate) fn new(joints: usize) -> Self {
+        Self { run: 0, windows: vec![None; joints], longest: vec![None; joints], changes: vec![false; joints] }
+    }
+
+    /// Ends a run, if there was one.
+    pub(crate) fn begin_run(&mut self, is_first: bool) {
+        (0..self.windows.len()).for_each(|joint| self.keep(joint));
+        self.windows.fill(None);
+        self.run += u64::from(!is_first);
+    }
+
+    /// Takes a state: positions, then velocities.
+    pub(crate) fn push(&mut self, time: f64, numbers: &[f64]) {
+        let joints = self.windows.len();
+        for joint in 0..joints {
+            let (value, velocity) = (numbers[joint], numbers[joints + joint]);
+            match &mut self.windows[joint] {
+                #[expect(clippy::float_cmp, reason = "a frozen channel repeats its bits")]
+                Some(window) if window.value == value => window.push(time, velocity),
+                window => {
+                    self.changes[joint] |= window.is_some();
+                    self.keep(joint);
+                    self.windows[joint] = Some(Window::at(time, value, velocity));
+                }
+            }
+        }
+    }
+
+    fn keep(&mut self, joint: usize) {
+        let Some(window) = self.windows[joint].filter(Window::is_frozen) else { return };
+        if self.longest[joint].is_none_or(|(_, longest)| longest.duration() < window.duration()) {
+            self.longest[joint] = Some((self.run, window));
+        }
+    }
+
+    pub(crate) fn end(mut self) -> Vec<FrozenPosition> {
+        (0..self.windows.len()).for_each(|joint| self.keep(joint));
+        let found = self.longest.iter().zip(&self.changes).enumerate();
+        let position = |(joint, (longest, changes)): (usize, (&Option<(u64, Window)>, &bool))| {
+            let (run, window) = (*longest)?;
+            let times = [window.start, window.end];
+            Some(FrozenPosition { joint, value: window.value, run, times, is_whole: !changes })
+        };
+        found.filter_map(position).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The positions of a joint with this velocity at 100 Hz, kept at one value from some sample on.
+    fn found(samples: u32, velocity: impl Fn(f64) -> f64, from: u32) -> Vec<FrozenPosition> {
+        let mut positions = FrozenPositions::new(1);
+        positions.begin_run(true);
+        let (mut position, mut said) = (0.3, 0.3);
+        for sample in 0..samples {
+            let time = f64::from(sample) * 0.01;
+            position += 0.01 * velocity(time);
+            if sample <= from {
+                said = position;
+            }
+            positions.push(time, &[said, velocity(time)]);
+        }
+        positions.end()
+    }
+
+    #[test]
+    fn a_position_that_keeps_its_value_while_the_joint_moves_is_frozen() {
+        let [one] = found(1000, f64::sin, 400)[..] else { panic!("one") };
+        assert_eq!((one.joint, one.run, one.is_whole, one.times), (0, 0, false, [4.0, 9.99]));
+        let [one] = found(1000, f64::sin, 0)[..] else { panic!("one") };
+        assert!(one.is_whole && one.times == [0.0, 9.99]);
+    }
+
+    #[test]
+    fn a_joint_that_moves_or_rests_has_no_frozen_position() {
+        assert_eq!(found(1000, f64::sin, 1000), [], "it moves");
+        assert_eq!(found(1000, |_| 0.0, 0), [], "it rests");
+        assert_eq!(found(100_000, |_| 0.002, 0), [], "the velocity has a constant error");
+        assert_eq!(found(1000, |time| if (100.0 * time) % 2.0 < 1.0 { 0.2 } else { -0.2 }, 0), [], "noise");
+        assert_eq!(found(1000, f64::sin, 920), [], "shorter than a second");
+    }
+}
