@@ -41,7 +41,7 @@ pub fn mappings(text: &str) -> Vec<Mapping> {
         && let Some(root) = document::parse(text, document::ROBOT_FILE, &problems)
     {
         let cx = Context::new(text, &problems, &[]);
-        let _ = schema::robot(&cx, &root);
+        let _ = schema::robot(&cx, &root, true);
         mappings = cx.mappings.take();
     }
     let _ = problems.finish("", text);

@@ -9,10 +9,20 @@
 //! modified    Rx(α_i)    (a_i, 0, 0)    l_i - c̄_p            R_t                    p_t
 //! ```
 //!
-//! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On
-//! the base the rotation of a standard table is 1. R_t and p_t are the tool's.
+//! p is the parent link, n the link of the tip; row i of a modified table carries the twist and the length before joint
+//! i. On the base the rotation of a standard table is 1. R_t and p_t are the tool's.
+//!
+//! In a tree a row may begin at a placement R_b, p_b in the link frame of its parent. It then stands before the row:
+//!
+//! ```text
+//! standard    Rx(α_p) R_b       Rx(α_p) p_b
+//! modified    R_b Rx(α_i)       R_b (a_i, 0, 0) + p_b
+//! ```
 
-use rne_model::{Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, Robot, Transform};
+use rne_model::{
+    Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, QuarterTurns, Robot,
+    Transform,
+};
 
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
@@ -73,7 +83,7 @@ impl<'s> Arm<'s> {
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
         let frame = builder.function.frame(robot);
         let FixedFrame { on: tip_link, placement } = frame.map_or_else(
-            || FixedFrame { on: dof.checked_sub(1), placement: robot.tool },
+            || robot.tip(),
             |frame| robot.fixed_frame(frame),
         );
         let tool = Placement::new(builder, robot, &placement, |axis| match frame {
@@ -86,11 +96,17 @@ impl<'s> Arm<'s> {
         let mut links: Vec<Link<'s>> = Vec::with_capacity(dof);
         for (index, row) in robot.rows().enumerate() {
             let (joint, parent) = (index + 1, robot.parent(index));
-            let (rotation, lever) = match (robot.convention, parent) {
-                (Convention::Standard, None) => (identity(builder), builder.zeros(Cause::FirstFrame)),
-                (Convention::Standard, Some(parent)) => (twists[parent], builder.zeros(Cause::Arithmetic)),
-                (Convention::Modified, _) => {
-                    (twists[index], Vector([number(Entry::A(index), row.dh.a), zero(), zero()]))
+            let length = || Vector([number(Entry::A(index), row.dh.a), zero(), zero()]);
+            let (rotation, lever) = match (beginning(builder, robot, index), robot.convention, parent) {
+                (None, Convention::Standard, None) => (identity(builder), builder.zeros(Cause::FirstFrame)),
+                (None, Convention::Standard, Some(parent)) => (twists[parent], builder.zeros(Cause::Arithmetic)),
+                (None, Convention::Modified, _) => (twists[index], length()),
+                (Some(it), Convention::Standard, None) => (it.rotation, it.translation),
+                (Some(it), Convention::Standard, Some(parent)) => {
+                    (twists[parent] * it.rotation, twists[parent] * it.translation)
+                }
+                (Some(it), Convention::Modified, _) => {
+                    (it.rotation * twists[index], it.rotation * length() + it.translation)
                 }
             };
             let mount = Mount { rotation, r: from_com(builder, &links, parent, lever), lever };
@@ -147,8 +163,17 @@ impl<'s> Arm<'s> {
 
     /// The mount of what a link carries on the way to the tip: the next joint, or the tip.
     pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
-        let next = self.links.iter().find(|link| link.parent == Some(index) && self.tip_link != Some(index));
-        next.map_or(&self.tip, |link| &link.mount)
+        self.carried_joints(index).find(|(joint, _)| self.moves_tip(*joint)).map_or(&self.tip, |(_, link)| &link.mount)
+    }
+
+    /// The joints that a link carries, counted from 0.
+    pub(crate) fn carried_joints(&self, index: usize) -> impl Iterator<Item = (usize, &Link<'s>)> {
+        self.links.iter().enumerate().filter(move |(_, link)| link.parent == Some(index))
+    }
+
+    /// What belongs to the link of the tip.
+    pub(crate) fn at_tip<'a, T>(&self, of_links: &'a [T]) -> Option<&'a T> {
+        of_links.get(self.tip_link?)
     }
 
     /// Whether a joint moves the tip frame: it is the joint of its link, or of a link that carries this one.
@@ -162,6 +187,14 @@ impl<'s> Arm<'s> {
         }
         false
     }
+}
+
+/// Where a row of a tree begins in the link frame of its parent, if not there. Run-time parameters do not change it.
+fn beginning<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Placement<'s>> {
+    let placement = robot.joints.get(index)?.branch?.placement;
+    let is_zero = |angle: &Angle| angle.right == Some(QuarterTurns::Zero);
+    let is_nothing = placement.xyz == [0.0; 3] && placement.rpy.iter().all(is_zero);
+    (!is_nothing).then(|| Placement::constant(builder, &placement))
 }
 
 /// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever.
@@ -193,6 +226,12 @@ impl<'s> Placement<'s> {
     /// R = (Rz(yaw) Ry(pitch)) Rx(roll); `xyz` are the entries of the translation.
     fn new(builder: &'s Builder, robot: &Robot, transform: &Transform, xyz: impl Fn(usize) -> Entry) -> Self {
         let translation = [0, 1, 2].map(|axis| number(builder, robot, xyz(axis), transform.xyz[axis]));
+        Self { translation: Vector(translation), ..Self::constant(builder, transform) }
+    }
+
+    /// With a constant translation.
+    fn constant(builder: &'s Builder, transform: &Transform) -> Self {
+        let translation = transform.xyz.map(|x| builder.constant(x, Cause::Arithmetic));
         let [roll, pitch, yaw] = transform.rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
         let turn = |axis, turn| turned(builder, axis, turn, Cause::Arithmetic);
         let rotation = (turn(Axis::Z, yaw) * turn(Axis::Y, pitch)) * turn(Axis::X, roll);

@@ -48,8 +48,8 @@ pub(crate) fn momentum_and_rate<'s>(
     tip: &AtTip<'s>,
 ) -> [Vec<Symbol<'s>>; 2] {
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
-    if let (AtTip::Payload(payload), Some(last), Some(of_last)) = (tip, motions.last(), carried.last_mut()) {
-        of_last.push(of_payload(arm, payload, last));
+    if let (AtTip::Payload(payload), Some(link), Some(motion)) = (tip, arm.tip_link, arm.at_tip(motions)) {
+        carried[link].push(of_payload(arm, payload, link, motion));
     }
     let (mut momenta, mut rates) = (Vec::with_capacity(motions.len()), Vec::with_capacity(motions.len()));
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
@@ -86,12 +86,12 @@ pub(crate) fn momentum_and_rate<'s>(
     [momenta, rates]
 }
 
-/// The payload as a body that the last link carries.
-fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, last: &Motion<'s>) -> Carried<'s> {
+/// The payload as a body that the link of the tip carries.
+fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Motion<'s>) -> Carried<'s> {
     let (dof, rotation) = (arm.links.len(), arm.tip.rotation);
-    let [linear, angular] = payload.momenta(arm, last);
+    let [linear, angular] = payload.momenta(arm, motion);
     let moment = arm.builder.joint(dof + 1).vector(Quantity::MomentBehind, || payload.com * payload.mass);
-    let line = arm.builder.joint(dof);
+    let line = arm.builder.joint(link + 1);
     let turned = |quantity, vector| line.vector(quantity, || rotation * vector);
     Carried {
         mass: payload.mass,

@@ -87,7 +87,7 @@ pub(crate) fn inverse_dynamics<'s>(
     tip: &AtTip<'s>,
 ) -> Vec<Load<'s>> {
     let motions = forward(arm, states, base);
-    backward(arm, states, &motions, &tip.wrench(arm, motions.last()))
+    backward(arm, states, &motions, &tip.wrench(arm, arm.at_tip(&motions)))
 }
 
 /// Steps 1 and 2: how link i turns.
@@ -147,8 +147,8 @@ pub(crate) fn backward<'s>(
     tip: &Wrench<'s>,
 ) -> Vec<Load<'s>> {
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
-    if let Some(of_last) = carried.last_mut() {
-        of_last.push(tip.carried(arm.builder.joint(motions.len()), arm.tip.rotation, &arm.tip));
+    if let Some(link) = arm.tip_link {
+        carried[link].push(tip.carried(arm.builder.joint(link + 1), arm.tip.rotation, &arm.tip));
     }
     let mut loads = Vec::with_capacity(motions.len());
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
