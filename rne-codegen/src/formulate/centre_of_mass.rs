@@ -45,18 +45,18 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
     let links = links(builder, frames, centres);
     // of what each link carries
     let nothing = (builder.zeros(Cause::Arithmetic), builder.constant(0.0, Cause::Arithmetic));
-    let mut carried = vec![nothing; links.len()];
+    let mut carried = vec![None; links.len()];
     let mut columns = Vec::with_capacity(links.len());
     for (index, link) in arm.links.iter().enumerate().rev() {
         let (line, frame) = (builder.joint(index + 1), &frames.joints[index]);
         let axis = frame.axis();
         let column = line.within(Quantity::JacobianLinear, || {
-            let (moment, part) = carried[index];
+            let (moment, part) = carried[index].unwrap_or(nothing);
             let moment = moment + with_first_moment(arm, frames, index, links[index] * parts[index], inverse);
             let part = part + parts[index];
             if let Some(parent) = link.parent {
-                let of_parent = carried[parent];
-                carried[parent] = (of_parent.0 + moment, of_parent.1 + part);
+                let with_others = |(others, parts)| (others + moment, parts + part);
+                carried[parent] = Some(carried[parent].map_or((moment, part), with_others));
             }
             match link.kind {
                 Revolute => axis.cross(moment - frame.origin * part),

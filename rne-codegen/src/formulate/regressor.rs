@@ -23,9 +23,9 @@ pub(crate) fn regressor<'s>(
     let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PER_LINK]; dof]; dof];
     let zeros = builder.zeros(Cause::JointAxis);
     // of every joint, in the axes of its parent, at the joint's point: its acceleration less gravity, and (u, v) of the
-    // joints that move the parent
-    let mut points = vec![-arm.gravity; dof];
-    let mut carriers: Vec<Vec<(usize, [Vector<'s>; 2])>> = vec![Vec::new(); dof];
+    // joints that move the parent; behind them those of what stands at an end, which nothing takes
+    let mut points = vec![-arm.gravity; dof + 1];
+    let mut carriers: Vec<Vec<(usize, [Vector<'s>; 2])>> = vec![Vec::new(); dof + 1];
     for (joint, motion) in arm.joints(states).zip(motions) {
         let (line, link) = (joint.lines, joint.link);
         let Turning { rotation, omega, omega_dot } = motion.turning;
@@ -35,8 +35,11 @@ pub(crate) fn regressor<'s>(
         let origin = line.within(Quantity::OriginAcceleration, || {
             joint.acceleration(back * points[joint.index], omega) + gradient * reach
         });
-        let mounted: Vec<(usize, Vector<'s>)> =
+        let mut mounted: Vec<(usize, Vector<'s>)> =
             arm.carried_joints(joint.index).map(|(index, link)| (index, link.mount.lever)).collect();
+        if mounted.is_empty() {
+            mounted.push((dof, arm.tip.lever));
+        }
         for (index, lever) in &mounted {
             points[*index] = line.within(Quantity::JointPointAcceleration, || origin + gradient * *lever);
         }
