@@ -148,7 +148,11 @@ impl<'r> Compiler<'r> {
             return Ok(Program { refusals, ..seven_steps_within(LARGEST, robot, function, &[], false)? });
         }
         let reference = Reference::of(robot, function)?;
-        // numbers that are not known cannot be regrouped, and plans are those of serial arms
+        if !robot.is_serial() && Algorithm::is_planned(function) {
+            let refusal = Refusal::new(Attempt::Planned(LeftOut::Nothing), Reason::Tree);
+            return Ok(self.numbered(function, reference, vec![refusal]));
+        }
+        // numbers that are not known cannot be regrouped
         if !robot.run_time.is_empty() || !robot.is_serial() {
             return Ok(self.numbered(function, reference, Vec::new()));
         }

@@ -35,6 +35,8 @@ pub(crate) struct Mount<'s> {
     pub(crate) r: Vector<'s>,
     /// To the same point from the end of the parent's offset, where the link frame of the table stands.
     pub(crate) lever: Vector<'s>,
+    /// Tells it from the other things that the parent carries; 0 for the first of them.
+    pub(crate) label: usize,
 }
 
 /// The constants of one link and of the joint that moves it.
@@ -109,7 +111,10 @@ impl<'s> Arm<'s> {
                     (it.rotation * twists[index], it.rotation * length() + it.translation)
                 }
             };
-            let mount = Mount { rotation, r: from_com(builder, &links, parent, lever), lever };
+            let is_first = links.iter().all(|link| link.parent != parent);
+            let label = if is_first { 0 } else { joint };
+            let r = from_com(builder, &links, parent, (label, lever));
+            let mount = Mount { rotation, r, lever, label };
             let com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
             let inertia = inertia(builder, robot, index);
             // the twist behind joint i of a standard table is that of its own row
@@ -145,16 +150,18 @@ impl<'s> Arm<'s> {
             (Convention::Standard, Some(&twist)) => (twist * tool.rotation, twist * tool.translation),
             _ => (tool.rotation, tool.translation),
         };
+        let is_first = links.iter().all(|link| link.parent != tip_link);
+        let label = if is_first { 0 } else { dof + 1 };
         // a frame carries no load, and its link has a lever to the next joint already
         let r = match frame {
             Some(_) => builder.zeros(Cause::FreeTip),
-            None => from_com(builder, &links, tip_link, lever),
+            None => from_com(builder, &links, tip_link, (label, lever)),
         };
         let rotation = builder.name_matrix(Quantity::TipRotation, dof + 1, rotation);
         Self {
             builder,
             links,
-            tip: Mount { rotation, r, lever },
+            tip: Mount { rotation, r, lever, label },
             tip_link,
             gravity: gravity(builder, robot),
             base: Placement::new(builder, robot, &robot.base, Entry::BaseXyz),
@@ -198,9 +205,17 @@ fn beginning<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Pl
 }
 
 /// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever.
-fn from_com<'s>(builder: &'s Builder, links: &[Link<'s>], parent: Option<usize>, lever: Vector<'s>) -> Vector<'s> {
+fn from_com<'s>(
+    builder: &'s Builder,
+    links: &[Link<'s>],
+    parent: Option<usize>,
+    (label, lever): (usize, Vector<'s>),
+) -> Vector<'s> {
     match parent {
-        Some(parent) => builder.name_vector(Quantity::R, parent + 1, lever - links[parent].com),
+        Some(parent) => {
+            let line = builder.joint(parent + 1).carrying(label);
+            line.name_vector(Quantity::R, lever - links[parent].com)
+        }
         None if builder.function.takes(Argument::Base) => lever,
         None => builder.zeros(Cause::FixedBase),
     }
