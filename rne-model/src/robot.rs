@@ -1,6 +1,8 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
-use crate::{Convention, FixedFrame, Frame, FrameId, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia};
+use crate::{
+    Convention, FixedFrame, Frame, FrameId, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia,
+};
 
 /// A validated robot, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]

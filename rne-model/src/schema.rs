@@ -15,8 +15,8 @@ use crate::varying::{
     without_effect,
 };
 use crate::{
-    Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaElement, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits,
-    Link, Motor, Robot, Row, Transform, inertia, lint, tree,
+    Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaElement, InertiaReference, Joint, JointKind,
+    LARGEST_ANGLE, Limits, Link, Motor, Robot, Row, Transform, inertia, lint, tree,
 };
 
 /// More than every number of 64 joints with a name of its own.

@@ -162,8 +162,9 @@ pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], tip_on: Option
     let on = root.get("tool").and_then(|tool| tool.get("on"));
     let of_tip = tip_on.map(|_| (on.unwrap_or(root).head(), "the tip".to_owned()));
     let Some((place, what)) = of_joint.or(of_tip) else { return };
-    let message = format!("{what} does not follow the row before: the robot is a tree, and trees are not supported here");
-    let help = "these take trees: `rne check`, `rne eval`, `rne emit`, the derives, `CompiledArm`, `Arm` and `DynArm`; \
-                everything else takes serial arms only";
+    let message =
+        format!("{what} does not follow the row before: the robot is a tree, and trees are not supported here");
+    let help = "only the Rust types `Arm` and `DynArm` take trees so far; the commands of `rne`, the derives, the Python \
+                package and the C library take serial arms";
     cx.report(Diagnostic::error(place, message).label("a tree").help(help));
 }

@@ -67,7 +67,11 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         Self::prepared(model, [None; DOF], None)
     }
 
-    pub(crate) fn prepared(model: Model<DOF, S>, branches: [Option<FixedFrame<S>>; DOF], tip_on: Option<usize>) -> Self {
+    pub(crate) fn prepared(
+        model: Model<DOF, S>,
+        branches: [Option<FixedFrame<S>>; DOF],
+        tip_on: Option<usize>,
+    ) -> Self {
         let table = table_of(&model, &branches, tip_on);
         let (links, tip) = (array::from_fn(|index| LinkFrame::new(table, index)), Mount::of_tip(table));
         Self { model, branches, tip_on, links, tip, motors: [None; DOF], rotors: false, at: None }

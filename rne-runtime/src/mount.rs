@@ -42,7 +42,8 @@ impl<S: Constant> Mount<S> {
         let Table { convention, rows, .. } = table;
         let (dh, carrier) = (&rows[joint].dh, table.parent(joint).map(|parent| &rows[parent]));
         let length = Vector3::new(dh.a, S::zero(), S::zero());
-        let (rotation, lever) = match (table.placement(joint).map(|it| (rotation_of(it), it.xyz)), convention, carrier) {
+        let (rotation, lever) = match (table.placement(joint).map(|it| (rotation_of(it), it.xyz)), convention, carrier)
+        {
             (None, Convention::Standard, None) => (Matrix3::identity(), Vector3::zeros()),
             (None, Convention::Standard, Some(carrier)) => (rotation_x(&carrier.dh.alpha), Vector3::zeros()),
             (None, Convention::Modified, _) => (rotation_x(&dh.alpha), length),

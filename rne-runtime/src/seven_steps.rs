@@ -233,8 +233,7 @@ mod tests {
         for convention in [Convention::Standard, Convention::Modified] {
             for kind in [JointKind::Revolute, JointKind::Prismatic] {
                 let rows = [row(JointKind::Revolute, [0.5, 0.2, 0.7, 3.0]), row(kind, [0.3, 0.1, -1.1, 2.0])];
-                let table =
-                    Table { convention, rows: &rows, branches: &[], tool: &Transform::IDENTITY, tip_on: None };
+                let table = Table { convention, rows: &rows, branches: &[], tool: &Transform::IDENTITY, tip_on: None };
                 let tip = Mount::of_tip(table);
                 let [first, second] = [0, 1].map(|index| LinkFrame::new(table, index));
                 let (alone, chain) = (torques(&[first], &tip), torques(&[first, second], &tip));

@@ -29,8 +29,8 @@ mod random_arms;
 mod robots;
 mod rotors;
 mod single_precision;
-mod tree_oracle;
-mod trees;
 #[path = "../c_code/states.rs"]
 mod states;
+mod tree_oracle;
+mod trees;
 mod wrenches;

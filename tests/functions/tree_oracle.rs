@@ -145,12 +145,7 @@ pub(crate) fn rates(jet: &Jet, point: &Vector3<f64>) -> [[Vector3<f64>; 2]; 2] {
 }
 
 /// Velocity of a point of a frame, and angular velocity, per rate of each joint, on a base that stands still.
-pub(crate) fn jacobian(
-    robot: &Robot,
-    of: &FixedFrame,
-    q: &[f64],
-    point: &Vector3<f64>,
-) -> Vec<[Vector3<f64>; 2]> {
+pub(crate) fn jacobian(robot: &Robot, of: &FixedFrame, q: &[f64], point: &Vector3<f64>) -> Vec<[Vector3<f64>; 2]> {
     let zeros = vec![0.0; q.len()];
     let column = |index: usize| {
         let mut unit = zeros.clone();

@@ -37,7 +37,15 @@ fn tree(seed: u64, dof: usize) -> String {
             }
         }
         let mut any = |scale: f64| (2.0 * rng.f64() - 1.0) * scale;
-        let at = format!("at: {{xyz: [{}, {}, {}], rpy: [{}, {}, {}]}}", any(0.5), any(0.5), any(0.5), any(3.0), any(3.0), any(3.0));
+        let at = format!(
+            "at: {{xyz: [{}, {}, {}], rpy: [{}, {}, {}]}}",
+            any(0.5),
+            any(0.5),
+            any(0.5),
+            any(3.0),
+            any(3.0),
+            any(3.0)
+        );
         let (gamma, b) = (any(3.0), any(0.5));
         let place = rng.usize(0..4);
         if let Some(kind) = line.strip_prefix("  - type: ") {
@@ -54,7 +62,8 @@ fn tree(seed: u64, dof: usize) -> String {
             index += 1;
         } else if let (Some(row), true, 1) = (line.strip_prefix("    dh: {"), is_modified, place) {
             // the draw of this line, not that of its joint: a joint with `at` has no gamma
-            let has_at = text.lines().rev().take_while(|line| !line.starts_with("  - ")).any(|line| line.contains("at: {"));
+            let has_at =
+                text.lines().rev().take_while(|line| !line.starts_with("  - ")).any(|line| line.contains("at: {"));
             let before = if has_at { String::new() } else { format!("gamma: {gamma}, b: {b}, ") };
             text.push_str(&format!("    dh: {{{before}{row}\n"));
         } else if let Some(tool) = line.strip_prefix("tool: {") {
@@ -204,8 +213,13 @@ fn expected(robot: &Robot, function: Function, state: &State) -> Option<Vec<f64>
 
 /// Scale of rounding: numbers of a function that vanish are sums of larger parts.
 fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
-    let needed = oracle::needed(robot, &Motion { joints: [&state.q, &state.qd, &state.qdd], base: state.base }, Some(&state.payload));
-    let largest = needed.iter().map(|it| it.force.norm() * (1.0 + it.centre.norm()) + it.moment.norm()).fold(0.0, f64::max);
+    let needed = oracle::needed(
+        robot,
+        &Motion { joints: [&state.q, &state.qd, &state.qdd], base: state.base },
+        Some(&state.payload),
+    );
+    let largest =
+        needed.iter().map(|it| it.force.norm() * (1.0 + it.centre.norm()) + it.moment.norm()).fold(0.0, f64::max);
     match function {
         Function::PotentialEnergy => largest,
         // centripetal, one metre from an axis
@@ -218,7 +232,11 @@ fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
 #[test]
 fn every_function_of_a_tree_is_projected_newton_euler() {
     for maker in Maker::ALL {
-        let trees = if maker == Maker::Runtime { 200 } else { 4 };
+        let trees = match maker {
+            Maker::Runtime if shipped::is_exhaustive() => 300,
+            Maker::Runtime => 30,
+            Maker::Code(_) => 4,
+        };
         let mut worst = Worst::default();
         let mut seen = 0;
         for seed in 0..trees {
@@ -247,7 +265,7 @@ fn every_function_of_a_tree_is_projected_newton_euler() {
 #[test]
 fn each_link_has_its_part_in_the_torques() {
     for maker in Maker::ALL {
-        for seed in 0..if maker == Maker::Runtime { 60 } else { 6 } {
+        for seed in 0..if maker == Maker::Runtime { 30 } else { 4 } {
             let dof = 2 + usize::try_from(seed).expect("small") % 4;
             let robot = robot(&tree(seed, dof));
             let arm = Arm::new(&robot, maker);
@@ -258,9 +276,8 @@ fn each_link_has_its_part_in_the_torques() {
             let matrix = arm.regressor(q, qd, qdd);
             let parameters = arm.runtime.inertial_parameters();
             for (joint, row) in matrix.iter().enumerate() {
-                let found: Vec<f64> = (0..dof)
-                    .map(|link| (0..10).map(|k| row[10 * link + k] * parameters[link][k]).sum())
-                    .collect();
+                let found: Vec<f64> =
+                    (0..dof).map(|link| (0..10).map(|k| row[10 * link + k] * parameters[link][k]).sum()).collect();
                 let expected: Vec<f64> = parts.iter().map(|part| part[joint]).collect();
                 let error = error_on_scale(&found, &expected, scale(&robot, Function::InverseDynamics, &state));
                 assert!(error <= TOLERANCE, "{maker}, tree {seed}, joint {joint}: {error:e}");

@@ -20,8 +20,7 @@
 //! ```
 
 use rne_model::{
-    Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, QuarterTurns, Robot,
-    Transform,
+    Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, QuarterTurns, Robot, Transform,
 };
 
 use crate::function::Argument;
@@ -84,10 +83,8 @@ impl<'s> Arm<'s> {
         let zero = || builder.constant(0.0, Cause::Arithmetic);
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
         let frame = builder.function.frame(robot);
-        let FixedFrame { on: tip_link, placement } = frame.map_or_else(
-            || robot.tip(),
-            |frame| robot.fixed_frame(frame),
-        );
+        let FixedFrame { on: tip_link, placement } =
+            frame.map_or_else(|| robot.tip(), |frame| robot.fixed_frame(frame));
         let tool = Placement::new(builder, robot, &placement, |axis| match frame {
             Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
             // the placement of a link frame is no entry, and zero
