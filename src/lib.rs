@@ -134,6 +134,7 @@ pub use rne_runtime::{
     Energy, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
     LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
     Payload, PayloadDynamics, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    dynamically_consistent_inverse, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -144,6 +145,9 @@ pub use rne_runtime::{
     BaseParameter, BaseParameters, DynArm, DynObserverState, DynTorqueDerivatives, DynTrace, LinkParameter, LoadError,
     WrongJointCount, WrongLength,
 };
+// The Python package has arms of any number of joints.
+#[doc(hidden)]
+pub use rne_runtime::operational_space;
 // Derived code names them.
 #[doc(hidden)]
 pub use rne_runtime::{RunTimeParameter, batch, frame_index, processor, testing};
@@ -171,14 +175,19 @@ pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, SearchError,
-        SearchOptions, SearchProgress,
+        EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, Rollout,
+        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress,
     };
 }
 
 #[cfg(doc)]
 #[doc = include_str!("../docs/robot-file.md")]
 pub mod robot_file {}
+
+/// Runs the example of states that are arrays.
+#[cfg(all(doctest, feature = "compiled"))]
+#[doc = include_str!("../docs/run-time.md")]
+mod run_time {}
 
 /// Runs the examples in the documentation of the derives.
 #[cfg(doctest)]

@@ -26,6 +26,23 @@ fn a_file_with_every_key_is_in_order() {
     }
 }
 
+/// Arms weigh in proportion to the cube of their reach, kg/m³: the bound of the lint is half of what the lightest
+/// shipped arm of 4 to 7 joints has, and no shipped arm has a warning.
+#[test]
+fn shipped_arms_have_no_warning_and_are_twice_as_heavy_as_the_lint_asks() {
+    let density = |file: &rne_robots::RobotFile| {
+        let checked = Reader::new(file.name).read(file.yaml).unwrap_or_else(|report| panic!("{report}"));
+        assert_eq!(checked.lints.warnings().count(), 0, "{}", checked.lints);
+        let reach: f64 = checked.robot.rows().map(|row| row.dh.a.hypot(row.dh.d)).sum();
+        let mass: f64 = checked.robot.rows().map(|row| row.link.mass).sum();
+        ((4..=7).contains(&checked.robot.dof())).then_some(mass / reach.powi(3))
+    };
+    let densities: Vec<f64> = rne_robots::ROBOTS.iter().filter_map(density).collect();
+    let least = densities.iter().copied().fold(f64::MAX, f64::min);
+    println!("{} arms, {least:.2} kg/m³ at least", densities.len());
+    assert!(densities.len() > 20 && least > 2.0 * 1.25, "{densities:?}");
+}
+
 /// Two bars by their base parameters, without a mass, have the torques of the bars.
 #[test]
 fn base_parameters_are_a_robot_file() {

@@ -102,6 +102,7 @@ class Imported:
         if run.returncode != 0:
             raise RuntimeError(run.stderr)
         self.account = run.stderr
+        self.locked = [option.split("=")[0] for option in options if "=" in option]
         self.joints = re.findall(r"^  - name: \"?([^\"\n]*)\"?$", self.file.read_text(), re.M)
         self.kinds = re.findall(r"^    type: (\w+)$", self.file.read_text(), re.M)
         subprocess.run([rne, "check", self.file], check=True, capture_output=True)
@@ -119,7 +120,11 @@ class Imported:
 
     def held(self):
         """The joints that do not move, and where they stand."""
-        return {name: float(value) for name, value in re.findall(r"^  (\S+) is held at (\S+)$", self.account, re.M)}
+        held = {name: float(value) for name, value in re.findall(r"^  (\S+) is locked at (\S+)$", self.account, re.M)}
+        missing = set(self.locked) - set(held)
+        if missing:  # the words of the command have changed
+            raise RuntimeError(f"the import does not print at which position {', '.join(sorted(missing))} is locked")
+        return held
 
     def told(self):
         """The change of tip, rotation and torques that the import tells."""

@@ -1,22 +1,24 @@
 #!/usr/bin/env python3
 """Checks C code of an arm against its Denavit-Hartenberg table, independently of rne.
 
-    python3 check_c.py my_arm.c my_arm.trace.json
+    python3 check_c.py my_arm.c my_arm.trace.json my_arm.yaml
 
 The script shares no code with rne and needs only Python's standard library. It reads the C source as text.
-1. Each constant: the trace gives its expression in the numbers of the robot file. The script evaluates the expression
+1. The table: robot_table.py, beside this script, reads the robot file. Each number of the table in the trace must be
+   that of the robot file, but for the roundings of an expression in doubles (1e-14 of the number, 1e-14 rad).
+2. Each constant: the trace gives its expression in the numbers of the table. The script evaluates the expression
    with 60 digits; the literal in the source must be the nearest float (or double) of it.
-2. The function: the script evaluates the source modulo a random prime at random points, with the expressions of the
-   constants. It computes the torques modulo the prime by its own recursive Newton-Euler algorithm, in the axes of
-   frame 0. Both must be equal. The sine and cosine of an angle are a random point (s, c) with s^2 + c^2 = 1.
-3. Sine and cosine: their source must be one of two texts whose SHA-256 stands below. A test of rne compares the
+3. The function (inverse_dynamics, bias_torques or gravity_torques): the script evaluates the source modulo a random
+   prime at random points, with the expressions of the constants. It computes the torques modulo the prime by its own
+   recursive Newton-Euler algorithm, in the axes of frame 0. Both must be equal. The sine and cosine of an angle are a
+   random point (s, c) with s^2 + c^2 = 1.
+4. Sine and cosine: their source must be one of two texts whose SHA-256 stands below. A test of rne compares the
    functions with high precision at 100,000 angles; this script does not.
 
 The primes have 127 bits. A wrong term survives one point with a probability below 1e-33; there are 8 points.
-Not checked: that the table in the trace is what the robot file says (compare them: the table is at the end of the
-trace), the compiler, the processor. Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read.
+Not checked: the compiler and the processor; without a robot file, that the table in the trace is that of the arm.
+Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read.
 """
-import decimal
 import hashlib
 import json
 import math
@@ -26,37 +28,23 @@ import struct
 import sys
 from decimal import Decimal
 
-decimal.getcontext().prec = 60
+sys.dont_write_bytecode = True  # no folder __pycache__ beside this script
+import robot_table
+from robot_table import PI, Wrong, cosine, sine
+
 POINTS = 8
 KERNELS = {  # of the sine, by the type, with the comments removed and the prefix replaced by PREFIX
     "float": "075ef40048349db137365e9a3658e49b884b4617431a61b682e6f95359e0b870",
     "double": "832cb059c93293dbe679defff4e5a128e7221d57220703aa1a890c25590203ef",
 }
 
-class Wrong(Exception):
-    """Something in the C source or the trace is wrong."""
+FUNCTIONS = {  # with the arrays that they take; what they do not take is zero
+    "inverse_dynamics": ["q", "qd", "qdd"],
+    "bias_torques": ["q", "qd"],
+    "gravity_torques": ["q"],
+}
 
 # --- numbers with 60 digits ---------------------------------------------------------------------------------------
-
-def arctan_of_inverse(n):
-    total, power, k = Decimal(0), Decimal(1) / n, 0
-    while abs(power) > Decimal(10) ** -70:
-        total += power / (2 * k + 1) * (-1) ** k
-        power, k = power / (n * n), k + 1
-    return total
-
-PI = 4 * (4 * arctan_of_inverse(5) - arctan_of_inverse(239))  # J. Machin
-
-def sine(x):
-    x = x % (2 * PI)
-    total, term, k = Decimal(0), x, 1
-    while abs(term) > Decimal(10) ** -70:
-        total += term
-        term, k = -term * x * x / ((k + 1) * (k + 2)), k + 2
-    return total
-
-def cosine(x):
-    return sine(x + PI / 2)
 
 def angle_of(s, c):
     x = Decimal(math.atan2(float(s), float(c)))
@@ -310,10 +298,11 @@ class Source:
 
 class Machine:
     """Arithmetic of a field. A value is (number, turn); a turn is the (sine, cosine) of the value as an angle."""
-    def __init__(self, field, table, constants, literals, kind):
+    def __init__(self, field, table, constants, literals, kind, arrays):
         self.field, self.p, self.constants, self.literals, self.kind = field, field.p, constants, literals, kind
         n = len(table["joints"])
-        self.arguments = {name: [random.randrange(self.p) for _ in range(n)] for name in ("q", "qd", "qdd")}
+        self.arguments = {name: [random.randrange(self.p) if name in arrays else 0 for _ in range(n)]
+                          for name in ("q", "qd", "qdd")}
         self.turns = [field.circle() for _ in range(n)]
         self.outputs, self.used = {}, set()
     def constant(self, name, text):
@@ -442,8 +431,11 @@ def check(text, trace):
     table, steps, kind = trace["table"], trace["steps"], trace["real"]
     source = Source(text, trace)
     joints = len(table["joints"])
-    if source.parameters != [("q", joints, True), ("qd", joints, True), ("qdd", joints, True), ("tau", joints, False)]:
-        raise Wrong("the function must take q, qd, qdd and write tau, with one element per joint")
+    arrays = FUNCTIONS.get(source.name.removeprefix(source.prefix + "_"))
+    if arrays is None:
+        raise Wrong(f"this script does not know the function {source.name}")
+    if source.parameters != [(name, joints, True) for name in arrays] + [("tau", joints, False)]:
+        raise Wrong(f"the function must take {', '.join(arrays)} and write tau, with one element per joint")
     exact = exact_values(steps)
     literals = {}
     for name, of in trace["constants"].items():
@@ -459,7 +451,7 @@ def check(text, trace):
                 is_number = isinstance(of, int)
                 constants[name] = (values[of], None) if is_number else (random.randrange(field.p),
                                                                        (values[of["sin"]], values[of["cos"]]))
-            machine = Machine(field, table, constants, literals, kind)
+            machine = Machine(field, table, constants, literals, kind, arrays)
             source.run(machine)
         except NoRoot:
             continue
@@ -473,22 +465,28 @@ def check(text, trace):
     return f"{source.name}: {joints} torques are those of the table at {POINTS} points; {len(literals)} constants are right"
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) not in (3, 4):
         print(__doc__)
         return 2
     try:
-        with open(sys.argv[1], encoding="utf-8") as file:
-            text = file.read()
-        with open(sys.argv[2], encoding="utf-8") as file:
-            trace = json.load(file)
+        texts = []
+        for name in sys.argv[1:]:
+            with open(name, encoding="utf-8") as file:
+                texts.append(file.read())
+        text, trace, robot = texts[0], json.loads(texts[1]), texts[2] if len(texts) > 2 else None
     except (OSError, ValueError) as error:
         print(f"error: {error}")
         return 2
     try:
+        if robot is not None:
+            count = robot_table.compare(trace["table"], robot)
+            print(f"{sys.argv[3]}: {count} numbers of the table in the trace are those of the robot file")
         print(check(text, trace))
     except Wrong as error:
         print(f"wrong: {error}")
         return 1
+    if robot is None:
+        print("the table in the trace is not compared with a robot file: name the file as the third argument")
     return 0
 
 if __name__ == "__main__":

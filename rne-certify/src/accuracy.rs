@@ -4,8 +4,9 @@
 //! ([`Interval`]), which enclose the exact result. The distance of the `f32` result from the farthest number of the
 //! interval is at least the error. So the bound holds at the states of the sample. It says nothing of other states.
 
-use rne_codegen::{Arguments, Interpreter, Program};
+use rne_codegen::{Argument, Arguments, Interpreter, Program};
 use rne_model::{JointKind, Robot};
+use serde::Serialize;
 
 use crate::interval::Interval;
 
@@ -27,10 +28,12 @@ pub struct Range {
     pub velocity: f64,
     /// Largest acceleration, rad/s² or m/s².
     pub acceleration: f64,
+    /// Largest torque, N m or N, of a function that takes torques.
+    pub torque: f64,
 }
 
 /// The error of one number of the result.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Error {
     /// The largest magnitude of the number in the sample.
     pub largest: f64,
@@ -40,9 +43,10 @@ pub struct Error {
     pub state: usize,
 }
 
-/// Speed and acceleration of a joint without limits.
+/// Speed, acceleration and torque of a joint without limits.
 const SPEED: f64 = 2.0;
 const ACCELERATION: f64 = 4.0;
+const TORQUE: f64 = 10.0;
 /// Positions of a sliding joint without limits, m.
 const SLIDE: f64 = 1.0;
 
@@ -56,6 +60,7 @@ pub fn ranges(robot: &Robot) -> Vec<Range> {
         }),
         velocity: joint.limits.velocity.unwrap_or(SPEED),
         acceleration: ACCELERATION,
+        torque: joint.limits.effort.unwrap_or(TORQUE),
     };
     robot.joints.iter().map(range).collect()
 }
@@ -72,47 +77,60 @@ pub fn errors(
     let interpreter = Interpreter::new(program);
     let ranges = ranges(robot);
     let mut rng = fastrand::Rng::with_seed(sample.seed);
-    let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
+    let takes_torques = program.function.takes(Argument::Torques);
     let mut errors = vec![Error::default(); program.outputs.len()];
     for state in 0..sample.states {
         let mut between = |(low, high): (f64, f64)| single(low + (high - low) * rng.f64());
         let q: Vec<f32> = ranges.iter().map(|range| between(range.position)).collect();
         let qd: Vec<f32> = ranges.iter().map(|range| between((-range.velocity, range.velocity))).collect();
-        let qdd: Vec<f32> = ranges.iter().map(|range| between((-range.acceleration, range.acceleration))).collect();
-        let found = single_precision(robot, &interpreter, [&q, &qd, &qdd], &sin_cos)?;
-        let enclose =
-            |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
-        let [q, qd, qdd, parameters] = [&q, &qd, &qdd, &parameters].map(|numbers| enclose(numbers));
-        let zero = Interval::exactly(0.0);
-        let arguments = Arguments { tau: &qdd, parameters: &parameters, ..Arguments::of_joints(&q, &qd, &qdd, zero) };
-        let exact = interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)?;
-        for ((error, found), exact) in errors.iter_mut().zip(found).zip(exact) {
-            let found = f64::from(found);
-            error.largest = error.largest.max(found.abs());
-            let bound = exact.farthest(found);
-            if bound > error.bound || bound.is_nan() {
-                (error.bound, error.state) = (bound, state);
-            }
-        }
+        let last = |range: &Range| if takes_torques { range.torque } else { range.acceleration };
+        let last: Vec<f32> = ranges.iter().map(|range| between((-last(range), last(range)))).collect();
+        let found = single_precision(robot, &interpreter, [&q, &qd, &last], &sin_cos)?;
+        let exact = enclosed(robot, &interpreter, [&q, &qd, &last])?;
+        compare(&mut errors, state, &found, &exact);
     }
     Some(errors)
 }
 
-/// The numbers that a program returns in single precision for joint positions, velocities and accelerations.
+/// Takes the results of a state, found and exact, into the errors.
+pub(crate) fn compare(errors: &mut [Error], state: usize, found: &[f32], exact: &[Interval]) {
+    for ((error, found), exact) in errors.iter_mut().zip(found).zip(exact) {
+        let found = f64::from(*found);
+        error.largest = error.largest.max(found.abs());
+        let bound = exact.farthest(found);
+        if bound > error.bound || bound.is_nan() {
+            (error.bound, error.state) = (bound, state);
+        }
+    }
+}
+
+/// Intervals that enclose the exact numbers that a program returns; the last array are accelerations or torques.
+pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: [&[f32]; 3]) -> Option<Vec<Interval>> {
+    let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
+    let enclose =
+        |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
+    let [q, qd, last, parameters] = [q, qd, last, &parameters].map(enclose);
+    let zero = Interval::exactly(0.0);
+    let arguments = Arguments { tau: &last, parameters: &parameters, ..Arguments::of_joints(&q, &qd, &last, zero) };
+    interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
+}
+
+/// The numbers that a program returns in single precision for joint positions, velocities, and accelerations or
+/// torques.
 #[must_use]
 pub fn single_precision(
     robot: &Robot,
     interpreter: &Interpreter,
-    [q, qd, qdd]: [&[f32]; 3],
+    [q, qd, last]: [&[f32]; 3],
     sin_cos: impl Fn(f32) -> (f32, f32),
 ) -> Option<Vec<f32>> {
     let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
-    let arguments = Arguments { tau: qdd, parameters: &parameters, ..Arguments::of_joints(q, qd, qdd, 0.0) };
+    let arguments = Arguments { tau: last, parameters: &parameters, ..Arguments::of_joints(q, qd, last, 0.0) };
     interpreter.run(&arguments, single, sin_cos)
 }
 
 #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
-fn single(x: f64) -> f32 {
+pub(crate) fn single(x: f64) -> f32 {
     x as f32
 }
 

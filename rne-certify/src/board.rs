@@ -1,7 +1,5 @@
 //! A program in C that calls a function on the boards that QEMU emulates, and what it prints.
 
-use std::fmt::Write as _;
-
 /// The file that starts the processor, reads the timer and prints; it includes [`HEADER`] as `board.h`.
 pub const SOURCE: &str = include_str!("../board/board.c");
 /// Its header.
@@ -44,36 +42,59 @@ pub fn state(number: u32, dof: usize) -> [Vec<f32>; 3] {
     [(); 3].map(|()| (0..dof).map(|_| next()).collect())
 }
 
-/// The program that calls a function of C at [`STATES`] states, prints its results and, once, its time and that of a
-/// function that does nothing. `parameters` are the arrays that the function takes, in order, by the members of
-/// `struct state`; `length` is how many numbers it returns.
+/// A call of a function of C that writes its numbers to its last argument.
+#[derive(Clone, Debug, Default)]
+pub struct Call {
+    /// The name of the function.
+    pub function: String,
+    /// The types of the arguments, and the arguments as C; `s` points to the `struct state`. The result is not among
+    /// them.
+    pub arguments: Vec<(String, String)>,
+    /// How many numbers it writes.
+    pub length: usize,
+    /// Lines before the call; `out` is the place of the result.
+    pub before: Vec<String>,
+}
+
+impl Call {
+    /// The call of a function that takes the given members of the state.
+    #[must_use]
+    pub fn of_arrays(function: &str, arrays: &[&str], length: usize) -> Self {
+        let argument = |array: &&str| ("const float *".to_owned(), format!("s->{array}"));
+        let arguments = arrays.iter().map(argument).collect();
+        Self { function: function.to_owned(), arguments, length, before: Vec::new() }
+    }
+}
+
+/// The program that calls a function of C at [`STATES`] states of an arm with `dof` joints, prints its results and,
+/// once, its time and that of a function that does nothing.
 #[must_use]
-pub fn cases(header: &str, function: &str, dof: usize, arrays: &[&str], length: usize) -> String {
-    let mut text = format!("#include \"board.h\"\n#include \"{header}\"\n\n");
-    let types = vec!["const float *"; arrays.len()].join(", ");
-    let arguments: String = arrays.iter().fold(String::new(), |text, array| text + "s->" + array + ", ");
-    let unused = (0..arrays.len()).fold(String::new(), |mut text, index| {
-        let _ = write!(text, "const float *a{index}, ");
-        text
-    });
-    let voids = (0..arrays.len()).fold(String::new(), |mut text, index| {
-        let _ = writeln!(text, "    (void)a{index};");
-        text
-    });
-    let _ = write!(
-        text,
-        "typedef void certified({types}, float *);\n\n\
-         __attribute__((noinline, noipa)) static void nothing({unused}float *out)\n{{\n{voids}    (void)out;\n}}\n\n\
+pub fn cases(header: &str, dof: usize, call: &Call) -> String {
+    let Call { function, arguments, length, before } = call;
+    let list = |each: &dyn Fn(usize, &(String, String)) -> String| -> String {
+        arguments.iter().enumerate().map(|(index, argument)| each(index, argument)).collect()
+    };
+    let types = list(&|_, (kind, _)| format!("{kind}, "));
+    let parameters = list(&|index, (kind, _)| format!("{kind}a{index}, "));
+    let names = list(&|index, _| format!("a{index}, "));
+    let voids = list(&|index, _| format!("    (void)a{index};\n"));
+    let values = list(&|_, (_, value)| format!("{value}, "));
+    let before: String = before.iter().flat_map(|line| ["    ", line, "\n"]).collect();
+    format!(
+        "#include \"board.h\"\n#include \"{header}\"\n\n\
+         typedef void certified({types}float *);\n\n\
+         __attribute__((noinline, noipa)) static void nothing({parameters}float *out)\n{{\n{voids}    \
+         (void)out;\n}}\n\n\
          __attribute__((noinline, noipa)) static void measure(\n    \
-         const char *what, certified *function, const struct state *s, float *out)\n{{\n    \
-         const uint32_t start = timer();\n    function({arguments}out);\n    const uint32_t end = timer();\n    \
+         const char *what, certified *function, {parameters}float *out)\n{{\n    \
+         const uint32_t start = timer();\n    function({names}out);\n    const uint32_t end = timer();\n    \
          print_ticks(what, start, end);\n}}\n\n\
          void run_cases(uint32_t number)\n{{\n    const struct state state = state_of(number, {dof}u);\n    \
-         const struct state *s = &state;\n    float out[{length}];\n    {function}({arguments}out);\n    \
+         const struct state *s = &state;\n    float out[{length}];\n{before}    {function}({values}out);\n    \
          print_results(\"results\", number, out, {length}u);\n    if (number == 0u) {{\n        \
-         measure(\"function\", {function}, s, out);\n        measure(\"nothing\", nothing, s, out);\n    }}\n}}\n"
-    );
-    text
+         measure(\"function\", {function}, {values}out);\n        measure(\"nothing\", nothing, {values}out);\n    \
+         }}\n}}\n"
+    )
 }
 
 /// The results that the program prints.

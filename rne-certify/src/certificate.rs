@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use crate::accuracy::Error;
+use crate::cycles::Class;
 use crate::misra;
 
 /// Everything that the page says.
@@ -16,6 +18,8 @@ pub struct Certificate {
     pub robot: String,
     /// The function, by its name in the code.
     pub function: String,
+    /// The language of the code: `c` or `rust`.
+    pub language: &'static str,
     /// The form of the code.
     pub form: String,
     /// The core, as `-mcpu` names it.
@@ -68,19 +72,6 @@ pub struct Cost {
     pub calls: BTreeMap<String, usize>,
 }
 
-/// Instructions of one kind.
-#[derive(Clone, Debug, Serialize)]
-pub struct Class {
-    /// The kind in words.
-    pub what: String,
-    /// Their mnemonics.
-    pub mnemonics: Vec<String>,
-    /// How many.
-    pub instructions: u64,
-    /// The cycles of all.
-    pub cycles: u64,
-}
-
 /// The measurement in QEMU.
 #[derive(Clone, Debug, Serialize)]
 pub struct Emulation {
@@ -95,6 +86,8 @@ pub struct Emulation {
 /// The error of the results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Accuracy {
+    /// How the states are chosen, in words.
+    pub how: String,
     /// Number of states.
     pub states: usize,
     /// The seed of the random numbers.
@@ -102,20 +95,17 @@ pub struct Accuracy {
     /// The ranges of the joints, in words.
     pub ranges: Vec<String>,
     /// The numbers of the result.
-    pub results: Vec<Error>,
+    pub results: Vec<NamedError>,
 }
 
 /// The error of a number of the result.
 #[derive(Clone, Debug, Serialize)]
-pub struct Error {
-    /// Its name.
+pub struct NamedError {
+    /// The name of the number.
     pub name: String,
-    /// The largest magnitude in the sample.
-    pub largest: f64,
-    /// The largest bound of the error in the sample.
-    pub bound: f64,
-    /// The state with this bound.
-    pub state: usize,
+    /// Its error.
+    #[serde(flatten)]
+    pub error: Error,
 }
 
 /// A line of the code.
@@ -131,11 +121,13 @@ pub struct Traced {
     pub equations: String,
 }
 
-/// The statements of a function in emitted C, with the comments above them: the step, and its equations.
+/// The statements of a function in emitted C or Rust, with the comments above them: the step, and its equations.
+///
+/// `head` is the beginning of the function: `arm_inverse_dynamics(` in C, `fn inverse_dynamics<` in Rust.
 #[must_use]
-pub fn trace(source: &str, function: &str) -> Vec<Traced> {
+pub fn trace(source: &str, head: &str) -> Vec<Traced> {
     let mut traced = Vec::new();
-    let mut lines = source.lines().enumerate().skip_while(|(_, line)| !line.contains(&format!("{function}(")));
+    let mut lines = source.lines().enumerate().skip_while(|(_, line)| !line.contains(head));
     let Some((start, _)) = lines.by_ref().find(|(_, line)| line.trim_end() == "{" || line.ends_with('{')) else {
         return traced;
     };
@@ -216,7 +208,7 @@ impl Certificate {
             "\n## Cost of a call\n\n| property | value |\n|---|---|\n\
              | form | {} |\n| instructions, each of which a call executes once | {} |\n\
              | cycles, worst case by the assumptions below | {} |\n| bytes of instructions | {} |\n\
-             | bytes of constants | {} |\n| bytes of stack, with the function that is called | {} |\n\
+             | bytes of constants | {} |\n| bytes of stack, with the functions that are called | {} |\n\
              | bytes of stack that the instructions show | {} |\n| calls | {calls} |\n\
              | branches, except over constants | none |\n| double precision | none |\n\n",
             self.form, cost.instructions, cost.cycles, cost.code, cost.constants, cost.stack, cost.stack_of_listing
@@ -253,10 +245,10 @@ impl Certificate {
     }
 
     fn errors(&self, text: &mut String) {
-        let Accuracy { states, seed, ranges, results } = &self.accuracy;
+        let Accuracy { how, ranges, results, .. } = &self.accuracy;
         let _ = write!(
             text,
-            "\n## Error in single precision\n\nThe function runs at {states} random states (seed {seed}). At each \
+            "\n## Error in single precision\n\n{how} At each \
              state, interval arithmetic in `f64`, rounded outwards, encloses the exact result for the numbers of the \
              robot file. The bound is the distance of the `f32` result from the farthest end of this interval, so it \
              holds at each of these states. It says nothing about other states.\n\nRanges of the states:\n\n"
@@ -267,7 +259,7 @@ impl Certificate {
         text.push_str(
             "\n| result | largest magnitude | largest bound of the error | at state |\n|---|---:|---:|---:|\n",
         );
-        for Error { name, largest, bound, state } in results {
+        for NamedError { name, error: Error { largest, bound, state } } in results {
             let _ = writeln!(text, "| {name} | {largest:.4} | {bound:.2e} | {state} |");
         }
     }
@@ -275,7 +267,11 @@ impl Certificate {
     fn rules(&self, text: &mut String) {
         text.push_str("\n## MISRA C:2012\n\n");
         let Some(violations) = &self.misra else {
-            text.push_str("Not checked: cppcheck is not installed (Debian: `apt-get install cppcheck`).\n");
+            text.push_str(if self.language == "c" {
+                "Not checked: cppcheck is not installed (Debian: `apt-get install cppcheck`).\n"
+            } else {
+                "Not checked: the rules are for C.\n"
+            });
             return;
         };
         text.push_str("The addon `misra` of cppcheck reports these rules; the texts of the rules are not free.\n\n");
@@ -299,7 +295,7 @@ mod tests {
                       // constants\n    const float k_1 = 0.5f;\n\n    // joint 1, step 1: angular velocity\n    \
                       // ω1 = z\n    const float w1_z = q1\n        + k_1;\n\n    a_sin_cos(q1, &s1, &c1);\n    \
                       tau[0] = w1_z;\n}\n";
-        let traced = trace(source, "a_f");
+        let traced = trace(source, "a_f(");
         let lines: Vec<_> = traced.iter().map(|of| (of.line, of.name.as_str(), of.step.as_str())).collect();
         let step = "joint 1, step 1: angular velocity";
         let expected = [

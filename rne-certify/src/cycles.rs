@@ -3,6 +3,8 @@
 //! A table gives the cycles of each instruction, and a rule adds a cycle where the next instruction waits for a result.
 //! Straight code executes each instruction once, so the sum is the worst case of a processor for which the table holds.
 
+use serde::Serialize;
+
 use std::collections::BTreeMap;
 
 use crate::listing::Line;
@@ -35,7 +37,7 @@ enum Kind {
 }
 
 /// Instructions of one kind.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Class {
     /// The kind in words.
     pub what: &'static str,

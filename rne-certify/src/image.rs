@@ -1,6 +1,6 @@
 //! The functions of an image: their instructions, sizes and stack frames.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use crate::listing::{self, Count, Fault, Line};
@@ -35,6 +35,9 @@ pub struct Function {
     pub lines: Vec<Line>,
 }
 
+/// A function in a chain of calls, with its name.
+type Called<'a> = (&'a str, &'a Function);
+
 /// Why a function has no figures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoFigures {
@@ -42,6 +45,8 @@ pub enum NoFigures {
     Absent(String),
     /// Nothing says how much stack it uses.
     NoFrame(String),
+    /// It calls itself, or is called by one that it calls.
+    Recursive(String),
     /// It has more than one path, calls, or computes in double precision.
     NotStraight(String, Vec<Fault>),
 }
@@ -83,20 +88,74 @@ impl Image {
     /// # Errors
     /// When it or one that it calls is not straight, or nothing says how much stack they use.
     pub fn straight_but_for(&self, name: &str, may_be_called: impl Fn(&str) -> bool) -> Result<Figures, NoFigures> {
-        let function = self.function(name)?;
-        let (Count { instructions, constants }, _) = listing::judge(&function.lines);
-        let stack = function.stack.ok_or_else(|| NoFigures::NoFrame(name.to_owned()))?;
-        let mut figures = Figures { instructions, code: function.size - constants, constants, stack };
-        let mut callees: BTreeMap<String, Figures> = BTreeMap::new();
-        for callee in self.calls(name, may_be_called)? {
-            let called = self.straight(&callee)?;
-            figures.instructions += called.instructions;
-            callees.insert(callee, called);
+        let executed = self.executed(name, &may_be_called)?;
+        let mut figures = Figures::default();
+        let mut seen = BTreeSet::new();
+        for name in &executed {
+            let function = self.function(name)?;
+            let (Count { instructions, constants }, _) = listing::judge(&function.lines);
+            figures.instructions += instructions;
+            if seen.insert(name) {
+                function.stack.ok_or_else(|| NoFigures::NoFrame(name.clone()))?;
+                figures.code += function.size - constants;
+                figures.constants += constants;
+            }
         }
-        figures.code += callees.values().map(|called| called.code).sum::<u64>();
-        figures.constants += callees.values().map(|called| called.constants).sum::<u64>();
-        figures.stack += callees.values().map(|called| called.stack).max().unwrap_or(0);
+        figures.stack = self.deepest(name, &may_be_called, &|function| function.stack.unwrap_or(0))?;
         Ok(figures)
+    }
+
+    /// The functions that a call executes: the function itself, those that it calls and those that these call, once
+    /// for each call. All must be straight but for these calls.
+    ///
+    /// # Errors
+    /// When one has another fault, or calls itself.
+    pub fn executed(&self, name: &str, may_be_called: &dyn Fn(&str) -> bool) -> Result<Vec<String>, NoFigures> {
+        let mut executed = Vec::new();
+        self.walk(name, may_be_called, &mut Vec::new(), &mut |path| {
+            executed.extend(path.last().map(|(name, _)| (*name).to_owned()));
+        })?;
+        Ok(executed)
+    }
+
+    /// The sum of the frames of the deepest chain of calls, bytes.
+    ///
+    /// # Errors
+    /// As [`executed`](Self::executed).
+    pub fn deepest(
+        &self,
+        name: &str,
+        may_be_called: &dyn Fn(&str) -> bool,
+        frame: &dyn Fn(&Function) -> u64,
+    ) -> Result<u64, NoFigures> {
+        let mut deepest = 0;
+        self.walk(name, may_be_called, &mut Vec::new(), &mut |path| {
+            deepest = deepest.max(path.iter().map(|(_, function)| frame(function)).sum());
+        })?;
+        Ok(deepest)
+    }
+
+    /// Visits each call with the chain of calls that leads to it.
+    fn walk<'a>(
+        &'a self,
+        name: &str,
+        may_be_called: &dyn Fn(&str) -> bool,
+        path: &mut Vec<Called<'a>>,
+        visit: &mut dyn FnMut(&[Called<'a>]),
+    ) -> Result<(), NoFigures> {
+        let Some((name, function)) = self.functions.get_key_value(name) else {
+            return Err(NoFigures::Absent(name.to_owned()));
+        };
+        if path.iter().any(|(above, _)| above == name) {
+            return Err(NoFigures::Recursive(name.clone()));
+        }
+        path.push((name, function));
+        visit(path);
+        for callee in self.calls(name, may_be_called)? {
+            self.walk(&callee, may_be_called, path, visit)?;
+        }
+        path.pop();
+        Ok(())
     }
 
     /// The functions that a function calls, once for each call; it must be straight but for these calls.
@@ -134,6 +193,7 @@ impl fmt::Display for NoFigures {
         match self {
             Self::Absent(name) => write!(f, "the image has no function {name}"),
             Self::NoFrame(name) => write!(f, "nothing says how much stack {name} uses"),
+            Self::Recursive(name) => write!(f, "{name} calls itself"),
             Self::NotStraight(name, faults) => {
                 let faults: Vec<String> = faults.iter().map(|fault| format!("  {fault}")).collect();
                 write!(f, "{name} is not straight:\n{}", faults.join("\n"))
@@ -143,3 +203,42 @@ impl fmt::Display for NoFigures {
 }
 
 impl std::error::Error for NoFigures {}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::{Figures, Function, Image, NoFigures};
+    use crate::listing;
+
+    /// a calls b twice and c once; b calls c.
+    fn image(of_c: &str) -> Image {
+        let text = format!(
+            "00000000 <a>:\n   0:\tbl\t40 <b>\n   4:\tbl\t40 <b>\n   8:\tbl\t80 <c>\n   c:\tbx\tlr\n\n\
+             00000040 <b>:\n  40:\tnop\n  42:\tbl\t80 <c>\n  46:\tbx\tlr\n\n00000080 <c>:\n{of_c}  84:\tbx\tlr\n"
+        );
+        let listed = listing::functions(&text).expect("a listing");
+        let frames = BTreeMap::from([("a", 8), ("b", 24), ("c", 4)]);
+        let functions = listed.into_iter().map(|(name, lines)| {
+            let stack = frames.get(name.as_str()).copied();
+            (name, Function { size: 10, stack, lines })
+        });
+        Image::new(functions.collect())
+    }
+
+    #[test]
+    fn calls_of_calls_are_counted() {
+        let image = image("");
+        // a has 4 instructions, b 3, c 1: 4 + 2 (3 + 1) + 1
+        let expected = Figures { instructions: 13, code: 30, constants: 0, stack: 8 + 24 + 4 };
+        assert_eq!(image.straight_but_for("a", |_| true), Ok(expected));
+        assert_eq!(image.executed("a", &|_| true).expect("straight").join(" "), "a b c b c c");
+        assert!(matches!(image.straight_but_for("a", |name| name == "b"), Err(NoFigures::NotStraight(..))));
+    }
+
+    #[test]
+    fn recursion_is_refused() {
+        let recursive = image("  80:\tbl\t40 <b>\n");
+        assert_eq!(recursive.straight_but_for("a", |_| true), Err(NoFigures::Recursive("b".to_owned())));
+    }
+}

@@ -116,7 +116,7 @@ mod tests {
     fn results_are_enclosed() {
         let mut rng = fastrand::Rng::with_seed(3);
         for _ in 0..10_000 {
-            // whole numbers of 20 bits: their sums and products are exact in i128
+            // whole numbers of 51 bits: their sums and products are exact in i128
             let [a, b] = [0, 1].map(|_| rng.i64(-(1 << 50)..1 << 50));
             let [x, y] = [a, b].map(|n| Interval::exactly(n as f64));
             let exact = i128::from(a) * i128::from(b);

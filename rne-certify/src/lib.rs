@@ -1,8 +1,9 @@
 //! Certificates of generated code on microcontrollers.
 //!
 //! The parts are: the instructions of a function as `objdump` lists them ([`listing`], [`image`]), their cycles on a
-//! processor ([`cycles`]), and the error of its numbers in single precision ([`accuracy`]). [`certificate`] puts them
-//! on one page. Nothing here starts a program or opens a file: callers run compilers and pass what these print.
+//! processor ([`cycles`]), and the error of its numbers in single precision ([`accuracy`], [`observer`]).
+//! [`certificate`] puts them on one page. Nothing here starts a program or opens a file: callers run compilers and pass
+//! what these print.
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
@@ -13,6 +14,7 @@ pub mod image;
 pub mod interval;
 pub mod listing;
 pub mod misra;
+pub mod observer;
 
 use std::fmt::Write as _;
 

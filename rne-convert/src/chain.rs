@@ -131,11 +131,11 @@ pub(crate) fn extract(
     }
     if let Some(&(first, _)) = walk.followers.first() {
         let name = |joint: usize| &urdf.joints[joint].name;
-        let each = walk
+        let followers = walk
             .followers
             .iter()
             .map(|&(joint, leader)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader))));
-        let message = format!("joints outside the chain follow moving joints of the chain: {}", some(each));
+        let message = format!("joints outside the chain follow moving joints of the chain: {}", some(followers));
         let help =
             "these joints carry mass, and no row of the table can describe that this mass moves along; if the mass may \
              stand still, lock each of these joints by its name".to_owned();

@@ -66,6 +66,13 @@ impl fmt::Display for OpenError {
                 hint.as_ref().map_or(Ok(()), |hint| write!(f, "; {hint}"))
             }
             Self::Unreadable { path, error } if error.kind() == ErrorKind::IsADirectory => {
+                if path.join("metadata.yaml").is_file() {
+                    return write!(
+                        f,
+                        "{} is a ROS bag, but here a robot file is expected; logs come after the robot file",
+                        path.display()
+                    );
+                }
                 let inside = path.join("*.yaml");
                 write!(f, "{} is a folder; name the robot files in it, such as {}", path.display(), inside.display())
             }

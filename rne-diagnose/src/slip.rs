@@ -87,11 +87,11 @@ impl Slip {
         let turned = (0..3).flat_map(|axis| [Self::GravityAlong(axis, false), Self::GravityAlong(axis, true)]);
         let mut known = vec![robot.gravity, robot.gravity.map(|g| -g)];
         for slip in turned.chain([Self::GravityInWorld]) {
-            let mut of = Computation::right(robot);
-            slip.make(&mut of);
+            let mut computation = Computation::right(robot);
+            slip.make(&mut computation);
             // the same under another name
-            if !known.iter().any(|known| close(known, &of.robot.gravity)) {
-                known.push(of.robot.gravity);
+            if !known.iter().any(|known| close(known, &computation.robot.gravity)) {
+                known.push(computation.robot.gravity);
                 all.push(slip);
             }
         }

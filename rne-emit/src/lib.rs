@@ -27,7 +27,9 @@ mod wrap;
 
 pub use annotated::{Annotated, Part};
 pub use ascii::ascii;
-pub use c::{BadPrefix, CCode, ConstantTooLarge, Origin, Prefix, c_code, c_code_of_file};
+pub use c::{
+    Additions, BadPrefix, CCode, ConstantTooLarge, JointFriction, NoFriction, Origin, Prefix, c_code, c_code_with,
+};
 pub use emitted_sine::sin_cos_f32;
 pub use evidence::{evidence, refusals};
 pub use formula::Formula;

@@ -292,14 +292,14 @@ impl ArmLog {
 fn cut(motion: &Motion, is_in: impl Fn(f64) -> bool) -> Motion {
     let start = motion.time.iter().position(|time| is_in(*time)).unwrap_or(motion.len());
     let end = motion.time.iter().rposition(|time| is_in(*time)).map_or(start, |last| last + 1);
-    let of = |list: &[Vec<f64>]| list.iter().map(|column| column[start..end].to_vec()).collect();
+    let cut = |list: &[Vec<f64>]| list.iter().map(|column| column[start..end].to_vec()).collect();
     Motion {
         time: motion.time[start..end].to_vec(),
-        q: of(&motion.q),
-        qd: of(&motion.qd),
-        qdd: of(&motion.qdd),
-        tau: of(&motion.tau),
-        recorded: of(&motion.recorded),
+        q: cut(&motion.q),
+        qd: cut(&motion.qd),
+        qdd: cut(&motion.qdd),
+        tau: cut(&motion.tau),
+        recorded: cut(&motion.recorded),
     }
 }
 

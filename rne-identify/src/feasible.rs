@@ -288,14 +288,14 @@ impl Problem {
             margin,
         };
         let inertial = self.links * PER_LINK;
-        let of = |index: usize| at[inertial + index] * self.scale[inertial + index];
+        let unscaled = |index: usize| at[inertial + index] * self.scale[inertial + index];
         let of_rotors = if structure.options.rotors { self.links } else { 0 };
-        let rotors = (0..self.links).map(|joint| if joint < of_rotors { of(joint) } else { 0.0 }).collect();
+        let rotors = (0..self.links).map(|joint| if joint < of_rotors { unscaled(joint) } else { 0.0 }).collect();
         let friction = (0..self.links).map(|joint| {
             if !structure.options.friction {
                 return [0.0; FRICTION];
             }
-            std::array::from_fn(|k| of(of_rotors + FRICTION * joint + k))
+            std::array::from_fn(|k| unscaled(of_rotors + FRICTION * joint + k))
         });
         Feasible { links, rotors, friction: friction.collect(), unknowns, certificate }
     }

@@ -187,7 +187,7 @@ impl Fourier {
     pub fn bounds(&self) -> Vec<MotionBounds> {
         let harmonics = self.joints.iter().map(|series| series.a.len()).max().unwrap_or(0).max(1);
         let grid = Grid::dense(harmonics);
-        let of = |series: &Series| {
+        let state = |series: &Series| {
             let states = series.on(&grid, self.period);
             let (lowest, highest) = range(&states);
             let (middle, half) = (f64::midpoint(lowest, highest), 0.5 * (highest - lowest) * beyond());
@@ -198,14 +198,14 @@ impl Fourier {
                 acceleration: largest(&states, 2) * beyond(),
             }
         };
-        self.joints.iter().map(of).collect()
+        self.joints.iter().map(state).collect()
     }
 }
 
 /// Lowest and highest position of states.
 pub(crate) fn range(states: &[[f64; 3]]) -> (f64, f64) {
-    let each = states.iter().map(|state| state[0]);
-    (each.clone().fold(f64::INFINITY, f64::min), each.fold(f64::NEG_INFINITY, f64::max))
+    let positions = states.iter().map(|state| state[0]);
+    (positions.clone().fold(f64::INFINITY, f64::min), positions.fold(f64::NEG_INFINITY, f64::max))
 }
 
 /// The largest magnitude of a derivative of states.

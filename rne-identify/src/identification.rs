@@ -186,14 +186,14 @@ pub fn identify<E: From<MotionError>>(
 ) -> Result<Identification, E> {
     let structure = Structure::new(robot, options);
     let OverLogs { information, scales, least_squares } = over_logs(&structure, false, &mut pass)?;
-    let one = Fit::of_least_squares(&structure, &information, least_squares, &scales, regularization);
-    if let Some(joint) = not_finite(&one.robot) {
+    let fit = Fit::of_least_squares(&structure, &information, least_squares, &scales, regularization);
+    if let Some(joint) = not_finite(&fit.robot) {
         return Err(MotionError::NotANumber(joint).into());
     }
-    let mut prediction = Prediction::new(&one.robot, structure.options.cutoff);
+    let mut prediction = Prediction::new(&fit.robot, structure.options.cutoff);
     pass(&mut |motion| prediction.absorb(motion))?;
-    let joints = joints(&structure, &one, &prediction.errors(), &information.rejected);
-    let Fit { robot: identified, least_squares, feasible, mut bases, .. } = one;
+    let joints = joints(&structure, &fit, &prediction.errors(), &information.rejected);
+    let Fit { robot: identified, least_squares, feasible, mut bases, .. } = fit;
     for (base, report) in structure.parameters.bases.iter().zip(&mut bases) {
         let mut felt = joints.iter().enumerate().filter(|(joint, _)| Parameters::is_felt(base, *joint));
         if !felt.any(|(_, joint)| joint.is_excited()) {
@@ -226,7 +226,7 @@ pub(crate) fn over_logs<E: From<MotionError>>(
     doubts_rest: bool,
     pass: &mut impl FnMut(&mut dyn FnMut(&Motion) -> Result<(), MotionError>) -> Result<(), E>,
 ) -> Result<OverLogs, E> {
-    let mut one = |weighting: Option<&Weighting>| -> Result<OverLogs, E> {
+    let mut pass_once = |weighting: Option<&Weighting>| -> Result<OverLogs, E> {
         let mut information = Information::new(structure);
         pass(&mut |motion| information.absorb(structure, motion, weighting))?;
         if information.segments.len() < 2 {
@@ -240,14 +240,14 @@ pub(crate) fn over_logs<E: From<MotionError>>(
         let least_squares = LeastSquares::of(structure, &information, &scales);
         Ok(OverLogs { information, scales, least_squares })
     };
-    let mut found = one(None)?;
+    let mut found = pass_once(None)?;
     let steady = steady(structure, &found.information, &found.least_squares);
     let outlier_bound = if steady.is_some() { OUTLIER_BOUND } else { f64::INFINITY };
     found.least_squares = steady.unwrap_or(found.least_squares);
     for _ in 1..PASSES {
         let weighting = Weighting { outlier_bound, ..found.least_squares.weighting(structure) };
         let weighting = if doubts_rest { weighting.with_doubt_near_rest() } else { weighting };
-        found = one(Some(&weighting))?;
+        found = pass_once(Some(&weighting))?;
     }
     Ok(found)
 }
@@ -307,7 +307,7 @@ impl Fit {
         held.tie(&mut feasible.friction);
         let friction = (0..held.holds.len()).map(|joint| held.friction(structure, &fit, &feasible, joint)).collect();
         let uncertainties = (0..held.holds.len()).map(|joint| held.uncertainty(structure, &fit, scales, joint));
-        let mut one = Self {
+        let mut fit = Self {
             robot: structure.robot.clone(),
             bases: Vec::new(),
             friction,
@@ -318,16 +318,16 @@ impl Fit {
             least_squares: fit,
             feasible,
         };
-        one.robot = robot_of(structure, &one);
-        one.bases = bases(structure, &one.least_squares, scales, &one.robot);
-        one
+        fit.robot = robot_of(structure, &fit);
+        fit.bases = bases(structure, &fit.least_squares, scales, &fit.robot);
+        fit
     }
 }
 
 fn bases(structure: &Structure, fit: &LeastSquares, scales: &Scales, robot: &Robot) -> Vec<BaseReport> {
     let parameters = structure.parameters();
     let written = &parameters.regrouping * parameters.of_robot(robot);
-    let each = parameters.bases.iter().enumerate().map(|(at, base)| BaseReport {
+    let reports = parameters.bases.iter().enumerate().map(|(at, base)| BaseReport {
         name: base.name(),
         combination: base.combination(),
         value: fit.solution[at],
@@ -336,11 +336,11 @@ fn bases(structure: &Structure, fit: &LeastSquares, scales: &Scales, robot: &Rob
         written: written[at],
         uncertainty: fit.deviation(at) / scales.bases[at],
     });
-    each.collect()
+    reports.collect()
 }
 
 fn joints(structure: &Structure, one: &Fit, errors: &[JointError], rejected: &[Option<Rejected>]) -> Vec<JointReport> {
-    let each = errors.iter().zip(rejected).enumerate().map(|(joint, (error, rejected))| JointReport {
+    let reports = errors.iter().zip(rejected).enumerate().map(|(joint, (error, rejected))| JointReport {
         noise: one.least_squares.noise[joint],
         effort: one.efforts[joint],
         rejected: *rejected,
@@ -352,7 +352,7 @@ fn joints(structure: &Structure, one: &Fit, errors: &[JointError], rejected: &[O
         offset: one.least_squares.loose_offset(structure, joint, one.efforts[joint]),
         rotor: structure.options.rotors.then(|| one.feasible.rotors[joint]),
     });
-    each.collect()
+    reports.collect()
 }
 
 /// The first joint of which a number is not finite.

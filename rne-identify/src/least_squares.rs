@@ -89,13 +89,13 @@ impl LeastSquares {
         let total = information.total(structure);
         let (noise, transitions) = (self.noise.clone(), self.transitions.clone());
         let state = State { structure, scales, noise, transitions, holds };
-        let one = state.estimate(information, &total);
+        let estimate = state.estimate(information, &total);
         let left = total.iter().enumerate().map(|(joint, factor)| {
-            let squares = state.residual(joint, factor, &one.solution);
+            let squares = state.residual(joint, factor, &estimate.solution);
             if squares > 0.0 { (squares / factor.weight().max(1.0)).sqrt() * state.noise[joint] } else { 0.0 }
         });
         let left = left.collect();
-        (one, left)
+        (estimate, left)
     }
 
     /// The weighting of rows in the next pass.

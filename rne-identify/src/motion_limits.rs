@@ -58,7 +58,7 @@ impl MotionLimits {
                 return Err(ExcitationError::NotPositive(what));
             }
         }
-        let of = |list: &Option<Vec<f64>>, joint: usize| {
+        let asked_for = |list: &Option<Vec<f64>>, joint: usize| {
             let list = list.as_ref()?;
             list.get(joint).or(list.first()).copied()
         };
@@ -66,11 +66,12 @@ impl MotionLimits {
             let link = &joint.row.link;
             link.mass > 0.0 || link.has_first_moment()
         });
-        let each = robot.joints.iter().enumerate().map(|(at, joint)| {
-            let position = position(joint, of(&asked.range, at))?;
-            let velocity = [of(&asked.velocity, at), joint.limits.velocity].into_iter().flatten().reduce(f64::min);
+        let limits = robot.joints.iter().enumerate().map(|(at, joint)| {
+            let position = position(joint, asked_for(&asked.range, at))?;
+            let velocity =
+                [asked_for(&asked.velocity, at), joint.limits.velocity].into_iter().flatten().reduce(f64::min);
             let velocity = velocity.unwrap_or(SPEED[usize::from(joint.row.kind == JointKind::Prismatic)]);
-            let acceleration = of(&asked.acceleration, at).unwrap_or(velocity / RISE);
+            let acceleration = asked_for(&asked.acceleration, at).unwrap_or(velocity / RISE);
             let effort = joint.limits.effort.filter(|_| has_masses);
             let what = if position.1 <= position.0 {
                 "position"
@@ -83,7 +84,7 @@ impl MotionLimits {
             };
             Err(ExcitationError::NoRoom { joint: one_line(&joint.name), what })
         });
-        each.collect()
+        limits.collect()
     }
 }
 

@@ -339,9 +339,10 @@ impl Equations {
             row.rows_mut(0, size).copy_from(&-solution);
             for joint in 0..self.factors.len() {
                 let offset = PER_LINK + FRICTION * joint + FrictionParameter::Offset as usize;
-                let of = |part: &Vec<DMatrix<f64>>| (row.dot(&(&part[joint] * &row)), part[joint][(offset, offset)]);
+                let products =
+                    |part: &Vec<DMatrix<f64>>| (row.dot(&(&part[joint] * &row)), part[joint][(offset, offset)]);
                 let (squares, weight) =
-                    self.parts.iter().map(of).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
+                    self.parts.iter().map(products).fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
                 let mean = squares / weight / self.noise[joint].powi(2);
                 self.factors[joint] = if mean > 1.0 { 1.0 / mean } else { 1.0 };
             }

@@ -13,6 +13,9 @@ use crate::structure::Structure;
 /// Stretches that are kept apart, at most.
 const MOST: usize = 256;
 
+/// The square of an effort that no sensor measures, over the variance of its noise.
+const SILENT: f64 = 1e-12;
+
 /// The normal equations of a stretch of time.
 #[derive(Clone, Debug)]
 pub struct Stretch {
@@ -137,6 +140,14 @@ impl Stretch {
         for (sum, products) in self.products.iter_mut().zip(other.products) {
             *sum += products;
         }
+    }
+
+    /// Whether the effort of a joint is zero throughout, as that of a channel that measures nothing.
+    #[must_use]
+    pub fn is_silent(&self, joint: usize) -> bool {
+        let products = &self.products[joint];
+        // over the variance of the noise: real sensors have noise
+        products[(products.nrows() - 1, products.ncols() - 1)] <= SILENT
     }
 
     /// Adds the products of all unknowns and of the torque, which is last.

@@ -236,12 +236,12 @@ mod tests {
             if let Some(value) = self.known.borrow().get(name) {
                 return *value;
             }
-            let of = |tree: &Tree| tree.evaluate(&|name| self.of(name));
+            let evaluated = |tree: &Tree| tree.evaluate(&|name| self.of(name));
             let value = match self.trees.get(name) {
-                Some(tree) => of(tree),
+                Some(tree) => evaluated(tree),
                 None => match self.equations.here(name) {
                     Tree::Name(own) if own == name => letter(name),
-                    other => of(&other),
+                    other => evaluated(&other),
                 },
             };
             self.known.borrow_mut().insert(name.to_owned(), value);

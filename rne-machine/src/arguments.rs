@@ -7,7 +7,8 @@ use rne_runtime::machine::Source;
 /// An argument of many states: its elements, a number per joint most often, for each of them.
 #[derive(Clone, Copy, Debug)]
 pub enum Array<'a, T> {
-    /// All elements of a state one after the other, then the next state's: `q[state][joint]`.
+    /// All elements of a state one after the other, then the next state's: `q[state][joint]`. From states that are
+    /// arrays, such as `states: Vec<[f64; 7]>`, it is `Array::Rows(states.as_flattened())`.
     Rows(&'a [T]),
     /// One slice per element, and in it one number per state: `q[joint][state]`. It is read fastest.
     Columns(&'a [&'a [T]]),

@@ -4,7 +4,7 @@ use rne_codegen::{CompileError, Program};
 use rne_runtime::machine::{Destination, Source};
 use rne_runtime::{NegativeMass, VectorUnit};
 
-use crate::{Arguments, EvaluationError, Machine, Number, arguments};
+use crate::{Arguments, Array, EvaluationError, Machine, Number, arguments};
 
 /// As many inputs find room on the stack: those of an arm of twenty joints, of most functions.
 const FEW: usize = 64;
@@ -150,21 +150,37 @@ impl CompiledFunction {
     /// # Errors
     /// When an argument is missing or has another size, or when the payload of a state has a mass below zero.
     pub fn check<T: Number>(&self, states: usize, arguments: &Arguments<'_, T>) -> Result<(), EvaluationError> {
-        for (&(argument, elements), &place) in self.arrays.iter().zip(&self.places) {
-            let function = self.program.function;
-            let array = arguments.at(place).ok_or(EvaluationError::Missing { function, argument })?;
-            if !array.has(elements, states) {
-                return Err(EvaluationError::Argument { argument, elements, states });
-            }
-            if argument == "payload" {
-                // its first element is the mass
-                let masses = (0..states).filter_map(|state| array.number(0, elements, state, states));
-                for (index, mass) in masses.enumerate() {
-                    let wrong = |mass| EvaluationError::NegativeMass { mass, state: index + 1, states };
-                    NegativeMass::check(*mass).map_err(wrong)?;
-                }
+        let mut arrays = self.arrays.iter().enumerate();
+        arrays.try_for_each(|(index, (_, elements))| self.checked(index, *elements, states, arguments).map(|_| ()))
+    }
+
+    /// The array of the argument at `index`, which has this number of elements for each state.
+    pub(crate) fn checked<'a, 'b, T: Number>(
+        &self,
+        index: usize,
+        elements: usize,
+        states: usize,
+        arguments: &'b Arguments<'a, T>,
+    ) -> Result<&'b Array<'a, T>, EvaluationError> {
+        let (argument, _) = self.arrays[index];
+        let function = self.program.function;
+        let array = arguments.at(self.places[index]).ok_or(EvaluationError::Missing { function, argument })?;
+        if !array.has(elements, states) {
+            return Err(EvaluationError::Argument { argument, elements, states });
+        }
+        if argument == "payload" {
+            // its first element is the mass
+            let masses = (0..states).filter_map(|state| array.number(0, elements, state, states));
+            for (index, mass) in masses.enumerate() {
+                let wrong = |mass| EvaluationError::NegativeMass { mass, state: index + 1, states };
+                NegativeMass::check(*mass).map_err(wrong)?;
             }
         }
-        Ok(())
+        Ok(array)
+    }
+
+    /// The array and the element of it that each input of the machine is.
+    pub(crate) fn inputs(&self) -> &[(usize, usize)] {
+        &self.inputs
     }
 }

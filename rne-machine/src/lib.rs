@@ -33,6 +33,7 @@ mod native;
 mod number;
 mod one_state;
 pub mod results;
+mod rollout;
 mod schedule;
 mod search;
 mod selection;
@@ -46,6 +47,7 @@ pub use error::{ArmError, EvaluationError};
 pub use results::Derivatives;
 pub use rne_codegen::{Argument, Form, Function, Layout, Record};
 pub use rne_search::{PlanFile, SearchError, SearchOptions};
+pub use rollout::{FrictionWidth, Rollout, RolloutError, RolloutLimits};
 pub use search::SearchProgress;
 
 use rne_codegen::{Name, Program};

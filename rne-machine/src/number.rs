@@ -4,10 +4,22 @@ use rne_runtime::BatchScalar;
 
 /// A number of a state: `f64` and `f32`, and no other type.
 #[cfg(feature = "native")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a number of a state",
+    label = "`f64` or `f32` is needed",
+    note = "arrays and destinations are flat slices of numbers: from states such as `states: Vec<[f64; 7]>`, write \
+            `Array::Rows(states.as_flattened())` and `Destination::Rows(states.as_flattened_mut())`"
+)]
 pub trait Number: BatchScalar + Into<f64> + crate::translation::sealed::Number + natively::Natively {}
 
 /// A number of a state: `f64` and `f32`, and no other type.
 #[cfg(not(feature = "native"))]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a number of a state",
+    label = "`f64` or `f32` is needed",
+    note = "arrays and destinations are flat slices of numbers: from states such as `states: Vec<[f64; 7]>`, write \
+            `Array::Rows(states.as_flattened())` and `Destination::Rows(states.as_flattened_mut())`"
+)]
 pub trait Number: BatchScalar + Into<f64> {}
 
 impl Number for f32 {}

@@ -138,6 +138,9 @@ impl Entries {
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();
+        if name == "urdf" {
+            return Err(syn::Error::new(key.span(), of_urdf(input)));
+        }
         if !matches!(
             name.as_str(),
             "path"
@@ -209,6 +212,18 @@ impl Entries {
         }
         Ok(())
     }
+}
+
+/// The advice for a URDF, with its name where that is given.
+fn of_urdf(input: ParseStream<'_>) -> String {
+    let ahead = input.fork();
+    let named = ahead.parse::<Token![=]>().and_then(|_| ahead.parse::<LitStr>());
+    let urdf = named.map_or_else(|_| "arm.urdf".to_owned(), |urdf| urdf.value());
+    let file = urdf.strip_suffix(".urdf").unwrap_or(&urdf);
+    format!(
+        "a URDF is not read by `#[robot(…)]`: convert it to a robot file with `rne import {urdf} -o {file}.yaml`, then \
+         write `#[robot(path = \"{file}.yaml\")]`"
+    )
 }
 
 /// Skips what is left of an entry, up to its comma.

@@ -51,8 +51,8 @@ impl GoldenFile {
     /// Returns the names of the columns for a number of joints.
     #[must_use]
     pub fn header(joints: usize) -> Vec<String> {
-        let of = |name: &'static str| (1..=joints).map(move |joint| format!("{name}{joint}"));
-        ["q", "qd", "qdd", "tau"].into_iter().flat_map(of).collect()
+        let columns = |name: &'static str| (1..=joints).map(move |joint| format!("{name}{joint}"));
+        ["q", "qd", "qdd", "tau"].into_iter().flat_map(columns).collect()
     }
 
     /// Reads the file of a robot with `dof` joints; `name` is the file's name in messages.
@@ -102,8 +102,8 @@ fn read(text: &str, joints: usize, problems: &Problems) -> Option<GoldenFile> {
                 // below another header every number would be wrong
                 is_header(&cells, &names, problems).then_some(())?;
             } else if let Some(numbers) = numbers(&cells, &names, problems) {
-                let of = |index: usize| numbers[index * joints..(index + 1) * joints].to_vec();
-                states.push(GoldenState { line: index + 1, q: of(0), qd: of(1), qdd: of(2), tau: of(3) });
+                let list = |index: usize| numbers[index * joints..(index + 1) * joints].to_vec();
+                states.push(GoldenState { line: index + 1, q: list(0), qd: list(1), qdd: list(2), tau: list(3) });
             }
         }
         start += line.len() + 1;

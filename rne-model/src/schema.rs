@@ -55,6 +55,10 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes_trees: bool) -> Option<Robo
         without_effect(cx);
         lint::inertias(cx, node, convention, &joints);
         lint::placeholders(cx, node, &joints);
+        // the reach of a tree is not the sum of its rows
+        if joints.iter().all(|joint| joint.branch.is_none()) {
+            lint::light_for_reach(cx, node, &joints);
+        }
         if !takes_trees {
             tree::refuse(cx, node, &joints, tip_on);
         }

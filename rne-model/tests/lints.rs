@@ -64,6 +64,56 @@ fn placeholders_are_told() {
     }
 }
 
+/// Links of 1.9 to 2.1 kg for a robot of a tonne, as an exporter writes them who knows no material.
+#[test]
+fn a_sum_of_masses_that_is_small_for_the_reach_is_told() {
+    let arm = |joints: usize, mass: f64, length: f64, kind: &str| {
+        let joint = |index: usize| {
+            let mass = mass * (1.0 + 0.01 * f64::from(u8::try_from(index).expect("few joints")));
+            format!(
+                "  - type: {kind}\n    dh: {{theta: 0, d: 0, a: {length}, alpha: 0}}\n    limits: {{position: \
+                 [0, 1]}}\n    link: {{mass: {mass}, com: [-0.1, 0, 0], inertia: {{xx: 0.01, yy: 0.01, zz: 0.01}}}}\n"
+            )
+        };
+        let head = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+        found(&(head.to_owned() + &(0..joints).map(joint).collect::<String>()))
+    };
+    let said = arm(6, 2.0, 0.5, "revolute");
+    let [diagnostic] = &said.diagnostics[..] else { panic!("{said}") };
+    assert_eq!(diagnostic.message, "all links together have 12.3 kg, which is little for an arm with a reach of 3 m");
+    assert_eq!(diagnostic.severity, Severity::Warning);
+    let help = diagnostic.help.as_ref().expect("a help");
+    assert!(help.contains("have more than 33.8 kg (1.25 kg per cubic metre of reach)"), "{help}");
+    // a travel of 1 m each is reach, too
+    let said = arm(6, 2.0, 0.0, "prismatic").to_string();
+    assert!(said.contains("a reach of 6 m"), "{said}");
+    for (joints, mass, length, kind) in
+        // heavy enough, short enough, arms of textbooks, a snake, no reach at all
+        [
+            (6, 5.6, 0.5, "revolute"),
+            (6, 2.0, 0.35, "revolute"),
+            (3, 1.0, 1.0, "revolute"),
+            (9, 1.0, 1.0, "revolute"),
+            (6, 1.0, 0.0, "revolute"),
+        ]
+    {
+        let said = arm(joints, mass, length, kind).to_string();
+        assert!(!said.contains("reach"), "{said}");
+    }
+}
+
+/// Mass that was moved between links says nothing about their sum.
+#[test]
+fn a_set_of_base_parameters_may_be_light() {
+    let link = "{mass: 0.1, com: [0, 0, 0], inertia: {zz: 1}, physical: false}";
+    let joint = format!("  - {{type: revolute, dh: {{theta: 0, d: 0, a: 0.5, alpha: 0}}, link: {link}}}\n");
+    let moved = joint.replace("mass: 0.1, com: [0, 0, 0], ", "first_moment: [1, 0, 0], ");
+    let head = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+    let said = |joints: &str| found(&format!("{head}{joints}")).to_string();
+    assert!(said(&joint.repeat(6)).contains("a reach of 3 m"));
+    assert!(!said(&(joint.repeat(5) + &moved)).contains("reach"));
+}
+
 /// Its size is told where its squares overflow or vanish.
 #[test]
 fn gravity_of_any_size_is_told() {

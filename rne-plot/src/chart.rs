@@ -111,9 +111,13 @@ fn torque_panel(
     trajectory: &Trajectory,
     history: &TorqueHistory,
 ) {
-    let of = |part: fn(&TorqueParts) -> &Vec<f64>| history.parts.iter().map(|parts| part(parts)[joint]).collect();
-    let values: [Vec<f64>; 4] =
-        [of(|parts| &parts.inertia), of(|parts| &parts.velocity), of(|parts| &parts.gravity), of(|parts| &parts.total)];
+    let curve = |part: fn(&TorqueParts) -> &Vec<f64>| history.parts.iter().map(|parts| part(parts)[joint]).collect();
+    let values: [Vec<f64>; 4] = [
+        curve(|parts| &parts.inertia),
+        curve(|parts| &parts.velocity),
+        curve(|parts| &parts.gravity),
+        curve(|parts| &parts.total),
+    ];
     let curves: Vec<Curve<'_>> = PARTS
         .iter()
         .zip(values)
@@ -430,14 +434,14 @@ pub(crate) fn pixels(value: f64) -> String {
 
 /// About how wide a text is: fonts differ, and a legend has gaps for that.
 pub(crate) fn width_of(text: &str, size: f64) -> f64 {
-    let of = |c: char| match c {
+    let width = |c: char| match c {
         '\u{300}'..='\u{36F}' => 0.0,
         'i' | 'j' | 'l' | 't' | 'f' | 'r' | ' ' | ',' | '(' | ')' | '.' => 0.34,
         'm' | 'w' | 'M' | 'W' => 0.86,
         c if c.is_uppercase() => 0.68,
         _ => 0.56,
     };
-    size * text.chars().map(of).sum::<f64>()
+    size * text.chars().map(width).sum::<f64>()
 }
 
 /// ₁₂

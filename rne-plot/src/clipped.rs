@@ -55,11 +55,11 @@ pub(crate) fn clipped(time: &[f64], values: &[f64], [low, high]: [f64; 2]) -> Ve
 pub(crate) fn edges(bounds: &[Curve<'_>], [low, high]: [f64; 2]) -> Vec<(bool, String)> {
     let farthest = |is_above: bool| {
         let values = |bound: &Curve<'_>| {
-            let of = bound.values.iter().copied().filter(|value| value.is_finite());
-            of.reduce(if is_above { f64::max } else { f64::min })
+            let finite = bound.values.iter().copied().filter(|value| value.is_finite());
+            finite.reduce(if is_above { f64::max } else { f64::min })
         };
-        let each = bounds.iter().filter_map(|bound| Some((bound.name, values(bound)?)));
-        let beyond = each.filter(|(_, value)| if is_above { *value > high } else { *value < low });
+        let extremes = bounds.iter().filter_map(|bound| Some((bound.name, values(bound)?)));
+        let beyond = extremes.filter(|(_, value)| if is_above { *value > high } else { *value < low });
         beyond.reduce(|a, b| if (a.1 < b.1) == is_above { b } else { a })
     };
     let said = |is_above: bool| {

@@ -135,7 +135,7 @@ impl Trajectory {
     #[must_use]
     pub fn postures(robot: &Robot) -> [Vec<f64>; 2] {
         use std::f64::consts::{FRAC_PI_2, PI};
-        let of = |joint: &rne_model::Joint| {
+        let range = |joint: &rne_model::Joint| {
             let turns = joint.row.kind == JointKind::Revolute;
             let (lower, upper) =
                 joint.limits.position.unwrap_or(if turns { (-FRAC_PI_2, FRAC_PI_2) } else { (-0.2, 0.2) });
@@ -144,7 +144,7 @@ impl Trajectory {
             let half = if turns { half.min(PI) } else { half };
             (middle - half / 2.0, middle + half / 2.0)
         };
-        let (from, to) = robot.joints.iter().map(of).unzip();
+        let (from, to) = robot.joints.iter().map(range).unzip();
         [from, to]
     }
 
@@ -154,11 +154,11 @@ impl Trajectory {
     pub fn least_duration(robot: &Robot, from: &[f64], to: &[f64]) -> f64 {
         // the quintic is fastest in its middle
         const FASTEST: f64 = 15.0 / 8.0;
-        let of = |(joint, (from, to)): (&rne_model::Joint, (&f64, &f64))| {
+        let duration = |(joint, (from, to)): (&rne_model::Joint, (&f64, &f64))| {
             let limit = joint.limits.velocity.filter(|limit| *limit > 0.0)?;
             Some(FASTEST * (to - from).abs() / limit)
         };
-        robot.joints.iter().zip(from.iter().zip(to)).filter_map(of).fold(0.0, f64::max)
+        robot.joints.iter().zip(from.iter().zip(to)).filter_map(duration).fold(0.0, f64::max)
     }
 }
 

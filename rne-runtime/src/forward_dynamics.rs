@@ -15,7 +15,7 @@
 //! ```
 
 use crate::at_tip::AtTip;
-use crate::ldlt::factor;
+use crate::ldlt::{factor, solve};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
@@ -32,24 +32,6 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         factor(m.as_mut(), inverse.as_mut());
         solve(m.as_ref(), inverse.as_ref(), x.as_mut());
         x
-    }
-}
-
-/// Makes the solution x of M x = b from b.
-fn solve<T: Scalar, R: AsRef<[T]>>(m: &[R], inverse: &[T], x: &mut [T]) {
-    let n = x.len();
-    for i in 0..n {
-        for k in 0..i {
-            x[i] -= m[i].as_ref()[k] * x[k];
-        }
-    }
-    for (x, &inverse) in x.iter_mut().zip(inverse) {
-        *x *= inverse;
-    }
-    for i in (0..n).rev() {
-        for k in i + 1..n {
-            x[i] -= m[k].as_ref()[i] * x[k];
-        }
     }
 }
 

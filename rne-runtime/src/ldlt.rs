@@ -23,6 +23,24 @@ pub(crate) fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse
     }
 }
 
+/// Makes the solution x of M x = b from b, by the factors and the reciprocals of D.
+pub(crate) fn solve<T: Scalar, R: AsRef<[T]>>(m: &[R], inverse: &[T], x: &mut [T]) {
+    let n = x.len();
+    for i in 0..n {
+        for k in 0..i {
+            x[i] -= m[i].as_ref()[k] * x[k];
+        }
+    }
+    for (x, &inverse) in x.iter_mut().zip(inverse) {
+        *x *= inverse;
+    }
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            x[i] -= m[k].as_ref()[i] * x[k];
+        }
+    }
+}
+
 /// The inverse of M; `zeros` is a row of them.
 pub(crate) fn inverse_of<T: Scalar, R, M>(mut m: M, zeros: &R) -> M
 where

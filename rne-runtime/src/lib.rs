@@ -55,6 +55,7 @@ mod momentum;
 #[cfg(feature = "arm")]
 mod mount;
 mod observer;
+mod operational_space;
 mod operations;
 mod payload;
 #[cfg(feature = "arm")]
@@ -102,6 +103,9 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use observer::DynObserverState;
 pub use observer::ObserverState;
+#[doc(hidden)]
+pub use operational_space::operational_space;
+pub use operational_space::{dynamically_consistent_inverse, operational_space_inertia};
 pub use operations::Operations;
 pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;

@@ -259,8 +259,8 @@ fn square(terms: &[Flat]) -> Option<Term> {
                 return None;
             }
             let sign = &both.coefficient / &twice;
-            let of = |coefficient, factors| Flat { coefficient, factors }.written();
-            let root = Sum(vec![of(fraction(1, 1), p), of(sign, q)]);
+            let flat = |coefficient, factors| Flat { coefficient, factors }.written();
+            let root = Sum(vec![flat(fraction(1, 1), p), flat(sign, q)]);
             Some(Term { coefficient: k.clone(), before: Vec::new(), sums: vec![(root, 2)], after: Vec::new() })
         },
     )

@@ -75,8 +75,8 @@ impl Derivation {
 
     /// The torques or forces of all actuators, base to tip.
     pub(crate) fn torques(&self) -> Vec<Polynomial> {
-        let of = |joint| self.values.get(&Name::scalar(Quantity::Torque, joint)).cloned();
-        (1..).map_while(of).collect()
+        let torque = |joint| self.values.get(&Name::scalar(Quantity::Torque, joint)).cloned();
+        (1..).map_while(torque).collect()
     }
 
     /// A vector of a joint, counted from 1.

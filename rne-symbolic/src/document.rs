@@ -250,12 +250,12 @@ pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Sy
         Some((format!("{} = {}", names.join(" = "), number(constant.value)), constant.unit.to_owned()))
     };
     let constants: Vec<usize> = used.iter().filter_map(|symbol| constant(*symbol)).collect();
-    let of = |is_parameter: bool| -> Vec<(String, String)> {
+    let listed = |is_parameter: bool| -> Vec<(String, String)> {
         let chosen = constants.iter().filter(|index| table.constants.0[**index].is_parameter == is_parameter);
         chosen.filter_map(|index| value(*index)).collect()
     };
     let mut items = Vec::new();
-    for (title, list) in [("Parameters of the file:", of(true)), ("Numbers of the table:", of(false))] {
+    for (title, list) in [("Parameters of the file:", listed(true)), ("Numbers of the table:", listed(false))] {
         if !list.is_empty() {
             items.push(Item::Words(words(title)));
             items.push(Item::List(list));

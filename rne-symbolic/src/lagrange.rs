@@ -95,8 +95,8 @@ pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
         mass_matrix[i][i] = &mass_matrix[i][i] + &row.rotor;
     }
     // only the upper half was summed
-    let of = |j: usize, k: usize| mass_matrix[j.min(k)][j.max(k)].clone();
-    let mass_matrix: Vec<Vec<Polynomial>> = (0..dof).map(|j| (0..dof).map(|k| of(j, k)).collect()).collect();
+    let element = |j: usize, k: usize| mass_matrix[j.min(k)][j.max(k)].clone();
+    let mass_matrix: Vec<Vec<Polynomial>> = (0..dof).map(|j| (0..dof).map(|k| element(j, k)).collect()).collect();
     let symbol = |i: usize, j: usize, k: usize| {
         let sum = mass_matrix[i][j].by_joint(k) + mass_matrix[i][k].by_joint(j) - mass_matrix[j][k].by_joint(i);
         sum.scaled(&fraction(1, 2))

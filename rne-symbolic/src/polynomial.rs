@@ -138,7 +138,7 @@ impl Polynomial {
         let (sine, cosine) = (Symbol::Sine(angle), Symbol::Cosine(angle));
         let Some(terms) = &self.terms else { return self.clone() };
         let mut sum = Self::zero();
-        let mut of = |monomial: &Monomial, symbol: Symbol, instead: Option<(Symbol, i64)>, value: &Rational| {
+        let mut add = |monomial: &Monomial, symbol: Symbol, instead: Option<(Symbol, i64)>, value: &Rational| {
             let exponent = monomial.exponent(symbol);
             if exponent == 0 {
                 return;
@@ -153,9 +153,9 @@ impl Polynomial {
             sum = &sum + &(&factor * &Self::term(value.clone(), monomial.clone()));
         };
         for (monomial, value) in terms {
-            of(monomial, sine, Some((cosine, 1)), value);
-            of(monomial, cosine, Some((sine, -1)), value);
-            of(monomial, Symbol::Position(joint), None, value);
+            add(monomial, sine, Some((cosine, 1)), value);
+            add(monomial, cosine, Some((sine, -1)), value);
+            add(monomial, Symbol::Position(joint), None, value);
         }
         sum
     }
@@ -163,8 +163,9 @@ impl Polynomial {
     /// The value for values of the letters.
     pub(crate) fn evaluate(&self, value: impl Fn(Symbol) -> f64) -> f64 {
         let Some(terms) = &self.terms else { return f64::NAN };
-        let of = |monomial: &Monomial| monomial.0.iter().map(|&(symbol, n)| value(symbol).powi(n)).product::<f64>();
-        terms.iter().map(|(monomial, factor)| crate::rational::nearest(factor) * of(monomial)).sum()
+        let evaluated =
+            |monomial: &Monomial| monomial.0.iter().map(|&(symbol, n)| value(symbol).powi(n)).product::<f64>();
+        terms.iter().map(|(monomial, factor)| crate::rational::nearest(factor) * evaluated(monomial)).sum()
     }
 
     pub(crate) fn scaled(&self, factor: &Rational) -> Self {

@@ -93,12 +93,12 @@ mod tests {
     #[test]
     fn fractions_are_written_as_a_person_would() {
         let plain = |text: &str| Spelling::Plain(text.to_owned());
-        let of = |p: &str, q: &str| Spelling::Fraction(p.to_owned(), q.to_owned());
+        let as_fraction = |p: &str, q: &str| Spelling::Fraction(p.to_owned(), q.to_owned());
         assert_eq!(spelling(&fraction(-6, 3)), plain("2"));
-        assert_eq!(spelling(&fraction(1, 3)), of("1", "3"));
-        assert_eq!(spelling(&fraction(3, 4)), of("3", "4"));
+        assert_eq!(spelling(&fraction(1, 3)), as_fraction("1", "3"));
+        assert_eq!(spelling(&fraction(3, 4)), as_fraction("3", "4"));
         assert_eq!(spelling(&fraction(981, 100)), plain("9.81"));
         assert_eq!(spelling(&fraction(1, 20)), plain("0.05"));
-        assert_eq!(spelling(&fraction(5, 12)), of("5", "12"));
+        assert_eq!(spelling(&fraction(5, 12)), as_fraction("5", "12"));
     }
 }

@@ -175,13 +175,13 @@ fn turns(notation: &Notation<'_>, before: Option<(&Row, usize)>, row: &Row, join
         Script::Latex => ["R_x", "R_z"],
     };
     let right = |(sine, cosine): &(Polynomial, Polynomial)| -> Option<&'static str> {
-        let of = |x: &Polynomial| match x.single() {
+        let letter = |x: &Polynomial| match x.single() {
             None if x.is_zero() => Some(0.0),
             Some((monomial, value)) if monomial.0.is_empty() => Some(crate::rational::nearest(value)),
             _ => None,
         };
         let pi = |text: [&'static str; 2]| text[usize::from(notation.script == Script::Latex)];
-        match (of(sine)?, of(cosine)?) {
+        match (letter(sine)?, letter(cosine)?) {
             (1.0, _) => Some(pi(["π/2", r"\pi/2"])),
             (-1.0, _) => Some(pi(["-π/2", r"-\pi/2"])),
             (_, -1.0) => Some(pi(["π", r"\pi"])),

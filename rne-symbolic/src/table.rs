@@ -243,21 +243,21 @@ impl Table {
 
     /// The values of all letters in a state of the arm: positions, rates and accelerations of the joint variables q.
     pub(crate) fn value(&self, symbol: Symbol, q: &[f64], qd: &[f64], qdd: &[f64]) -> f64 {
-        let of = |values: &[f64], joint: usize| values.get(joint).copied().unwrap_or(f64::NAN);
+        let value_of = |values: &[f64], joint: usize| values.get(joint).copied().unwrap_or(f64::NAN);
         let angle = |angle: Angle| {
             let constant = self.angles.iter().find(|(known, _)| *known == angle).map_or(0.0, |(_, turn)| turn.radians);
             match angle {
-                Angle::Joint(joint) => of(q, joint) + constant,
+                Angle::Joint(joint) => value_of(q, joint) + constant,
                 Angle::Twist(_) | Angle::Turn(_) => constant,
             }
         };
         match symbol {
             Symbol::Constant(index) => self.constants.0.get(index).map_or(f64::NAN, |constant| constant.value),
-            Symbol::Position(joint) => of(q, joint) + of(&self.offsets, joint),
+            Symbol::Position(joint) => value_of(q, joint) + value_of(&self.offsets, joint),
             Symbol::Sine(turn) => angle(turn).sin(),
             Symbol::Cosine(turn) => angle(turn).cos(),
-            Symbol::Rate(joint) => of(qd, joint),
-            Symbol::Acceleration(joint) => of(qdd, joint),
+            Symbol::Rate(joint) => value_of(qd, joint),
+            Symbol::Acceleration(joint) => value_of(qdd, joint),
         }
     }
 }

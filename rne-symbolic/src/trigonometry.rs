@@ -206,10 +206,10 @@ fn with_sign(argument: &Argument) -> (Argument, bool) {
 /// cos nx and sin nx in powers of sin x and cos x, with either of them squared.
 fn multiple(n: i32, keeps_sine: bool) -> [BTreeMap<(i32, i32), Rational>; 2] {
     let one = BTreeMap::from([((0, 0), Rational::one())]);
-    let mut of = [one, BTreeMap::new()];
+    let mut parts = [one, BTreeMap::new()];
     for _ in 0..n.abs() {
         let mut next = [BTreeMap::new(), BTreeMap::new()];
-        for (part, terms) in of.iter().enumerate() {
+        for (part, terms) in parts.iter().enumerate() {
             for ((s, c), value) in terms {
                 // (C + iS)(c + is) = Cc - Ss + i(Sc + Cs)
                 into(&mut next[part], (*s, c + 1), value.clone(), keeps_sine);
@@ -217,14 +217,14 @@ fn multiple(n: i32, keeps_sine: bool) -> [BTreeMap<(i32, i32), Rational>; 2] {
                 into(&mut next[1 - part], (s + 1, *c), sign, keeps_sine);
             }
         }
-        of = next;
+        parts = next;
     }
     if n < 0 {
-        for value in of[1].values_mut() {
+        for value in parts[1].values_mut() {
             *value = -value.clone();
         }
     }
-    of
+    parts
 }
 
 /// Adds a term, without squares of the cosine or of the sine.

@@ -156,11 +156,11 @@ fn inflation(structure: &Structure, model: &FittedModel, stretches: &Stretches, 
     let joints = dof as f64;
     let shared = |kind: usize| sums[kind * dof..(kind + 1) * dof].iter().sum::<f64>() / joints / f64::max(tried, 1.0);
     let all = sums[..3 * dof].iter().sum::<f64>() / (3.0 * joints) / f64::max(tried, 1.0);
-    let one = |(at, sum): (usize, &f64)| {
+    let root_mean_square = |(at, sum): (usize, &f64)| {
         let mean = if at < 3 * dof { shared(at / dof) } else { all };
         (SHARED * mean + sum) / (SHARED + tried)
     };
-    sums.iter().enumerate().map(one).collect()
+    sums.iter().enumerate().map(root_mean_square).collect()
 }
 
 /// The root mean square of what the model of all other quarters leaves of each joint's torque in a quarter of the quiet
@@ -172,8 +172,8 @@ fn residual(structure: &Structure, model: &FittedModel, stretches: &Stretches) -
     for quarter in quarters.map(|range| &list[range]) {
         let Some(others) = model.without(structure, quarter) else { continue };
         for (joint, sum) in sums.iter_mut().enumerate() {
-            let each = quarter.iter().map(|stretch| Residual::of(structure, joint, stretch, &others.solution));
-            *sum = each.fold(*sum, Residual::plus);
+            let residuals = quarter.iter().map(|stretch| Residual::of(structure, joint, stretch, &others.solution));
+            *sum = residuals.fold(*sum, Residual::plus);
         }
     }
     sums.iter().zip(&model.noise).map(|(sum, noise)| sum.root_mean_square().unwrap_or(*noise).max(*noise)).collect()
@@ -216,7 +216,8 @@ impl Residual {
 /// The squared statistics of stretches, compared with the model of all others.
 fn left_out(structure: &Structure, model: &FittedModel, stretches: &[Stretch]) -> Option<Vec<f64>> {
     let others = model.without(structure, stretches)?;
-    let score = Score::new(structure, &others, stretches)?;
+    let stretches: Vec<&Stretch> = stretches.iter().collect();
+    let score = Score::new(structure, &others, &stretches, &vec![false; structure.dof()])?;
     let estimates = score.estimates(&(0..score.len()), &[]);
     let square =
         |estimate: Option<Estimate>| estimate.map_or(0.0, |estimate| (estimate.value() / estimate.deviation).powi(2));

@@ -242,11 +242,11 @@ impl Reading<'_> {
         if items.len() != dof {
             return self.numbers("noise", dof);
         }
-        let of = |item: &std::rc::Rc<Node>| match &item.content {
+        let number = |item: &std::rc::Rc<Node>| match &item.content {
             Content::Scalar(scalar) if scalar.text == ".inf" => Ok(f64::INFINITY),
             _ => self.number_of(item).and_then(|noise| self.check("noise", noise, noise > 0.0)),
         };
-        items.iter().map(of).collect()
+        items.iter().map(number).collect()
     }
 
     fn triangle(&self, key: &str, count: usize) -> Result<DMatrix<f64>, Report> {

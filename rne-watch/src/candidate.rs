@@ -25,8 +25,9 @@ impl Candidate {
     /// Every candidate of an arm.
     #[must_use]
     pub fn all(dof: usize) -> Vec<Self> {
-        let each = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
-        each.flat_map(|of| (0..dof).map(of))
+        let parameters = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
+        parameters
+            .flat_map(|parameter| (0..dof).map(parameter))
             .chain([Self::Payload, Self::Delay])
             .chain((0..dof).map(Self::Gain))
             .collect()
@@ -154,11 +155,11 @@ impl Scale {
 
 /// Root mean square of each joint's speed, rad/s or m/s, by the products of all rows of each joint.
 pub(crate) fn speeds(structure: &Structure, totals: &[DMatrix<f64>]) -> Vec<f64> {
-    let of = |(joint, total): (usize, &DMatrix<f64>)| {
+    let speed = |(joint, total): (usize, &DMatrix<f64>)| {
         let at = FittedModel::place(structure, joint, FrictionParameter::Viscous);
         mean_square(structure, joint, total, at).sqrt()
     };
-    totals.iter().enumerate().map(of).collect()
+    totals.iter().enumerate().map(speed).collect()
 }
 
 /// The mean square of a column of a joint's rows; without a column that of its efforts.

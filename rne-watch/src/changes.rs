@@ -213,8 +213,8 @@ fn residual(baseline: &Baseline, selection: &Selection<'_>) -> Vec<f64> {
     let unknowns = selection.unknowns();
     let of_joint = |joint: usize| {
         let stretches = selection.stretches.iter().zip(&unknowns);
-        let each = stretches.map(|(stretch, unknowns)| selection.residual(joint, stretch, unknowns));
-        let sum = each.fold(Residual::default(), Residual::plus);
+        let residuals = stretches.map(|(stretch, unknowns)| selection.residual(joint, stretch, unknowns));
+        let sum = residuals.fold(Residual::default(), Residual::plus);
         sum.root_mean_square().unwrap_or(baseline.residual[joint])
     };
     (0..baseline.residual.len()).map(of_joint).collect()

@@ -26,6 +26,8 @@ pub enum WatchError {
         /// The least number of samples.
         needed: usize,
     },
+    /// The efforts of all joints are zero.
+    NoEffort,
     /// A log is too short to be compared with the baseline.
     ShortLog {
         /// s: the duration of its motions.
@@ -70,6 +72,9 @@ impl fmt::Display for WatchError {
                 f,
                 "the motion has {found} samples, but at least {needed} are \
                                                          needed"
+            ),
+            Self::NoEffort => f.write_str(
+                "the efforts of all joints are zero throughout, or less than any sensor measures: they are not torques",
             ),
             Self::ShortLog { duration, needed, cutoff } => write!(
                 f,

@@ -196,6 +196,10 @@ pub fn changes(
             progress,
         )
         .map_err(WatchError::from)?;
+    let is_silent = |joint: usize| stretches.list().iter().all(|stretch| stretch.is_silent(joint));
+    if stretches.rows() > 0 && (0..structure.dof()).all(is_silent) {
+        return Err(WatchError::NoEffort);
+    }
     if stretches.rows() >= FEWEST
         && let Some(mut found) = Changes::of(structure, baseline, &stretches)
     {
@@ -244,7 +248,7 @@ fn each_signals(
         Err(WatchError::TooFew { .. }) => Ok(false),
         other => other.map(|()| true),
     };
-    let mut one = |run: u64, motion: &Motion| -> Result<(), WatchError> {
+    let mut take_motion = |run: u64, motion: &Motion| -> Result<(), WatchError> {
         let added = explain(run, motion)?;
         let mut rest = motion.clone();
         for (tau, added) in rest.tau.iter_mut().zip(&added) {
@@ -254,7 +258,7 @@ fn each_signals(
         pieces += u64::from(unless_short(taken)?);
         Ok(())
     };
-    log.pass_runs(Part::All, &mut one, progress).map_err(WatchError::from)?;
+    log.pass_runs(Part::All, &mut take_motion, progress).map_err(WatchError::from)?;
     if pieces == 0 { Err(WatchError::TooFew { found: 0, needed: 1 }) } else { Ok(()) }
 }
 
@@ -315,7 +319,7 @@ mod tests {
         // friction from 5 s on: a contact where it begins is what it leaves, a later one is none
         let friction = Event { since: 5.0, until: 20.0, lasts: true, ..event(Cause::Friction, 2) };
         let at = |since: f64| Event { since, until: since + 0.2, ..event(Cause::Contact, 2) };
-        let of = causes(&[friction, at(4.9), at(9.0)]);
-        assert_eq!(of, [(Cause::Friction, Some(2)), (Cause::Contact, Some(2))]);
+        let found = causes(&[friction, at(4.9), at(9.0)]);
+        assert_eq!(found, [(Cause::Friction, Some(2)), (Cause::Contact, Some(2))]);
     }
 }

@@ -72,19 +72,20 @@ pub(crate) struct Projected {
 }
 
 impl Score {
-    /// `None` where the information is not positive.
-    pub(crate) fn new<'a>(
+    /// `None` where the information is not positive. `is_dead` says of each joint whether its effort is zero.
+    pub(crate) fn new(
         structure: &Structure,
         model: &FittedModel,
-        stretches: impl IntoIterator<Item = &'a Stretch>,
+        stretches: &[&Stretch],
+        is_dead: &[bool],
     ) -> Option<Self> {
         let (count, dof) = (structure.count(), structure.dof());
         let size = count + dof;
         let (mut of_columns, mut rest) = (DMatrix::zeros(size, size), DVector::zeros(size));
         let (mut products, mut left) = (vec![of_columns.clone()], vec![rest.clone()]);
         for stretch in stretches {
-            for joint in 0..dof {
-                add(structure, model, stretch, joint, &mut of_columns, &mut rest);
+            for (joint, is_dead) in is_dead.iter().enumerate() {
+                add(structure, model, stretch, (joint, *is_dead), &mut of_columns, &mut rest);
             }
             products.push(of_columns.clone());
             left.push(rest.clone());
@@ -135,7 +136,7 @@ impl Score {
         let products = self.products_in(window) * &self.columns;
         let common = &self.covariance * &products;
         let mut first = 0;
-        let each = self.candidates.iter().enumerate().map(|(candidate, (_, columns))| {
+        let scores = self.candidates.iter().enumerate().map(|(candidate, (_, columns))| {
             let range = (first, columns.ncols());
             first += columns.ncols();
             Projected {
@@ -144,7 +145,7 @@ impl Score {
                 common: common.columns(range.0, range.1).clone_owned(),
             }
         });
-        each.collect()
+        scores.collect()
     }
 
     /// Fᵀ F - Fᵀ X L Xᵀ F of two changes.
@@ -203,12 +204,12 @@ impl Score {
     /// The changes of all unknowns by some changes together, each over its window.
     pub(crate) fn changes(&self, given: &[Projected]) -> Option<Vec<(Range<usize>, DVector<f64>)>> {
         let mut values = self.fitted(&given.iter().collect::<Vec<_>>())?.values.into_iter();
-        let of = |projected: &Projected| {
+        let score = |projected: &Projected| {
             let columns = &self.candidates[projected.change.candidate].1;
             let numbers: Vec<f64> = values.by_ref().take(columns.ncols()).collect();
             (projected.change.window.clone(), columns * DVector::from_vec(numbers))
         };
-        Some(given.iter().map(of).collect())
+        Some(given.iter().map(score).collect())
     }
 
     fn fitted(&self, all: &[&Projected]) -> Option<Fitted> {
@@ -220,13 +221,13 @@ impl Score {
         }
         let (mut gram, mut slope) = (DMatrix::zeros(size, size), DVector::zeros(size));
         for (row, a) in all.iter().enumerate() {
-            let of = self.slope(a);
-            slope.rows_mut(places[row], of.len()).copy_from(&of);
+            let part = self.slope(a);
+            slope.rows_mut(places[row], part.len()).copy_from(&part);
             for (column, b) in all.iter().enumerate().take(row + 1) {
-                let of = self.gram(a, b);
+                let block = self.gram(a, b);
                 let at = (places[row], places[column]);
-                gram.view_mut(at, of.shape()).copy_from(&of);
-                gram.view_mut((at.1, at.0), (of.ncols(), of.nrows())).copy_from(&of.transpose());
+                gram.view_mut(at, block.shape()).copy_from(&block);
+                gram.view_mut((at.1, at.0), (block.ncols(), block.nrows())).copy_from(&block.transpose());
             }
         }
         // what no row tells stays finite
@@ -261,7 +262,7 @@ fn add(
     structure: &Structure,
     model: &FittedModel,
     stretch: &Stretch,
-    joint: usize,
+    (joint, is_dead): (usize, bool),
     products: &mut DMatrix<f64>,
     left: &mut DVector<f64>,
 ) {
@@ -272,6 +273,13 @@ fn add(
     let with_torques = of_columns * &model.solution;
     let rest = total.view((0, count), (count, 1)).column(0) - &with_torques;
     let gain = count + joint;
+    if is_dead {
+        // its rows say that the gain is 0, which is 1 less than before, and nothing else
+        let product = model.solution.dot(&with_torques);
+        products[(gain, gain)] += product;
+        left[gain] -= product;
+        return;
+    }
     products.view_mut((0, 0), (count, count)).zip_apply(&of_columns, |sum, product| *sum += product);
     for (at, product) in with_torques.iter().enumerate() {
         products[(at, gain)] += product;

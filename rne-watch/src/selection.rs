@@ -118,28 +118,28 @@ pub(crate) struct Selection<'a> {
 impl<'a> Selection<'a> {
     /// The changes of a log; `None` where the log and the baseline together tell nothing.
     pub(crate) fn of(structure: &'a Structure, baseline: &'a Baseline, stretches: &'a [Stretch]) -> Option<Self> {
-        let mut one = Self::selected(structure, baseline, stretches.iter().collect())?;
+        let mut selection = Self::selected(structure, baseline, stretches.iter().collect())?;
         for _ in 0..ROUNDS {
-            let contacts = one.outliers();
-            if contacts.is_empty() || 4 * (one.stretches.len() - contacts.len()) < 3 * stretches.len() {
+            let contacts = selection.outliers();
+            if contacts.is_empty() || 4 * (selection.stretches.len() - contacts.len()) < 3 * stretches.len() {
                 break;
             }
-            let kept = one.stretches.iter().enumerate().filter(|(at, _)| !contacts.contains(at));
-            one = Self::selected(structure, baseline, kept.map(|(_, stretch)| *stretch).collect())?;
+            let kept = selection.stretches.iter().enumerate().filter(|(at, _)| !contacts.contains(at));
+            selection = Self::selected(structure, baseline, kept.map(|(_, stretch)| *stretch).collect())?;
         }
-        Some(one)
+        Some(selection)
     }
 
     /// Selects changes, without the moments that explain one alone: a log has few of them, so half of it must remain.
     fn selected(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
         let count = stretches.len();
-        let mut one = Self::empty(structure, baseline, stretches)?;
-        while 2 * one.stretches.len() > count {
-            let Some(moment) = one.select() else { break };
-            let rest = one.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
-            one = Self::empty(structure, baseline, rest.map(|(_, stretch)| *stretch).collect())?;
+        let mut selection = Self::empty(structure, baseline, stretches)?;
+        while 2 * selection.stretches.len() > count {
+            let Some(moment) = selection.select() else { break };
+            let rest = selection.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
+            selection = Self::empty(structure, baseline, rest.map(|(_, stretch)| *stretch).collect())?;
         }
-        Some(one)
+        Some(selection)
     }
 
     /// The stretches that stand out from the others, with all changes that were found: somebody touches the arm there.
@@ -159,9 +159,25 @@ impl<'a> Selection<'a> {
     }
 
     fn empty(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
-        let score = Score::new(structure, &baseline.model, stretches.iter().copied())?;
+        let is_dead: Vec<bool> = (0..structure.dof()).map(|joint| is_dead(baseline, &stretches, joint)).collect();
+        let score = Score::new(structure, &baseline.model, &stretches, &is_dead)?;
         let ratios = speed_ratios(structure, baseline, &stretches);
-        Some(Self { structure, baseline, stretches, score, given: Vec::new(), speed_ratios: ratios })
+        let mut selection = Self { structure, baseline, stretches, score, given: Vec::new(), speed_ratios: ratios };
+        selection.given = selection.dead_channels();
+        Some(selection)
+    }
+
+    /// A gain of zero for each effort that is zero throughout the log, but not in the quiet log: no other change can
+    /// explain it, and without it the torques that are missing would be changes of other joints.
+    fn dead_channels(&self) -> Vec<Projected> {
+        let window = 0..self.score.len();
+        let candidates = self.score.candidates().iter().enumerate();
+        let dead = candidates.filter(|(_, (of, _))| matches!(of, Candidate::Gain(joint) if self.is_dead(*joint)));
+        dead.map(|(candidate, _)| self.score.projected(Change { candidate, window: window.clone() })).collect()
+    }
+
+    fn is_dead(&self, joint: usize) -> bool {
+        is_dead(self.baseline, &self.stretches, joint)
     }
 
     /// Selects changes, until no further one is an event; or returns the moment that explains the last one.
@@ -258,11 +274,11 @@ impl<'a> Selection<'a> {
     }
 
     fn is_event(&self, change: &Change, estimate: &Estimate) -> bool {
-        let of = |change: &Change| self.candidate(change.candidate);
+        let columns = |change: &Change| self.candidate(change.candidate);
         let is_gain = |candidate: Candidate| matches!(candidate, Candidate::Gain(_));
         // the effort of a joint whose gain has changed tells nothing else
         let excludes = |given: &Projected| {
-            let (one, other) = (of(&given.change), of(change));
+            let (one, other) = (columns(&given.change), columns(change));
             one == other || (one.joint().is_some() && one.joint() == other.joint() && (is_gain(one) || is_gain(other)))
         };
         let is_given = self.given.iter().any(excludes);
@@ -292,13 +308,20 @@ impl<'a> Selection<'a> {
             Candidate::Delay => median(self.speed_ratios.iter().map(|ratio| 1.0 / ratio).collect()).max(1.0),
             _ => 1.0,
         };
-        // a gain is known no better than the model explains the effort
+        // a gain is known no better than the model explains the effort, unless there is none
         let unexplained = match candidate {
-            Candidate::Gain(joint) if scale.effort[joint] > 0.0 => UNEXPLAINED * residual[joint] / scale.effort[joint],
+            Candidate::Gain(joint) if scale.effort[joint] > 0.0 && !self.is_dead(joint) => {
+                UNEXPLAINED * residual[joint] / scale.effort[joint]
+            }
             _ => 0.0,
         };
         let model = unlike * alike * doubt * scale.model_error(candidate).max(unexplained);
-        let deviation = (inflation[change.candidate] * estimate.deviation).hypot(model);
+        // errors of the model average out over the joints; with dead channels there are fewer of them
+        let dof = self.structure.dof();
+        let alive = (0..dof).filter(|joint| !self.is_dead(*joint)).count().max(1);
+        #[allow(clippy::cast_precision_loss)] // some joints
+        let fewer = if candidate.joint().is_none() { (dof as f64 / alive as f64).sqrt() } else { 1.0 };
+        let deviation = fewer * (inflation[change.candidate] * estimate.deviation).hypot(model);
         let threshold = (deviations * deviation).max(size * scale.least(candidate));
         Statistic { candidate, change: estimate.value(), deviation, threshold }
     }
@@ -378,7 +401,9 @@ impl<'a> Selection<'a> {
         }
         let moment = best?.1;
         let rest = self.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
-        let score = Score::new(self.structure, &self.baseline.model, rest.map(|(_, stretch)| *stretch))?;
+        let rest: Vec<&Stretch> = rest.map(|(_, stretch)| *stretch).collect();
+        let is_dead: Vec<bool> = (0..self.structure.dof()).map(|joint| self.is_dead(joint)).collect();
+        let score = Score::new(self.structure, &self.baseline.model, &rest, &is_dead)?;
         let without = |window: &Range<usize>| {
             let before = |at: usize| at - moment.clone().filter(|of| *of < at).count();
             before(window.start)..before(window.end)
@@ -411,12 +436,12 @@ impl<'a> Selection<'a> {
         let whole = 0..self.score.len();
         let estimates = self.score.estimates(&whole, &self.given).into_iter().enumerate();
         let is_given = |candidate: &usize| self.given.iter().any(|given| given.change.candidate == *candidate);
-        let each = estimates.filter(|(candidate, _)| !is_given(candidate)).filter_map(|(candidate, estimate)| {
+        let statistics = estimates.filter(|(candidate, _)| !is_given(candidate)).filter_map(|(candidate, estimate)| {
             let change = Change { candidate, window: whole.clone() };
             Some(self.statistic(&change, &estimate?))
         });
         let small = self.estimated().map(|found| found.statistic).filter(|statistic| statistic.ratio() <= 1.0);
-        each.chain(small).collect()
+        statistics.chain(small).collect()
     }
 
     /// Whether a joint moves far less than in the quiet logs, or hardly at all.
@@ -446,6 +471,11 @@ impl<'a> Selection<'a> {
     pub(crate) fn changes(&self) -> Vec<(Range<usize>, DVector<f64>)> {
         self.score.changes(&self.given).unwrap_or_default()
     }
+}
+
+/// Whether the effort of a joint is zero throughout, but not in the quiet log.
+fn is_dead(baseline: &Baseline, stretches: &[&Stretch], joint: usize) -> bool {
+    baseline.scale.effort[joint] > 0.0 && stretches.iter().all(|stretch| stretch.is_silent(joint))
 }
 
 /// The unknowns of one joint's torque, of all unknowns and gains: a gain changes the whole torque of the baseline.

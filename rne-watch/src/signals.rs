@@ -100,8 +100,8 @@ impl Signals {
         let wait = 3.0 / (std::f64::consts::TAU * gain);
         let mut since = 0.0;
         for sample in 0..samples {
-            let of = |lists: &[Vec<f64>]| -> Vec<f64> { lists.iter().map(|list| list[sample]).collect() };
-            let [q, qd, qdd, tau] = [&motion.q, &motion.qd, &motion.qdd, &motion.tau].map(|lists| of(lists));
+            let at_sample = |lists: &[Vec<f64>]| -> Vec<f64> { lists.iter().map(|list| list[sample]).collect() };
+            let [q, qd, qdd, tau] = [&motion.q, &motion.qd, &motion.qdd, &motion.tau].map(|lists| at_sample(lists));
             let step = if sample == 0 { 0.0 } else { motion.time[sample] - motion.time[sample - 1] };
             if step > GAP * period {
                 observer.reset();

@@ -66,7 +66,7 @@ impl Trend {
 
     /// Adds a log.
     pub fn push(&mut self, name: String, changes: &Changes) {
-        let of = |candidate: Candidate, before: f64| {
+        let value = |candidate: Candidate, before: f64| {
             let found = changes
                 .events
                 .iter()
@@ -83,8 +83,8 @@ impl Trend {
             }
         };
         let friction = self.friction.iter().enumerate();
-        let friction = friction.map(|(joint, [_, before])| of(Candidate::Coulomb(joint), *before)).collect();
-        let payload = of(Candidate::Payload, 0.0);
+        let friction = friction.map(|(joint, [_, before])| value(Candidate::Coulomb(joint), *before)).collect();
+        let payload = value(Candidate::Payload, 0.0);
         let (residual, events) = (changes.residual.clone(), changes.events.len());
         self.rows.push(TrendRow { name, friction, payload, residual, events });
     }
@@ -144,13 +144,13 @@ struct Series {
 impl Series {
     fn new(title: String, before: f64, values: impl Iterator<Item = TrendValue>) -> Self {
         let values: Vec<TrendValue> = values.collect();
-        let of = |each: &dyn Fn(TrendValue) -> f64| values.iter().copied().map(each).collect();
+        let series = |each: &dyn Fn(TrendValue) -> f64| values.iter().copied().map(each).collect();
         let curves = [
-            of(&|of| of.value),
-            of(&|of| of.value + INTERVAL * of.deviation),
-            of(&|of| of.value - INTERVAL * of.deviation),
-            of(&|of| before + of.threshold),
-            of(&|of| before - of.threshold),
+            series(&|value| value.value),
+            series(&|value| value.value + INTERVAL * value.deviation),
+            series(&|value| value.value - INTERVAL * value.deviation),
+            series(&|value| before + value.threshold),
+            series(&|value| before - value.threshold),
         ];
         Self { title, curves }
     }

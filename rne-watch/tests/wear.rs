@@ -270,3 +270,29 @@ fn a_baseline_without_noise_is_read_back() {
     let read = Baseline::from_yaml("arm.baseline.yaml", &text, &arm.robot).unwrap_or_else(|report| panic!("{report}"));
     assert_eq!(read.to_yaml(&arm.robot, "a log without noise"), text);
 }
+
+/// A channel without any effort is one event, and the torques that are missing are no changes of other joints. With the
+/// channel, the other changes lose data: one of them, which is near its threshold in the whole log, exceeds it a
+/// little.
+#[test]
+fn a_dead_channel_of_each_joint_is_one_event() {
+    let mut others = Vec::new();
+    for (name, _) in PUBLIC {
+        let arm = arm(name);
+        for (fraction, is_reversed) in [(0.5, false), (0.6, false), (0.6, true)] {
+            let [quiet, watched] = split(&arm.motion, fraction, is_reversed);
+            let quiet = baseline(&arm.structure, &quiet);
+            for joint in 0..arm.robot.dof() {
+                let found = events(&arm, &quiet, &watched, Fault::Gain(joint, 0.0), ALWAYS);
+                let is_gain = |event: &&Event| (event.parameter, event.joint) == ("gain", Some(joint));
+                assert_eq!(found.iter().filter(is_gain).count(), 1, "{name} {fraction} {is_reversed}: {found:#?}");
+                let rest = found.iter().filter(|event| !is_gain(event));
+                others.extend(
+                    rest.map(|event| (name, joint, event.parameter, event.joint, event.change() / event.threshold)),
+                );
+            }
+        }
+    }
+    println!("{others:#?}");
+    assert!(others.len() <= 1 && others.iter().all(|(.., ratio)| ratio.abs() < 1.1), "{others:#?}");
+}

@@ -20,6 +20,7 @@ mod golden;
 mod kinematics;
 mod matrices;
 mod momentum;
+mod operational_space;
 mod operations;
 mod payload;
 mod peers;

@@ -234,8 +234,8 @@ fn every_function_of_a_tree_is_projected_newton_euler() {
     for maker in Maker::ALL {
         let trees = match maker {
             Maker::Runtime if shipped::is_exhaustive() => 300,
-            Maker::Runtime => 30,
-            Maker::Code(_) => 4,
+            Maker::Runtime => 22,
+            Maker::Code(_) => 3,
         };
         let mut worst = Worst::default();
         let mut seen = 0;

@@ -118,7 +118,7 @@ def main():
         else:
             for name, (file, options) in URDFS.items():
                 path = urdf.find(file)
-                arm = rne.load(path, **options)
+                arm = rne.load(path, snap=False, **options)
                 theirs = pinocchio_of(path, arm, options["tip"])
                 worst = max(worst, compare("rneaInParallel, 1", name, arm, states, theirs, repetitions))
         try:

@@ -92,8 +92,8 @@ impl Arm {
                 }
             }
         } else {
-            let robot = origin.read(&name, origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
-            CompiledArm::from_robot(&robot)
+            let checked = origin.read(&name, origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
+            CompiledArm::from_robot(&checked.robot)
         };
         let arm = arm.in_form(origin.form.0);
         let arm = if origin.rotors { arm.with_rotors() } else { arm };
@@ -126,6 +126,16 @@ impl Arm {
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        given.extend(self.given_parameters(py, parameters)?);
+        evaluate(py, &self.arm, function, &given, out)
+    }
+
+    /// The argument of the run-time parameters, if the arm has any.
+    pub(crate) fn given_parameters<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Option<Given<'py>>> {
         let run_time = &self.robot().run_time;
         if !run_time.is_empty() {
             let value = match parameters {
@@ -137,13 +147,14 @@ impl Arm {
                 // those of the file
                 None => pyo3::types::PyList::new(py, run_time.values(self.robot()))?.into_any(),
             };
-            given.push(Given { name: "parameters", parts: &[], elements: run_time.names.len(), value });
-        } else if parameters.is_some() {
+            return Ok(Some(Given { name: "parameters", parts: &[], elements: run_time.names.len(), value }));
+        }
+        if parameters.is_some() {
             return Err(PyValueError::new_err(
                 "this arm has no run-time parameters; `rne.load(…, run_time=[…])` leaves some free",
             ));
         }
-        evaluate(py, &self.arm, function, &given, out)
+        Ok(None)
     }
 
     /// A program of a function, in a form.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pyo3::create_exception;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use rne::compiled::ArmError;
 use rne_convert::OpenError;
@@ -14,6 +14,12 @@ create_exception!(
     RobotFileError,
     PyValueError,
     "A robot file, a plan or a URDF is wrong. `line` and `column`, from 1, are those of its first mistake."
+);
+create_exception!(
+    rne,
+    RobotFileWarning,
+    PyUserWarning,
+    "A robot file or a URDF is valid, but its numbers are probably not those of the arm."
 );
 create_exception!(rne, EvaluationError, PyValueError, "A function cannot be computed for this arm or these arguments.");
 
@@ -32,7 +38,7 @@ pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
 
 /// A remedy as keywords of `rne.load`.
 #[allow(clippy::unnecessary_wraps)] // what a report asks for
-fn in_keywords(remedy: &Remedy) -> Option<String> {
+pub(crate) fn in_keywords(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),
         Remedy::NameTip => "name the tip with tip=\"LINK\"".to_owned(),

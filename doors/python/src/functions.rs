@@ -69,17 +69,7 @@ fn evaluate_in<'py, T: Element + Number>(
     let many = states(&held)?;
     let count = many.unwrap_or(1);
     let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
-    let mut arguments = Arguments::new();
-    for ((given, held), columns) in given.iter().zip(&held).zip(&columns) {
-        let array = held.array(count, columns)?;
-        if given.parts.is_empty() {
-            arguments = arguments.with(held.name(), array).ok_or_else(|| PyValueError::new_err(held.name()))?;
-        }
-        for (index, part) in given.parts.iter().enumerate() {
-            let array = array.part(held.elements(), 3 * index..3 * index + 3);
-            arguments = arguments.with(part, array).ok_or_else(|| PyValueError::new_err(*part))?;
-        }
-    }
+    let arguments = arguments(given, &held, &columns, count)?;
     let of_state = shape(function, arm.dof());
     let whole: Vec<usize> = many.into_iter().chain(of_state.iter().copied()).collect();
     let result = room::<T>(py, out, &whole, dtype)?;
@@ -121,6 +111,27 @@ fn evaluate_in<'py, T: Element + Number>(
         }
         _ => finished(result, whole.is_empty()),
     }
+}
+
+/// The arrays that are held, as the arguments of so many states.
+pub(crate) fn arguments<'a, T: Element + Number>(
+    given: &[Given<'_>],
+    held: &'a [Held<'_, T>],
+    columns: &'a [Vec<&'a [T]>],
+    states: usize,
+) -> PyResult<Arguments<'a, T>> {
+    let mut arguments = Arguments::new();
+    for ((given, held), columns) in given.iter().zip(held).zip(columns) {
+        let array = held.array(states, columns)?;
+        if given.parts.is_empty() {
+            arguments = arguments.with(held.name(), array).ok_or_else(|| PyValueError::new_err(held.name()))?;
+        }
+        for (index, part) in given.parts.iter().enumerate() {
+            let array = array.part(held.elements(), 3 * index..3 * index + 3);
+            arguments = arguments.with(part, array).ok_or_else(|| PyValueError::new_err(*part))?;
+        }
+    }
+    Ok(arguments)
 }
 
 /// A number for an array without axes.

@@ -1,9 +1,9 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
-//! Thin: [`arm`] has the class, [`dynamics`] and [`insight`] its methods, [`arrays`] what numpy's arrays are to the
-//! machine, [`load`] how an arm is read, [`errors`] what goes wrong. [`logs`], [`identification`], [`watching`] and
-//! [`excitation`] are about logs of arms; [`log_errors`] words what goes wrong there, and [`interruption`] lets Ctrl-C
-//! end them. The package around it is in `rne/`.
+//! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`rollout`] and [`insight`] its methods,
+//! [`arrays`] what numpy's arrays are to the machine, [`load`] how an arm is read, [`errors`] what goes wrong. [`logs`],
+//! [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes wrong
+//! there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
 
 mod arm;
 mod arrays;
@@ -18,7 +18,9 @@ mod load;
 mod log_errors;
 mod logs;
 mod notebook;
+mod operational_space;
 mod payload;
+mod rollout;
 mod watching;
 
 use pyo3::prelude::*;
@@ -29,7 +31,7 @@ mod _rne {
     #[pymodule_export]
     use super::arm::Arm;
     #[pymodule_export]
-    use super::errors::{EvaluationError, RobotFileError};
+    use super::errors::{EvaluationError, RobotFileError, RobotFileWarning};
     #[pymodule_export]
     use super::excitation::exciting;
     #[pymodule_export]

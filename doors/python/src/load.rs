@@ -1,15 +1,16 @@
 //! An arm from a robot file, a URDF, their texts, or the box.
 
 use std::collections::BTreeMap;
+use std::ffi::CString;
 use std::path::{Path, PathBuf};
 
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use rne_convert::{Description, Options, Selection};
-use rne_model::{Convention, Reader};
+use rne_model::{Checked, Convention, Diagnostic, Reader, Report};
 
 use crate::arm::{Arm, Origin};
-use crate::errors::{of_opening, of_report};
+use crate::errors::{RobotFileWarning, in_keywords, of_opening, of_report};
 
 /// The names of the robots in the box.
 #[pyfunction]
@@ -40,8 +41,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// convention : {"standard", "modified"}
 ///     Of a URDF: the rows of the table that is made.
 /// snap : bool
-///     Of a URDF: take angles within 2e-4 rad of a multiple of pi/12 for it, as `rne import` does. Off by default
-///     here: the arm is the URDF's own.
+///     Of a URDF: replace angles within 2e-4 rad of a multiple of pi/12 by this multiple, as the command line does.
+///     False keeps the numbers of the URDF, for comparisons with programs that read the same file.
 /// keep_unphysical : bool
 ///     Of a URDF: take inertias that no body has.
 /// run_time : sequence of str
@@ -59,8 +60,13 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     With everything that is wrong, `line` and `column`.
 /// OSError
 ///     When the file cannot be read.
+///
+/// Warns
+/// -----
+/// RobotFileWarning
+///     For numbers that are allowed but probably wrong, such as links without mass or with placeholder inertias.
 #[pyfunction]
-#[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=false,
+#[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=true,
     keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
 #[allow(clippy::fn_params_excessive_bools)] // keywords of Python
 pub(crate) fn load(
@@ -92,21 +98,25 @@ pub(crate) fn load(
         Given::Text(text) => Description::of_text(text.clone()),
         Given::File(path) => Description::open(path).map_err(of_opening)?,
     };
-    let bytes = match (description, &given) {
+    let name = match &given {
+        Given::Text(_) => "<text>".to_owned(),
+        Given::File(path) => path.display().to_string(),
+    };
+    let bytes = match (description, given) {
         (Description::Shipped(file), _) => return Arm::of(py, origin.shipped(file)),
-        // with the plan beside it
-        (Description::RobotFile(_), Given::File(path)) => {
-            return Arm::of(py, Origin { file: Some(path.clone()), ..origin });
-        }
-        (Description::RobotFile(_), Given::Text(text)) => {
-            return Arm::of(py, Origin { robot: text.clone(), ..origin });
+        (Description::RobotFile(_), given) => {
+            let origin = match given {
+                // with the plan beside it
+                Given::File(path) => Origin { file: Some(path), ..origin },
+                Given::Text(text) => Origin { robot: text, ..origin },
+            };
+            let arm = Arm::of(py, origin)?;
+            let lints = arm.origin.read(&name, arm.origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
+            warn_of(py, &lints.lints, |lint| Some(format!("{name}:{}:{}", lint.line, lint.column)))?;
+            return Ok(arm);
         }
         (Description::Urdf(bytes), _) => bytes,
         _ => return Err(PyValueError::new_err("`source` is neither a robot file nor a URDF")),
-    };
-    let name = match given {
-        Given::Text(_) => "<text>".to_owned(),
-        Given::File(path) => path.display().to_string(),
     };
     let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
@@ -115,7 +125,31 @@ pub(crate) fn load(
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
     let held = imported.account.held.iter().cloned().collect();
-    Arm::of(py, Origin { robot: imported.text.clone(), held, ..origin })
+    let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, ..origin })?;
+    // nobody has written the lines of this robot file, and `snap` has decided on its angles
+    let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");
+    warn_of(py, &imported.account.lints, |lint| (!is_rounded(lint)).then(|| name.clone()))?;
+    Ok(arm)
+}
+
+/// Largest number of warnings about one file.
+const WARNED: usize = 8;
+
+/// Warns of each lint, behind its place; of a lint without a place not.
+fn warn_of(py: Python<'_>, lints: &Report, place: impl Fn(&Diagnostic) -> Option<String>) -> PyResult<()> {
+    let lints = lints.clone().worded(in_keywords);
+    let said = lints.warnings().filter_map(|lint| {
+        let help = lint.help.as_ref().map(|help| format!("\n{help}")).unwrap_or_default();
+        Some(format!("{}: {}{help}", place(lint)?, lint.message))
+    });
+    let mut said: Vec<String> = said.collect();
+    let more = said.len().saturating_sub(WARNED);
+    said.truncate(WARNED);
+    if more > 0 {
+        said.push(format!("{}: and {more} more warnings; the command `rne check` prints all of them", lints.name));
+    }
+    let category = py.get_type::<RobotFileWarning>();
+    said.into_iter().try_for_each(|text| PyErr::warn(py, &category, &CString::new(text)?, 1))
 }
 
 enum Given {
@@ -145,11 +179,11 @@ impl Origin {
         Self { robot: file.yaml.to_owned(), plan: file.plan.map(str::to_owned), ..self }
     }
 
-    /// The table as a reader of this origin reads it.
-    pub(crate) fn read(&self, name: &str, text: &[u8]) -> Result<rne_model::Robot, rne_model::Report> {
+    /// The table as a reader of this origin reads it, with its lints.
+    pub(crate) fn read(&self, name: &str, text: &[u8]) -> Result<Checked, Report> {
         let names: Vec<&str> = self.run_time.iter().map(String::as_str).collect();
         let reader = Reader::new(name).run_time(&names);
         let reader = self.settings.iter().fold(reader, |reader, (name, value)| reader.setting(name, *value));
-        Ok(reader.read(text)?.robot)
+        reader.read(text)
     }
 }

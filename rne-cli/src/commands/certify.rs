@@ -6,16 +6,18 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use rne_certify::accuracy::{self, Sample};
-use rne_certify::board;
-use rne_certify::certificate::{Accuracy, Certificate, Class, Cost, Error, trace};
+use rne_certify::board::{self, Call};
+use rne_certify::certificate::{Accuracy, Certificate, Cost, NamedError, trace};
 use rne_certify::cycles::{self, Core, Counter};
 use rne_certify::image::Image;
+use rne_certify::observer::{self, LowPass};
 use rne_certify::{misra, sha256};
 use rne_codegen::{Argument, Form, Function, Layout, Program};
 use rne_emit::Prefix;
 use rne_model::{JointKind, Robot};
 
-use crate::commands::certify_code::{build, emulate};
+use crate::commands::certify_code::{Code, build, emulate};
+use crate::commands::emit::Real;
 use crate::commands::{certify_trace, toolchain};
 use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
@@ -33,12 +35,13 @@ Examples:
   rne certify docs/desk_arm.yaml --cpu cortex-m4 -o desk_arm.cert.md
   rne certify docs/desk_arm.yaml --cpu cortex-m7 --json
   rne certify docs/desk_arm.yaml --cpu cortex-m4 --check desk_arm.cert.md
+  rne certify docs/desk_arm.yaml --observer --gain 20 --period 0.001
   rne certify docs/desk_arm.yaml --evidence evidence
 
 The command compiles the code that `rne emit --lang c` writes. It reads the
 instructions with objdump, runs the code in QEMU, compares the results with the
 results of this computer, and bounds their error. It fails if the code branches,
-computes in double precision or calls a function other than its own sine.
+computes in double precision or calls a function of others.
 
 Needed: arm-none-eabi-gcc and its objdump. Used if they are installed:
 qemu-system-arm and cppcheck (MISRA C:2012). On Debian and Ubuntu:
@@ -50,27 +53,36 @@ pub(crate) struct Arguments {
     pub(super) file: PathBuf,
     #[command(flatten)]
     pub(super) rotors: Rotors,
-    /// Programming language of the code: c or rust
+    /// Language of the code: c or rust
     #[arg(long, value_enum, default_value_t = Language::C, hide_possible_values = true)]
     pub(super) lang: Language,
-    /// Compiler [default: arm-none-eabi-gcc for C, rustc for Rust]
+    /// Compiler [default: arm-none-eabi-gcc or rustc]
     #[arg(long, value_name = "PROGRAM")]
     pub(super) cc: Option<String>,
-    /// Processor: cortex-m4 or cortex-m7, each with a floating-point unit
+    /// cortex-m4 or cortex-m7, with FPU
     #[arg(long, value_name = "CORE", default_value = "cortex-m4", value_parser = core)]
     pub(super) cpu: Core,
     /// Function to certify; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), default_value = "inverse_dynamics",
         hide_possible_values = true)]
     pub(super) function: Function,
-    /// Form of the code: reduced or seven_steps
+    /// Certify an update of the momentum observer instead
+    #[arg(long, conflicts_with = "function")]
+    pub(super) observer: bool,
+    /// Gain of the observer's low-pass, Hz
+    #[arg(long, value_name = "HZ", default_value_t = 20.0, requires = "observer")]
+    pub(super) gain: f64,
+    /// Period of the observer's updates, s
+    #[arg(long, value_name = "S", default_value_t = 0.001, requires = "observer")]
+    pub(super) period: f64,
+    /// Form: reduced or seven_steps
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::Reduced.name(),
         hide_possible_values = true)]
     pub(super) form: Form,
-    /// Prefix of all names in C code [default: the robot's name]
+    /// Prefix of names in C [default: the robot's name]
     #[arg(long, value_name = "P")]
     pub(super) prefix: Option<Prefix>,
-    /// Number of random states at which the error is bounded
+    /// Number of random states
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     pub(super) states: usize,
     /// Seed of the random states
@@ -79,17 +91,20 @@ pub(crate) struct Arguments {
     /// Also write the C code, its header and a trace for the independent checker to this folder
     #[arg(long, value_name = "FOLDER")]
     pub(super) evidence: Option<PathBuf>,
+    /// Number type of C in FOLDER: float (default), double
+    #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true, requires = "evidence")]
+    pub(super) real: Option<Real>,
     /// Print the certificate as JSON
     #[arg(long)]
     pub(super) json: bool,
     /// Output file; - is standard output [default: -]
     #[arg(short, long, value_name = "OUT")]
     pub(super) output: Option<PathBuf>,
-    /// Overwrite the output file even if it is no certificate
+    /// Overwrite OUT even if it is no certificate
     #[arg(long, requires = "output")]
     pub(super) force: bool,
     /// Write nothing; check that this certificate is what rne would write now
-    #[arg(long, value_name = "OUT", conflicts_with = "output")]
+    #[arg(long, value_name = "OUT", conflicts_with_all = ["output", "evidence"])]
     pub(super) check: Option<PathBuf>,
 }
 
@@ -99,11 +114,38 @@ pub(super) enum Language {
     Rust,
 }
 
+impl Language {
+    fn name(self) -> &'static str {
+        match self {
+            Self::C => "c",
+            Self::Rust => "rust",
+        }
+    }
+}
+
+impl Arguments {
+    /// The function whose program is compiled.
+    pub(super) fn program(&self) -> Function {
+        if self.observer { Function::MomentumAndRate } else { self.function }
+    }
+
+    /// The name of the function in C, without its prefix.
+    pub(super) fn name(&self) -> &str {
+        if self.observer { "observer_update" } else { self.function.name() }
+    }
+
+    /// The low-pass of the observer that is certified.
+    pub(super) fn low_pass(&self) -> Option<LowPass> {
+        self.observer.then_some(LowPass { gain: self.gain, period: self.period })
+    }
+}
+
 fn core(text: &str) -> Result<Core, String> {
     Core::named(text).ok_or_else(|| "the processors are cortex-m4 and cortex-m7".to_owned())
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    is_observer_of_c(arguments)?;
     let certificate = certificate(arguments)?;
     let text = if arguments.json {
         serde_json::to_string_pretty(&certificate).map_err(Failure::input)? + "\n"
@@ -129,6 +171,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Existing::Unreadable(error) => Err(output_file::unreadable(out, &error)),
         _ => output_file::write_all(&[(out, text)]).map(Outcome::remark),
     }
+}
+
+/// The code of an observer is C; its gain and its period are above zero.
+fn is_observer_of_c(arguments: &Arguments) -> Result<(), Failure> {
+    if !arguments.observer {
+        return Ok(());
+    }
+    if arguments.lang != Language::C {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--observer{TYPED:#} is for {TYPED}--lang c{TYPED:#}: in Rust, the observer is `rne::ObserverState`"
+        )));
+    }
+    if arguments.evidence.is_some() {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--evidence{TYPED:#} is for inverse_dynamics: the checker computes no momenta"
+        )));
+    }
+    for (option, value) in [("--gain", arguments.gain), ("--period", arguments.period)] {
+        // powers of ten between which the numbers of single precision are far from their ends
+        if !(1e-6..=1e6).contains(&value) {
+            return Err(Failure::usage(format_args!("{option} is {value}; it must be between 1e-6 and 1e6")));
+        }
+    }
+    Ok(())
 }
 
 fn is_ours(text: &str) -> bool {
@@ -167,8 +233,8 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
 fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[])?;
     let robot = arguments.rotors.of(checked.robot);
-    let program = Compiler::new(&arguments.file, &robot).compile(arguments.function, arguments.form)?;
-    let arrays = arrays(&program)?;
+    let program = Compiler::new(&arguments.file, &robot).compile(arguments.program(), arguments.form)?;
+    let call = call(arguments, &robot, &program)?;
     let compiler = arguments.cc.clone().unwrap_or_else(|| match arguments.lang {
         Language::C => "arm-none-eabi-gcc".to_owned(),
         Language::Rust => "rustc".to_owned(),
@@ -184,11 +250,11 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
     ]);
     let folder = tempfile::tempdir().map_err(Failure::input)?;
     let folder = folder.path();
-    let code = build(arguments, &robot, &program, &compiler, &arrays, &bytes, folder)?;
+    let code = build(arguments, &robot, &program, &compiler, &call, &bytes, folder)?;
     let image = toolchain::image(&objdump, folder, &code.elf)?;
-    let cost = cost(arguments.cpu, &image, &code.symbol)?;
+    let cost = cost(arguments.cpu, &image, &code)?;
     if let Some(evidence) = &arguments.evidence {
-        certify_trace::write(arguments, evidence, &robot, &program, &code.source, folder)?;
+        certify_trace::write(arguments, evidence, &robot, &program, &bytes)?;
     }
     let emulation = match toolchain::version_of("qemu-system-arm") {
         None => None,
@@ -231,7 +297,8 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
     Ok(Certificate {
         command: command(arguments),
         robot: robot.name.clone(),
-        function: arguments.function.to_string(),
+        function: arguments.name().to_owned(),
+        language: arguments.lang.name(),
         form: arguments.form.to_string(),
         core: arguments.cpu.name().to_owned(),
         tools,
@@ -242,34 +309,31 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         accuracy: accuracy(arguments, &robot, &program)?,
         proof,
         misra,
-        trace: trace(&code.text, &code.symbol),
+        trace: code.heads.iter().flat_map(|head| trace(&code.text, head)).collect(),
     })
 }
 
-/// The cost of a call: of the function and of the sine that it calls.
-fn cost(core: Core, image: &Image, symbol: &str) -> Result<Cost, Failure> {
-    let may_be_called = |name: &str| name.contains("sin_cos");
-    let figures = image.straight_but_for(symbol, may_be_called).map_err(Failure::input)?;
-    let calls = image.calls(symbol, may_be_called).map_err(Failure::input)?;
+/// The cost of a call: of the function and of those that it calls.
+fn cost(core: Core, image: &Image, code: &Code) -> Result<Cost, Failure> {
+    let may_be_called = |name: &str| name.contains("sin_cos") || code.functions.iter().any(|own| own == name);
+    let figures = image.straight_but_for(&code.symbol, may_be_called).map_err(Failure::input)?;
+    let executed = image.executed(&code.symbol, &may_be_called).map_err(Failure::input)?;
     let mut counter = Counter::default();
-    let mut stack = 0;
-    let lines = |name: &str| image.function(name).map(|function| function.lines.as_slice()).map_err(Failure::input);
-    for callee in &calls {
-        counter.add(core, lines(callee)?);
-        stack = stack.max(cycles::stack(lines(callee)?));
+    for name in &executed {
+        counter.add(core, &image.function(name).map_err(Failure::input)?.lines);
     }
-    counter.add(core, lines(symbol)?);
-    stack += cycles::stack(lines(symbol)?);
+    let frame = |function: &rne_certify::image::Function| cycles::stack(&function.lines);
+    let stack = image.deepest(&code.symbol, &may_be_called, &frame).map_err(Failure::input)?;
     let worst = counter.cycles();
     let mut called = BTreeMap::new();
-    for callee in calls {
+    for callee in executed.into_iter().skip(1) {
         *called.entry(callee).or_default() += 1;
     }
     Ok(Cost {
         instructions: figures.instructions,
         cycles: worst.total,
         waits: worst.waits,
-        classes: worst.classes.into_iter().map(class).collect(),
+        classes: worst.classes,
         unknown: worst.unknown,
         assumptions: core.assumptions().into_iter().map(str::to_owned).collect(),
         code: figures.code,
@@ -280,18 +344,36 @@ fn cost(core: Core, image: &Image, symbol: &str) -> Result<Cost, Failure> {
     })
 }
 
-fn class(of: cycles::Class) -> Class {
-    let cycles::Class { what, mnemonics, instructions, cycles } = of;
-    Class { what: what.to_owned(), mnemonics, instructions, cycles }
-}
-
 pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// The arrays that the function takes, as members of a state of the board; an error where it takes other arguments or
-/// returns no plain array.
+/// The call of the function on the board; an error where it takes other arguments than arrays of joints, or returns
+/// no plain array.
+fn call(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<Call, Failure> {
+    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+    let Some(low_pass) = arguments.low_pass() else {
+        let symbol = format!("{prefix}_{}", arguments.name());
+        return Ok(Call::of_arrays(&symbol, &arrays(program)?, program.outputs.len()));
+    };
+    has_few_joints(program)?;
+    Ok(low_pass.call(prefix.as_str(), program.dof))
+}
+
+fn has_few_joints(program: &Program) -> Result<(), Failure> {
+    if program.dof <= board::MOST_JOINTS {
+        return Ok(());
+    }
+    Err(Failure::usage(format_args!(
+        "rne certify takes arms with at most {} joints; this arm has {}",
+        board::MOST_JOINTS,
+        program.dof
+    )))
+}
+
+/// The arrays that the function takes, as members of a state of the board.
 fn arrays(program: &Program) -> Result<Vec<&'static str>, Failure> {
+    has_few_joints(program)?;
     let function = program.function;
     let array = |argument: &Argument| match argument {
         Argument::Positions => Some("q"),
@@ -302,66 +384,87 @@ fn arrays(program: &Program) -> Result<Vec<&'static str>, Failure> {
     let arrays: Option<Vec<&str>> = function.arguments().iter().map(array).collect();
     let is_array = matches!(function.layout(program.dof), Layout::Array(_, of) if matches!(*of, Layout::Number));
     match arrays {
-        _ if program.dof > board::MOST_JOINTS => Err(Failure::usage(format_args!(
-            "rne certify takes arms with at most {} joints; this arm has {}",
-            board::MOST_JOINTS,
-            program.dof
-        ))),
         Some(arrays) if is_array => Ok(arrays),
         _ => Err(Failure::usage(format_args!(
             "rne certify cannot call {function}: it takes functions of positions, velocities, accelerations and \
              torques that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
-             forward_dynamics"
+             forward_dynamics. {TYPED}--observer{TYPED:#} certifies the momentum observer"
         ))),
     }
 }
 
 fn accuracy(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<Accuracy, Failure> {
     let sample = Sample { states: arguments.states, seed: arguments.seed };
-    let errors = accuracy::errors(robot, program, sample, rne_emit::sin_cos_f32)
-        .ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
+    let (how, errors) = match arguments.low_pass() {
+        None => (
+            format!("The function runs at {} random states (seed {}).", sample.states, sample.seed),
+            accuracy::errors(robot, program, sample, rne_emit::sin_cos_f32),
+        ),
+        Some(low_pass) => (
+            format!(
+                "The observer has a low-pass with a gain of {} Hz and a period of {} s. It runs through {} updates \
+                 (seed {}) in motions of {} updates. In a motion, each joint follows a sine within the ranges below, \
+                 and each torque is a random number at each update. The exact result is that of all updates since the \
+                 beginning of the motion, with the weight and the frequency that the observer stores in `float`.",
+                low_pass.gain,
+                low_pass.period,
+                sample.states,
+                sample.seed,
+                observer::UPDATES
+            ),
+            low_pass.errors(robot, program, sample, rne_emit::sin_cos_f32),
+        ),
+    };
+    let errors = errors.ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
+    let takes_torques = program.function.takes(Argument::Torques);
     let ranges = accuracy::ranges(robot);
     let ranges = ranges.iter().zip(&robot.joints).enumerate().map(|(index, (range, joint))| {
         let unit = match joint.row.kind {
             JointKind::Revolute => "rad",
             JointKind::Prismatic => "m",
         };
+        let limits = joint.limits;
         let source = |is_given: bool| if is_given { "limits of the robot file" } else { "no limit in the robot file" };
-        let accuracy::Range { position: (low, high), velocity, acceleration } = *range;
+        let accuracy::Range { position: (low, high), velocity, acceleration, torque } = *range;
+        let last = match (takes_torques, joint.row.kind) {
+            (false, _) => format!("acceleration up to {acceleration} {unit}/s²"),
+            (true, JointKind::Revolute) => format!("torque up to {torque} N m ({})", source(limits.effort.is_some())),
+            (true, JointKind::Prismatic) => format!("force up to {torque} N ({})", source(limits.effort.is_some())),
+        };
         format!(
-            "joint {}: position {low:.4} to {high:.4} {unit} ({}), speed up to {velocity:.4} {unit}/s ({}), \
-             acceleration up to {acceleration} {unit}/s²",
+            "joint {}: position {low:.4} to {high:.4} {unit} ({}), speed up to {velocity:.4} {unit}/s ({}), {last}",
             index + 1,
-            source(joint.limits.position.is_some()),
-            source(joint.limits.velocity.is_some())
+            source(limits.position.is_some()),
+            source(limits.velocity.is_some())
         )
     });
-    let results = errors.iter().zip(&program.outputs).map(|(error, output)| Error {
-        name: output.name.to_string(),
-        largest: error.largest,
-        bound: error.bound,
-        state: error.state,
-    });
-    Ok(Accuracy { states: sample.states, seed: sample.seed, ranges: ranges.collect(), results: results.collect() })
+    let names: Vec<String> = if arguments.observer {
+        (0..robot.dof()).map(|joint| format!("`external[{joint}]`")).collect()
+    } else {
+        program.outputs.iter().map(|output| output.name.to_string()).collect()
+    };
+    let results = errors.into_iter().zip(names).map(|(error, name)| NamedError { name, error });
+    let (ranges, results) = (ranges.collect(), results.collect());
+    Ok(Accuracy { how, states: sample.states, seed: sample.seed, ranges, results })
 }
 
 /// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
 fn command(arguments: &Arguments) -> String {
-    let lang = match arguments.lang {
-        Language::C => "c",
-        Language::Rust => "rust",
+    let lang = arguments.lang.name();
+    let function = match arguments.low_pass() {
+        None => format!("--function {}", arguments.function),
+        Some(LowPass { gain, period }) => format!("--observer --gain {gain} --period {period}"),
     };
     let mut command = format!(
-        "rne certify {} --lang {lang} --cpu {} --function {} --form {} --states {} --seed {}",
+        "rne certify {} --lang {lang} --cpu {} {function} --form {} --states {} --seed {}",
         robot_file::shell(Path::new(&file_name(&arguments.file))),
         arguments.cpu.name(),
-        arguments.function,
         arguments.form,
         arguments.states,
         arguments.seed
     );
     if let Some(compiler) = &arguments.cc {
-        let _ = write!(command, " --cc {compiler}");
+        let _ = write!(command, " --cc {}", robot_file::shell(Path::new(compiler)));
     }
     if let Some(prefix) = &arguments.prefix {
         let _ = write!(command, " --prefix {prefix}");

@@ -5,10 +5,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use rne_certify::board::{self, Call};
 use rne_certify::certificate::Emulation;
-use rne_certify::{accuracy, board, sha256};
+use rne_certify::{accuracy, sha256};
 use rne_codegen::{Function, Interpreter, Program};
-use rne_emit::{Origin, Precision, Prefix};
+use rne_emit::{Additions, CCode, Origin, Precision, Prefix};
 use rne_model::Robot;
 
 use crate::commands::certify::{Arguments, Language, file_name};
@@ -20,6 +21,10 @@ use crate::outcome::Failure;
 pub(super) struct Code {
     /// The name of the function for the linker.
     pub(super) symbol: String,
+    /// The functions of the certificate: those that it calls, without the sine, then itself.
+    pub(super) functions: Vec<String>,
+    /// The beginnings of these functions in the text of the code.
+    pub(super) heads: Vec<String>,
     /// The file with the function, and how the certificate names it.
     pub(super) source: String,
     /// SHA-256 of the files.
@@ -39,26 +44,23 @@ pub(super) fn build(
     robot: &Robot,
     program: &Program,
     compiler: &str,
-    arrays: &[&str],
+    call: &Call,
     bytes: &[u8],
     folder: &Path,
 ) -> Result<Code, Failure> {
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    let symbol = format!("{prefix}_{}", arguments.function);
-    let name = if is_stream(&arguments.file) { "on standard input".into() } else { file_name(&arguments.file) };
+    let symbol = call.function.clone();
+    let called = arguments.observer.then(|| format!("{prefix}_{}", arguments.program()));
+    let functions: Vec<String> = called.into_iter().chain([symbol.clone()]).collect();
     let write = |file: &str, text: &str| fs::write(folder.join(file), text).map_err(Failure::input);
-    let stem =
-        arguments.file.file_stem().map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned());
-    let origin = Origin::new(&name, &sha256(bytes));
+    let stem = stem(arguments, robot);
     let programs = std::slice::from_ref(program);
-    let code = rne_emit::c_code_of_file(robot, programs, Precision::Single, &prefix, Some(&origin))
-        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
+    let code = c_code(arguments, robot, program, bytes, Precision::Single)?;
     let (header, c_source) = (format!("{stem}.h"), format!("{stem}.c"));
     let gcc = if arguments.lang == Language::C { compiler } else { "arm-none-eabi-gcc" };
     let flags = arguments.cpu.flags();
     write(&header, code.header())?;
-    let length = program.outputs.len();
-    write("cases.c", &board::cases(&header, &symbol, robot.dof(), arrays, length))?;
+    write("cases.c", &board::cases(&header, robot.dof(), call))?;
     write("board.c", board::SOURCE)?;
     write("board.h", board::HEADER)?;
     write("board.ld", board::LINKER_SCRIPT)?;
@@ -83,7 +85,7 @@ pub(super) fn build(
         Language::Rust => {
             text = rne_emit::rust_file_with_sin_cos(robot, programs);
             write("arm.rs", &text)?;
-            write("lib.rs", &rust_library(&symbol, arguments.function, robot.dof(), arrays, length))?;
+            write("lib.rs", &rust_library(arguments.function, robot.dof(), call))?;
             let cpu = format!("target-cpu={}", arguments.cpu.name());
             options =
                 vec!["--target", "thumbv7em-none-eabihf", "--edition", "2024", "-Copt-level=3", "-Cpanic=abort", "-C"];
@@ -96,13 +98,36 @@ pub(super) fn build(
             object = "arm.o".to_owned();
             source = format!("{stem}.rs");
             let options = options.iter().map(|&option| option.to_owned()).chain([cpu]).collect();
+            let heads = vec![format!("fn {}<", arguments.function)];
             link(&compile, &object)?;
-            return Ok(Code { symbol, source, hashes, text, elf: "board.elf".to_owned(), options });
+            return Ok(Code { symbol, functions, heads, source, hashes, text, elf: "board.elf".to_owned(), options });
         }
     }
     link(&compile, &object)?;
     let options = options.iter().map(|&option| option.to_owned()).collect();
-    Ok(Code { symbol, source, hashes, text, elf: "board.elf".to_owned(), options })
+    let heads = functions.iter().map(|name| format!("{name}(")).collect();
+    Ok(Code { symbol, functions, heads, source, hashes, text, elf: "board.elf".to_owned(), options })
+}
+
+/// The code in C as `rne emit` writes it.
+pub(super) fn c_code(
+    arguments: &Arguments,
+    robot: &Robot,
+    program: &Program,
+    bytes: &[u8],
+    precision: Precision,
+) -> Result<CCode, Failure> {
+    let name = if is_stream(&arguments.file) { "on standard input".into() } else { file_name(&arguments.file) };
+    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+    let origin = Origin::new(&name, &sha256(bytes));
+    let additions = Additions { origin: Some(&origin), ..Additions::default() };
+    rne_emit::c_code_with(robot, std::slice::from_ref(program), precision, &prefix, &additions)
+        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))
+}
+
+/// The name of the files without their endings.
+pub(super) fn stem(arguments: &Arguments, robot: &Robot) -> String {
+    arguments.file.file_stem().map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Links the code with the program of the board, which is GNU C.
@@ -122,7 +147,8 @@ fn link(compile: &impl Fn(&[&str], &[&str]) -> Result<String, Failure>, object: 
 }
 
 /// The emitted Rust as a library with one function for C.
-fn rust_library(symbol: &str, function: Function, dof: usize, arrays: &[&str], length: usize) -> String {
+fn rust_library(function: Function, dof: usize, call: &Call) -> String {
+    let Call { function: symbol, arguments: arrays, length, .. } = call;
     let list = |element: &dyn Fn(usize) -> String| (0..arrays.len()).map(element).collect::<Vec<_>>().join(", ");
     let parameters = list(&|index| format!("a{index}: &[f32; {dof}]"));
     let passed = list(&|index| format!("a{index}"));
@@ -150,10 +176,21 @@ pub(super) fn emulate(
             printed.instructions
         )));
     }
+    if printed.results.len() != board::STATES as usize {
+        return Err(Failure::input(format_args!(
+            "QEMU prints the results of {} states instead of {}",
+            printed.results.len(),
+            board::STATES
+        )));
+    }
     let interpreter = Interpreter::new(program);
     for (number, found) in (0..board::STATES).zip(&printed.results) {
         let [q, qd, qdd] = board::state(number, robot.dof());
-        let expected = accuracy::single_precision(robot, &interpreter, [&q, &qd, &qdd], rne_emit::sin_cos_f32);
+        let sin_cos = rne_emit::sin_cos_f32;
+        let expected = match arguments.low_pass() {
+            None => accuracy::single_precision(robot, &interpreter, [&q, &qd, &qdd], sin_cos),
+            Some(low_pass) => low_pass.result(robot, &interpreter, number, sin_cos),
+        };
         let expected: Option<Vec<u32>> = expected.map(|numbers| numbers.iter().map(|x| x.to_bits()).collect());
         if expected.as_ref() != Some(found) {
             return Err(Failure::input(format_args!(

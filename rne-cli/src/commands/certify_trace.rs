@@ -9,10 +9,15 @@ use rne_model::{Angle, InertiaReference, QuarterTurns, Robot};
 use serde_json::{Value, json};
 
 use crate::commands::certify::{Arguments, Language};
+use crate::commands::certify_code::{c_code, stem};
+use crate::commands::emit::Real;
 use crate::files::output_file::{self, Existing};
 use crate::files::plan_file::Compiler;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
+
+/// The functions that the checker computes.
+const CHECKED: [Function; 3] = [Function::InverseDynamics, Function::BiasTorques, Function::GravityTorques];
 
 /// Writes the C code, its header and the trace of its constants.
 pub(super) fn write(
@@ -20,12 +25,13 @@ pub(super) fn write(
     evidence: &Path,
     robot: &Robot,
     program: &Program,
-    source: &str,
-    folder: &Path,
+    bytes: &[u8],
 ) -> Result<(), Failure> {
-    if arguments.lang != Language::C || arguments.function != Function::InverseDynamics || robot.has_rotors() {
+    let is_known = CHECKED.contains(&arguments.function);
+    if arguments.lang != Language::C || !is_known || robot.has_rotors() {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for inverse_dynamics in C without rotors: the checker computes this function"
+            "{TYPED}--evidence{TYPED:#} is for {} in C without rotors: the checker computes these functions",
+            CHECKED.map(Function::name).join(", ")
         )));
     }
     let compiler = Compiler::new(&arguments.file, robot);
@@ -35,17 +41,17 @@ pub(super) fn write(
              one operation after another, so they have no exact expressions"
         )));
     };
+    let precision = arguments.real.map_or(Precision::Single, Real::precision);
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    let trace = trace(robot, program, &derivation, &prefix, Precision::Single);
+    let trace = trace(robot, program, &derivation, &prefix, precision);
     let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
     fs::create_dir_all(evidence)
         .map_err(|error| Failure::input(format_args!("{} cannot be made: {error}", evidence.display())))?;
-    let read = |name: &str| fs::read_to_string(folder.join(name)).map_err(Failure::input);
-    let stem = source.trim_end_matches(".c");
+    let (code, stem) = (c_code(arguments, robot, program, bytes, precision)?, stem(arguments, robot));
     let header = format!("{stem}.h");
     let files = [
-        (evidence.join(source), read(source)?),
-        (evidence.join(&header), read(&header)?),
+        (evidence.join(format!("{stem}.c")), code.source(&header)),
+        (evidence.join(&header), code.header().to_owned()),
         (evidence.join(format!("{stem}.trace.json")), trace),
     ];
     for (path, text) in &files {

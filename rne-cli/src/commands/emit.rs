@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use rne_codegen::{Form, Function, Program};
-use rne_emit::{CCode, Origin, Precision, Prefix};
+use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
+use crate::commands::emit_c::{c_code, header_beside};
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
-use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::Compiler;
 use crate::files::robot_file;
@@ -30,6 +30,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
   rne emit robots/puma560.yaml --lang c --real double --prefix arm
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
+  rne emit docs/desk_arm_identified.yaml --lang c --friction --limits
 
 Without --function rne writes the functions of the trait InverseDynamics. If the
 file of --check is out of date, rne exits with status 1 and prints the command
@@ -40,7 +41,7 @@ program that runs the tests.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
-    file: PathBuf,
+    pub(super) file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
     /// Programming language of the code
@@ -48,10 +49,10 @@ pub(crate) struct Arguments {
     lang: Language,
     /// Number type of C code: float (default) or double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
-    real: Option<Real>,
-    /// Prefix of all names in C code [default: the robot's name]
+    pub(super) real: Option<Real>,
+    /// Prefix of names in C code [default: the robot's name]
     #[arg(long, value_name = "P")]
-    prefix: Option<Prefix>,
+    pub(super) prefix: Option<Prefix>,
     /// Functions to write, F,F,… or `all`; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
@@ -66,19 +67,25 @@ pub(crate) struct Arguments {
     /// Names of parameters of FILE that become function arguments, NAME,NAME,…; the others are constants in the code
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     run_time: Vec<String>,
+    /// Add friction of the joints to C code: friction_torques
+    #[arg(long)]
+    pub(super) friction: bool,
+    /// Add effort limits to C code: limit_torques
+    #[arg(long)]
+    pub(super) limits: bool,
     /// Add functions for sine and cosine to Rust code; C code always contains them
     #[arg(long)]
     with_sin_cos: bool,
     /// Add tests that compare results of the code with `rne::Arm` and check laws of mechanics
     #[arg(long)]
-    tests: bool,
-    /// Write comments of the code in ASCII: dw for ω̇, ^T for ᵀ
+    pub(super) tests: bool,
+    /// Write comments in ASCII: dw for ω̇, ^T for ᵀ
     #[arg(long)]
     ascii: bool,
     /// Output file; C code also gets a header file; - is standard output [default: -]
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Overwrite the output file even if rne did not generate it
+    /// Overwrite OUT even if rne did not generate it
     #[arg(long, requires = "output")]
     force: bool,
     /// Write nothing; check that this file contains the code that rne would write
@@ -133,7 +140,7 @@ impl Language {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Real {
+pub(super) enum Real {
     /// 32 bits (default)
     Float,
     /// 64 bits
@@ -141,7 +148,7 @@ enum Real {
 }
 
 impl Real {
-    const fn precision(self) -> Precision {
+    pub(super) const fn precision(self) -> Precision {
         match self {
             Self::Float => Precision::Single,
             Self::Double => Precision::Double,
@@ -229,12 +236,21 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
             "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always contains its sine and cosine. Leave it out"
         )));
     }
-    let options = [("--real", arguments.real.is_some()), ("--prefix", arguments.prefix.is_some())];
+    let options = [
+        ("--real", arguments.real.is_some()),
+        ("--prefix", arguments.prefix.is_some()),
+        ("--friction", arguments.friction),
+        ("--limits", arguments.limits),
+    ];
     match options.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
         None => Ok(()),
         Some(("--real", _)) => Err(Failure::usage(format_args!(
             "{TYPED}--real{TYPED:#} is for C: code in Rust is generic over the number type. Leave it out, or add \
              {TYPED}--lang c{TYPED:#}"
+        ))),
+        Some((option @ ("--friction" | "--limits"), _)) => Err(Failure::usage(format_args!(
+            "{TYPED}{option}{TYPED:#} is for C. Add {TYPED}--lang c{TYPED:#}; in Rust, the derive `Actuation` computes \
+             friction, and `f64::clamp` limits a torque"
         ))),
         Some((option, _)) => Err(Failure::usage(format_args!(
             "{TYPED}{option}{TYPED:#} is for C: a file of Rust is a module with a name of its own. Leave it out, or \
@@ -242,53 +258,6 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
              {TYPED}--lang c{TYPED:#}"
         ))),
     }
-}
-
-/// A header's file.
-struct Header {
-    path: PathBuf,
-    /// Without the folder, as the source includes it.
-    name: String,
-}
-
-/// The header beside a source of C.
-fn header_beside(source: &Path) -> Result<Header, Failure> {
-    let extension = source.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let path = source.with_extension("h");
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-    // what ends an `#include "…"`
-    let name = name.filter(|name| !name.contains(['"', '\\', '\n', '\r', char::REPLACEMENT_CHARACTER]));
-    match name {
-        _ if extension == "h" => Err(Failure::usage(format_args!(
-            "{} is the name of a header, which is written next to the source; name the source: {TYPED}{}{TYPED:#}",
-            source.display(),
-            source.with_extension("c").display()
-        ))),
-        Some(name) => Ok(Header { path, name }),
-        None => Err(Failure::usage(format_args!(
-            "{} is not a name of a source file whose header can be included; name a file, such as \
-             {TYPED}robot.c{TYPED:#}",
-            source.display()
-        ))),
-    }
-}
-
-fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u8]) -> Result<CCode, Failure> {
-    let precision = arguments.real.map_or_else(Precision::default, Real::precision);
-    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    // without its folder: the same file gives the same bytes wherever it is
-    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
-    let name = if is_stream(&arguments.file) { "on standard input" } else { &*name };
-    let origin = Origin::new(name, &rne_certify::sha256(bytes));
-    let code = rne_emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
-        let file = arguments.file.display();
-        Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} can store this number"))
-    })?;
-    if !arguments.tests {
-        return Ok(code);
-    }
-    let golden = golden::of_programs(robot, programs, precision)?;
-    Ok(code.with_tests(&rne_emit::c_tests(robot, programs, precision, &prefix, &golden)))
 }
 
 /// The tests of code in Rust, where they are asked for.
@@ -471,8 +440,12 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     if !arguments.run_time.is_empty() {
         let _ = write!(command, " --run-time {}", arguments.run_time.join(","));
     }
-    if arguments.with_sin_cos {
-        command.push_str(" --with-sin-cos");
+    for (option, is_given) in [
+        (" --friction", arguments.friction),
+        (" --limits", arguments.limits),
+        (" --with-sin-cos", arguments.with_sin_cos),
+    ] {
+        command.push_str(if is_given { option } else { "" });
     }
     if arguments.tests {
         command.push_str(" --tests");

@@ -13,6 +13,7 @@ mod completions;
 mod convert;
 mod diagnose;
 mod emit;
+mod emit_c;
 mod eval;
 mod example;
 mod excite;

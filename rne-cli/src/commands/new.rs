@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     )))
 }
 
-/// The robot file: slender rods of 1 kg, the first joint upright, the others in a vertical plane.
+/// The robot file: slender rods of 2 kg, the first joint upright, the others in a vertical plane.
 fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String {
     let (word, rows, place) = match convention {
         Convention::Standard => (
@@ -110,10 +110,10 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
             _ => ("0", "0.3", "0"),
         };
         let (com, inertia) = match (convention, joint) {
-            (Convention::Standard, 1) => ("[0, -0.15, 0]", "xx: 0.0075, yy: 0.001, zz: 0.0075"),
-            (Convention::Modified, 1) => ("[0, 0, -0.15]", "xx: 0.0075, yy: 0.0075, zz: 0.001"),
-            (Convention::Standard, _) => ("[-0.15, 0, 0]", "xx: 0.001, yy: 0.0075, zz: 0.0075"),
-            (Convention::Modified, _) => ("[0.15, 0, 0]", "xx: 0.001, yy: 0.0075, zz: 0.0075"),
+            (Convention::Standard, 1) => ("[0, -0.15, 0]", "xx: 0.015, yy: 0.002, zz: 0.015"),
+            (Convention::Modified, 1) => ("[0, 0, -0.15]", "xx: 0.015, yy: 0.015, zz: 0.002"),
+            (Convention::Standard, _) => ("[-0.15, 0, 0]", "xx: 0.002, yy: 0.015, zz: 0.015"),
+            (Convention::Modified, _) => ("[0.15, 0, 0]", "xx: 0.002, yy: 0.015, zz: 0.015"),
         };
         let note =
             if joint == 1 { format!("   # {moving}: the constant part, q is added to it") } else { String::new() };
@@ -131,7 +131,7 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
         };
         let _ = write!(
             text,
-            "    link:\n      mass: 1{mass_note}\n      com: {com}{com_note}\n      inertia: {{{inertia}, xy: 0, \
+            "    link:\n      mass: 2{mass_note}\n      com: {com}{com_note}\n      inertia: {{{inertia}, xy: 0, \
              xz: 0, yz: 0}}{inertia_note}\n"
         );
     }

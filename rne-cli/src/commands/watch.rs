@@ -7,7 +7,7 @@ use clap::Args;
 use rne_identify::{ArmLogRemark, Identification, Part, Purpose};
 use rne_logs::{LabelValue, Log};
 use rne_model::{Robot, one_line};
-use rne_watch::{Baseline, Changes, Report, Settings, Trend, changes, svg, watch};
+use rne_watch::{Baseline, Changes, Report, Settings, Trend, WatchError, changes, svg, watch};
 
 use crate::commands::prediction_errors::{errors_table, prediction};
 use crate::files::file_name::Format;
@@ -154,8 +154,9 @@ fn known_baseline(
         warn(
             remark,
             &format!(
-                "the model explains nothing of the torques of {} in the quiet log: is it a log of this arm?",
-                names.join(", ")
+                "the model explains nothing of the torques of {} in the quiet log: {}",
+                names.join(", "),
+                doubt(robot, "is it a log of this arm?")
             ),
         );
     }
@@ -189,8 +190,15 @@ fn baseline_of(robot: &Robot, known: Option<Known>, log: &MotionLog) -> Result<K
         return Ok(known);
     }
     let bar = reading::bar("read", false);
-    let baseline = Baseline::of_file(robot, log.log(), &mut |share| reading::show(&bar, share))
-        .map_err(|error| watch_failure(&error, &log.words()))?;
+    let baseline =
+        Baseline::of_file(robot, log.log(), &mut |share| reading::show(&bar, share)).map_err(|error| match error {
+            WatchError::ShortBaseline { .. } => Failure::input(format_args!(
+                "{}: {error}. A longer log of the arm without any fault, given with {TYPED}--quiet{TYPED:#}, can be \
+                 its baseline",
+                log.words()
+            )),
+            error => watch_failure(&error, &log.words()),
+        })?;
     let name = LogName::several("the quiet logs".to_owned());
     Ok(Known { baseline, words: "the robot file".to_owned(), name, remarks: Vec::new() })
 }
@@ -220,7 +228,7 @@ fn events(
     let names = unexplained(robot, &errors);
     if !names.is_empty() {
         let names = names.join(", ");
-        let what = "does FILE describe this arm, with its friction?";
+        let what = doubt(robot, "does FILE describe this arm, with its friction?");
         warn(&mut remark, &format!("the model explains nothing of the torques of {names}: {what}"));
     }
     let at_fault = !(report.events.is_empty() && names.is_empty());
@@ -427,6 +435,15 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
         }
     }
     Ok(())
+}
+
+/// Why a robot file explains nothing: a file of the geometry alone predicts no torques.
+fn doubt(robot: &Robot, question: &'static str) -> &'static str {
+    if robot.joints.iter().all(|joint| joint.row.link.mass == 0.0) {
+        "FILE contains no masses; `rne identify` computes them from a log"
+    } else {
+        question
+    }
 }
 
 /// N m or N: what is left of an effort where nothing is.

@@ -150,7 +150,7 @@ impl Worded<'_> {
             Doubt::FrictionNotExcited => "the log does not excite its friction".to_owned(),
             Doubt::Grown(_) => {
                 let fitted = verdict.fitted.map_or(f64::NAN, |error| error.error);
-                format!("its error on the fitted part is {}", percent(fitted))
+                format!("its error is {} on the fitted part only", percent(fitted))
             }
             _ => String::new(),
         }

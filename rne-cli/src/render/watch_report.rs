@@ -112,15 +112,19 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
     let value = with_unit(&with_deviation(event.value, event.deviation), unit);
     let percent = |base: f64| {
         let part = 100.0 * event.change() / base.abs();
-        if part.is_finite() && part.abs() < 1000.0 { format!(", {part:+.0} %") } else { String::new() }
+        if part.is_finite() && part.abs() < 1000.0 { format!(" ({part:+.0} %)") } else { String::new() }
     };
     let what = match event.cause {
         Cause::Friction => {
+            let change = event.change();
+            let sign = if change < 0.0 { "" } else { "+" };
             format!(
-                "friction of {joint}: {} {value}, before {}{}{}",
+                "friction of {joint}: {} {sign}{}{}, from {} to {}{}",
                 friction(event.parameter),
-                rounded(event.baseline_value, 3),
+                with_unit(&with_deviation(change, event.deviation), unit),
                 percent(event.baseline_value),
+                rounded(event.baseline_value, 3),
+                rounded(event.value, 3),
                 rivals(event)
             )
         }

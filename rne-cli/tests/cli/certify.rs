@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::call::{fails, fine, folder, rne};
+use crate::call::{ROOT, fails, fine, folder, rne};
 
 const ROBOT: &str = "docs/desk_arm.yaml";
 
@@ -71,13 +71,93 @@ fn the_figures_of_json_are_those_of_the_page() {
     }
 }
 
+/// Functions in both languages: the trace names each number of the result, and the options that do not fit are refused.
+#[test]
+fn both_languages_and_other_functions_have_a_trace() {
+    fails(2, &["certify", ROBOT, "--check", "x.md", "--evidence", "x"], &["cannot be used with"]);
+    let has_rust = Command::new("rustup").args(["target", "list", "--installed"]).output();
+    let has_rust = has_rust.is_ok_and(|out| String::from_utf8_lossy(&out.stdout).contains("thumbv7em-none-eabihf"));
+    if !has_tools() {
+        return;
+    }
+    for lang in ["c", "rust"].into_iter().filter(|lang| *lang == "c" || has_rust) {
+        for function in ["inverse_dynamics", "forward_dynamics"] {
+            let page = fine(&["certify", ROBOT, "--states", "20", "--lang", lang, "--function", function]);
+            let (_, trace) = page.split_once("\n## Trace\n").expect("a trace");
+            assert!(trace.lines().count() > 40, "{lang} {function}: {trace}");
+            assert!(trace.contains("| joint 3, "), "{lang} {function}: {trace}");
+            assert_eq!(page.contains("the rules are for C"), lang == "rust", "{page}");
+            assert!(!page.contains("cppcheck is not installed"), "{page}");
+        }
+    }
+}
+
 /// Arms that the repository does not ship.
 const ARMS: [&str; 3] = ["palletizer", "wrist", "lift"];
 
-/// Whether the checker accepts a source with a trace, and what it says.
-fn checked(source: &Path, trace: &Path) -> (bool, String) {
+/// The listing, QEMU and the interpreter agree on each number of an update; the bound is that of roundings of the
+/// momentum, times the rate of the updates.
+#[test]
+fn the_observer_of_each_arm_has_a_certificate() {
+    if !has_tools() {
+        return;
+    }
+    for (arm, joints, turning) in ARMS.into_iter().zip([4, 6, 4]).zip([4, 6, 3]).map(|((a, n), t)| (a, n, t)) {
+        let file = format!("rne-cli/tests/cli/arms/{arm}.yaml");
+        for cpu in ["cortex-m4", "cortex-m7"] {
+            let certify = ["certify", &file, "--observer", "--states", "200", "--cpu", cpu];
+            let json: serde_json::Value =
+                serde_json::from_str(&fine(&[&certify[..], &["--json"]].concat())).expect("JSON");
+            assert_eq!(json["function"], "observer_update", "{arm}");
+            let cost = &json["cost"];
+            assert_eq!(json["emulation"]["instructions"], cost["instructions"], "{arm}, {cpu}");
+            assert_eq!(json["emulation"]["states"], 32);
+            assert_eq!(cost["stack"], cost["stack_of_listing"], "{arm}, {cpu}");
+            assert_eq!(cost["calls"][format!("{arm}_momentum_and_rate")], 1, "{arm}: {}", cost["calls"]);
+            let sines = cost["calls"][format!("{arm}_sin_cos")].as_u64().expect("sines");
+            assert!(sines > 0 && sines <= turning, "{arm}: {sines}");
+            let kinds = cost["classes"].as_array().expect("kinds").iter();
+            let sum: u64 = kinds.map(|kind| kind["instructions"].as_u64().expect("a number")).sum();
+            assert_eq!(Some(sum), cost["instructions"].as_u64(), "{arm}: each instruction is of one kind");
+            // more than momentum and rate alone
+            let function = ["certify", &file, "--function", "gravity_torques", "--states", "5", "--cpu", cpu, "--json"];
+            let function: serde_json::Value = serde_json::from_str(&fine(&function)).expect("JSON");
+            assert!(cost["instructions"].as_u64() > function["cost"]["instructions"].as_u64());
+            let results = json["accuracy"]["results"].as_array().expect("results");
+            assert_eq!(results.len(), joints, "{arm}");
+            for result in results {
+                let [largest, bound] = ["largest", "bound"].map(|key| result[key].as_f64().expect("a number"));
+                assert!(largest > 0.1 && bound > 1e-8 && bound < 1e-2 * largest, "{arm}: {result}");
+            }
+            let traced = json["trace"].as_array().expect("lines").iter();
+            let last = traced.filter(|line| line["name"] == format!("external[{}]", joints - 1)).count();
+            assert_eq!(last, 1, "{arm}: the last number is traced once");
+        }
+        // twice the gain lets more errors through
+        let bound = |gain: &str| {
+            let certify = ["certify", &file, "--observer", "--gain", gain, "--states", "200", "--json"];
+            let json: serde_json::Value = serde_json::from_str(&fine(&certify)).expect("JSON");
+            json["accuracy"]["results"][0]["bound"].as_f64().expect("a number")
+        };
+        assert!(bound("200") > bound("20"), "{arm}");
+    }
+}
+
+#[test]
+fn options_of_the_observer_are_checked() {
+    fails(2, &["certify", ROBOT, "--observer", "--lang", "rust"], &["--observer", "rne::ObserverState"]);
+    fails(2, &["certify", ROBOT, "--observer", "--evidence", "e"], &["--evidence", "momenta"]);
+    fails(2, &["certify", ROBOT, "--observer", "--gain", "0"], &["--gain is 0", "1e-6"]);
+    fails(2, &["certify", ROBOT, "--observer", "--period", "-1"], &["--period"]);
+    fails(2, &["certify", ROBOT, "--gain", "20"], &["--observer"]);
+    fails(2, &["certify", ROBOT, "--observer", "--function", "gravity_torques"], &["--observer", "--function"]);
+}
+
+/// Whether the checker accepts a source with a trace of a robot file, and what it says.
+fn checked(source: &Path, trace: &Path, robot: &Path) -> (bool, String) {
     let checker = concat!(env!("CARGO_MANIFEST_DIR"), "/../rne-certify/checker/check_c.py");
-    let output = Command::new("python3").arg(checker).arg(source).arg(trace).output().expect("python3 starts");
+    let files = [Path::new(checker), source, trace, robot];
+    let output = Command::new("python3").args(files).output().expect("python3 starts");
     (output.status.code() == Some(0), String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
@@ -148,7 +228,8 @@ fn the_checker_accepts_emitted_code_and_refuses_thirty_mutations_of_thirty() {
         let evidence = folder.to_str().expect("UTF-8");
         fine(&["certify", &file, "--states", "10", "--evidence", evidence]);
         let (source, trace) = (folder.join(format!("{arm}.c")), folder.join(format!("{arm}.trace.json")));
-        let (is_accepted, said) = checked(&source, &trace);
+        let robot = Path::new(ROOT).join(&file);
+        let (is_accepted, said) = checked(&source, &trace, &robot);
         assert!(is_accepted, "{arm}: {said}");
         let text = fs::read_to_string(&source).expect("it was written");
         let mutant = folder.join("mutant.c");
@@ -158,10 +239,10 @@ fn the_checker_accepts_emitted_code_and_refuses_thirty_mutations_of_thirty() {
             for pick in [1, 2] {
                 let (start, end, new) = &places[places.len() * pick / 3];
                 fs::write(&mutant, format!("{}{new}{}", &text[..*start], &text[*end..])).expect("written");
-                let (is_accepted, said) = checked(&mutant, &trace);
+                let (is_accepted, said) = checked(&mutant, &trace, &robot);
                 let line = text[..*start].lines().last().unwrap_or_default();
                 assert!(!is_accepted, "{arm}, kind {kind}: `{line}` with `{new}` is accepted: {said}");
-                assert!(said.starts_with("wrong: "), "{arm}, kind {kind}: {said}");
+                assert!(said.contains("\nwrong: "), "{arm}, kind {kind}: {said}");
                 refused += 1;
             }
         }
@@ -183,7 +264,106 @@ fn the_checker_refuses_another_sine_and_more_code() {
     for (old, new) in [("4.825592e-4f", "4.825593e-4f"), ("tau[2] = tau3;", ""), ("\n}\n", "\n}\nint more;\n")] {
         let mutant = folder.join("mutant.c");
         fs::write(&mutant, text.replace(old, new)).expect("written");
-        let (is_accepted, said) = checked(&mutant, &trace);
-        assert!(!is_accepted && said.starts_with("wrong: "), "{old}: {said}");
+        let (is_accepted, said) = checked(&mutant, &trace, &Path::new(ROOT).join(ROBOT));
+        assert!(!is_accepted && said.contains("\nwrong: "), "{old}: {said}");
     }
+}
+
+/// The checker reads the robot file itself: a table that is not that of the file is refused, however the code agrees
+/// with it.
+#[test]
+fn the_checker_compares_the_table_of_the_trace_with_the_robot_file() {
+    let has_python = Command::new("python3").arg("--version").output().is_ok();
+    if !has_python || !has_tools() {
+        return;
+    }
+    let other: [&[(&str, &str)]; 3] = [
+        &[
+            ("mm(330)", "mm(330.001)"),
+            ("mass: 7.1", "mass: 7.1000001"),
+            ("convention: standard", "convention: modified"),
+            ("alpha: pi/2", "alpha: -pi/2"),
+            ("xz: 0.004", "yz: 0.004"),
+            ("-9.81]", "9.81]"),
+            ("com: [-0.17, 0, 0.02]", "com: [-0.17, 0.02, 0]"),
+            ("g(830)", "mm(831)"),
+            ("source:", "sauce:"),
+            ("g(4250)", "grams"),
+            ("mass: 12.4,", "mass: 12.4, mass: 12.4,"),
+            ("yz: -0.003", "yz: 1_0"),
+        ],
+        &[
+            ("deg(-72)", "deg(-72.0001)"),
+            ("a: 0.24", "a: 0.2400001"),
+            ("zz: 0.00009", "zz: 0.00008"),
+            ("theta: 0.1,", "theta: 0.1 + pi,"),
+        ],
+        &[
+            ("type: prismatic", "type: revolute"),
+            ("inertia_about: com", "inertia_about: origin"),
+            ("d: 0.15", "d: 1.5e-1 + 1e-9"),
+            ("  - {type: revolute, dh: {theta: deg(30)", "  - &a {type: revolute, dh: {theta: deg(30)"),
+        ],
+    ];
+    let same: [&[(&str, &str)]; 3] = [
+        &[
+            ("alpha: pi/2", "alpha: deg(90) # a {comment\n   "),
+            ("mass: 7.1", "mass: (1 + 2^2*10*sqrt(3 + 1)/8 + 60)/10"),
+            ("gravity: [0, 0, -9.81]", "gravity:\n  - 0\n  - 0\n  - -9.81"),
+            ("format: 1\n", "---\nformat: 1\nnotes: |\n  words: {of\n\n  a text\nparameters: {r: 0.21, m: r^2/r}\n"),
+            ("xx: 0.21", "xx: m"),
+            ("name: palletizer", "name: palletizer\ntitle: 'an arm: # 3'"),
+        ],
+        &[("alpha: -pi/2", "alpha: 3*pi/2"), ("deg(-90)", "-2*pi/4")],
+        &[("inertia_about: com", "inertia_about: com, physical: true"), ("0.35", "mm(350)")],
+    ];
+    for ((arm, other), same) in ARMS.into_iter().zip(other).zip(same) {
+        let folder = folder(&format!("checker_table_{arm}"));
+        let file = format!("rne-cli/tests/cli/arms/{arm}.yaml");
+        fine(&["certify", &file, "--states", "5", "--evidence", folder.to_str().expect("UTF-8")]);
+        let (source, trace) = (folder.join(format!("{arm}.c")), folder.join(format!("{arm}.trace.json")));
+        let text = fs::read_to_string(Path::new(ROOT).join(&file)).expect("an arm");
+        let robot = folder.join("changed.yaml");
+        for (changes, is_same) in [(other, false), (same, true)] {
+            for (old, new) in changes {
+                assert!(text.contains(old), "{arm}: {old}");
+                // a value may need a parameter of another change
+                let old_text = if *new == "xx: m" { text.replace(same[3].0, same[3].1) } else { text.clone() };
+                fs::write(&robot, old_text.replacen(old, new, 1)).expect("written");
+                let (is_accepted, said) = checked(&source, &trace, &robot);
+                assert_eq!(is_accepted, is_same, "{arm}, {new}: {said}");
+                assert!(is_same || said.starts_with("wrong: "), "{arm}, {new}: {said}");
+            }
+        }
+    }
+}
+
+/// Double precision, and the other functions that the checker computes.
+#[test]
+fn the_checker_takes_double_and_other_functions() {
+    let has_python = Command::new("python3").arg("--version").output().is_ok();
+    if !has_python || !has_tools() {
+        return;
+    }
+    let folder = folder("checker_functions");
+    let evidence = folder.to_str().expect("UTF-8");
+    for function in ["inverse_dynamics", "bias_torques", "gravity_torques"] {
+        let robot = "rne-cli/tests/cli/arms/wrist.yaml";
+        let certify = ["certify", robot, "--states", "5", "--real", "double", "--function", function];
+        fine(&[&certify[..], &["--evidence", evidence]].concat());
+        let (source, trace) = (folder.join("wrist.c"), folder.join("wrist.trace.json"));
+        let text = fs::read_to_string(&source).expect("it was written");
+        assert!(text.contains("double tau[6]") && !text.contains("float tau"), "{text}");
+        let robot = Path::new(ROOT).join(robot);
+        let (is_accepted, said) = checked(&source, &trace, &robot);
+        assert!(is_accepted && said.contains(&format!("wrist_{function}: 6 torques")), "{said}");
+        // the sign of the last torque
+        let mutant = folder.join("mutant.c");
+        fs::write(&mutant, text.replace("tau[5] = ", "tau[5] = -")).expect("written");
+        let (is_accepted, said) = checked(&mutant, &trace, &robot);
+        assert!(!is_accepted && said.contains("torque 6 is another function"), "{said}");
+    }
+    fails(2, &["certify", ROBOT, "--real", "double"], &["--evidence"]);
+    let other = ["certify", ROBOT, "--function", "forward_dynamics", "--evidence", evidence];
+    fails(2, &other, &["inverse_dynamics, bias_torques, gravity_torques"]);
 }

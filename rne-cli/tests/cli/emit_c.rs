@@ -9,7 +9,7 @@ use crate::call::{ROOT, fails, fine, folder, rne};
 const ROBOT: &str = "robots/planar2.yaml";
 
 /// A path in `folder` as text.
-fn path(folder: &Path, name: &str) -> String {
+pub(crate) fn path(folder: &Path, name: &str) -> String {
     folder.join(name).to_str().expect("UTF-8").to_owned()
 }
 
@@ -18,7 +18,7 @@ fn read(folder: &Path, name: &str) -> String {
 }
 
 /// Compiles files and runs what they make; nothing where there is no compiler.
-fn printed(folder: &Path, files: &[&str], options: &[&str]) -> Option<String> {
+pub(crate) fn printed(folder: &Path, files: &[&str], options: &[&str]) -> Option<String> {
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
     if Command::new(&compiler).arg("--version").output().is_err() {
         println!("not compiled: there is no compiler of C called `{compiler}`; CC names another");

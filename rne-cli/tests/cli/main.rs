@@ -9,6 +9,7 @@ mod diagnose;
 mod documents;
 mod emit;
 mod emit_c;
+mod emit_joints;
 mod emit_tests;
 mod eval;
 mod excite;

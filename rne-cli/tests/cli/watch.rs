@@ -406,4 +406,24 @@ fn what_cannot_be_watched_is_said() {
     let without = log.lines().map(|line| line.split(',').take(7).collect::<Vec<_>>().join(",") + "\n");
     let without = write("without.csv", &without.collect::<String>());
     fails(1, &["watch", ARM, &without], &["no efforts"]);
+    let silent = log.lines().enumerate().map(|(row, line)| {
+        let words = line.split(',').enumerate();
+        let words = words.map(|(at, word)| if row > 0 && at > 6 { "0" } else { word });
+        words.collect::<Vec<_>>().join(",") + "\n"
+    });
+    let silent = write("silent.csv", &silent.collect::<String>());
+    fails(1, &["watch", ARM, &silent, "--quiet", QUIET], &["the efforts of all joints are zero throughout"]);
+    // too short to be its own baseline
+    let half = write("half.csv", &lines(220));
+    fails(1, &["watch", ARM, &half, "--cutoff", "1"], &["too short for a baseline", "--quiet"]);
+    fs::create_dir(folder.join("bag")).expect("a folder");
+    write("bag/metadata.yaml", "rosbag2_bagfile_information: {}\n");
+    let bag = folder.join("bag").to_str().expect("UTF-8").to_owned();
+    fails(1, &["watch", &bag, QUIET], &["is a ROS bag, but here a robot file is expected"]);
+    // the geometry alone
+    let massless = fs::read_to_string(format!("{ROOT}/docs/desk_arm.yaml")).expect("a robot file");
+    let massless = massless.lines().filter(|line| !line.trim_start().starts_with("link:")).collect::<Vec<_>>();
+    let massless = write("massless.yaml", &(massless.join("\n") + "\n"));
+    let said = rne(&["watch", &massless, WORN, "--quiet", QUIET]).err;
+    assert!(said.contains("FILE contains no masses"), "{said}");
 }

@@ -258,10 +258,11 @@ impl Formulas<'_> {
     fn outward(&self, here: &Here<'_>) -> Vec<Line> {
         let own = |quantity| here.part(quantity);
         let (p, (motion, r)) = (here.i - 1, &here.before);
-        let of = |quantity: Quantity, value: [f64; 3]| Part::new(&quantity.symbol(p), value, quantity.unit(here.kind));
-        let omega_p = of(Quantity::Omega, motion.omega);
-        let omega_dot_p = of(Quantity::OmegaDot, motion.omega_dot);
-        let r_p = of(Quantity::R, (*r).into());
+        let part =
+            |quantity: Quantity, value: [f64; 3]| Part::new(&quantity.symbol(p), value, quantity.unit(here.kind));
+        let omega_p = part(Quantity::Omega, motion.omega);
+        let omega_dot_p = part(Quantity::OmegaDot, motion.omega_dot);
+        let r_p = part(Quantity::R, (*r).into());
         let (omega, omega_dot, d, e) =
             (own(Quantity::Omega), own(Quantity::OmegaDot), own(Quantity::D), self.axis(here));
         let [rate, rate_dot] = [(Quantity::Qd, here.q[1]), (Quantity::Qdd, here.q[2])]
@@ -276,12 +277,12 @@ impl Formulas<'_> {
         let spin = of_revolute(&[e.times(&rate_dot), omega.cross(&e).times(&rate)]);
         let step_2 = self.sum(here, Quantity::OmegaDot, std::slice::from_ref(&omega_dot_p), &spin);
 
-        let before = [of(Quantity::Velocity, motion.velocity), omega_p.cross(&r_p)];
+        let before = [part(Quantity::Velocity, motion.velocity), omega_p.cross(&r_p)];
         let step_3 =
             self.sum(here, Quantity::Velocity, &before, &with_prismatic(&[omega.cross(&d)], &[e.times(&rate)]));
 
         let before = [
-            of(Quantity::Acceleration, motion.acceleration),
+            part(Quantity::Acceleration, motion.acceleration),
             omega_dot_p.cross(&r_p),
             omega_p.cross(&omega_p.cross(&r_p)),
         ];
@@ -294,7 +295,7 @@ impl Formulas<'_> {
         let slide = [e.times(&rate_dot), coriolis];
         let step_4 = self.sum(here, Quantity::Acceleration, &before, &with_prismatic(&about_joint, &slide));
 
-        let step_5 = self.sum(here, Quantity::Gravity, &[of(Quantity::Gravity, motion.gravity)], &[]);
+        let step_5 = self.sum(here, Quantity::Gravity, &[part(Quantity::Gravity, motion.gravity)], &[]);
         vec![step_1, step_2, step_3, step_4, step_5]
     }
 

@@ -138,8 +138,8 @@ impl Line {
     #[must_use]
     pub fn size(&self) -> f64 {
         let inputs = self.inputs.iter().filter(|input| input.unit == self.unit() && input.unit != "1");
-        let of = self.terms.iter().map(|term| &term.values).chain(inputs.map(|input| &input.values));
-        of.map(|values| norm(values)).fold(norm(&self.values), f64::max)
+        let values_of_terms = self.terms.iter().map(|term| &term.values).chain(inputs.map(|input| &input.values));
+        values_of_terms.map(|values| norm(values)).fold(norm(&self.values), f64::max)
     }
 }
 
@@ -173,8 +173,8 @@ impl Worksheet {
     /// The torques and forces of the actuators, base to tip.
     #[must_use]
     pub fn tau(&self) -> Vec<f64> {
-        let of = |line: &&Line| line.quantity == Quantity::Tau;
-        let mut lines: Vec<&Line> = self.lines.iter().filter(of).collect();
+        let is_torque = |line: &&Line| line.quantity == Quantity::Tau;
+        let mut lines: Vec<&Line> = self.lines.iter().filter(is_torque).collect();
         lines.sort_by_key(|line| line.joint);
         lines.iter().flat_map(|line| line.values.iter().copied()).collect()
     }

@@ -138,7 +138,7 @@ impl FromStr for Quantity {
     type Err = UnknownQuantity;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let of = |name: &str| Self::ALL.into_iter().find(|quantity| quantity.name() == name);
-        of(text).ok_or_else(|| UnknownQuantity(did_you_mean(text, Self::ALL.map(Self::name)).and_then(of)))
+        let named = |name: &str| Self::ALL.into_iter().find(|quantity| quantity.name() == name);
+        named(text).ok_or_else(|| UnknownQuantity(did_you_mean(text, Self::ALL.map(Self::name)).and_then(named)))
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use rne_codegen::{Name, Program, Quantity, Record};
 
 use super::signature::{fields, head, parameters_type, record_type, records};
-use super::{ConstantTooLarge, File, comment, observer};
+use super::{ConstantTooLarge, File, comment, joint_functions, observer};
 use crate::evidence::{evidence, refusals};
 use crate::heading::Heading;
 use crate::parameters::{self, Parameter};
@@ -18,7 +18,7 @@ use crate::{inert, table};
 pub(super) fn title(file: &File) -> String {
     let title = comment("//", &Heading::opening(&inert::title(file.robot)));
     let by = concat!("rne ", env!("CARGO_PKG_VERSION"));
-    let by = file.origin.map_or(by.to_owned(), |origin| format!("{by}, of the robot file {origin}"));
+    let by = file.additions.origin.map_or(by.to_owned(), |origin| format!("{by}, of the robot file {origin}"));
     format!("{title}//\n// {}\n{}", Heading::mark(file.robot), comment("//", &by))
 }
 
@@ -54,6 +54,7 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
         let _ = writeln!(text, "{};", head(file, program));
     }
     text.push_str(&observer::declarations(file));
+    text.push_str(&joint_functions::declarations(file));
     text.push_str("\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
     Ok(text)
 }

@@ -1,6 +1,7 @@
 //! Programs as C99 without a library: a header that says what the functions do, and the source.
 
 mod header;
+mod joint_functions;
 mod observer;
 mod prefix;
 mod signature;
@@ -15,6 +16,7 @@ use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
 
+pub use joint_functions::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
 pub(super) use signature::{array_name, element_type, elements_of, inputs, result_elements};
 #[cfg(test)]
@@ -64,21 +66,32 @@ pub fn c_code(
     precision: Precision,
     prefix: &Prefix,
 ) -> Result<CCode, ConstantTooLarge> {
-    c_code_of_file(robot, programs, precision, prefix, None)
+    c_code_with(robot, programs, precision, prefix, &Additions::default())
 }
 
-/// As [`c_code`], with the robot file named in the heading.
+/// The parts of a file of C beside the programs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Additions<'a> {
+    /// The robot file that the heading names.
+    pub origin: Option<&'a Origin>,
+    /// The friction of the joints, for the function `friction_torques`.
+    pub friction: Option<&'a [JointFriction]>,
+    /// Whether there is a function `limit_torques`, which keeps torques within the effort limits.
+    pub limits: bool,
+}
+
+/// As [`c_code`], with additions.
 ///
 /// # Errors
 /// When a constant is too large for the number type.
-pub fn c_code_of_file(
+pub fn c_code_with(
     robot: &Robot,
     programs: &[Program],
     precision: Precision,
     prefix: &Prefix,
-    origin: Option<&Origin>,
+    additions: &Additions<'_>,
 ) -> Result<CCode, ConstantTooLarge> {
-    let file = File { robot, programs, precision, prefix: prefix.as_str(), origin };
+    let file = File { robot, programs, precision, prefix: prefix.as_str(), additions };
     Ok(CCode { title: header::title(&file), header: header::header(&file)?, body: source::body(&file)? })
 }
 
@@ -88,7 +101,7 @@ struct File<'a> {
     programs: &'a [Program],
     precision: Precision,
     prefix: &'a str,
-    origin: Option<&'a Origin>,
+    additions: &'a Additions<'a>,
 }
 
 /// The robot file of which code is made: its name, without folders, and what tells its contents from others.

@@ -66,7 +66,7 @@ pub(super) fn definitions(file: &File) -> String {
     let _ = writeln!(text, "    // 1 - exp(-x), by its series; then six times that of twice x");
     let _ = writeln!(text, "    {real} w = {one};");
     for k in (2..=TERMS).rev() {
-        let _ = writeln!(text, "    w = {one} - {} * x * w;", number(1.0 / f64::from(k)));
+        let _ = writeln!(text, "    w = {one} - ({} * x * w);", number(1.0 / f64::from(k)));
     }
     let _ = writeln!(text, "    w = x * w;");
     for _ in 0..6 {
@@ -92,10 +92,9 @@ pub(super) fn definitions(file: &File) -> String {
     for i in 0..dof {
         let lines = [
             format!("mean = (now.momentum[{i}] - observer->momentum[{i}]) * observer->frequency;"),
-            format!("mean = mean - (now.rate[{i}] + observer->rate[{i}]) * {half};"),
-            format!(
-                "observer->external[{i}] = observer->external[{i}] + (mean - observer->external[{i}]) * observer->next;"
-            ),
+            format!("mean = mean - ((now.rate[{i}] + observer->rate[{i}]) * {half});"),
+            format!("mean = (mean - observer->external[{i}]) * observer->next;"),
+            format!("observer->external[{i}] = observer->external[{i}] + mean;"),
             format!("observer->momentum[{i}] = now.momentum[{i}];"),
             format!("observer->rate[{i}] = now.rate[{i}];"),
             format!("external[{i}] = observer->external[{i}];"),

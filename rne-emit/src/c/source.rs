@@ -6,7 +6,7 @@ use rne_codegen::{ArgumentArray, Layout, Program};
 
 use super::header::columns;
 use super::signature::{head, inputs, places};
-use super::{ConstantTooLarge, File, observer};
+use super::{ConstantTooLarge, File, joint_functions, observer};
 use crate::expression::line;
 use crate::line_breaks::statement;
 use crate::listing::{Line, Selection, listing};
@@ -22,6 +22,8 @@ pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     let mut text = String::new();
     if file.turns() {
         text.push_str("#include <float.h>\n#include <stdint.h>\n\n");
+    } else if joint_functions::needs_bits(file) {
+        text.push_str("#include <stdint.h>\n\n");
     }
     text.push_str("// Names, for link or joint i and axis x, in frame i at joint i, fixed to link i:\n//\n");
     let names: Vec<_> = legend(file.programs).into_iter().map(|(name, meaning)| [name, meaning.to_owned()]).collect();
@@ -41,6 +43,7 @@ pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
         let _ = write!(text, "\n{}", function(file, program)?);
     }
     text.push_str(&observer::definitions(file));
+    text.push_str(&joint_functions::definitions(file)?);
     Ok(text)
 }
 

@@ -10,7 +10,7 @@ use crate::columns::time_column::{TimeColumn, unread, within};
 use crate::columns::unit::{Dimension, FileUnits, JointUnits, Unit};
 use crate::limits::work;
 use crate::remedy::{Remedy, Setting};
-use crate::spelling::listed;
+use crate::spelling::{instead, listed};
 use crate::{LogError, Options, TimeUnit};
 
 /// A column of numbers.
@@ -52,6 +52,7 @@ impl Columns {
         if positions.is_empty() {
             return Err(named.without_positions());
         }
+        named.check_map(&positions, options)?;
         let efforts = torques_or_currents(&efforts, !options.torque_constants.is_empty());
         for found in [&positions, &velocities, &efforts, &accelerations] {
             named.check_count(found)?;
@@ -222,6 +223,25 @@ impl<'a> Header<'a> {
         }
         (self.found, self.times) = (found, times);
         Ok((places, targets))
+    }
+
+    /// Refuses a map for a joint without a column of positions, which would not be read.
+    fn check_map(&self, positions: &[&Found], options: &Options) -> Result<(), LogError> {
+        let joints = || positions.iter().map(|found| found.named.joint.as_str());
+        for mapping in &options.map {
+            let Target::Joint { joint, .. } = &mapping.target else { continue };
+            if !joints().any(|known| known == joint) {
+                let what = format!(
+                    "{} is mapped, but no column has positions of a joint `{}`{}; the joints with positions are {}",
+                    mapping.target,
+                    joint,
+                    instead(joint, joints()),
+                    listed(joints())
+                );
+                return Err(LogError::request(self.path, what));
+            }
+        }
+        Ok(())
     }
 
     fn of(&self, quantity: Quantity) -> Vec<&Found> {
@@ -445,9 +465,9 @@ mod tests {
 
     /// Columns of as many joints, with a torque and a current, with names and others.
     fn wide(joints: usize) -> Vec<String> {
-        let of = |joint| [format!("a{joint}_position"), format!("a{joint}_torque"), format!("a{joint}_current")];
+        let names_of = |joint| [format!("a{joint}_position"), format!("a{joint}_torque"), format!("a{joint}_current")];
         let others = (0..joints).map(|other| format!("temperature {other}"));
-        ["t".to_owned()].into_iter().chain((0..joints).flat_map(of)).chain(others).collect()
+        ["t".to_owned()].into_iter().chain((0..joints).flat_map(names_of)).chain(others).collect()
     }
 
     #[test]

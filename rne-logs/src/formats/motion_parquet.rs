@@ -306,12 +306,12 @@ mod tests {
             for motion in &motions {
                 for row in 0..motion.len() {
                     assert!(table.read(&mut sample).unwrap());
-                    let of = |lists: &[Vec<f64>]| lists.iter().map(|list| list[row]).collect::<Vec<_>>();
+                    let at_row = |lists: &[Vec<f64>]| lists.iter().map(|list| list[row]).collect::<Vec<_>>();
                     assert_eq!(sample.names, ["elbow", "wrist"]);
                     assert_eq!(sample.measured, origin + nanoseconds(motion.time[row]));
-                    assert_eq!(sample.position, of(&motion.q));
-                    assert_eq!(sample.velocity, of(&motion.qd));
-                    assert_eq!(sample.effort, of(&motion.tau));
+                    assert_eq!(sample.position, at_row(&motion.q));
+                    assert_eq!(sample.velocity, at_row(&motion.qd));
+                    assert_eq!(sample.effort, at_row(&motion.tau));
                 }
             }
             assert!(!table.read(&mut sample).unwrap());

@@ -157,10 +157,10 @@ fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 
         return Err(LogError::request(path, "the array has no positions, q, so it is not a log"));
     }
     let of_time = usize::from(order.contains(&0));
-    let each = order.len() - of_time;
+    let per_joint = order.len() - of_time;
     let width = usize::try_from(width).unwrap_or(usize::MAX);
-    let joints = width.saturating_sub(of_time) / each;
-    if joints == 0 || joints > MOST_JOINTS || joints * each + of_time != width {
+    let joints = width.saturating_sub(of_time) / per_joint;
+    if joints == 0 || joints > MOST_JOINTS || joints * per_joint + of_time != width {
         let said = columns.join(",");
         let what =
             format!("the array has {width} columns, which does not fit the order {said} for any number of joints");

@@ -430,20 +430,20 @@ mod tests {
         let mut gzip = flate2::read::GzEncoder::new(&[7; 5000][..], flate2::Compression::default());
         let mut page = b"levels".to_vec();
         gzip.read_to_end(&mut page).unwrap();
-        let of = |compression, unpacked: u64| {
+        let column = |compression, unpacked: u64| {
             let bounds = column(Arc::default(), compression);
             bounds.unpacked.store(unpacked, Relaxed);
             bounds.levels.store(6, Relaxed);
             bounds
         };
         let gzip = Compression::GZIP(parquet::basic::GzipLevel::default());
-        of(gzip, 5006).check_unpacked(&page).unwrap();
-        let error = of(gzip, 5005).check_unpacked(&page).unwrap_err();
+        column(gzip, 5006).check_unpacked(&page).unwrap();
+        let error = column(gzip, 5005).check_unpacked(&page).unwrap_err();
         assert!(error.to_string().contains("a page unpacks to more bytes than its header states"), "{error}");
         // cut off, it is the library that says so
-        of(gzip, 5005).check_unpacked(&page[..20]).unwrap();
-        of(Compression::LZ4, 9000).check_unpacked(b"levels\x04\x22\x4D\x18").unwrap_err();
-        of(Compression::LZ4, 9000).check_unpacked(b"levels\0\0\x10\0").unwrap();
+        column(gzip, 5005).check_unpacked(&page[..20]).unwrap();
+        column(Compression::LZ4, 9000).check_unpacked(b"levels\x04\x22\x4D\x18").unwrap_err();
+        column(Compression::LZ4, 9000).check_unpacked(b"levels\0\0\x10\0").unwrap();
     }
 
     /// Lists of 2, 3, 1 and what follows.

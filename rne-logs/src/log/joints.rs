@@ -156,12 +156,12 @@ mod tests {
 
     /// Seventy messages, each with its own joints beside two that are in all.
     fn samples(count: usize) -> Vec<Sample> {
-        let of = |message: usize| {
+        let values = |message: usize| {
             let others = (0..count).map(|joint| format!("other_{message}_{joint}"));
             let names: Vec<String> = others.chain(["a".to_owned(), "b".to_owned()]).collect();
             Sample { position: vec![0.0; names.len()], names, ..Sample::default() }
         };
-        (0..70).map(of).collect()
+        (0..70).map(values).collect()
     }
 
     fn survey(samples: &[Sample]) -> usize {

@@ -306,7 +306,7 @@ fn unknown_unit(step: f64) -> String {
 
 /// The rate of samples by the unit of their times.
 fn rates(step: f64) -> String {
-    let of = |unit: TimeUnit, rate: f64| {
+    let words = |unit: TimeUnit, rate: f64| {
         let (rate, prefix) = match rate {
             rate if rate >= 1e9 => (rate * 1e-9, "G"),
             rate if rate >= 1e6 => (rate * 1e-6, "M"),
@@ -321,7 +321,7 @@ fn rates(step: f64) -> String {
         (TimeUnit::Microseconds, 1e6),
         (TimeUnit::Nanoseconds, 1e9),
     ];
-    units.map(|(unit, each)| of(unit, each / step)).join(", ")
+    units.map(|(unit, each)| words(unit, each / step)).join(", ")
 }
 
 fn no_step(path: &Path, times: &[i64]) -> LogError {

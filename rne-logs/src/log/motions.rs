@@ -219,14 +219,18 @@ impl<'a> Motions<'a> {
             let beyond = (numbers.len() - count) / 2;
             numbers[beyond..beyond + count].to_vec()
         };
-        let each = |of: fn(&Kernel, &[f64]) -> Vec<f64>, lists: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let each_list = |of: fn(&Kernel, &[f64]) -> Vec<f64>, lists: &[Vec<f64>]| -> Vec<Vec<f64>> {
             lists.iter().map(|list| of(&self.kernel, list)).collect()
         };
         let smoothed = |quantity| -> Vec<Vec<f64>> { self.rows[layout.places(quantity)].iter().map(smooth).collect() };
         let q = smoothed(Quantity::Position);
-        let qd = if layout.has_velocities { smoothed(Quantity::Velocity) } else { each(Kernel::differentiate, &q) };
-        let qdd =
-            if layout.has_accelerations { smoothed(Quantity::Acceleration) } else { each(Kernel::differentiate, &qd) };
+        let qd =
+            if layout.has_velocities { smoothed(Quantity::Velocity) } else { each_list(Kernel::differentiate, &q) };
+        let qdd = if layout.has_accelerations {
+            smoothed(Quantity::Acceleration)
+        } else {
+            each_list(Kernel::differentiate, &qd)
+        };
         let tau = smoothed(Quantity::Effort);
         let recorded = self.rows[layout.places(Quantity::Effort)]
             .iter()

@@ -62,15 +62,15 @@ impl Recorded<'_> {
         let Some((state, begins)) = self.pass.next()? else { return Ok(None) };
         self.begun += u64::from(begins.is_some());
         let layout = &self.log.layout;
-        let of = |quantity| &state.numbers[layout.places(quantity)];
+        let numbers = |quantity| &state.numbers[layout.places(quantity)];
         Ok(Some(RecordedState {
             run: self.begun.saturating_sub(1),
             stamp: state.time,
             // divided, so that 0.12 s is written as 0.12
             time: state.time.saturating_sub(layout.origin) as f64 / 1e9,
-            q: of(Quantity::Position),
-            qd: of(Quantity::Velocity),
-            tau: of(Quantity::Effort),
+            q: numbers(Quantity::Position),
+            qd: numbers(Quantity::Velocity),
+            tau: numbers(Quantity::Effort),
         }))
     }
 

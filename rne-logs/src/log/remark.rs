@@ -155,19 +155,19 @@ impl LeftOut {
     /// Why they are left out, such as "without some of the joints".
     #[must_use]
     pub fn why(&self) -> String {
-        let one = self.record();
+        let record = self.record();
         match &self.reason {
             Reason::OtherJoints => "of other joints".to_owned(),
             Reason::SomeJoints => "without some of the joints".to_owned(),
             Reason::NoPositions => "without positions, or with another number of them".to_owned(),
-            Reason::NoVelocities => format!("without velocities, which other {one}s contain"),
-            Reason::NoEfforts => format!("without efforts, which other {one}s contain"),
-            Reason::Repeated => format!("that repeat the {one} before, with its time"),
+            Reason::NoVelocities => format!("without velocities, which other {record}s contain"),
+            Reason::NoEfforts => format!("without efforts, which other {record}s contain"),
+            Reason::Repeated => format!("that repeat the {record} before, with its time"),
             Reason::NotFinite { first } => {
                 let what = "with a value that is not a number (NaN, infinite, empty, beyond 1e12)".to_owned();
                 let Some((InvalidSample { message, time, quantity, value, .. }, joint)) = first else { return what };
                 let value = short(*value);
-                format!("{what}; the first is {one} {message} at {time:.3} s, {quantity} of {joint}: {value}")
+                format!("{what}; the first is {record} {message} at {time:.3} s, {quantity} of {joint}: {value}")
             }
         }
     }

@@ -93,7 +93,7 @@ impl Spectrum {
         if self.segments == 0 {
             return None;
         }
-        let of = |power: &Vec<f64>| {
+        let highest = |power: &Vec<f64>| {
             let mut upper = power[power.len() / 2..].to_vec();
             let middle = upper.len() / 2;
             let median = *upper.select_nth_unstable_by(middle, f64::total_cmp).1;
@@ -106,7 +106,7 @@ impl Spectrum {
             let end = (1..power.len()).rev().find(|i| averaged(*i) > ABOVE_FLOOR * floor).unwrap_or(0);
             end as f64 * self.rate / self.window.len() as f64
         };
-        Some(self.power.iter().map(of).collect())
+        Some(self.power.iter().map(highest).collect())
     }
 }
 

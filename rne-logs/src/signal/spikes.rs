@@ -169,8 +169,8 @@ impl Spikes {
     pub(crate) fn end(mut self, states: u64) -> Vec<Spike> {
         self.end_run();
         let of_joint = |(at, joint): (usize, &Joint)| -> Vec<Spike> {
-            let of = |Sample { message, time, effort }| Spike { message, time, joint: at, effort };
-            let spikes: Vec<Spike> = joint.spikes().map(of).collect();
+            let spike = |Sample { message, time, effort }| Spike { message, time, joint: at, effort };
+            let spikes: Vec<Spike> = joint.spikes().map(spike).collect();
             if spikes.len() as f64 > 1.0 + RARE * states as f64 { Vec::new() } else { spikes }
         };
         let mut spikes: Vec<Spike> = self.joints.iter().enumerate().flat_map(of_joint).collect();

@@ -149,6 +149,10 @@ fn a_wrong_map_is_refused() {
             changed(0, ("time", "Zeit [h]")),
             "`h` is not a unit for time, the column `Zeit [h]`; the known units are s, ms, us, ns",
         ),
+        (
+            changed(6, ("elbow.effort", "M2")),
+            "no column has positions of a joint `elbow`; the joints with positions are 1, 2",
+        ),
         (map(&ALL[1..]), "no column has times"),
         (map(&ALL[..6]), "the position of joint 2 but not its effort"),
     ] {

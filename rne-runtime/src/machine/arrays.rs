@@ -23,6 +23,15 @@ impl<T: Copy> Source<'_, T> {
             }
         }
     }
+
+    /// The number of a state.
+    #[inline(always)]
+    pub(super) fn at(&self, state: usize) -> T {
+        match *self {
+            Self::Column(numbers) => numbers[state],
+            Self::Strided(numbers, stride) => numbers[state * stride],
+        }
+    }
 }
 
 /// Where the outputs of every state go.

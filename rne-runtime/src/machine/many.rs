@@ -9,7 +9,7 @@ use crate::sin_cos::{Float, kernel};
 
 /// Registers of a block. An instruction is read once for all of them; their slots stay in the first-level cache for
 /// arms of seven joints.
-const BLOCK: usize = 8;
+pub(super) const BLOCK: usize = 8;
 
 /// The most numbers that a register has.
 pub(super) const WIDEST: usize = 16;
@@ -49,7 +49,7 @@ impl<T: BatchScalar> Work<T> for Many<'_, T> {
 
 /// The sines and cosines of a block.
 #[inline(always)]
-fn turns<V: Vector<Element: BatchScalar>, const N: usize>(
+pub(super) fn turns<V: Vector<Element: BatchScalar>, const N: usize>(
     unit: V::Unit,
     turns: &[Turn],
     slots: &mut [[V::Numbers; N]],

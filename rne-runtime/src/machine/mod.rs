@@ -35,10 +35,12 @@ mod execution;
 mod kernel;
 mod many;
 mod one;
+mod rollout;
 
 pub use arrays::{Destination, Source, WrongArrays};
 pub use code::{Code, Instruction, NOWHERE, Operation, Slot, Turn};
 pub use kernel::{Kernel, Step};
+pub use rollout::{Rollout, RolloutJoint, SmoothFriction};
 
 use arrays::States;
 use many::Many;

@@ -61,7 +61,7 @@ pub(crate) const FUSED_F64: bool = IS_THERE
     ));
 
 /// `f32` and `f64`: constants and the step that differs.
-pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
+pub trait Float: Lanes<Element = Self> + Debug + PartialOrd + 'static {
     const ZERO: Self;
     const MINUS_TWO: Self;
     const HALF: Self;

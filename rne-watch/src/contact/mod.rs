@@ -55,8 +55,8 @@ pub fn contacts(signals: &Signals, noise: &ContactNoise, settings: &Settings) ->
         return Err(WatchError::Setting("the deviation of the observer"));
     }
     let (threshold, held) = threshold(signals, settings);
-    let of = |(joint, noise)| of_joint(signals, joint, noise, threshold, held);
-    let mut found: Vec<Contact> = noise.joints.iter().enumerate().flat_map(of).collect();
+    let contacts = |(joint, noise)| of_joint(signals, joint, noise, threshold, held);
+    let mut found: Vec<Contact> = noise.joints.iter().enumerate().flat_map(contacts).collect();
     found.sort_by(|a, b| a.start.total_cmp(&b.start).then(a.joint.cmp(&b.joint)));
     Ok(found)
 }
@@ -78,8 +78,8 @@ pub fn contact_limits(signals: &Signals, noise: &ContactNoise, settings: &Settin
 
 fn limits(signals: &Signals, joint: usize, noise: &JointNoise, threshold: f64) -> Vec<f64> {
     let (terms, inertia) = (&signals.terms[joint], &signals.inertia[joint]);
-    let of = |(at, open): (usize, &f64)| threshold * noise.deviation_at(terms[at], inertia[at]) + open;
-    signals.open[joint].iter().enumerate().map(of).collect()
+    let at_sample = |(at, open): (usize, &f64)| threshold * noise.deviation_at(terms[at], inertia[at]) + open;
+    signals.open[joint].iter().enumerate().map(at_sample).collect()
 }
 
 /// Number of samples in a time, one at least.

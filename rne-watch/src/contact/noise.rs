@@ -103,13 +103,13 @@ impl ContactNoise {
     #[must_use]
     pub fn typical(segments: &[Self]) -> Option<Self> {
         Self::by_joint(segments, |all| {
-            let of = |each: fn(&JointNoise) -> f64| median(all.iter().map(each).collect());
+            let median_of = |each: fn(&JointNoise) -> f64| median(all.iter().map(each).collect());
             JointNoise {
-                mean: of(|of| of.mean),
-                deviation: of(|of| of.deviation),
-                part: of(|of| of.part),
-                terms: of(|of| of.terms),
-                inertia: of(|of| of.inertia),
+                mean: median_of(|joint| joint.mean),
+                deviation: median_of(|joint| joint.deviation),
+                part: median_of(|joint| joint.part),
+                terms: median_of(|joint| joint.terms),
+                inertia: median_of(|joint| joint.inertia),
             }
         })
     }
@@ -143,8 +143,8 @@ impl ContactNoise {
 
     fn by_joint(segments: &[Self], one: impl Fn(&[JointNoise]) -> JointNoise) -> Option<Self> {
         let dof = segments.iter().map(|segment| segment.joints.len()).min()?;
-        let of = |joint: usize| one(&segments.iter().map(|segment| segment.joints[joint]).collect::<Vec<_>>());
-        Some(Self { joints: (0..dof).map(of).collect() })
+        let joint_noise = |joint: usize| one(&segments.iter().map(|segment| segment.joints[joint]).collect::<Vec<_>>());
+        Some(Self { joints: (0..dof).map(joint_noise).collect() })
     }
 
     /// Takes the largest error of the model in a segment in which nothing happens for three of its deviations, and
@@ -201,7 +201,7 @@ impl WrongParts {
         let mean = if known.is_empty() { 0.0 } else { median(known.iter().map(|(_, residual)| *residual).collect()) };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
         let half = ((HALF / signals.period) as usize).max(2);
-        let of = |samples: &[(usize, f64)], each: &dyn Fn(&(usize, f64)) -> f64| {
+        let average = |samples: &[(usize, f64)], each: &dyn Fn(&(usize, f64)) -> f64| {
             #[allow(clippy::cast_precision_loss)] // a length of a list
             let count = samples.len() as f64;
             samples.iter().map(each).sum::<f64>() / count
@@ -209,8 +209,8 @@ impl WrongParts {
         let (mut squares, mut signed) = (Vec::new(), Vec::new());
         for segment in known.chunks_exact(2 * half) {
             let off = |(_, residual): &(usize, f64)| residual - mean;
-            let (a, b) = (of(&segment[..half], &off), of(&segment[half..], &off));
-            let terms = of(segment, &|(at, _)| signals.terms[joint][*at]);
+            let (a, b) = (average(&segment[..half], &off), average(&segment[half..], &off));
+            let terms = average(segment, &|(at, _)| signals.terms[joint][*at]);
             if terms > 0.0 {
                 squares.push(a * b / (terms * terms));
                 signed.push(0.5 * (a + b) / terms);

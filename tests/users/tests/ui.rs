@@ -17,7 +17,7 @@ fn mistakes_and_their_messages() {
 }
 
 /// File, and what the one message has in it.
-const BY_RUSTC: [(&str, &[&str]); 5] = [
+const BY_RUSTC: [(&str, &[&str]); 6] = [
     ("array_length", &["error[E0308]", "array_length.rs:8:49", "size of 2", "size of 3"]),
     (
         "batch_alone",
@@ -32,6 +32,15 @@ const BY_RUSTC: [(&str, &[&str]); 5] = [
     (
         "field_of_text",
         &["error[E0277]", "field_of_text.rs:6:5", "`String` cannot be a run-time parameter", "`#[robot(skip)]`"],
+    ),
+    (
+        "rows_of_arrays",
+        &[
+            "error[E0277]",
+            "rows_of_arrays.rs:10:9",
+            "`[f64; 7]` is not a number of a state",
+            "`Array::Rows(states.as_flattened())`",
+        ],
     ),
     ("without_the_trait", &["error[E0599]", "without_the_trait.rs:6:29", "`inverse_dynamics`", "InverseDynamics"]),
 ];
@@ -58,7 +67,12 @@ fn mistakes_that_rustc_finds_by_itself() {
     }
     for (name, parts) in BY_RUSTC {
         // not `check`: what the others have built serves
-        let output = build::cargo("build", &folder).args(["--quiet", "--bin", name]).output().expect("cargo runs");
+        let mut build = build::cargo("build", &folder);
+        build.args(["--quiet", "--bin", name]);
+        if name == "rows_of_arrays" {
+            build.args(["--features", "rne/compiled"]);
+        }
+        let output = build.output().expect("cargo runs");
         let messages = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success(), "{name} compiles");
         for part in parts {

@@ -15,7 +15,16 @@ from typing import Iterator
 
 import numpy as _numpy
 
-from ._rne import Arm, EvaluationError, RobotFileError, __version__, builtin as _builtin, load, names as _names
+from ._rne import (
+    Arm,
+    EvaluationError,
+    RobotFileError,
+    RobotFileWarning,
+    __version__,
+    builtin as _builtin,
+    load,
+    names as _names,
+)
 from .excitation import Excitation, excite
 from .identification import Identification, identify
 from .logs import Log, log
@@ -32,6 +41,7 @@ __all__ = [
     "IdentifiedPayload",
     "Log",
     "RobotFileError",
+    "RobotFileWarning",
     "Verdict",
     "Watch",
     "excite",

@@ -21,6 +21,9 @@ class RobotFileError(ValueError):
     line: int | None
     column: int | None
 
+class RobotFileWarning(UserWarning):
+    """A robot file or a URDF is valid, but its numbers are probably not those of the arm."""
+
 class EvaluationError(ValueError):
     """A function cannot be computed for this arm or these arguments."""
 
@@ -225,6 +228,24 @@ class Arm:
     ) -> Floats:
         """Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes."""
     # <!-- end -->
+    def rollout(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, step: float, *,
+        friction: bool | float | None = ..., limits: bool | str | Sequence[str] | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """States of N samples after each of T steps under torques, by semi-implicit Euler."""
+    def operational_space_inertia(
+        self, q: ArrayLike, *,
+        frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The operational-space inertia (J M⁻¹ Jᵀ)⁻¹ at the tip or at a frame, symmetric (Khatib, 1987)."""
+    def dynamically_consistent_inverse(
+        self, q: ArrayLike, *,
+        frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The dynamically consistent inverse M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ of the Jacobian at the tip or at a frame (Khatib, 1987)."""
     def inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
     def operations(self, function: str = ..., form: Form | None = ...) -> dict[str, int]: ...

@@ -51,7 +51,7 @@ def _reason(doubt, joint, rows):
         moving = doubt["error_in_motion"]
         return said if moving is None else f"{said}; in motion, its error is {_percent(moving)}"
     if reason == "held_out_error_grown":
-        return f"its error on the fitted part is {_percent(joint['fitted']['error'])}"
+        return f"its error is {_percent(joint['fitted']['error'])} on the fitted part only"
     return {
         "unexplained": "no model of this arm explains its efforts",
         "not_excited": "most of its unfiltered torque is noise",

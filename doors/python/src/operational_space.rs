@@ -1,0 +1,190 @@
+//! The operational-space inertia of an arm and the dynamically consistent inverse of its Jacobian.
+
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rne::Scalar;
+use rne::compiled::Number;
+
+use crate::arm::Arm;
+use crate::arrays::{room, writable};
+
+/// Rows of a Jacobian: three linear ones, then three angular ones.
+const ROWS: usize = 6;
+
+/// Which of both is computed.
+#[derive(Clone, Copy, PartialEq)]
+enum Returned {
+    Inertia,
+    Inverse,
+}
+
+#[pymethods]
+impl Arm {
+    /// The operational-space inertia (J M⁻¹ Jᵀ)⁻¹ at the tip or at a frame, symmetric (Khatib, 1987).
+    ///
+    /// A force at the tip of an arm at rest, without gravity, is this matrix times the acceleration that it causes.
+    /// Its rows and columns are those of `jacobian`: x, y, z of the velocity, then x, y, z of the angular velocity, in
+    /// world axes. Units: kg between linear rows, kg m² between angular rows, kg m between both.
+    ///
+    /// rows: the m rows of the Jacobian that the task controls, such as [0, 1, 2] for the position alone. None is all
+    /// six. An arm of n joints has at most n independent rows; more are a ValueError. At a singular pose, where the
+    /// rows are linearly dependent, the elements are not finite, or so large that they contain only rounding errors.
+    ///
+    /// frame: the name of a frame in the place of the tip: a frame in the list `frames` of the robot file, or a joint
+    /// for its link frame. payload: a body at the tip, shape (10,) or (N, 10); `rne.payload` makes one.
+    ///
+    /// Returns shape (m, m) or (N, m, m).
+    #[pyo3(signature = (q, *, frame=None, rows=None, payload=None, parameters=None, out=None))]
+    fn operational_space_inertia<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        frame: Option<&str>,
+        rows: Option<Vec<usize>>,
+        payload: Option<&Bound<'py, PyAny>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let [mass, jacobian] = self.mass_and_jacobian(py, q, frame, payload, parameters)?;
+        self.in_operational_space(&mass, &jacobian, rows, Returned::Inertia, out)
+    }
+
+    /// The dynamically consistent inverse M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ of the Jacobian at the tip or at a frame (Khatib, 1987).
+    ///
+    /// Of all joint velocities that give the tip a velocity v, its product with v has the least kinetic energy. With J̄
+    /// for the result, J J̄ = 1, and torques (1 - Jᵀ J̄ᵀ) τ do not accelerate the tip for any τ. Row i belongs to joint
+    /// i, column k to row k of `rows`: rad/s or m/s of the joint per m/s or rad/s of the tip.
+    ///
+    /// The arguments, the errors and the results at a singular pose are those of `operational_space_inertia`.
+    ///
+    /// Returns shape (n, m) or (N, n, m).
+    #[pyo3(signature = (q, *, frame=None, rows=None, payload=None, parameters=None, out=None))]
+    fn dynamically_consistent_inverse<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        frame: Option<&str>,
+        rows: Option<Vec<usize>>,
+        payload: Option<&Bound<'py, PyAny>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let [mass, jacobian] = self.mass_and_jacobian(py, q, frame, payload, parameters)?;
+        self.in_operational_space(&mass, &jacobian, rows, Returned::Inverse, out)
+    }
+}
+
+impl Arm {
+    /// M and J of the states, of one type of numbers.
+    fn mass_and_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        frame: Option<&str>,
+        payload: Option<&Bound<'py, PyAny>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<[Bound<'py, PyAny>; 2]> {
+        let arm = Bound::new(py, self.clone())?;
+        let called = |name: &str, given: &[(&str, Option<Bound<'py, PyAny>>)]| {
+            let keywords = PyDict::new(py);
+            for (name, value) in given {
+                keywords.set_item(name, value)?;
+            }
+            keywords.set_item("parameters", parameters)?;
+            arm.call_method(name, (q,), Some(&keywords))
+        };
+        let frame = frame.map(|frame| frame.into_pyobject(py)).transpose()?.map(Bound::into_any);
+        let mass = called("mass_matrix", &[("payload", payload.cloned())])?;
+        let jacobian = called("jacobian", &[("frame", frame)])?;
+        // a payload in double precision beside positions in single precision
+        let jacobian = jacobian.call_method1("astype", (mass.getattr("dtype")?,))?;
+        Ok([mass, jacobian])
+    }
+
+    fn in_operational_space<'py>(
+        &self,
+        mass: &Bound<'py, PyAny>,
+        jacobian: &Bound<'py, PyAny>,
+        rows: Option<Vec<usize>>,
+        returned: Returned,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let rows = self.task(rows)?;
+        match (mass.cast::<PyArrayDyn<f32>>(), jacobian.cast::<PyArrayDyn<f32>>()) {
+            (Ok(mass), Ok(jacobian)) => computed(mass, jacobian, &rows, returned, out, "float32"),
+            _ => computed::<f64>(mass.cast()?, jacobian.cast()?, &rows, returned, out, "float64"),
+        }
+    }
+
+    /// The rows of the Jacobian that are asked for.
+    fn task(&self, rows: Option<Vec<usize>>) -> PyResult<Vec<usize>> {
+        let dof = self.arm.dof();
+        let rows = rows.unwrap_or_else(|| (0..ROWS).collect());
+        let is_repeated = |at: usize| rows[..at].contains(&rows[at]);
+        if rows.is_empty() || rows.iter().any(|&row| row >= ROWS) || (0..rows.len()).any(is_repeated) {
+            return Err(PyValueError::new_err(format!(
+                "`rows` is {rows:?}: write different numbers from 0 to 5, which are the rows of `jacobian`: x, y, z of \
+                 the velocity, then x, y, z of the angular velocity"
+            )));
+        }
+        if rows.len() > dof {
+            return Err(PyValueError::new_err(format!(
+                "an arm of {dof} joints cannot control {} rows of the Jacobian at once: name at most {dof} of them, \
+                 such as rows={:?}",
+                rows.len(),
+                (0..dof).collect::<Vec<_>>()
+            )));
+        }
+        Ok(rows)
+    }
+}
+
+fn computed<'py, T: Element + Number + Scalar>(
+    mass: &Bound<'py, PyArrayDyn<T>>,
+    jacobian: &Bound<'py, PyArrayDyn<T>>,
+    rows: &[usize],
+    returned: Returned,
+    out: Option<&Bound<'py, PyAny>>,
+    dtype: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = mass.py();
+    let (dof, task) = (mass.shape().last().copied().unwrap_or_default(), rows.len());
+    let of_state = match returned {
+        Returned::Inertia => [task, task],
+        Returned::Inverse => [dof, task],
+    };
+    // the mass matrix has all states: the Jacobian has none of the payload's
+    let states = mass.shape().len().checked_sub(2).and_then(|axes| mass.shape().get(..axes)).unwrap_or_default();
+    let shape = [states, &of_state].concat();
+    let result = room::<T>(py, out, &shape, dtype)?;
+    let (mass, jacobian) = (mass.readonly(), jacobian.readonly());
+    {
+        let not_contiguous = |_| PyValueError::new_err("`out` is not contiguous");
+        let mut writable = writable(&result)?;
+        let numbers = writable.as_slice_mut().map_err(not_contiguous)?;
+        let (mass, jacobian) = (mass.as_slice()?, jacobian.as_slice()?);
+        py.detach(|| {
+            let of_each = numbers.chunks_exact_mut(of_state[0] * of_state[1]);
+            for (state, numbers) in of_each.enumerate() {
+                let of = |all: &[T], size: usize| -> Vec<Vec<T>> {
+                    let start = if all.len() == size { 0 } else { state * size };
+                    all[start..start + size].chunks_exact(dof).map(<[T]>::to_vec).collect()
+                };
+                let all_rows = of(jacobian, ROWS * dof);
+                let mut jacobian: Vec<Vec<T>> = rows.iter().map(|&row| all_rows[row].clone()).collect();
+                let zeros = vec![vec![T::from_f64(0.0); task]; task];
+                let inertia = rne::operational_space(&mut of(mass, dof * dof), &mut jacobian, zeros);
+                match returned {
+                    Returned::Inertia => numbers.copy_from_slice(&inertia.concat()),
+                    Returned::Inverse => {
+                        let places = numbers.iter_mut().enumerate();
+                        places.for_each(|(at, number)| *number = jacobian[at % task][at / task]);
+                    }
+                }
+            }
+        });
+    }
+    Ok(result.into_any())
+}

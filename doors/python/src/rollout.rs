@@ -1,0 +1,177 @@
+//! Rollouts of an arm over numpy's arrays.
+
+use numpy::{Element, PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyTuple};
+use rne::compiled::{CompiledArm, FrictionWidth, Number, Rollout, RolloutLimits};
+use rne_codegen::Argument;
+
+use crate::arm::Arm;
+use crate::arrays::{Given, Held, are_single, memory, refuse_masked, room, states, writable};
+use crate::errors::of_evaluation;
+use crate::functions::arguments;
+
+#[pymethods]
+impl Arm {
+    /// States of N samples after each of T steps under torques, by semi-implicit Euler.
+    ///
+    /// For predictive control by sampling, such as MPPI. A step takes q, qd and a torque to the next state. It does
+    /// this, in this order:
+    ///
+    /// 1. limits: the torque is brought between -effort and +effort.
+    /// 2. friction: the friction at the velocity before the step is subtracted from the torque.
+    /// 3. qdd = forward_dynamics(q, qd, torque), from the state before the step.
+    /// 4. qd += step * qdd. limits: qd is brought between -velocity and +velocity.
+    /// 5. q += step * qd, with the new qd.
+    /// 6. limits: a joint beyond an end of its positions stops: q is that end, and qd is zero.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, qd : array of shape (n,) or (N, n)
+    ///     The state in which each sample begins, rad and rad/s, or m and m/s.
+    /// tau : array of shape (T, n) or (N, T, n)
+    ///     The torques of the actuators in each step, N m or N.
+    /// step : float
+    ///     The duration of a step, s; above zero.
+    /// friction : bool or float
+    ///     A number w > 0 (rad/s or m/s) adds the friction of the robot file's motors, G² B qd + |G| (½ (Tc⁺ - Tc⁻) s +
+    ///     ½ (Tc⁺ + Tc⁻) s²) with s = qd / √(qd² + w²). True takes the key `coulomb_width` of each joint as w.
+    /// limits : bool or sequence of "effort", "velocity", "position"
+    ///     Which limits of the robot file hold; True: all. A joint without a limit in the file has none.
+    /// payload : array of shape (10,) or (N, 10), optional
+    ///     What the tip carries; `rne.payload` makes one. A point mass has the first four numbers alone.
+    /// out : array of shape (2, T, n) or (2, N, T, n), optional
+    ///     Memory for the positions and the velocities.
+    ///
+    /// Returns
+    /// -------
+    /// q, qd : arrays of shape (T, n) or (N, T, n)
+    ///     The states after each step; the initial state is not among them. An argument without the axis N is that of
+    ///     all samples. NaN stays in its sample.
+    #[pyo3(signature = (q, qd, tau, step, *, friction=None, limits=None, payload=None, parameters=None, out=None))]
+    fn rollout<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        step: f64,
+        friction: Option<&Bound<'py, PyAny>>,
+        limits: Option<&Bound<'py, PyAny>>,
+        payload: Option<&Bound<'py, PyAny>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let dof = self.arm.dof();
+        let mut given = vec![self.of_joints("q", q), self.of_joints("qd", qd), self.of_joints("tau", tau)];
+        given.extend(payload.map(|payload| Given {
+            name: "payload",
+            parts: &[],
+            elements: Argument::Payload.elements(dof),
+            value: payload.clone(),
+        }));
+        given.extend(self.given_parameters(py, parameters)?);
+        // lists follow the arrays among the arguments
+        let is_single = are_single(&given);
+        let steps = flat_torques(&mut given[2], dof)?;
+        let friction = friction.map(width).transpose()?.flatten();
+        let limits = limits.map(which).transpose()?.unwrap_or_default();
+        let rollout = Rollout { friction, limits, ..Rollout::new(steps, step) };
+        if is_single {
+            roll_out::<f32>(py, &self.arm, &rollout, &given, out, "float32")
+        } else {
+            roll_out::<f64>(py, &self.arm, &rollout, &given, out, "float64")
+        }
+    }
+}
+
+/// Puts the torques of all steps of a sample side by side, and returns the number of steps.
+fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<usize> {
+    refuse_masked("tau", &given.value)?;
+    let numpy = given.value.py().import("numpy")?;
+    let array = numpy
+        .call_method1("asarray", (&given.value,))
+        .map_err(|_| PyTypeError::new_err("`tau` is not an array of real numbers"))?;
+    let shape = array.cast::<PyUntypedArray>()?.shape().to_vec();
+    let (steps, flat) = match shape[..] {
+        [steps, joints] if joints == dof => (steps, vec![steps * dof]),
+        [samples, steps, joints] if joints == dof => (steps, vec![samples, steps * dof]),
+        _ => {
+            let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
+            return Err(PyValueError::new_err(format!(
+                "`tau` has the shape ({}); it is (T, {dof}) for one sample or (N, T, {dof}) for many",
+                shape.join(", ")
+            )));
+        }
+    };
+    given.elements = steps * dof;
+    given.value = array.call_method1("reshape", (PyTuple::new(array.py(), flat)?,))?;
+    Ok(steps)
+}
+
+/// The width of Coulomb friction.
+fn width(value: &Bound<'_, PyAny>) -> PyResult<Option<FrictionWidth>> {
+    if let Ok(is_there) = value.cast::<PyBool>() {
+        return Ok(is_there.is_true().then_some(FrictionWidth::OfFile));
+    }
+    let width = value.extract().map_err(|_| {
+        PyTypeError::new_err(
+            "`friction` is True or a number: True takes the width of Coulomb friction from the robot file \
+             (`coulomb_width`), a number is the width for all joints, rad/s or m/s",
+        )
+    })?;
+    Ok(Some(FrictionWidth::Of(width)))
+}
+
+/// The limits that hold.
+fn which(value: &Bound<'_, PyAny>) -> PyResult<RolloutLimits> {
+    if let Ok(hold) = value.cast::<PyBool>() {
+        return Ok(if hold.is_true() { RolloutLimits::ALL } else { RolloutLimits::NONE });
+    }
+    let wrong = "`limits` is True, False or a list with some of \"effort\", \"velocity\" and \"position\"";
+    let names: Vec<String> = match value.extract::<String>() {
+        Ok(name) => vec![name],
+        Err(_) => value
+            .try_iter()
+            .and_then(|names| names.map(|name| name?.extract()).collect())
+            .map_err(|_| PyTypeError::new_err(wrong))?,
+    };
+    let mut limits = RolloutLimits::NONE;
+    for name in names {
+        match name.as_str() {
+            "effort" => limits.effort = true,
+            "velocity" => limits.velocity = true,
+            "position" => limits.position = true,
+            _ => return Err(PyValueError::new_err(format!("`{name}` is not a limit: {wrong}"))),
+        }
+    }
+    Ok(limits)
+}
+
+fn roll_out<'py, T: Element + Number>(
+    py: Python<'py>,
+    arm: &CompiledArm,
+    rollout: &Rollout,
+    given: &[Given<'py>],
+    out: Option<&Bound<'py, PyAny>>,
+    dtype: &str,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let written = out.and_then(|out| out.cast::<PyArrayDyn<T>>().ok()).map_or(0..0, memory);
+    let held: Vec<Held<'py, T>> =
+        given.iter().map(|given| Held::of(given, dtype, &written)).collect::<PyResult<_>>()?;
+    let many = states(&held)?;
+    let samples = many.unwrap_or(1);
+    let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
+    let arguments = arguments(given, &held, &columns, samples)?;
+    let shape: Vec<usize> = [2].into_iter().chain(many).chain([rollout.steps, arm.dof()]).collect();
+    let result = room::<T>(py, out, &shape, dtype)?;
+    {
+        let mut writable = writable(&result)?;
+        let numbers = writable.as_slice_mut().map_err(|_| PyValueError::new_err("`out` is not contiguous"))?;
+        let (positions, velocities) = numbers.split_at_mut(numbers.len() / 2);
+        py.detach(|| arm.rollout(rollout, samples, &arguments, positions, velocities))
+            .map_err(|error| of_evaluation(&error))?;
+    }
+    PyTuple::new(py, [result.get_item(0)?, result.get_item(1)?])
+}

@@ -1,0 +1,84 @@
+"""Files that are valid and probably wrong: `rne.load` warns; and a URDF is the same arm here and on the command line."""
+
+import os
+import subprocess
+import warnings
+
+import numpy as np
+import pytest
+
+import rne
+
+HEAD = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n"
+ROW = "  - {type: revolute, dh: {theta: 0, d: 0.1, a: 0.3, alpha: 0}"
+BALL = "<inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' ixz='0' iyz='0'/>"
+
+
+def urdf(inertial, roll="1.5708", joints=3):
+    """A chain of links of half a metre; `inertial` has the mass of each link."""
+    links = "".join(f"<link name='l{i}'>{inertial(i)}</link>" for i in range(joints + 1))
+    joint = ("<joint name='j{0}' type='revolute'><parent link='l{0}'/><child link='l{1}'/><origin xyz='0.5 0 0' "
+             "rpy='{2} 0 0'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>")
+    return f"<robot name='chain'>{links}{''.join(joint.format(i, i + 1, roll) for i in range(joints))}</robot>"
+
+
+def ball(mass):
+    return f"<inertial><mass value='{mass}'/>{BALL}</inertial>"
+
+
+def warned(source, **options):
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        rne.load(source, **options)
+    assert all(one.category is rne.RobotFileWarning and one.filename == __file__ for one in found)
+    return [str(one.message) for one in found]
+
+
+def test_an_arm_without_inertia():
+    assert issubclass(rne.RobotFileWarning, UserWarning)
+    [text] = warned(urdf(lambda _: ""))
+    assert text.startswith("<text>: no link has a mass or an inertia: the file has the geometry only\n")
+    assert "--" not in text and "identify the links from a log" in text
+    [text] = warned(HEAD + (ROW + "}\n") * 3)
+    assert text.startswith("<text>:7:3: no link has a mass")
+
+
+def test_placeholders_of_an_exporter(tmp_path):
+    file = tmp_path / "robot.urdf"
+    file.write_text(urdf(lambda _: ball(2.0), joints=6))
+    light, same = warned(file)
+    assert same.startswith(f"{file}: 6 of 6 links with mass have 2 kg and 0.01 kg m² about every axis")
+    assert light.startswith(f"{file}: all links together have 12 kg, which is little for an arm with a reach of ")
+    # masses that differ a little
+    [light] = warned(urdf(lambda i: ball(2 + i / 10), joints=6))
+    assert "14.1 kg" in light
+
+
+def test_good_arms_are_quiet_and_filters_work():
+    assert warned(urdf(lambda i: ball(8 + i))) == []
+    for name in rne.robots:
+        assert warned(name) == [] and warned(rne.robots[name].yaml) == [], name
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", rne.RobotFileWarning)
+        with pytest.raises(rne.RobotFileWarning):
+            rne.load(urdf(lambda _: ""))
+
+
+def test_one_file_gives_a_few_warnings():
+    row = ROW.replace("alpha: 0}", "alpha: 90}") + ", link: {mass: 3, com: [-0.1, 0, 0], inertia: {zz: 0.1}}}\n"
+    found = warned(HEAD + row * 12)
+    assert len(found) == 9 and "rne check" in found[-1]
+    assert found[0].startswith("<text>:7:") and "write `deg(90)`" in found[0]
+
+
+def test_a_urdf_is_snapped_as_on_the_command_line(tmp_path):
+    file = tmp_path / "chain.urdf"
+    file.write_text(urdf(lambda i: ball(8 + i)))
+    arm, kept = rne.load(file), rne.load(file, snap=False)
+    q = np.random.default_rng(3).normal(size=(20, 3))
+    difference = np.abs(arm.gravity_torques(q) - kept.gravity_torques(q)).max()
+    assert 0 < difference < 1e-3 and "pi/2" in arm.yaml and warned(file, snap=False) == []
+    if "RNE" not in os.environ:
+        pytest.skip("RNE does not name the command rne")
+    command = [os.environ["RNE"], "import", "--frames", file]
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == arm.yaml
