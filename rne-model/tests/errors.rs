@@ -115,13 +115,22 @@ fn trees() {
     let first = |text: &str| Reader::new("x").trees().read(text).unwrap_err().short();
     for (text, expected) in [
         (file("modified", "", &row("name: b, parent: c", "")), "x:9:21: error: `parent` names `c`, which is no joint"),
-        (file("modified", "", &(row("name: b, parent: c", "") + &row("name: c", ""))), "x:9:21: error: the parent `c` stands below"),
+        (
+            file("modified", "", &(row("name: b, parent: c", "") + &row("name: c", ""))),
+            "x:9:21: error: the parent `c` stands below",
+        ),
         (file("modified", "", &row("name: b, parent: b", "")), "x:9:21: error: joint 2 names itself as its parent"),
-        (file("standard", "", &row("name: b", ", gamma: 1")), "x:9:72: error: a standard row has no `gamma`"),
-        (file("modified", "", &row("name: b, at: {xyz: [0, 0, 1]}", ", b: 1")), "error: the joint has both `at` and `b`"),
+        (file("standard", "", &row("name: b", ", gamma: 1")), "x:9:73: error: a standard row has no `gamma`"),
+        (
+            file("modified", "", &row("name: b, at: {xyz: [0, 0, 1]}", ", b: 1")),
+            "error: the joint has both `at` and `b`",
+        ),
         (file("modified", "", &two), "error: the robot has 2 ends (`b`, `c`)"),
         (file("modified", "tool: {on: base}", &two), "x:6:12: error: the tip cannot be on `base`"),
-        (file("modified", "tool: {on: c}", &two).replace("format: 2", "format: 1"), "the key `parent` needs `format: 2`"),
+        (
+            file("modified", "tool: {on: c}", &two).replace("format: 2", "format: 1"),
+            "the key `parent` needs `format: 2`",
+        ),
     ] {
         let found = first(&text);
         assert!(found.contains(expected), "{found}\n{expected}");
