@@ -61,14 +61,14 @@ impl<S: Constant> DynArm<S> {
     }
 
     fn of_table(table: Table<'_, S>, gravity: [S; 3], base: Transform<S>) -> Self {
-        let Table { convention, rows, branches, tool, tip_on } = table;
+        let Table { convention, rows, tool, tip_on, .. } = table;
         Self {
             convention,
             gravity,
             base,
             tool: *tool,
             rows: rows.to_vec(),
-            branches: branches.to_vec(),
+            branches: (0..rows.len()).map(|joint| table.branch(joint).copied()).collect(),
             tip_on,
             links: (0..rows.len()).map(|index| LinkFrame::new(table, index)).collect(),
             tip: Mount::of_tip(table),

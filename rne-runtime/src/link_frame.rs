@@ -60,7 +60,8 @@ pub(crate) struct Table<'a, S> {
 }
 
 impl<'a, S: Constant> Table<'a, S> {
-    fn branch(self, joint: usize) -> Option<&'a FixedFrame<S>> {
+    /// Where a row begins, if not at the link frame of the row before.
+    pub(crate) fn branch(self, joint: usize) -> Option<&'a FixedFrame<S>> {
         self.branches.get(joint)?.as_ref()
     }
 
