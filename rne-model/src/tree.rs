@@ -31,22 +31,22 @@ pub(crate) fn branches(
             continue;
         }
         let of_row = |key: &str| keys.iter().find(|(known, _)| *known == key).map(|(_, node)| *node);
-        if let Some((key, node)) = keys.iter().find(|(key, _)| ["gamma", "b"].contains(key)) {
-            if let Some(mistake) = misplaced(key, node, convention, of_row("at").is_some()) {
-                valid = false;
-                cx.report(mistake);
-                continue;
-            }
+        if let Some((key, node)) = keys.iter().find(|(key, _)| ["gamma", "b"].contains(key))
+            && let Some(mistake) = misplaced(key, node, convention, of_row("at").is_some())
+        {
+            valid = false;
+            cx.report(mistake);
+            continue;
         }
         let on = match of_row("parent") {
             None => index.checked_sub(1),
-            Some(node) => match carrier_of_row(cx, node, &names, index) {
-                Some(on) => on,
-                None => {
+            Some(node) => {
+                let Some(on) = carrier_of_row(cx, node, &names, index) else {
                     valid = false;
                     continue;
-                }
-            },
+                };
+                on
+            }
         };
         let placement = joint.branch.map_or(Transform::IDENTITY, |branch| branch.placement);
         let is_of_chain = on == index.checked_sub(1) && is_nothing(&placement);
@@ -120,13 +120,12 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
         if format == 1 {
             return cx.refuse(needs_format_2("on", node));
         }
-        return match carrier(cx, node, names, "on")? {
-            Some(on) => Some(Some(on).filter(|_| Some(on) != last)),
-            None => {
-                let message = "the tip cannot be on `base`; it must be on a link that a joint moves";
-                cx.refuse(Diagnostic::error(node.span.clone(), message).help("name a joint, such as `on: joint6`"))
-            }
-        };
+        if let Some(on) = carrier(cx, node, names, "on")? {
+            return Some(Some(on).filter(|_| Some(on) != last));
+        }
+        let message = "the tip cannot be on `base`; it must be on a link that a joint moves";
+        let help = "name a joint, such as `on: joint6`";
+        return cx.refuse(Diagnostic::error(node.span.clone(), message).help(help));
     }
     let carries = |joint: usize| (joint..joints.len()).any(|other| parent(joints, other) == Some(joint));
     let ends: Vec<&Joint> = joints.iter().enumerate().filter(|(at, _)| !carries(*at)).map(|(_, joint)| joint).collect();

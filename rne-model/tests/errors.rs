@@ -172,7 +172,14 @@ fn shapes() {
         ("convention: standard", "convention: [standard]", 4, 13, "[standard]", "`standard` or `modified` is needed"),
         ("mass: 2.5", "mass:", 13, 7, "mass", "a number is missing"),
         ("theta: 0, d: 0.4", "theta, d: 0.4", 11, 10, "theta", "a number is missing"),
-        ("- name: second", "- 5\n  - name: second", 19, 5, "5", "found `5` where a mapping (name, parent, at, type, dh"),
+        (
+            "- name: second",
+            "- 5\n  - name: second",
+            19,
+            5,
+            "5",
+            "found `5` where a mapping (name, parent, at, type, dh",
+        ),
     ]);
     for (text, message) in [
         ("format: 1\njoints: {}\n", "where a list of joints is needed"),
