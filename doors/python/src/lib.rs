@@ -1,9 +1,9 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
 //! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`rollout`] and [`insight`] its methods,
-//! [`arrays`] what numpy's arrays are to the machine, [`load`] how an arm is read, [`errors`] what goes wrong. [`logs`],
-//! [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes wrong
-//! there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
+//! [`arrays`] what numpy's arrays are to the machine, [`load`] how an arm is read, [`errors`] what goes wrong.
+//! [`logs`], [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes
+//! wrong there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
 
 mod arm;
 mod arrays;
