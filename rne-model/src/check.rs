@@ -71,8 +71,8 @@ impl<'a> Reader<'a> {
         self
     }
 
-    /// Trees are read, too: robots of `format: 2` whose joints branch off or begin at a placement. Without this they are
-    /// refused at their line, because not every function of rne takes a tree.
+    /// Trees are read, too: robots of `format: 2` whose joints branch off or begin at a placement. Without this they
+    /// are refused at their line, because not every function of rne takes a tree.
     #[must_use]
     pub fn trees(mut self) -> Self {
         self.takes_trees = true;

@@ -158,8 +158,8 @@ impl Robot {
         self.joints.iter().map(|joint| &joint.row)
     }
 
-    /// The robot as a plain [`Model`], or `None` when it does not have `DOF` joints. A model does not say where the rows
-    /// of a tree begin: [`Joint::branch`] and [`Robot::tip_on`] do.
+    /// The robot as a plain [`Model`], or `None` when it does not have `DOF` joints. A model does not say where the
+    /// rows of a tree begin: [`Joint::branch`] and [`Robot::tip_on`] do.
     #[must_use]
     pub fn model<const DOF: usize>(&self) -> Option<Model<DOF>> {
         let rows: Vec<Row> = self.rows().copied().collect();

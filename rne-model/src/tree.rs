@@ -76,8 +76,8 @@ fn needs_format_2(key: &str, node: &Node) -> Diagnostic {
 fn misplaced(key: &str, node: &Node, convention: Convention, has_placement: bool) -> Option<Diagnostic> {
     if convention == Convention::Standard {
         let message = format!("a standard row has no `{key}`, because its frame 0 is the link frame of its parent");
-        let help = "write `at: {xyz: [0, 0, 0], rpy: [0, 0, 0]}` beside `dh`: the placement of the row's frame 0 in the \
-                    link frame of the parent";
+        let help = "write `at: {xyz: [0, 0, 0], rpy: [0, 0, 0]}` beside `dh`: the placement of the row's frame 0 in \
+                    the link frame of the parent";
         return Some(Diagnostic::error(node.head(), message).label("for modified rows").help(help));
     }
     has_placement.then(|| {

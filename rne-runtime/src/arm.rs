@@ -77,9 +77,9 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         Self { model, branches, tip_on, links, tip, motors: [None; DOF], rotors: false, at: None }
     }
 
-    /// Returns this robot as a tree. Row `i` begins at `branches[i]` on an earlier link or on the base; `None` for a row
-    /// that begins at the link frame of the row before. The tip is on the link of the joint `tip_on`; `None` for the
-    /// last one. `None` when a row does not stand behind its parent, or when there is no joint `tip_on`.
+    /// Returns this robot as a tree. Row `i` begins at `branches[i]` on an earlier link or on the base; `None` for a
+    /// row that begins at the link frame of the row before. The tip is on the link of the joint `tip_on`; `None` for
+    /// the last one. `None` when a row does not stand behind its parent, or when there is no joint `tip_on`.
     #[must_use]
     pub fn on_tree(self, branches: [Option<FixedFrame<S>>; DOF], tip_on: Option<usize>) -> Option<Self> {
         let is_earlier = |(joint, branch): (usize, &Option<FixedFrame<S>>)| {

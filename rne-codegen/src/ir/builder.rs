@@ -369,7 +369,8 @@ impl<'s> JointLines<'s> {
         Self { named: joint, ..self }
     }
 
-    /// The same lines, for quantities of what a link carries, where it carries several: the number that tells them apart.
+    /// The same lines, for quantities of what a link carries, where it carries several: the number that tells them
+    /// apart.
     pub(crate) fn carrying(self, carried: usize) -> Self {
         Self { carried, ..self }
     }
