@@ -214,7 +214,8 @@ pub(crate) fn carrier(cx: &Context, node: &Node, joints: &[String], key: &str) -
         let listed = joints.iter().take(12).map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         let rest = if joints.len() > 12 { ", and the other joints of the file" } else { "" };
         let message = format!(
-            "`{key}` names {}, which is no joint of this file; it must be `base` or the name of a joint: {listed}{rest}",
+            "`{key}` names {}, which is no joint of this file; it must be `base` or the name of a joint: \
+             {listed}{rest}",
             quoted(&name)
         );
         let number = name.parse::<usize>().ok().and_then(|number| joints.get(number.checked_sub(1)?));
