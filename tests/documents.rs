@@ -19,7 +19,7 @@ use rne_search::PlanFile;
 const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/c-library.md", &["controller"]),
     ("doors/python/package/rne/__init__.pyi", &["stubs"]),
-    ("README.md", &["headline", "example", "twelve_lines"]),
+    ("README.md", &["headline", "example", "control", "twelve_lines"]),
     ("docs/firmware.md", &["torque", "config", "embedded"]),
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
@@ -62,6 +62,7 @@ fn robot_files() -> Vec<PathBuf> {
 fn block(name: &str) -> String {
     match name {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
+        "control" => control(),
         "ros2_controller" => {
             format!("```cpp\n{}```\n", read(&root().join("doors/capi/examples/ros2_control/gravity_controller.cpp")))
         }
@@ -94,6 +95,20 @@ fn block(name: &str) -> String {
         "embedded" => embedded(),
         name => panic!("no block is called `{name}`"),
     }
+}
+
+/// The derive and the calls of an example, with the robot file of the commands above them.
+fn control() -> String {
+    let program = read(&root().join("examples/control.rs"));
+    let between = |start: &str, end: &str| {
+        let lines = program.lines().skip_while(|line| !line.contains(start)).take_while(|line| !line.contains(end));
+        let lines = lines.map(str::trim).filter(|line| !line.is_empty());
+        lines.fold(String::new(), |text, line| text + line + "\n")
+    };
+    let derive = between("#[derive", "fn main").replace("../robots/puma560.yaml", "arm.yaml");
+    let calls = between("let gravity", "println!");
+    assert!(derive.contains("path = \"arm.yaml\"") && calls.lines().count() == 3, "{derive}{calls}");
+    format!("```rust\n{derive}{calls}```\n")
 }
 
 /// What is emitted for the first steps of joint 3 of the PUMA 560.

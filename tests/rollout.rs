@@ -15,7 +15,7 @@ use rne::{DynArm, Payload, VectorUnit};
 /// rad/s or m/s: about which Coulomb friction changes its sign.
 const WIDTH: f64 = 0.05;
 
-/// Of the larger of 1 and the numbers of a step.
+/// The allowed error of a step, relative to its largest number, or to 1 if that is larger.
 const TOLERANCE: f64 = 1e-12;
 
 /// Beyond this condition of the mass matrix a step is not compared: its accelerations are rounding.
@@ -178,7 +178,7 @@ fn worst(arm: &CompiledArm, samples: &Samples) -> (f64, usize) {
 fn each_step_of_shipped_arms_is_eulers() {
     let mut rng = Rng::with_seed(31);
     let (mut arms, mut largest_error) = (0, 0.0_f64);
-    for file in rne_robots::ROBOTS {
+    for file in shipped::tried() {
         let arm = CompiledArm::from_yaml(file.yaml).expect("a shipped robot").with_rotors();
         let oracle = DynArm::from_robot(arm.robot());
         let bare = Rollout::new(6, 2e-3);
@@ -197,13 +197,13 @@ fn each_step_of_shipped_arms_is_eulers() {
         arms += usize::from(compared > 0);
     }
     println!("{arms} shipped arms: the largest error of a step is {largest_error:.1e}");
-    assert!(arms >= 20, "{arms} arms");
+    assert!(arms >= if shipped::is_exhaustive() { 20 } else { 10 }, "{arms} arms");
 }
 
 /// Random arms: parallel and coincident axes, links without mass, motors with gears. 500 of them with `RNE_EXHAUSTIVE`.
 #[test]
 fn each_step_of_random_arms_is_eulers() {
-    let wanted = if shipped::is_exhaustive() { 500 } else { 150 };
+    let wanted = if shipped::is_exhaustive() { 500 } else { 60 };
     let mut rng = Rng::with_seed(32);
     let (mut arms, mut largest_error) = (0, 0.0_f64);
     let mut seeds = 0_u64..700;

@@ -274,6 +274,12 @@ def address(driver, page):
     field.send_keys("-22,5", Keys.ENTER)
     angle = driver.execute_script("return rne.view().state.q[1]")
     check(abs(angle + math.pi / 8) < 1e-15, f"address: -22,5 degrees are {angle} rad")
+    field = driver.find_element(By.CSS_SELECTOR, '[data-field="q"][data-name="q1"]')
+    for typed, value in (("pi/4", math.pi / 4), ("-2pi/3", -2 * math.pi / 3), ("30deg", math.pi / 6), ("pie", math.pi / 6)):
+        field.clear()
+        field.send_keys(typed, Keys.ENTER)
+        angle = driver.execute_script("return rne.view().state.q[0]")
+        check(abs(angle - value) < 1e-15, f"address: {typed} typed for the angle of joint 1 makes it {angle}")
     field = driver.find_element(By.CSS_SELECTOR, '[data-field="qd"][data-name="qd1"]')
     for typed, value in (("nothing", -0.7), ("12.5", 12.5)):
         field.clear()
@@ -336,6 +342,20 @@ def teaching(driver, rne, page, folder):
     check(large[0] >= 1.49 * small[0], f"lecture: letters have {large[0]} pixels, before {small[0]}")
     check(large[1] > 1.3 * small[1] and small[2] and not large[2], f"lecture: {large}, before {small}")
     narrow(driver, "lecture")
+    # the arm and the equations on one screen of a projector
+    seen_on(driver, 1280, 720)
+    at("#cell=2.4&lecture")
+    for of in ("arm", "grid", "cell"):
+        box = driver.execute_script("const { left, top, right, bottom, height } = document.getElementById(arguments[0])"
+                                    ".getBoundingClientRect(); return { left, top, right, bottom, height }", of)
+        check(box["top"] >= 0 and box["bottom"] <= 720 and box["height"] > 200, f"lecture: {of} is at {box}")
+        check(box["left"] >= 0 and box["right"] <= (1280 if of == "cell" else 500), f"lecture: {of} is at {box}")
+    # a phone shows the cell of the address
+    seen_on(driver, 390, 844)
+    at("#cell=2.4")
+    top = driver.execute_script("return document.getElementById('cell').getBoundingClientRect().top")
+    check(-1 <= top <= 200, f"address: a phone has the cell {top} pixels below its upper edge")
+    seen_on(driver, *SCREENS["desk"])
     # a worksheet: one answer that is right, one that is not
     at("#q=0.6,-0.9&qd=0.5,0.8&qdd=1,-1.5&cell=2.4&exercise")
     acceleration = driver.execute_script("return ['ddc2_x', 'ddc2_y'].map(name => rne.value(name))")

@@ -28,6 +28,8 @@ pub struct Certificate {
     pub tools: BTreeMap<String, String>,
     /// Options of the compiler.
     pub options: Vec<String>,
+    /// The command that writes the code that is certified.
+    pub emit: String,
     /// SHA-256, by what it is of.
     pub hashes: BTreeMap<String, String>,
     /// The cost of a call.
@@ -51,6 +53,8 @@ pub struct Cost {
     pub instructions: u64,
     /// Cycles of a call in the worst case, by the table of the core.
     pub cycles: u64,
+    /// The meaning of the cycles in words: a worst case, or an estimate of it.
+    pub bound: &'static str,
     /// Cycles of it in which an instruction waits for the result of the one before.
     pub waits: u64,
     /// The kinds of instructions.
@@ -193,6 +197,12 @@ impl Certificate {
             let _ = writeln!(text, "| {tool} | {version} |");
         }
         let _ = writeln!(text, "\nOptions of the compiler: `{}`\n", self.options.join(" "));
+        let _ = writeln!(
+            text,
+            "This command writes the code. A file with more functions has another hash, and this page is not about \
+             it:\n\n```sh\n{}\n```\n",
+            self.emit
+        );
         text.push_str("| file | SHA-256 |\n|---|---|\n");
         for (file, hash) in &self.hashes {
             let _ = writeln!(text, "| {file} | `{hash}` |");
@@ -207,15 +217,22 @@ impl Certificate {
             text,
             "\n## Cost of a call\n\n| property | value |\n|---|---|\n\
              | form | {} |\n| instructions, each of which a call executes once | {} |\n\
-             | cycles, worst case by the assumptions below | {} |\n| bytes of instructions | {} |\n\
+             | cycles, {} | {} |\n| bytes of instructions | {} |\n\
              | bytes of constants | {} |\n| bytes of stack, with the functions that are called | {} |\n\
              | bytes of stack that the instructions show | {} |\n| calls | {calls} |\n\
              | branches, except over constants | none |\n| double precision | none |\n\n",
-            self.form, cost.instructions, cost.cycles, cost.code, cost.constants, cost.stack, cost.stack_of_listing
+            self.form,
+            cost.instructions,
+            cost.bound,
+            cost.cycles,
+            cost.code,
+            cost.constants,
+            cost.stack,
+            cost.stack_of_listing
         );
         text.push_str(
-            "The code has one path, so the number of instructions and the cycles are the same for every input. They \
-             are the worst case, also for NaN and infinities. The cycles hold under these assumptions:\n\n",
+            "The code has one path, so the number of instructions is the same for every input, also for NaN and \
+             infinities. The cycles hold under these assumptions:\n\n",
         );
         for assumption in &cost.assumptions {
             let _ = writeln!(text, "- {assumption}");
@@ -296,7 +313,7 @@ mod tests {
                       // ω1 = z\n    const float w1_z = q1\n        + k_1;\n\n    a_sin_cos(q1, &s1, &c1);\n    \
                       tau[0] = w1_z;\n}\n";
         let traced = trace(source, "a_f(");
-        let lines: Vec<_> = traced.iter().map(|of| (of.line, of.name.as_str(), of.step.as_str())).collect();
+        let lines: Vec<_> = traced.iter().map(|line| (line.line, line.name.as_str(), line.step.as_str())).collect();
         let step = "joint 1, step 1: angular velocity";
         let expected = [
             (5, "q1", "argument"),

@@ -108,7 +108,16 @@ impl Core {
         }
     }
 
-    /// The assumptions of the table, a sentence each.
+    /// The meaning of the cycles in words: a worst case, or an estimate of it.
+    #[must_use]
+    pub const fn bound(self) -> &'static str {
+        match self {
+            Self::M4 => "worst case by the assumptions below",
+            Self::M7 => "an estimate above the worst case: Arm publishes no table",
+        }
+    }
+
+    /// The assumptions under which the cycles hold, a sentence each.
     #[must_use]
     pub fn assumptions(self) -> Vec<&'static str> {
         let mut assumptions = vec![

@@ -94,7 +94,7 @@ impl LowPass {
                 #[allow(clippy::cast_precision_loss)] // at most 100
                 let time = (state - first) as f64 * self.period;
                 let [q, qd] = [Wave::position, Wave::velocity]
-                    .map(|of| -> Vec<f32> { waves.iter().map(|wave| single(of(wave, time))).collect() });
+                    .map(|signal| -> Vec<f32> { waves.iter().map(|wave| single(signal(wave, time))).collect() });
                 let tau = ranges.iter().map(|range| single((2.0 * rng.f64() - 1.0) * range.torque));
                 let tau: Vec<f32> = tau.collect();
                 found.update(&single_precision(robot, &interpreter, [&q, &qd, &tau], &sin_cos)?);
@@ -163,7 +163,7 @@ impl Observer {
     }
 }
 
-/// The same numbers in intervals that enclose the exact ones.
+/// The observer computed with intervals, which enclose the exact numbers.
 struct Enclosure {
     before: Option<[Vec<Interval>; 2]>,
     external: Vec<Interval>,

@@ -8,6 +8,7 @@ mod files;
 mod mistyped;
 mod outcome;
 mod palette;
+mod remedy;
 mod render;
 mod terminal;
 mod values;

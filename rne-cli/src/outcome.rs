@@ -5,7 +5,7 @@ use rne_model::Report;
 use serde::Serialize;
 
 use crate::palette::{ERROR, coloured};
-use crate::render::remedy;
+use crate::remedy;
 
 /// Exit status when the input is at fault.
 pub(crate) const INPUT: u8 = 1;

@@ -3,8 +3,7 @@
 //! A [`Program`](crate::Program) has the code that is left. Its equations say what the code is left of:
 //! `w2_x = rot2_xx * w1_x + rot2_yx * w1_y + ..`, where the base does not move and a turn leaves an axis alone.
 
-use crate::ir::{Causes, Fold, Name, Place};
-use crate::values::{Operator, Sign};
+use crate::ir::{Causes, Fold, Name, Operator, Place, Sign};
 
 /// A component of a quantity and the formula that gives it.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +21,7 @@ pub struct Equation {
 pub enum Term {
     /// Another component, an argument or a number of the table.
     Variable(Name),
-    /// A number, and because of what it is that one.
+    /// A number, and the reasons for its value.
     Number(f64, Causes),
     /// -a
     Negative(Box<Term>),

@@ -63,9 +63,54 @@ pub enum CompileError {
         function: Function,
         /// The word of the graph, counted from 1.
         word: usize,
-        /// The mistake, in words.
-        message: String,
+        /// The mistake in this word.
+        mistake: GraphMistake,
     },
+}
+
+/// A mistake in the text of a rewritten graph. Each text is the wrong word, or the part of the word that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GraphMistake {
+    /// The first word is not the name of a section.
+    NoSection(String),
+    /// The word is not an operation.
+    NoOperation(String),
+    /// The word divides by a value by which the code of the plan never divides: the value could be zero.
+    Division(String),
+    /// No earlier word defines this value.
+    UnknownValue(String),
+    /// The number is infinite or not a number.
+    NotFinite(String),
+    /// The number does not occur in the code of the plan.
+    UnknownNumber(String),
+    /// The graph has too many or too few results.
+    Results {
+        /// The function.
+        function: Function,
+        /// How many numbers the function returns.
+        needed: usize,
+        /// How many results the graph has.
+        found: usize,
+    },
+}
+
+impl fmt::Display for GraphMistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSection(word) => write!(f, "a graph begins with `constants` or `operations`, not with `{word}`"),
+            Self::NoOperation(word) => write!(f, "`{word}` is not an operation of a graph, such as `s2*qd3`"),
+            Self::Division(word) => {
+                write!(f, "`{word}` divides by a value by which the code of the plan never divides")
+            }
+            Self::UnknownValue(name) => write!(f, "the graph defines no value `{name}` before this word"),
+            Self::NotFinite(word) => write!(f, "`{word}` is not a finite number"),
+            Self::UnknownNumber(word) => write!(f, "the number {word} does not occur in the code of the plan"),
+            Self::Results { function, needed, found } => {
+                write!(f, "`{function}` returns {needed} numbers, but the graph has {found} results")
+            }
+        }
+    }
 }
 
 /// A remedy for an error of a plan. Each interface says it in its own words: the command line names its options.
@@ -84,7 +129,7 @@ pub enum Remedy {
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Suspect {
-    /// It was written by the plan of a plan file.
+    /// The plan of a plan file was used.
     pub planned: bool,
     /// A number of the robot whose products leave the range of double precision.
     pub number: Option<Extreme>,
@@ -226,8 +271,8 @@ impl fmt::Display for CompileError {
             Self::PlanDoesNotFit { robot } => {
                 write!(f, "the plan does not fit `{robot}`: one of its choices is not possible for this robot")
             }
-            Self::Graph { robot, function, word, message } => {
-                write!(f, "word {word} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}")
+            Self::Graph { robot, function, word, mistake } => {
+                write!(f, "word {word} of the rewritten graph of `{function}` in the plan of `{robot}`: {mistake}")
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The values of a program as they are written: a value with a name by that name, another one where it is used.
 
-use crate::ir::Name;
-use crate::values::{Negated, Operator, Value, ValueId, Values};
+use crate::ir::{Name, Operator};
+use crate::values::{Negated, Value, ValueId, Values};
 
 /// A value of a program, as it is written in one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub enum ExpressionKind<'p> {
     Binary(Operator, Expression<'p>, Expression<'p>),
     /// x y + z, rounded once: x and y, z, and what is negated.
     Fused([Expression<'p>; 2], Expression<'p>, Option<Negated>),
-    /// One of two values by the sign of the first: positive, negative; 0 where that is 0.
+    /// `[x, a, b]`: a where x is positive, b where x is negative, 0 where x is 0.
     BySign([Expression<'p>; 3]),
 }
 

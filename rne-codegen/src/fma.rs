@@ -16,10 +16,10 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::ir::Name;
+use crate::ir::{Name, Operator, Sign};
 use crate::latency::{self, Latency};
 use crate::program::{Output, Program, Statement};
-use crate::values::{Contraction, Operator, Sign, Value, ValueId, Values};
+use crate::values::{Contraction, Value, ValueId, Values};
 
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
 ///
@@ -54,11 +54,11 @@ pub fn ordered_for_latency(program: &Program) -> Program {
 #[must_use]
 pub fn instructions(program: &Program) -> usize {
     let instructions = program.values.iter().skip(program.before_statements()).map(|(id, value)| match value {
-        // its product is counted by itself
+        // the product is counted as an instruction of its own
         Value::Binary(..) => usize::from(program.values.contraction(id).is_none()),
         Value::Fused(_) => 1,
         Value::BySign(_) => 2,
-        // a minus goes into the instruction that uses it, but for an output
+        // a minus is part of the instruction that uses the value; only an output needs an instruction for it
         _ => 0,
     });
     instructions.sum()
@@ -91,7 +91,7 @@ pub fn fused(program: &Program, fusing: Fusing) -> Program {
     fused.in_written_order()
 }
 
-/// Those contractions for which nothing waits longer, by value.
+/// The contractions that make no value wait longer, by value.
 fn soonest(program: &Program) -> Vec<Option<(Contraction, ValueId)>> {
     let (values, latency) = (&program.values, Latency::of(program));
     let mut contractions = vec![None; values.len()];
@@ -117,7 +117,7 @@ fn soonest(program: &Program) -> Vec<Option<(Contraction, ValueId)>> {
     contractions
 }
 
-/// A value by its place among the nodes of [`Sums`], and the sign it enters with.
+/// A value by its place among the nodes of [`Sums`], and the sign with which a sum uses it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Term {
     sign: Sign,
@@ -150,16 +150,16 @@ enum Named {
 /// the value itself, and behind it a sum of one term for a statement that gives a value another name.
 struct Sums<'p> {
     program: &'p Program,
-    /// How many values come before the statements: counted once, for it is asked of every value.
+    /// The number of values before the statements. It is stored, because it is needed for every value.
     before_statements: usize,
-    /// By value: its node.
+    /// The node of each value.
     terms: Vec<Term>,
-    /// By node: the terms of a sum.
+    /// For each node, the terms of the sum, if it is a sum.
     terms_of: Vec<Option<Vec<Term>>>,
-    /// By node: the name under which a statement computes it, if one does.
+    /// For each node, the name of the statement that computes it, if there is one.
     names: Vec<Option<Name>>,
     uses: Vec<usize>,
-    /// By node: computed by itself. What is not is a term of a longer sum or fused with all sums that it is in.
+    /// For each node, whether it is computed by itself. Other nodes are terms of sums, or fused with all their sums.
     is_computed: Vec<bool>,
 }
 
@@ -192,20 +192,20 @@ impl<'p> Sums<'p> {
     }
 
     fn term(&mut self, id: ValueId, value: Value) -> Term {
-        let of = |id: ValueId| self.terms[id.index()];
+        let term = |id: ValueId| self.terms[id.index()];
         let node = 2 * id.index();
         match value {
-            Value::Same(a) if !self.is_leaf(id) => of(a),
-            Value::Negative(a) if !self.is_leaf(id) => of(a).opposite(),
+            Value::Same(a) if !self.is_leaf(id) => term(a),
+            Value::Negative(a) if !self.is_leaf(id) => term(a).opposite(),
             Value::Binary(Operator::Sum, a, b) if !self.is_leaf(id) => {
-                self.terms_of[node] = Some(vec![of(a), of(b)]);
+                self.terms_of[node] = Some(vec![term(a), term(b)]);
                 Term::plus(node)
             }
             Value::Binary(Operator::Difference, a, b) if !self.is_leaf(id) => {
-                self.terms_of[node] = Some(vec![of(a), of(b).opposite()]);
+                self.terms_of[node] = Some(vec![term(a), term(b).opposite()]);
                 Term::plus(node)
             }
-            Value::Binary(_, a, b) if !self.is_leaf(id) => Term::plus(node).with(of(a).sign).with(of(b).sign),
+            Value::Binary(_, a, b) if !self.is_leaf(id) => Term::plus(node).with(term(a).sign).with(term(b).sign),
             _ => Term::plus(node),
         }
     }
@@ -224,7 +224,7 @@ impl<'p> Sums<'p> {
             }
             (Some(_), Sign::Plus) if is_free => node,
             (None, Sign::Plus) if is_free && is_product => node,
-            // another name of what has one, or its negative
+            // the value has a name already: this is a second name, or its negative
             _ => {
                 let node = 2 * id.index() + 1;
                 self.terms_of[node] = Some(vec![term]);
@@ -271,7 +271,7 @@ impl<'p> Sums<'p> {
         }
     }
 
-    /// Sums that are used in one sum alone become terms of it. Nodes stand behind what they use.
+    /// Sums that are used in only one sum become terms of this sum. A node comes after the nodes that it uses.
     fn flatten(&mut self, which: Named) {
         for index in 0..self.terms_of.len() {
             let Some(terms) = self.terms_of[index].take() else { continue };
@@ -303,7 +303,7 @@ impl<'p> Sums<'p> {
         let mut is_computed: Vec<_> = (0..nodes)
             .map(|node| self.is_computed[node] && !(in_sums[node] == self.uses[node] && self.may_be_fused(node)))
             .collect();
-        // sums that nothing begins yet, by their terms, and how many of them each term is in
+        // for each node, the sums without a computed term that contain it, and the number of these sums
         let mut is_started: Vec<_> = sums.iter().map(|terms| terms.iter().any(|term| is_computed[term.node])).collect();
         let mut sums_of: Vec<Vec<usize>> = vec![Vec::new(); nodes];
         let mut counts = vec![0_usize; nodes];
@@ -313,7 +313,7 @@ impl<'p> Sums<'p> {
                 sums_of[term.node].push(index);
             }
         }
-        // the first of those that begin most sums; counts fall, so what is too high in the queue goes back
+        // the node in the most of these sums comes first; counts become smaller, so an outdated entry is put back
         let counted = counts.iter().enumerate().filter(|(_, count)| **count > 0);
         let mut queue: BinaryHeap<_> = counted.map(|(node, &count)| (count, Reverse(node))).collect();
         while let Some((count, Reverse(node))) = queue.pop() {
@@ -345,7 +345,7 @@ impl<'p> Sums<'p> {
     }
 
     fn sort_terms(&mut self) {
-        // nodes stand behind what they use
+        // nodes come after the nodes that they use
         let mut known: Vec<usize> = Vec::with_capacity(self.terms_of.len());
         for node in 0..self.terms_of.len() {
             let at = if let Some(terms) = &mut self.terms_of[node] {
@@ -362,7 +362,7 @@ impl<'p> Sums<'p> {
         }
     }
 
-    /// The program that the sums have become.
+    /// The program after the sums have been rearranged.
     fn program(&self) -> Program {
         let program = self.program;
         let mut writing = Writing {
@@ -378,7 +378,8 @@ impl<'p> Sums<'p> {
                 statements.push(Statement { place: *place, name: *name, value });
             }
         }
-        let mut output = |of: &Output| Output { name: of.name, value: writing.operand(self.terms[of.value.index()]) };
+        let mut output =
+            |Output { name, value }: &Output| Output { name: *name, value: writing.operand(self.terms[value.index()]) };
         let outputs = program.outputs.iter().map(&mut output).collect();
         Program { values: writing.values, statements, outputs, ..program.clone() }.in_written_order()
     }
@@ -388,7 +389,7 @@ impl<'p> Sums<'p> {
 struct Writing<'s> {
     sums: &'s Sums<'s>,
     values: Values,
-    /// By node: where it has been written under its name.
+    /// For each node, the value that was written under its name.
     known: Vec<Option<ValueId>>,
 }
 
@@ -415,7 +416,7 @@ impl Writing<'_> {
         if self.sums.is_leaf(id) {
             return id;
         }
-        // the sign of a product is outside
+        // the sign of a product is applied after the product
         let is_scaled = matches!(value, Value::Binary(..));
         let value = value.map(|operand| {
             let term = self.sums.terms[operand.index()];

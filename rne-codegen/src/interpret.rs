@@ -2,9 +2,9 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::ir::{Component, Name, Quantity};
+use crate::ir::{Component, Name, Operator, Quantity};
 use crate::program::Program;
-use crate::values::{Contraction, Negated, Operator, Value, ValueId, Values};
+use crate::values::{Contraction, Negated, Value, ValueId, Values};
 
 /// The arguments of a function. What a function does not use may be empty or zero.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub struct Arguments<'a, T> {
 }
 
 impl<'a, T: Copy> Arguments<'a, T> {
-    /// Motion of the joints; everything else is `zero` or absent.
+    /// Arguments with the motion of the joints only. All other arguments are `zero` or absent.
     #[must_use]
     pub const fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T], zero: T) -> Self {
         let zeros = [zero; 3];
@@ -112,28 +112,28 @@ impl Interpreter {
         // the cosine of an angle comes after its sine
         let mut turn: Option<(ValueId, (T, T))> = None;
         for (id, value) in self.values.iter() {
-            let of = |id: ValueId| slots[id.index()];
+            let number = |id: ValueId| slots[id.index()];
             let mut turned = |angle: ValueId| match turn {
                 Some((of, pair)) if of == angle => pair,
-                _ => turn.insert((angle, sin_cos(of(angle)))).1,
+                _ => turn.insert((angle, sin_cos(number(angle)))).1,
             };
             let number = match value {
                 Value::Argument => arguments.input(self.values.name(id)?, &sin_cos)?,
                 Value::Constant(number) => constant(self.values.name(id), number)?,
                 Value::Sine(angle) => turned(angle).0,
                 Value::Cosine(angle) => turned(angle).1,
-                Value::Same(a) => of(a),
-                Value::Negative(a) => -of(a),
-                Value::Binary(Operator::Sum, a, b) => of(a) + of(b),
-                Value::Binary(Operator::Difference, a, b) => of(a) - of(b),
-                Value::Binary(Operator::Product, a, b) => of(a) * of(b),
-                Value::Binary(Operator::Quotient, a, b) => of(a) / of(b),
+                Value::Same(a) => number(a),
+                Value::Negative(a) => -number(a),
+                Value::Binary(Operator::Sum, a, b) => number(a) + number(b),
+                Value::Binary(Operator::Difference, a, b) => number(a) - number(b),
+                Value::Binary(Operator::Product, a, b) => number(a) * number(b),
+                Value::Binary(Operator::Quotient, a, b) => number(a) / number(b),
                 Value::Fused(Contraction { factors: [x, y], addend, negated }) => match negated {
-                    None => of(addend) + of(x) * of(y),
-                    Some(Negated::Factor) => of(addend) - of(x) * of(y),
-                    Some(Negated::Addend) => of(x) * of(y) - of(addend),
+                    None => number(addend) + number(x) * number(y),
+                    Some(Negated::Factor) => number(addend) - number(x) * number(y),
+                    Some(Negated::Addend) => number(x) * number(y) - number(addend),
                 },
-                Value::BySign([x, a, b]) => of(x).by_sign(of(a), of(b)),
+                Value::BySign([x, a, b]) => number(x).by_sign(number(a), number(b)),
             };
             slots.push(number);
         }
@@ -142,7 +142,7 @@ impl Interpreter {
 }
 
 impl<T: Copy> Arguments<'_, T> {
-    /// The argument of a name. Sines and cosines that are arguments are those of the positions.
+    /// The argument with this name. Arguments that are sines and cosines belong to the joint positions.
     fn input(&self, name: Name, sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
         match name.quantity {
             Quantity::Sine => Some(sin_cos(self.position(name.joint)?).0),
@@ -157,7 +157,7 @@ impl<T: Copy> Arguments<'_, T> {
 
     fn get(&self, name: Name) -> Option<T> {
         if let Quantity::Mass | Quantity::Com | Quantity::Inertia = name.quantity {
-            let index = Name::of_payload(name.joint).iter().position(|of| *of == name)?;
+            let index = Name::of_payload(name.joint).iter().position(|known| *known == name)?;
             return Some(self.payload[index]);
         }
         let Component::Vector(axis) = name.component else {

@@ -4,8 +4,9 @@
 //! A fused multiply-add is one instruction, but a sum that waits for its last term waits longer for it than for an
 //! addition. So a product is fused where that is sooner, or where nothing waits for the sum.
 
+use crate::ir::Operator;
 use crate::program::Program;
-use crate::values::{Contraction, Operator, Value, ValueId};
+use crate::values::{Contraction, Value, ValueId};
 
 /// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of
 /// these years.
@@ -17,7 +18,7 @@ pub(crate) const SUM: usize = 3;
 /// Cycles of a division.
 const QUOTIENT: usize = 14;
 
-/// Cycles after which sines and cosines are there.
+/// Number of cycles until sines and cosines are computed.
 const TURN: usize = 50;
 
 /// A sum with no more time to spare than this is waited for.
@@ -77,7 +78,7 @@ impl Latency {
             latency.known.push(at);
         }
         latency.total = program.outputs.iter().map(|output| latency.known[output.value.index()]).max().unwrap_or(0);
-        // a value stands behind its operands, so all that follows it is known
+        // a value comes after its operands, so in this direction all its uses are known
         for (id, value) in values.iter().skip(first).rev() {
             let rest = latency.rests[id.index()];
             if let Some((contraction, _)) = values.contraction(id) {
@@ -97,7 +98,7 @@ impl Latency {
         self.rests[id.index()]
     }
 
-    /// Whether the product of a contraction is better fused with what it is added to; `rest` follows the sum.
+    /// Whether it is faster to fuse the product of a contraction with the addend; `rest` is the wait after the sum.
     pub(crate) fn is_fused(&self, contraction: &Contraction, rest: usize) -> bool {
         let Ways { fused, apart } = self.ways(contraction);
         fused <= apart || apart + rest + SPARE < self.total

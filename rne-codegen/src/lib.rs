@@ -22,6 +22,7 @@ mod exact;
 mod expression;
 pub mod fma;
 mod formulate;
+mod formulation;
 mod function;
 mod interpret;
 mod ir;
@@ -32,6 +33,7 @@ mod pipeline;
 pub mod plan;
 mod program;
 mod prove;
+mod quantity;
 mod reduced;
 mod refusal;
 mod values;
@@ -42,7 +44,7 @@ use rne_model::Robot;
 
 pub use argument_array::ArgumentArray;
 pub use equation::{Equation, Operation as TermOperation, Term};
-pub use error::{CompileError, Extreme, Remedy, Suspect};
+pub use error::{CompileError, Extreme, GraphMistake, Remedy, Suspect};
 pub use exact::ExactFunction;
 pub use expression::{Expression, ExpressionKind};
 pub use function::{
@@ -52,7 +54,7 @@ pub use function::{
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::{
     Axis, Cause, Causes, Component, Derivation, ExactConstant, ExactStep, Fold, FoldReport, Line, Name, Operation,
-    Place, Quantity, Residue, Step, WithRespectTo,
+    Operator, Place, Quantity, Residue, Sign, Step, WithRespectTo,
 };
 pub use named::UnknownName;
 pub use pipeline::Target;
@@ -62,9 +64,10 @@ pub use program::{
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
-pub use values::{Contraction, Negated, Operator, Sign, Value, ValueId, Values};
+pub use values::{Contraction, Negated, Value, ValueId, Values};
 
-use crate::pipeline::{Formulation, LARGEST, seven_steps_within};
+use crate::formulation::Formulation;
+use crate::pipeline::{LARGEST, seven_steps_within};
 use crate::plan::PlanSet;
 use crate::prove::Reference;
 
@@ -103,7 +106,7 @@ impl<'r> Compiler<'r> {
         Self { plans: OnceLock::from(plans.into()), ..self }
     }
 
-    /// Arranged for another target.
+    /// Arranges the programs for another target.
     #[must_use]
     pub fn for_target(self, target: Target) -> Self {
         Self { target, ..self }
@@ -202,7 +205,8 @@ impl<'r> Compiler<'r> {
         // the search of a plan computes numbers that no program has
         self.plans();
         let (compiled, ways) = ir::derivation::recorded(|| self.compile(program.function, program.form));
-        Ok(ways.derivation(&compiled?))
+        let constants: Vec<_> = compiled?.constants().map(|constant| (constant.name, constant.value)).collect();
+        Ok(ways.derivation(&constants))
     }
 
     /// By the plan, with the algorithm that takes the fewest operations.

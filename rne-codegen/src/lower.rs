@@ -11,10 +11,10 @@ use writing::Writing;
 use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::ir::derivation;
-use crate::ir::{ExactAngle, Name, Number, Op, Operation, Place, Quantity, Ref, Step, Traced};
-use crate::program::{Constant, Exactly, Program, Resolution, ResolvedAs};
+use crate::ir::{ExactAngle, Exactly, Name, Number, Op, Operation, Place, Quantity, Ref, Sign, Step, Traced};
+use crate::program::{Constant, Program, Resolution, ResolvedAs};
 use crate::reduced::Algorithm;
-use crate::values::{Sign, Value, Values};
+use crate::values::{Value, Values};
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);

@@ -4,14 +4,12 @@ use rne_model::Robot;
 
 use crate::error::CompileError;
 use crate::fma;
-use crate::formulate;
-use crate::function::{Argument, Form, Function};
-use crate::ir::{Builder, Cost, Embedding, Name, Policy, Quantity, Traced};
+use crate::formulation::Formulation;
+use crate::function::{Form, Function};
+use crate::ir::{Exactly, Policy, Quantity};
 use crate::lower::{Heading, lower};
-use crate::plan::{self, Plan};
-use crate::program::{Exactly, Program, Proof, Scales};
+use crate::program::{Program, Proof};
 use crate::prove::{self, Reference};
-use crate::reduced::Algorithm;
 
 /// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
 /// nothing folds. Its text is some 15 MB.
@@ -37,64 +35,7 @@ impl Target {
     }
 }
 
-/// A function as a graph that has not been lowered: what it returns, by name, and the graph of that with its trace.
-#[allow(missing_debug_implementations)] // a graph of thousands of nodes
-pub struct Formulation {
-    pub(crate) names: Vec<Name>,
-    pub(crate) traced: Traced,
-    /// The factors of lengths and forces, if it measures them in units of the arm.
-    pub(crate) scales: Option<Scales>,
-}
-
 impl Formulation {
-    /// The plain formulas of a function.
-    pub(crate) fn plain(policy: Policy, robot: &Robot, function: Function) -> Self {
-        Self::on(Builder::traced(policy, Embedding::default(), function), robot, function)
-    }
-
-    /// The seven steps with the formulas as they are before anything folds.
-    fn explained(robot: &Robot, function: Function) -> Self {
-        Self::on(Builder::explained(Policy::Structure, Embedding::default(), function), robot, function)
-    }
-
-    fn on(builder: Builder, robot: &Robot, function: Function) -> Self {
-        let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
-        Self { names, traced: builder.finish(outputs), scales: None }
-    }
-
-    /// The plain formulas with every value computed once, however often and in whatever way they compute it: the
-    /// reduced form of what has no recursion of its own.
-    #[must_use]
-    pub fn numbered(robot: &Robot, function: Function) -> Self {
-        let plain = Self::plain(Policy::Value, robot, function);
-        Self { traced: plain.traced.numbered(), ..plain }
-    }
-
-    /// A function written by one algorithm under a plan, every value once.
-    ///
-    /// # Errors
-    /// When the plan does not fit the robot.
-    pub fn by_plan(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Result<Self, CompileError> {
-        if !robot.is_serial() {
-            return Err(CompileError::PlanDoesNotFit { robot: robot.name.clone() });
-        }
-        let sphere = plan.gyrostat && !function.takes(Argument::Payload);
-        let plan = &Plan { gyrostat: sphere, ..plan.clone() };
-        let written = plan::frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
-        written.ok_or_else(|| CompileError::PlanDoesNotFit { robot: robot.name.clone() })
-    }
-
-    /// How its constants are read in the fields of the proof.
-    pub(crate) fn embedding(&self) -> Embedding {
-        self.traced.graph.embedding()
-    }
-
-    /// Its operations.
-    #[must_use]
-    pub fn cost(&self) -> Cost {
-        self.traced.graph.cost(&mut Vec::new())
-    }
-
     /// The reduced form that it is, with its constants, not proved.
     pub(crate) fn lowered(self, robot: &Robot, function: Function) -> Result<(Program, Exactly), CompileError> {
         lower(&Heading { robot, function, form: Form::Reduced }, self.traced, &self.names)

@@ -2,16 +2,16 @@
 //!
 //! One `Program`, many renderers: tokens, text, counts, an interpreter, a machine.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use crate::CompileError;
 use crate::equation::Equation;
 use crate::expression::Expression;
 use crate::function::{Form, Function};
-use crate::ir::{Causes, ExactAngle, FoldReport, Name, Number, Place};
+use crate::ir::{Causes, FoldReport, Name, Operator, Place, Sign};
 use crate::reduced::Algorithm;
 use crate::refusal::Refusal;
-use crate::values::{Operator, Sign, Value, ValueId, Values};
+use crate::values::{Value, ValueId, Values};
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Program {
     pub parameters: usize,
     /// The function.
     pub function: Function,
-    /// The frame that it is taken at instead of the tip: the name in the robot file.
+    /// The frame of the function, by its name in the robot file; `None` for the tip.
     pub frame: Option<String>,
     /// The name of its code: that of the function, or at a frame `jacobian_of_camera`.
     pub name: String,
@@ -96,10 +96,7 @@ impl Default for Scales {
     }
 }
 
-/// The exact constants of a program: each as a number and, if it is an angle, as a turn.
-pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
-
-/// A named constant. A number that is two entries of the table stands under each name that the statements use.
+/// A named constant. A number that is two entries of the table has each of the names that the statements use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     /// Its name.
@@ -246,14 +243,14 @@ impl Program {
             moving.value(id);
         }
         let angles = moving.statements(&self.angles);
-        let mut turn = |of: &SineCosine| SineCosine { angle: moving.value(of.angle), ..of.clone() };
+        let mut turn = |old: &SineCosine| SineCosine { angle: moving.value(old.angle), ..old.clone() };
         let sines_and_cosines = self.sines_and_cosines.iter().map(&mut turn).collect();
         let is_turn = |(_, value): &(ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
         for (id, _) in self.values.iter().filter(is_turn) {
             moving.value(id);
         }
         let statements = moving.statements(&self.statements);
-        let mut output = |of: &Output| Output { value: moving.value(of.value), ..of.clone() };
+        let mut output = |old: &Output| Output { value: moving.value(old.value), ..old.clone() };
         let outputs = self.outputs.iter().map(&mut output).collect();
         let values = moving.values;
         Self { values, angles, sines_and_cosines, statements, outputs, ..self }
@@ -333,6 +330,6 @@ impl Moving<'_> {
     }
 
     fn statements(&mut self, old: &[Statement]) -> Vec<Statement> {
-        old.iter().map(|of| Statement { value: self.value(of.value), ..of.clone() }).collect()
+        old.iter().map(|old| Statement { value: self.value(old.value), ..old.clone() }).collect()
     }
 }

@@ -9,12 +9,12 @@ use rne_model::{JointKind, Robot};
 use crate::exact::ExactFunction;
 use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
-use crate::ir::{Axis, Embedding, Input, Name, Quantity, Residue, SamplePoint, operators};
-use crate::program::{Exactly, Program, Proof};
+use crate::ir::{Axis, Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, operators};
+use crate::program::{Program, Proof};
 use crate::refusal::largest_rounding;
 use crate::{CompileError, Suspect};
 
-/// Points of the fields at which torques are compared.
+/// Number of random points in each field at which torques are compared.
 const POINTS: u64 = 4;
 /// States at which rounding is measured when code is generated.
 const STATES: usize = 24;

@@ -4,7 +4,7 @@
 //! native code take it as it is, text nests a value without a name where it is used
 //! ([`Expression`](crate::Expression)).
 
-use crate::ir::Name;
+use crate::ir::{Name, Operator};
 
 /// A value of a program, by its place in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -24,7 +24,7 @@ impl ValueId {
     }
 }
 
-/// How a value is computed. Its operands stand before it in the list.
+/// How a value is computed. Its operands come before it in the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// An argument of the function.
@@ -35,48 +35,26 @@ pub enum Value {
     Sine(ValueId),
     /// The cosine of an angle.
     Cosine(ValueId),
-    /// Another name of a value.
+    /// The same value under another name.
     Same(ValueId),
     /// -a
     Negative(ValueId),
     /// Two operands with an operator between them.
     Binary(Operator, ValueId, ValueId),
-    /// A product and what it is added to, rounded once where the processor can.
+    /// A product plus an addend, rounded once if the processor has this instruction.
     Fused(Contraction),
-    /// One of two values by the sign of the first: positive, negative; 0 where that is 0.
+    /// `[x, a, b]`: a where x is positive, b where x is negative, 0 where x is 0.
     BySign([ValueId; 3]),
 }
 
-/// An operator between two operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Operator {
-    /// a + b
-    Sum,
-    /// a - b
-    Difference,
-    /// a · b
-    Product,
-    /// a / b
-    Quotient,
-}
-
-/// Whether a value enters as itself or negated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// As itself.
-    Plus,
-    /// Negated.
-    Minus,
-}
-
-/// A sum or difference as x y + z, which may be one instruction.
+/// A sum or difference with a product, x y + z, which a processor may compute by one instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contraction {
     /// x and y.
     pub factors: [ValueId; 2],
     /// z.
     pub addend: ValueId,
-    /// The part that a difference negates.
+    /// The part that a difference negates; `None` for a sum.
     pub negated: Option<Negated>,
 }
 
@@ -104,23 +82,23 @@ impl Value {
 
     /// The same value with other operands.
     #[must_use]
-    pub fn map(self, mut of: impl FnMut(ValueId) -> ValueId) -> Self {
+    pub fn map(self, mut change: impl FnMut(ValueId) -> ValueId) -> Self {
         match self {
             Self::Argument | Self::Constant(_) => self,
-            Self::Sine(a) => Self::Sine(of(a)),
-            Self::Cosine(a) => Self::Cosine(of(a)),
-            Self::Same(a) => Self::Same(of(a)),
-            Self::Negative(a) => Self::Negative(of(a)),
-            Self::Binary(operator, a, b) => Self::Binary(operator, of(a), of(b)),
+            Self::Sine(a) => Self::Sine(change(a)),
+            Self::Cosine(a) => Self::Cosine(change(a)),
+            Self::Same(a) => Self::Same(change(a)),
+            Self::Negative(a) => Self::Negative(change(a)),
+            Self::Binary(operator, a, b) => Self::Binary(operator, change(a), change(b)),
             Self::Fused(Contraction { factors, addend, negated }) => {
-                Self::Fused(Contraction { addend: of(addend), factors: factors.map(of), negated })
+                Self::Fused(Contraction { addend: change(addend), factors: factors.map(change), negated })
             }
-            Self::BySign(operands) => Self::BySign(operands.map(of)),
+            Self::BySign(operands) => Self::BySign(operands.map(change)),
         }
     }
 }
 
-/// The values of a program. A value without a name is used once.
+/// The values of a program. A value without a name is used only once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Values {
     list: Vec<Value>,
@@ -157,7 +135,7 @@ impl Values {
         self.list.iter().enumerate().map(|(index, value)| (ValueId::at(index), *value))
     }
 
-    /// Writes a value behind the others.
+    /// Adds a value to the end of the list.
     ///
     /// # Panics
     /// When there are 2³² values already.

@@ -1,5 +1,7 @@
 //! From a tree of links to the chain between a base and a tip: what is fixed to a link is lumped into it.
 
+mod follower;
+
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
@@ -10,7 +12,7 @@ use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::selection::{End, Selection, link, locks, path, refuse_value, tip};
 use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted, some};
-use crate::urdf::{Joint, Link, Mimic, Urdf};
+use crate::urdf::{Joint, Link, Urdf};
 
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
@@ -217,94 +219,6 @@ impl Walk<'_> {
             _ => Pose::identity(),
         };
         Ok(place * moved)
-    }
-
-    /// The position at which a joint is held, if it is held. One that follows a held one is held by it.
-    fn held(&mut self, index: usize) -> Result<Option<f64>, Report> {
-        if !self.selection.lock_others && !self.locks.contains_key(&index) {
-            return Ok(None);
-        }
-        self.look_at_follower(index);
-        let value = self.held_by(self.follows(index)?);
-        self.look_at_locked(index, value);
-        Ok(Some(value))
-    }
-
-    /// The position at which a joint is held by the joints that it follows.
-    fn held_by(&self, (mimics, leader): (Vec<&Mimic>, usize)) -> f64 {
-        let start = self.locks.get(&leader).copied().unwrap_or(0.0);
-        mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)
-    }
-
-    /// A joint that is held by name elsewhere than where the held joint that it follows has it: no state of the robot.
-    fn look_at_locked(&mut self, index: usize, value: f64) {
-        let joint = &self.urdf.joints[index];
-        let leader = joint.mimic.as_ref().filter(|_| self.locks.contains_key(&index)).and_then(|mimic| {
-            let (mut mimics, leader) = self.follows(mimic.leader?).ok()?;
-            mimics.insert(0, mimic);
-            (!self.moving.contains(&leader)).then_some((mimics, leader))
-        });
-        let Some((mimics, leader)) = leader else { return };
-        let followed = self.held_by((mimics, leader));
-        if (followed - value).abs() > 1e-9 * followed.abs().max(1.0) {
-            let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
-            self.told.remarks.push(format!(
-                "the joint {name} is locked at {value}, although it follows {leader}, whose position would put it at \
-                 {followed}"
-            ));
-        }
-    }
-
-    /// The joints that decide where a joint is: those that it follows, one after the other, up to one that is held by
-    /// name or follows none.
-    fn follows(&self, index: usize) -> Result<(Vec<&Mimic>, usize), Report> {
-        let joints = &self.urdf.joints;
-        let (mut mimics, mut leader) = (Vec::new(), index);
-        while let Some(mimic) = joints[leader].mimic.as_ref().filter(|_| !self.locks.contains_key(&leader)) {
-            let joint = &joints[leader];
-            let error = |message: String| {
-                let help = "correct the `mimic` of this joint, or lock the joint".to_owned();
-                self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name))
-            };
-            leader = mimic.leader.ok_or_else(|| {
-                let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
-                error(format!("the joint {follower} follows {leader}, but the file has no such joint"))
-            })?;
-            mimics.push(mimic);
-            if mimics.len() > joints.len() {
-                let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
-                return Err(error(format!(
-                    "the joint {follower} follows {leader}, and the `mimic` elements form a circle"
-                )));
-            }
-        }
-        Ok((mimics, leader))
-    }
-
-    /// The moving joint of the chain that a joint follows, if it does, however it is held itself.
-    fn moving_leader(&self, index: usize) -> Option<usize> {
-        let mimic = self.urdf.joints[index].mimic.as_ref()?;
-        let (mimics, leader) = self.follows(mimic.leader?).ok()?;
-        let moves = self.moving.contains(&leader) && mimics.iter().all(|mimic| mimic.multiplier != 0.0);
-        (moves && mimic.multiplier != 0.0).then_some(leader)
-    }
-
-    /// Looks whether a joint off the chain follows a moving joint of the chain. A table cannot say that it moves, so it
-    /// is refused at the end of the walk, unless it is held by name or nothing that it carries has mass.
-    fn look_at_follower(&mut self, index: usize) {
-        let Some(leader) = self.moving_leader(index) else { return };
-        let joint = &self.urdf.joints[index];
-        let is_locked = self.locks.contains_key(&index);
-        if !is_locked && self.carries_mass(joint.child) {
-            self.followers.push((index, leader));
-            return;
-        }
-        let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
-        self.told.remarks.push(if is_locked {
-            format!("the joint {name} is locked, although it follows {leader}, which moves")
-        } else {
-            format!("the joint {name} follows {leader}, which moves; no link after it has mass, so rne locks it")
-        });
     }
 
     /// Whether a link, or a link after it, has mass or inertia.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use rne_model::{FixedFrame, Frame, Robot};
+use rne_model::{Angle, FixedFrame, Frame, Robot, Transform};
 
 use crate::chain::{Chain, ChainFrame};
-use crate::import::transform;
+use crate::geometry::{Pose, Vector};
 use crate::table::Table;
 
 /// The frames of a chain as a robot file has them: from the link frames of the table.
@@ -40,4 +40,11 @@ pub(crate) fn as_identifiers(frames: Vec<ChainFrame>, robot: &Robot) -> Vec<Chai
         ChainFrame { name, ..frame }
     };
     frames.into_iter().map(named).collect()
+}
+
+/// A placement of the robot file.
+pub(crate) fn transform(pose: Pose) -> Transform {
+    let size = |v: Vector| v.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
+    let xyz = pose.translation.rounded(size(pose.translation)).map(|x| if x.abs() < 1e-15 { 0.0 } else { x });
+    Transform { xyz, rpy: pose.rotation.to_rpy().map(Angle::new) }
 }

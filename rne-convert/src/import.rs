@@ -2,16 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use rne_model::{
-    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot, Row, RunTime,
-    Transform,
-};
+use rne_model::{Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot, Row, RunTime};
 
 use crate::chain::{Chain, Extracted, extract};
 use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
-use crate::frames::{as_identifiers, named_frames};
-use crate::geometry::{Pose, Vector};
+use crate::frames::{as_identifiers, named_frames, transform};
 use crate::robot_file;
 use crate::selection::Selection;
 use crate::snap::Snapped;
@@ -226,13 +222,6 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         run_time: RunTime::default(),
         rotors: false,
     }
-}
-
-/// A placement of the robot file.
-pub(crate) fn transform(pose: Pose) -> Transform {
-    let size = |v: Vector| v.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
-    let xyz = pose.translation.rounded(size(pose.translation)).map(|x| if x.abs() < 1e-15 { 0.0 } else { x });
-    Transform { xyz, rpy: pose.rotation.to_rpy().map(Angle::new) }
 }
 
 /// A name for a robot file.

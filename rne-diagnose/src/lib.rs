@@ -66,12 +66,12 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
     if let Some(Tried { error, fits: true }) = right {
         return Ok(Diagnosis::Agrees(error));
     }
-    let slips = Slip::all_of(robot);
+    let slips = Slip::candidates(robot);
     let explains = |slips: &[Slip]| -> Result<Option<Explanation>, WrongLength> {
         let tried = Tried::of(robot, seen, slips)?.filter(|tried| tried.fits);
         Ok(tried.map(|Tried { error, .. }| Explanation { slips: slips.to_vec(), error }))
     };
-    let alone = slips.iter().copied().chain(Typo::all_of(robot).into_iter().map(Slip::Typo));
+    let alone = slips.iter().copied().chain(Typo::candidates(robot).into_iter().map(Slip::Typo));
     let found = alone.filter_map(|slip| explains(&[slip]).transpose()).collect::<Result<Vec<_>, _>>()?;
     if !found.is_empty() {
         return Ok(Diagnosis::Explained(found));

@@ -82,7 +82,7 @@ slips! {
 impl Slip {
     /// All that could be made with a robot, singly and in pairs: what concerns all links, one joint or a formula.
     #[must_use]
-    pub fn all_of(robot: &Robot) -> Vec<Self> {
+    pub fn candidates(robot: &Robot) -> Vec<Self> {
         let mut all = vec![Self::OtherConvention, Self::GravityReversed, Self::NoGravity];
         let turned = (0..3).flat_map(|axis| [Self::GravityAlong(axis, false), Self::GravityAlong(axis, true)]);
         let mut known = vec![robot.gravity, robot.gravity.map(|g| -g)];

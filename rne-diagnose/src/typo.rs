@@ -16,7 +16,7 @@ pub enum Typo {
 impl Typo {
     /// All that make another arm: zero has no sign, nor has half a turn.
     #[must_use]
-    pub fn all_of(robot: &Robot) -> Vec<Self> {
+    pub fn candidates(robot: &Robot) -> Vec<Self> {
         let mut all = Vec::new();
         for (joint, row) in robot.rows().enumerate() {
             all.extend((row.dh.alpha.sin != 0.0).then_some(Self::Alpha(joint)));

@@ -428,7 +428,7 @@ fn terms_add_up() {
 }
 
 /// Every value of a worksheet, as somebody gives it.
-fn all_of(sheet: &Worksheet) -> Vec<GivenValue> {
+fn all_values(sheet: &Worksheet) -> Vec<GivenValue> {
     let of_line = |line: &rne_diagnose::worksheet::Line| {
         let (joint, quantity) = (line.joint, line.quantity);
         let given =
@@ -443,7 +443,7 @@ fn a_worksheet_agrees_with_itself() {
     for robot in [six("standard"), shipped("stanford"), shipped("panda")] {
         let at = state(robot.dof());
         for sheet in ALL_AXES.map(|axes| Worksheet::new(&robot, &at, axes).unwrap()) {
-            let given = all_of(&sheet);
+            let given = all_values(&sheet);
             let Comparison { compared, differing, steps_not_given, first, .. } =
                 sheet.compare(&robot, &at, &given, 15).unwrap();
             assert_eq!((compared, differing, steps_not_given, first), (given.len(), 0, vec![], None));
@@ -463,7 +463,7 @@ fn the_first_wrong_component_is_named() {
     {
         let at = state(robot.dof());
         let sheet = Worksheet::new(&robot, &at, axes).unwrap();
-        let right = all_of(&sheet);
+        let right = all_values(&sheet);
         // some of all, and more of a joint in the middle
         for (index, wrong) in right
             .iter()
@@ -506,7 +506,7 @@ fn a_term_that_is_left_out_is_named() {
                 if line.terms.len() < 2 {
                     continue;
                 }
-                let mut given = all_of(&sheet);
+                let mut given = all_values(&sheet);
                 let before = sheet.lines[..index].iter().map(|line| line.values.len()).sum::<usize>();
                 for (value, missing) in given[before..].iter_mut().zip(&term.values) {
                     value.value -= missing;
@@ -555,7 +555,7 @@ fn a_slip_that_explains_every_value_comes_first() {
     for axes in ALL_AXES {
         let sheet = Worksheet::new(&right, &at, axes).unwrap();
         for (wrong, slip) in &cases {
-            let given = all_of(&Worksheet::new(wrong, &at, axes).unwrap());
+            let given = all_values(&Worksheet::new(wrong, &at, axes).unwrap());
             let first = sheet.compare(&right, &at, &given, 6).unwrap().first.unwrap();
             let reason = first.reasons.first().unwrap();
             assert_eq!(
@@ -576,7 +576,7 @@ fn slips_on_one_line() {
     let told = |joint: usize, quantity: Quantity, change: &dyn Fn(&mut [f64])| {
         let mut values = sheet.line(joint, quantity).unwrap().values.clone();
         change(&mut values);
-        let mut given = all_of(&sheet);
+        let mut given = all_values(&sheet);
         for value in given.iter_mut().filter(|value| (value.joint, value.quantity) == (joint, quantity)) {
             value.value = values[value.component];
         }
@@ -609,8 +609,10 @@ fn misprints_of_step_3_are_named() {
     at.q[2] = 0.35;
     let sheet = Worksheet::new(&robot, &at, Axes::Joint).unwrap();
     // ċ with b for ḃ, from the recursion with a wrong rate
-    let mut given: Vec<GivenValue> =
-        all_of(&sheet).into_iter().filter(|value| value.quantity == Quantity::Velocity && value.joint == 3).collect();
+    let mut given: Vec<GivenValue> = all_values(&sheet)
+        .into_iter()
+        .filter(|value| value.quantity == Quantity::Velocity && value.joint == 3)
+        .collect();
     let b = sheet.line(3, Quantity::Offset).unwrap().values[0];
     given[2].value += b - at.qd[2];
     let first = sheet.compare(&robot, &at, &given, 4).unwrap().first.unwrap();
@@ -632,7 +634,7 @@ fn a_hand_that_rounds_is_right() {
             let sheet = Worksheet::new(&robot, &at, Axes::Base).unwrap();
             let by_hand = |count: usize| {
                 let links = recursion(&robot, &at, |x| digits(x, count));
-                let mut given = all_of(&sheet);
+                let mut given = all_values(&sheet);
                 for value in given.iter_mut().filter(|value| value.quantity.step() > 0) {
                     let line = expected(&links, &robot, &at, Axes::Base, value.joint, value.quantity);
                     value.value = digits(line[value.component], count);

@@ -1,4 +1,4 @@
-//! Text whose parts say what they are, for renderers that colour, link or typeset them.
+//! Text whose parts have a kind, for renderers that colour, link or typeset them.
 
 use std::fmt;
 use std::ops::{Add, Range};

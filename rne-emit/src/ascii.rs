@@ -7,7 +7,7 @@ const RAISED: [&str; 2] = ["ᵀ⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "T-+012345678
 /// Letters with dots in one character: the letter, and how many dots it has.
 const DOTTED: [(char, char, usize); 5] = [('Ṁ', 'M', 1), ('ċ', 'c', 1), ('ḋ', 'd', 1), ('ẋ', 'x', 1), ('ẍ', 'x', 2)];
 
-/// Letters and their spellings, pair by pair.
+/// Pairs of a letter and its spelling in ASCII.
 const SPELLINGS: &str = "\
     α alpha β beta γ gamma Δ Delta δ delta ε epsilon θ theta Θ Theta λ lambda μ mu π pi ρ rho Σ sum σ sigma τ tau \
     φ phi ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 … ... \

@@ -1,4 +1,4 @@
-//! How an expression is written: where parentheses stand, and how wide its parts are.
+//! The text of an expression: its parentheses, and the width of its parts.
 
 use std::cell::Cell;
 
@@ -7,7 +7,7 @@ use rne_codegen::{Expression, ExpressionKind, Negated, Operator};
 use super::annotated::{Annotated, Part};
 use super::syntax::Syntax;
 
-/// Where an operand stands.
+/// The position of an operand in an expression.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Position {
     /// Left of + or -.
@@ -24,11 +24,11 @@ pub(super) enum Position {
 
 /// How an operator is written.
 pub(super) trait Infix {
-    /// As Rust and C write it.
+    /// The character of the operator in Rust and C.
     fn sign(self) -> char;
-    /// With a blank on each side.
+    /// The sign with a blank on each side.
     fn between_blanks(self) -> &'static str;
-    /// Where its operands stand.
+    /// The positions of the two operands.
     fn positions(self) -> [Position; 2];
 }
 
@@ -86,7 +86,7 @@ pub(super) fn line(syntax: Syntax, expression: Expression<'_>) -> Annotated {
 /// An expression in a language, of whose every part the width is known: nobody writes a part in order to measure it.
 #[derive(Default)]
 pub(super) struct Measured {
-    /// The parts. An operand stands before what it is an operand of, so the last one is the whole expression.
+    /// The parts. An operand comes before the part that uses it, so the last part is the whole expression.
     parts: Vec<Measure>,
     /// How many parts have been looked at, to be measured, laid out or written.
     pub(super) visits: Cell<usize>,
@@ -96,7 +96,7 @@ pub(super) struct Measured {
 pub(super) struct Measure {
     /// The columns that it takes on one line. Code is ASCII.
     pub(super) width: usize,
-    /// Whether it begins with a parenthesis.
+    /// Whether the text begins with a parenthesis.
     pub(super) opens: bool,
     pub(super) kind: Kind,
 }
@@ -212,7 +212,7 @@ impl Measured {
         operands
     }
 
-    /// Writes a part on one line, behind what is there.
+    /// Writes a part on one line, after the text that is already written.
     pub(super) fn write(&self, part: usize, text: &mut Annotated) {
         match &self.visit(part).kind {
             Kind::Word(word) => text.push(word),

@@ -108,10 +108,12 @@ fn of_joint(templates: Templates, joint: usize) -> Vec<Formula> {
     if joint == ANY {
         return written(templates, ["i", "h", "j"].map(str::to_owned)).map(formula).collect();
     }
-    written(templates, [joint, joint.saturating_sub(1), joint + 1].map(|of| of.to_string())).map(formula).collect()
+    written(templates, [joint, joint.saturating_sub(1), joint + 1].map(|number| number.to_string()))
+        .map(formula)
+        .collect()
 }
 
-/// In the place of a joint's number: letters, i for the joint, h = i - 1 and j = i + 1 for its neighbours.
+/// The letters in the place of a joint's number: i for the joint, h = i - 1 and j = i + 1 for its neighbours.
 pub(super) const ANY: usize = usize::MAX;
 
 fn written(templates: Templates, [i, p, n]: [String; 3]) -> impl Iterator<Item = (Quantity, String)> {

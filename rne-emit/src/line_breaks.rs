@@ -23,7 +23,7 @@ pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expressi
 struct Room {
     /// Columns that are left on its first line, less what must follow it.
     width: usize,
-    /// Indentation of the block in which it stands; its further lines are indented by four more.
+    /// Indentation of the surrounding block; continuation lines are indented by four more columns.
     indent: usize,
     /// Columns used on its first line.
     used: usize,
@@ -203,7 +203,7 @@ impl LineBreaks {
         Some(Placed { operand, room, extent: self.extent(operand.part, room)? })
     }
 
-    /// All operands on one line, but for what the last one breaks: that is allowed where little stands before it.
+    /// All operands on one line; only the last may be broken, and only if the text before it is short.
     fn last_line_broken(&mut self, operator: Operator, operands: &[Operand], room: Room) -> Option<Layout> {
         const LITTLE: usize = 4;
         let (last, others) = operands.split_last()?;
@@ -236,7 +236,7 @@ impl LineBreaks {
         let mut layout = Layout::default();
         layout.operand(self.place(*first, room)?);
         for other in others {
-            // what is shorter than the indentation is no line
+            // a text that is shorter than the indentation gets no line of its own
             let Extent { breaks, last, blanks, .. } = layout.extent;
             let used = if breaks > 0 { 0 } else { room.used };
             let beside = if last + used <= next.used { room.behind(sign.len() + last - blanks) } else { None };

@@ -19,7 +19,7 @@ use super::table::angle;
 use super::text::returned;
 use super::wrap::{TIED, WIDTH, fill};
 
-/// The part of a program to list, and how much to say.
+/// The part of a program to list, and how much of it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Selection {
     /// One joint only, counted from 1.
@@ -49,12 +49,12 @@ pub struct Listing<'a> {
     pub sections: Vec<Section<'a>>,
 }
 
-/// Lines that stand together: what one step has to say of one joint.
+/// Lines of one section: the statements of one step for one joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section<'a> {
     /// The joint and the step, and of which variable the statements are derivatives; `None` for what belongs to no
     /// step: the constants and angles at the head of a function, what it returns, and a program without sections.
-    pub of: Option<(usize, Step, Option<WithRespectTo>)>,
+    pub place: Option<(usize, Step, Option<WithRespectTo>)>,
     /// Its lines, in order.
     pub lines: Vec<Line<'a>>,
 }
@@ -70,7 +70,7 @@ pub enum Line<'a> {
     Constant(Constant),
     /// A sine and cosine at the head of the function.
     SineCosine(&'a SineCosine, Expression<'a>),
-    /// A statement and what it computes.
+    /// A statement and its value.
     Statement(&'a Statement, Expression<'a>),
     /// The fate of components that have no statement.
     Resolution {
@@ -99,7 +99,7 @@ pub struct Folds {
 }
 
 impl Listing<'_> {
-    /// Whether nothing stands there.
+    /// Whether the text is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.sections.is_empty()
@@ -200,7 +200,7 @@ impl fmt::Display for Folds {
     }
 }
 
-/// The statements of a program with what there is to say of each joint and step.
+/// The statements of a program, with the headings and explanations of each joint and step.
 #[must_use]
 pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Listing<'a> {
     // only what returns torques keeps to joints and steps
@@ -225,7 +225,7 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
         let statements = program.statements.iter().filter(|statement| of_parameters.contains(&statement.name));
         let lines =
             std::iter::once(heading).chain(statements.map(|statement| Line::statement(program, statement))).collect();
-        sections.push(Section { of: None, lines });
+        sections.push(Section { place: None, lines });
     }
     // its joint does not move
     let is_of_links = |joint, step| joint <= program.dof || !matches!(step, Step::Velocity | Step::Torque);
@@ -246,7 +246,7 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
             lines.extend(resolutions(robot, program, joint, step));
             lines.extend(folds(robot, &program.fold_report, here, what.reasons).map(Line::Folds));
         }
-        sections.push(Section { of: Some((joint, step, None)), lines });
+        sections.push(Section { place: Some((joint, step, None)), lines });
     }
     sections
 }
@@ -273,7 +273,7 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
         let constants = program.constants().map(Line::Constant);
         let angles = program.angles.iter().map(|statement| Line::statement(program, statement));
         let turns = program.sines_and_cosines.iter().map(|turn| Line::turn(program, turn));
-        sections.push(Section { of: None, lines: constants.chain(angles).chain(turns).collect() });
+        sections.push(Section { place: None, lines: constants.chain(angles).chain(turns).collect() });
     }
     let mut last_opening = None;
     for statement in &program.statements {
@@ -288,8 +288,8 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
             (None, _) => heading(robot, program, joint, step),
         };
         if last_opening.as_ref() != Some(&opening) {
-            let of = (!program.is_rewritten).then_some((joint, step, by));
-            sections.push(Section { of, lines: opening.clone() });
+            let place = (!program.is_rewritten).then_some((joint, step, by));
+            sections.push(Section { place, lines: opening.clone() });
             last_opening = Some(opening);
         }
         if let Some(section) = sections.last_mut() {
@@ -299,7 +299,7 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
     let has_shape = !program.function.returns_torques() && program.outputs.len() > 1;
     if let Some(returned) = returned(program).filter(|_| what.is_everything() && has_shape) {
         let heading = Line::Heading(program.function.entry().listed.to_owned());
-        sections.push(Section { of: None, lines: vec![heading, Line::Returned(returned)] });
+        sections.push(Section { place: None, lines: vec![heading, Line::Returned(returned)] });
     }
     sections
 }
@@ -310,7 +310,7 @@ fn shown_place(program: &Program, statement: &Statement) -> Place {
     let Statement { name, place, .. } = statement;
     let has_own_form = program.form != Form::SevenSteps && Function::TORQUES.contains(&program.function);
     match name.quantity.step() {
-        // the last row of the solution is what is returned
+        // the last row of the solution is the result
         _ if name.quantity == Quantity::RateDot => {
             Place { joint: name.joint, step: Step::Beyond, quantity: Quantity::Scaled, by: None }
         }
@@ -387,12 +387,12 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
         (_, Step::AngularAcceleration) => "angular acceleration, accelerations of points",
         _ => step.title(),
     };
-    let of = match joint {
+    let body = match joint {
         0 => "base".to_owned(),
         _ if joint > program.dof => "payload".to_owned(),
         _ => format!("joint {joint}"),
     };
-    format!("{of}, step {}: {title}", step.number())
+    format!("{body}, step {}: {title}", step.number())
 }
 
 fn resolutions<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
@@ -413,7 +413,7 @@ fn resolutions<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -
 
 fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
     let words = match found {
-        // the statement says it
+        // the statement shows it
         ResolvedAs::Computed => return None,
         ResolvedAs::Same(..) if name.quantity == Quantity::Torque => return None,
         ResolvedAs::Same(other, sign) => {

@@ -10,13 +10,13 @@ const MOST_NAMED: usize = 4;
 
 /// A parameter that is given at run time.
 pub(super) struct Parameter {
-    /// Its name in the robot file.
+    /// The name of the parameter in the robot file.
     pub(super) name: String,
-    /// Its value there.
+    /// The value in the robot file.
     pub(super) value: f64,
-    /// Its name as a member of a struct.
+    /// The name of the parameter as a member of a struct.
     pub(super) member: String,
-    /// In which unit it is, where the table says that.
+    /// The unit, if the table determines it.
     unit: Option<&'static str>,
     /// The numbers of the table that depend on it.
     entries: Vec<String>,

@@ -20,19 +20,19 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
     };
     let has_kind = |kind| robot.rows().any(|row| row.kind == kind);
     let has_first_moment = robot.rows().any(|row| row.link.has_first_moment());
-    let of = |step, kind| match recursion {
+    let written = |step, kind| match recursion {
         Form::SevenSteps => formulas(step, kind, ANY, has_first_moment),
         Form::Reduced => reduced_formulas(step, kind, ANY),
     };
     let mut lines = Vec::new();
     for step in Step::ALL.into_iter().filter(|&step| has(step)) {
         for kind in [JointKind::Revolute, JointKind::Prismatic].into_iter().filter(|&kind| has_kind(kind)) {
-            for formula in of(step, kind) {
+            for formula in written(step, kind) {
                 let line = format!("{} {}", step.number(), formula.text);
                 if lines.contains(&line) {
                     continue;
                 }
-                // what only one of two kinds of joint does
+                // a formula that only one of two kinds of joint has
                 let is_other = kind == JointKind::Prismatic && has_kind(JointKind::Revolute);
                 lines.push(if is_other { format!("{line}   (prismatic)") } else { line });
             }

@@ -31,7 +31,7 @@ pub fn rust_file_with_sin_cos(robot: &Robot, programs: &[Program]) -> String {
     file(robot, programs, SinCos::InFile)
 }
 
-/// Whose sine and cosine a file takes.
+/// The library whose sine and cosine a file uses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum SinCos {
     OfCaller,
@@ -62,7 +62,7 @@ fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     text
 }
 
-/// The type of the last argument of what depends on run-time parameters.
+/// The type of the last argument of a function that depends on run-time parameters.
 fn record_of_parameters(robot: &Robot) -> String {
     let parameters = Parameter::of(robot, parameters::OF_RUST);
     let (mut fields, mut values) = (String::new(), String::new());
@@ -154,7 +154,7 @@ fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     text.lines().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect()
 }
 
-/// How the trait is implemented, for who has a sine.
+/// The implementation of the trait with the chosen sine.
 fn scalar_of_caller(programs: &[Program]) -> String {
     let by_sign = if programs.iter().any(Program::chooses_by_sign) { BY_SIGN_OF_STD } else { "" };
     format!(
@@ -205,7 +205,7 @@ pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
 }
 
-/// Describes the frame that stands in the place of the tip; `None` for a program of the tip.
+/// Describes the frame that replaces the tip; `None` for a program of the tip.
 pub(super) fn about_frame(program: &Program) -> Option<String> {
     let frame = program.frame.as_ref()?;
     Some(format!("The frame {frame} stands in the place of the tip, and its link in the place of the last link."))
@@ -274,7 +274,7 @@ fn function(robot: &Robot, program: &Program) -> String {
     text
 }
 
-/// Names in a pattern; what is not used is `_`.
+/// The names in a pattern, with `_` for each name that is not used.
 fn names(names: impl Iterator<Item = Option<Name>>) -> String {
     names.map(|name| name.map_or_else(|| "_".to_owned(), |name| name.to_string())).collect::<Vec<_>>().join(", ")
 }
@@ -301,7 +301,7 @@ fn returned_type(layout: &Layout) -> String {
     }
 }
 
-/// A part of what is returned.
+/// A part of the results.
 enum Piece {
     Number(Annotated),
     List(char, char, Vec<Self>),
@@ -354,7 +354,7 @@ impl Piece {
     }
 }
 
-/// The one statement that evaluates all sines and cosines, broken as rustfmt does.
+/// The statement that evaluates all sines and cosines, with the line breaks of rustfmt.
 fn turns(program: &Program) -> String {
     let sines = names(program.sines_and_cosines.iter().map(|turn| turn.sine));
     let cosines = names(program.sines_and_cosines.iter().map(|turn| turn.cosine));

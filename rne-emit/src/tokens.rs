@@ -20,9 +20,9 @@ use super::syntax::Syntax;
 pub struct Body<'a> {
     program: Cow<'a, Program>,
     scalar: &'a TokenStream,
-    /// The path of what has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
+    /// The path of the type with `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, if no other type is given.
     arithmetic: &'a TokenStream,
-    /// Where the types of records are; tuples stand for them without.
+    /// The path of the record types; without it, records are tuples.
     library: Option<&'a TokenStream>,
 }
 
@@ -159,14 +159,14 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The statements and what is returned.
+    /// The statements and the results.
     fn beyond_turns(&self) -> TokenStream {
         let statements = self.statements(&self.program.statements);
         let outputs = self.returned();
         quote!(#statements #outputs)
     }
 
-    /// The results, in their layout; what was asked to be kept as well makes it a list.
+    /// The results in their layout; with additional kept values, they are a list.
     fn returned(&self) -> TokenStream {
         let outputs = || self.program.outputs.iter().map(|output| self.used(output.value));
         let layout = self.program.function.layout(self.program.dof);
@@ -192,8 +192,8 @@ impl<'a> Body<'a> {
             let tokens = self.expression(operand);
             if needs_parentheses(Syntax::Rust, operand, position) { quote!((#tokens)) } else { tokens }
         };
-        let minus = |of: Expression<'_>| {
-            let tokens = operand(of, Position::Negated);
+        let minus = |negated: Expression<'_>| {
+            let tokens = operand(negated, Position::Negated);
             quote!(-#tokens)
         };
         let (scalar, arithmetic) = (self.scalar, self.arithmetic);
@@ -207,7 +207,7 @@ impl<'a> Body<'a> {
                 quote!(#a #sign #b)
             }
             ExpressionKind::Fused([x, y], addend, negated) => {
-                let signed = |of, part| if negated == Some(part) { minus(of) } else { self.expression(of) };
+                let signed = |factor, part| if negated == Some(part) { minus(factor) } else { self.expression(factor) };
                 let (x, y, addend) = (signed(x, Negated::Factor), self.expression(y), signed(addend, Negated::Addend));
                 quote!(#arithmetic::mul_add(#x, #y, #addend))
             }

@@ -59,7 +59,7 @@ fn a_step_has_a_heading_its_formulas_and_what_folded() {
     let what = Selection { joint: Some(2), step: Some(Step::Wrenches), ..everything() };
     let listing = listing(&robot, &program, what);
     let [section] = &listing.sections[..] else { panic!("one section") };
-    assert_eq!(section.of, Some((2, Step::Wrenches, None)));
+    assert_eq!(section.place, Some((2, Step::Wrenches, None)));
     assert_eq!(section.lines[0], Line::Heading("joint 2, step 6: forces and moments".to_owned()));
     let given = section.lines.iter().filter_map(|line| match line {
         Line::Formula(formula) => Some(formula.quantity),

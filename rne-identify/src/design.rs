@@ -139,7 +139,8 @@ impl Design {
         }
         let lengths = normalised(&mut products);
         let inverse = products.cholesky().map(|cholesky| cholesky.inverse());
-        let deviation = |at: usize| inverse.as_ref().map_or(f64::INFINITY, |it| it[(at, at)].sqrt() / lengths[at]);
+        let deviation =
+            |at: usize| inverse.as_ref().map_or(f64::INFINITY, |inverse| inverse[(at, at)].sqrt() / lengths[at]);
         (0..self.structure.parameters().rank()).map(deviation).collect()
     }
 

@@ -150,6 +150,11 @@ impl Stretch {
         products[(products.nrows() - 1, products.ncols() - 1)] <= SILENT
     }
 
+    /// Leaves out the rows of a joint.
+    pub fn leave_out(&mut self, joint: usize) {
+        self.products[joint].fill(0.0);
+    }
+
     /// Adds the products of all unknowns and of the torque, which is last.
     pub fn add_to(&self, structure: &Structure, total: &mut DMatrix<f64>) {
         (0..self.products.len()).for_each(|joint| self.add_joint(structure, joint, total));

@@ -116,7 +116,8 @@ impl Structure {
     /// The unit of a parameter: the rotor of a joint that slides resists as a mass does.
     #[must_use]
     pub fn unit(&self, parameter: Parameter) -> &'static str {
-        let slides = |joint: usize| self.robot.joints.get(joint).is_some_and(|it| it.row.kind == JointKind::Prismatic);
+        let slides =
+            |joint: usize| self.robot.joints.get(joint).is_some_and(|joint| joint.row.kind == JointKind::Prismatic);
         match parameter {
             Parameter::Link(_, 0) => "kg",
             Parameter::Link(_, 1..=3) => "kg m",

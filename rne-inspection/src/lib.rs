@@ -159,7 +159,7 @@ fn cells(robot: &rne_model::Robot, program: &Program, equations: &mut Equations<
     let listing = rne_emit::listing(robot, program, what);
     let mut cells = Vec::new();
     for section in &listing.sections {
-        let Some((joint, step, None)) = section.of else { continue };
+        let Some((joint, step, None)) = section.place else { continue };
         let place = |equation: &codegen::Equation| {
             equation.place.is_some_and(|place| place.joint == joint && place.step == step)
         };

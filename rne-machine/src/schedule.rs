@@ -115,12 +115,12 @@ fn allocated(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event]) ->
                 let turned = turned.map(|(id, value)| Some((value, memory.take(id)?)));
                 let mut turned = turned.collect::<Option<Vec<_>>>()?;
                 // each once: two turns may have one angle
-                let mut of = |wanted: Value| {
+                let mut take_slot = |wanted: Value| {
                     let place = turned.iter().position(|(value, _)| *value == wanted);
                     place.map_or(NOWHERE, |place| turned.remove(place).1)
                 };
                 for &angle in &dataflow.angles {
-                    let (sine, cosine) = (of(Value::Sine(angle)), of(Value::Cosine(angle)));
+                    let (sine, cosine) = (take_slot(Value::Sine(angle)), take_slot(Value::Cosine(angle)));
                     turns.push(Turn { angle: memory.slots[angle.index()]?, sine, cosine });
                 }
                 memory.release(dataflow.angles.iter().copied().filter(|angle| last[angle.index()] == at));

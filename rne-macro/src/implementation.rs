@@ -205,7 +205,7 @@ impl Target<'_> {
     /// The arguments of a function and their types, references of the given lifetime, in which `T` is the scalar.
     fn arguments(&self, function: Function, dof: &TokenStream, lifetime: &TokenStream) -> Vec<(Ident, TokenStream)> {
         let krate = self.krate;
-        let of = |argument: &Argument| {
+        let name_and_type = |argument: &Argument| {
             let (name, kind) = match argument {
                 Argument::Sines => ("sin", quote!([T; #dof])),
                 Argument::Cosines => ("cos", quote!([T; #dof])),
@@ -219,7 +219,7 @@ impl Target<'_> {
             };
             (format_ident!("{name}"), quote!(&#lifetime #kind))
         };
-        function.arguments().iter().map(of).collect()
+        function.arguments().iter().map(name_and_type).collect()
     }
 
     /// A method of the trait with the given body, in which `T` is the scalar.

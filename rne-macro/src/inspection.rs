@@ -49,11 +49,11 @@ mod tests {
 
     #[test]
     fn the_folder_of_the_profile_is_found() {
-        let of = |arguments: &[&str]| output_folder(arguments.iter().map(OsString::from));
-        assert_eq!(of(&["rustc", "--out-dir", "/t/debug/deps", "--cfg", "x"]), Some(PathBuf::from("/t/debug")));
-        assert_eq!(of(&["rustc", "--out-dir", "/t/debug/examples"]), Some(PathBuf::from("/t/debug")));
-        assert_eq!(of(&["rustc", "--out-dir", "/elsewhere"]), Some(PathBuf::from("/elsewhere")));
-        assert_eq!(of(&["rust-analyzer"]), None);
-        assert_eq!(of(&["rustc", "--out-dir"]), None);
+        let folder = |arguments: &[&str]| output_folder(arguments.iter().map(OsString::from));
+        assert_eq!(folder(&["rustc", "--out-dir", "/t/debug/deps", "--cfg", "x"]), Some(PathBuf::from("/t/debug")));
+        assert_eq!(folder(&["rustc", "--out-dir", "/t/debug/examples"]), Some(PathBuf::from("/t/debug")));
+        assert_eq!(folder(&["rustc", "--out-dir", "/elsewhere"]), Some(PathBuf::from("/elsewhere")));
+        assert_eq!(folder(&["rust-analyzer"]), None);
+        assert_eq!(folder(&["rustc", "--out-dir"]), None);
     }
 }

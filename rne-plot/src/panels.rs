@@ -90,7 +90,7 @@ fn drawn(ticks: Ticks<'_>, name: &str, title: &str, about: &str, time: &[f64], p
         #[allow(clippy::cast_precision_loss)] // at most some dozens
         let (column, row) = ((index % columns) as f64, (index / columns) as f64);
         let place = Place { x: SIDE + column * (wide + gap), y: HEAD + row * PANEL, width: wide, height: PANEL };
-        one(&mut svg, place, panel, ticks, time);
+        draw(&mut svg, place, panel, ticks, time);
     }
     svg.close("svg");
     svg.finish()
@@ -103,7 +103,7 @@ impl<'a> Panel<'a> {
     }
 }
 
-fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, ticks: Ticks<'_>, time: &[f64]) {
+fn draw(svg: &mut Svg, place: Place, panel: &Panel<'_>, ticks: Ticks<'_>, time: &[f64]) {
     let all = panel.all();
     let curves: Vec<Curve<'_>> = all
         .iter()

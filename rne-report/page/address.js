@@ -3,22 +3,31 @@
 /** The words of an address that have no value. */
 const WORDS = ["exercise", "lecture", "unfolded", "reduced", "c", "equations", "joint", "base", "light", "dark", "frames"];
 
+/** The keys of an address that have a value. */
+const KEYS = ["q", "qd", "qdd", "f", "n", "cell", "look"];
+
 /** What an address asks for: lists by their names, and words. */
 function readAddress(fragment) {
-  const asked = { lists: {}, words: new Set(), cell: null, look: null, wrong: [] };
+  const asked = { lists: {}, words: new Set(), cell: null, look: null, wrong: [], unknown: [] };
   for (const part of fragment.replace(/^#/, "").split("&").filter(Boolean)) {
     const [key, value] = part.includes("=") ? [part.slice(0, part.indexOf("=")), part.slice(part.indexOf("=") + 1)] : [part, null];
     if (value === null) {
       if (WORDS.includes(key) || key === "no-masses") asked.words.add(key);
+      // the link at the top of the page leads to the element of this name
+      else if (key !== "steps") asked.unknown.push(key);
       continue;
     }
     const numbers = decodeURIComponent(value).split(",").map(numberOf);
     if (key === "look" && VIEWS.includes(value)) asked.look = value;
     else if (key === "cell" && /^\d+\.\d$/.test(value)) asked.cell = value.split(".").map(Number);
-    else if (!["q", "qd", "qdd", "f", "n", "look"].includes(key)) continue;
+    else if (!KEYS.includes(key)) asked.unknown.push(key);
+    else if (key === "cell") asked.wrong.push(`cell=${value} is no cell: write cell=JOINT.STEP`);
     else if (numbers.every(Number.isFinite)) asked.lists[key] = numbers;
+    else if (key === "look") asked.wrong.push(`look=${value} is no view: it is ${VIEWS.join(", ")}, or three numbers`);
     else asked.wrong.push(`${key} has something that is no number`);
   }
+  if (asked.unknown.length)
+    asked.wrong.push(`${asked.unknown.join(", ")} is not known: the keys are ${KEYS.join(", ")}; the words are ${WORDS.join(", ")}, no-masses`);
   return asked;
 }
 
@@ -92,7 +101,10 @@ class Address {
   }
 
   show(fragment) {
-    const wrong = readAddress(fragment).words.size || fragment.includes("=") ? showAddress(this.page, fragment) : [];
+    const { words, unknown, cell } = readAddress(fragment);
+    const wrong = words.size || unknown.length || fragment.includes("=") ? showAddress(this.page, fragment) : [];
+    // where everything stands below each other, the cell that is asked for is far below
+    if (cell && matchMedia("(max-width: 900px)").matches) byId("cell").scrollIntoView();
     byId("address-notice").hidden = wrong.length === 0;
     byId("address-notice").textContent = wrong.length ? `The address is not shown as it stands: ${wrong.join("; ")}.` : "";
   }

@@ -1,8 +1,12 @@
 // Numbers that are typed: a field beside a slider.
 
-/** The number of a text, with a decimal point or comma; NaN where it is none. */
+/** The number of a text, with a decimal point or comma; `pi/4`, `2pi/3`, `30deg` and `30°` in radians; NaN where it is none. */
 function numberOf(text) {
-  const plain = text.trim().replace(",", ".").replace(/^[−–]/, "-");
+  const plain = text.trim().replace(",", ".").replace(/^[−–]/, "-").replace("π", "pi");
+  const parts = plain.match(/^([+-]?)([\d.]*) *\*? *pi *(?:\/ *([\d.]+))?$/);
+  if (parts) return (Number(`${parts[1]}${parts[2] || 1}`) * Math.PI) / Number(parts[3] ?? 1);
+  const degrees = plain.match(/^(.*[\d.]) *(?:deg|°)$/);
+  if (degrees) return (Number(degrees[1]) * Math.PI) / 180;
   return plain === "" ? Number.NaN : Number(plain);
 }
 
@@ -12,14 +16,14 @@ function typedText(value) {
   return minus(String(value).length <= 9 ? String(value) : rounded);
 }
 
-/** A field for a number; `taken(value)` is called with each finite number that is typed, and refused ones are marked. */
+/** A field for a number; `taken(value, text)` is called with each finite number that is typed; refused ones are marked. */
 function numberField(attributes, taken) {
   const field = element("input", { type: "text", inputmode: "decimal", autocomplete: "off", ...attributes });
   const take = () => {
     const value = numberOf(field.value);
     const isFine = Number.isFinite(value);
     field.setAttribute("aria-invalid", String(!isFine));
-    if (isFine) taken(value);
+    if (isFine) taken(value, field.value);
   };
   field.addEventListener("change", take);
   field.addEventListener("keydown", (event) => {

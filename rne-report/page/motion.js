@@ -98,7 +98,7 @@ class Sliders {
         const field = numberField({ "data-name": `${of}${index + 1}`, "data-field": of, class: "number", "aria-label": `${label} as a number, ${unitOf}` }, set);
         const isAngle = of === "q" && joint.kind === "revolute";
         const degrees = isAngle
-          ? numberField({ "data-degrees": index + 1, class: "number degrees", "aria-label": `${label} in degrees` }, (value) => set((value * Math.PI) / 180))
+          ? numberField({ "data-degrees": index + 1, class: "number degrees", "aria-label": `${label} in degrees` }, (value, text) => set(/[a-zπ°]/.test(text) ? value : (value * Math.PI) / 180))
           : null;
         input.addEventListener("input", () => {
           state[of][index] = Number(input.value);

@@ -74,9 +74,14 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
 
 /// What node says to the questions; nothing where there is no node.
 fn answers(questions: &[Value]) -> Option<Vec<Value>> {
+    by_node(include_str!("interpreter.js"), questions)
+}
+
+/// What a script says that stands behind those of the page and reads the questions.
+fn by_node(last: &str, questions: &[Value]) -> Option<Vec<Value>> {
     let folder = tempfile::tempdir().expect("a folder");
     let scripts = rne_report::SCRIPTS.iter().filter(|(name, _)| *name != "page.js").map(|(_, text)| *text);
-    let script: String = scripts.chain([include_str!("interpreter.js")]).collect();
+    let script: String = scripts.chain([last]).collect();
     let (program, input) = (folder.path().join("all.js"), folder.path().join("questions.json"));
     std::fs::write(&program, script).expect("it can be written");
     std::fs::write(&input, Value::from(questions.to_vec()).to_string()).expect("it can be written");
@@ -215,4 +220,31 @@ fn c_code(robot: &Robot, program: &rne_codegen::Program) -> String {
     let code = rne_emit::c_code(robot, programs, rne_emit::Precision::Double, &rne_emit::Prefix::of(robot))
         .expect("it is emitted");
     code.one_file()
+}
+
+/// The page names each unknown key of an address, and lists the keys that it knows.
+#[test]
+fn addresses_that_the_page_does_not_know_are_told() {
+    const SCRIPT: &str = "
+        const addresses = JSON.parse(require('fs').readFileSync(process.argv[2], 'utf8'));
+        console.log(JSON.stringify(addresses.map((address) => readAddress(address).wrong.join('; '))));";
+    let cases = [
+        ("#q=0.6,1.3&qd=1,-0.5&cell=2.4&exercise", &[][..]),
+        ("#look=3D&no-masses&f=1,0,0", &[]),
+        ("#look=0.1,0.2,1", &[]),
+        // the link at the top of the page
+        ("#steps", &[]),
+        ("#look=side", &["look=side is no view", "front, top, 3D"]),
+        ("#cel=2.4", &["cel is not known", "q, qd, qdd, f, n, cell, look"]),
+        ("#exercize", &["exercize is not known", "exercise, lecture"]),
+        ("#cell=2", &["cell=2 is no cell", "cell=JOINT.STEP"]),
+        ("#q=a,1", &["q has something that is no number"]),
+    ];
+    let addresses: Vec<Value> = cases.iter().map(|(address, _)| Value::from(*address)).collect();
+    let Some(said) = by_node(SCRIPT, &addresses) else { return };
+    for ((address, parts), said) in cases.iter().zip(&said) {
+        let said = said.as_str().expect("a text");
+        assert_eq!(said.is_empty(), parts.is_empty(), "{address}: {said}");
+        assert!(parts.iter().all(|part| said.contains(part)), "{address}: {said}");
+    }
 }

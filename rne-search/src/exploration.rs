@@ -78,7 +78,7 @@ impl<'v> Exploration<'v> {
         }
     }
 
-    /// All neighbours of a plan with what they weigh.
+    /// All neighbours of a plan with their weights.
     fn weigh(&mut self, plan: &Plan, clock: Clock<'_>) -> Result<Vec<(usize, Plan)>, Over> {
         let mut weighed = Vec::new();
         for (index, other) in self.neighbourhood.neighbours(plan).into_iter().enumerate() {

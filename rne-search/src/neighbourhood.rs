@@ -9,7 +9,7 @@ use rne_model::Robot;
 pub struct Neighbourhood(OpenChoices);
 
 impl Neighbourhood {
-    /// From the choices that a robot leaves open.
+    /// Makes it from the choices that a robot leaves open.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         Self(Descent::new(robot, &[]).open_choices().clone())
@@ -76,13 +76,13 @@ impl Neighbourhood {
         if row.kind != Revolute {
             return;
         }
-        for &side in Side::ALL {
+        for side in Side::ALL {
             put(&|plan| plan.joints[index].outward_offset = side);
         }
         for side in [Side::Link, Side::Parent] {
             put(&|plan| plan.joints[index].inward_offset = side);
         }
-        for &moment in Moment::ALL {
+        for moment in Moment::ALL {
             put(&|plan| plan.joints[index].moment = moment);
         }
         for switch in 0..Switches::NAMES.len() {
@@ -194,7 +194,7 @@ impl Neighbourhood {
         }
     }
 
-    /// One to three random changes.
+    /// Makes one to three random changes.
     #[must_use]
     pub fn random(&self, plan: &Plan, rng: &mut fastrand::Rng) -> Plan {
         let mut other = plan.clone();

@@ -23,7 +23,7 @@ pub struct SearchOptions {
 /// finds is not much less precise in single precision than the seven steps, and never worse than a plan at hand of
 /// which that is true. A rewritten graph is kept where it takes fewer operations than the one that the plan gives.
 ///
-/// `clock` is asked now and then how much of the time is over.
+/// `clock` returns how much of the time is over; the search calls it regularly.
 ///
 /// # Errors
 /// When the robot has run-time parameters, when a function of `options` has no reduced form, or when the result cannot
@@ -99,7 +99,7 @@ pub fn search(
         }
     }
     let file = PlanFile::new(robot, reduced, rewritten);
-    // what is read again is what was proved
+    // the graph that is read again is the graph that was proved
     match PlanFile::read("the plan", &file.to_yaml(), robot) {
         Ok(read) if read == file => Ok(file),
         Ok(_) => Err(SearchError::NotWritten),

@@ -343,7 +343,7 @@ mod tests {
         short
     }
 
-    fn one(factors: &[(Factor, i32)]) -> Vec<Product> {
+    fn single_product(factors: &[(Factor, i32)]) -> Vec<Product> {
         vec![(fraction(1, 1), factors.to_vec())]
     }
 
@@ -351,29 +351,32 @@ mod tests {
     fn sums_of_angles_are_found() {
         let cosine_12 = cosine(0) * cosine(1) - sine(0) * sine(1);
         let sine_12 = sine(0) * cosine(1) + cosine(0) * sine(1);
-        assert_eq!(short(&cosine_12), one(&[(Factor::Cosine(sum(&[(0, 1), (1, 1)])), 1)]));
-        assert_eq!(short(&sine_12), one(&[(Factor::Sine(sum(&[(0, 1), (1, 1)])), 1)]));
+        assert_eq!(short(&cosine_12), single_product(&[(Factor::Cosine(sum(&[(0, 1), (1, 1)])), 1)]));
+        assert_eq!(short(&sine_12), single_product(&[(Factor::Sine(sum(&[(0, 1), (1, 1)])), 1)]));
         let cosine_123 = &cosine_12 * &cosine(2) - &sine_12 * &sine(2);
-        assert_eq!(short(&cosine_123), one(&[(Factor::Cosine(sum(&[(0, 1), (1, 1), (2, 1)])), 1)]));
+        assert_eq!(short(&cosine_123), single_product(&[(Factor::Cosine(sum(&[(0, 1), (1, 1), (2, 1)])), 1)]));
         let sine_1_minus_2 = sine(0) * cosine(1) - cosine(0) * sine(1);
-        assert_eq!(short(&sine_1_minus_2), one(&[(Factor::Sine(sum(&[(0, 1), (1, -1)])), 1)]));
+        assert_eq!(short(&sine_1_minus_2), single_product(&[(Factor::Sine(sum(&[(0, 1), (1, -1)])), 1)]));
         // sin θ2 cos(θ2 + θ3), as of an elbow
         let elbow = sine(1) * (cosine(1) * cosine(2) - sine(1) * sine(2));
         let factors = [(Factor::Sine(sum(&[(1, 1)])), 1), (Factor::Cosine(sum(&[(1, 1), (2, 1)])), 1)];
-        assert_eq!(short(&elbow), one(&factors));
+        assert_eq!(short(&elbow), single_product(&factors));
         // cos²(θ2 + θ3)
         let square = cosine_12.clone() * cosine_12;
-        assert_eq!(short(&square), one(&[(Factor::Cosine(sum(&[(0, 1), (1, 1)])), 2)]));
+        assert_eq!(short(&square), single_product(&[(Factor::Cosine(sum(&[(0, 1), (1, 1)])), 2)]));
     }
 
     #[test]
     fn pythagoras_shortens() {
         let square = Polynomial::integer(1) - cosine(1) * cosine(1);
-        assert_eq!(short(&square), one(&[(Factor::Sine(sum(&[(1, 1)])), 2)]));
+        assert_eq!(short(&square), single_product(&[(Factor::Sine(sum(&[(1, 1)])), 2)]));
         let double = cosine(1) * cosine(1) - sine(1) * sine(1);
-        assert_eq!(short(&double), one(&[(Factor::Cosine(sum(&[(1, 2)])), 1)]));
+        assert_eq!(short(&double), single_product(&[(Factor::Cosine(sum(&[(1, 2)])), 1)]));
         // sin θ cos θ stays a product
         let product = sine(1) * cosine(1);
-        assert_eq!(short(&product), one(&[(Factor::Sine(sum(&[(1, 1)])), 1), (Factor::Cosine(sum(&[(1, 1)])), 1)]));
+        assert_eq!(
+            short(&product),
+            single_product(&[(Factor::Sine(sum(&[(1, 1)])), 1), (Factor::Cosine(sum(&[(1, 1)])), 1)])
+        );
     }
 }

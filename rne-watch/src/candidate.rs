@@ -4,6 +4,8 @@ use nalgebra::DMatrix;
 use rne_identify::{FittedModel, FrictionParameter, LEAST_FRICTION, LIGHT_ARM, SLOWEST, Structure};
 use rne_model::PER_LINK;
 
+use crate::selection::Statistic;
+
 /// A parameter of the arm that may differ between two logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Candidate {
@@ -145,6 +147,12 @@ impl Scale {
             Candidate::Delay => 0.002,
             Candidate::Gain(_) => 0.05,
         }
+    }
+
+    /// Whether a candidate's friction is known well enough for this scale.
+    #[must_use]
+    pub fn is_watched(&self, statistic: &Statistic) -> bool {
+        statistic.deviation < 2.0 * self.least(statistic.candidate)
     }
 
     /// A mass, kg; for an arm that is lighter than a person can lift, in proportion to its own mass.

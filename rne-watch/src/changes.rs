@@ -2,18 +2,22 @@
 
 use std::ops::Range;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rne_identify::{FittedModel, FrictionParameter, MotionError, Stretch, Stretches, Structure};
-use rne_logs::Motion;
+use rne_logs::{Motion, median};
 
 use crate::Baseline;
 use crate::baseline::Residual;
 use crate::candidate::{Candidate, Scale};
 use crate::event::{Cause, Event, unit};
 use crate::selection::{Finding, Selection, Statistic};
+use crate::sensor::{Frozen, exchange};
 
 /// The error of the model has grown where its residual is this many times that of the baseline.
 const GROWN: f64 = 3.0;
+
+/// s: so long before and after a constant effort the filters change the effort.
+const EDGE: f64 = 1.0;
 
 /// A time in a log: the number of the run, and s.
 type Instant = (u64, f64);
@@ -36,17 +40,47 @@ pub struct Changes {
     /// Root mean square of the torque of each joint that the baseline's model with all changes does not explain, N m
     /// or N.
     pub residual: Vec<f64>,
+    /// The root mean square of the efforts over that of the quiet logs, in the median over the joints. Far from 1, the
+    /// efforts have another unit.
+    pub effort_ratio: f64,
+    /// The joints whose efforts are exchanged in the log, counted from 0: all other results are of the log with these
+    /// efforts exchanged back.
+    pub exchanged: Option<[usize; 2]>,
     windows: Vec<Window>,
 }
 
 impl Changes {
+    /// The changes of a log in which the efforts of two joints are exchanged, by the equations with these efforts
+    /// exchanged back.
+    pub(crate) fn of_exchanged(
+        structure: &Structure,
+        baseline: &Baseline,
+        log: &Stretches,
+        joints: [usize; 2],
+    ) -> Option<Self> {
+        let mut found = Self::of(structure, baseline, log)?;
+        found.events.insert(0, exchange(structure, joints, log.list()));
+        found.exchanged = Some(joints);
+        Some(found)
+    }
+
+    /// Whether the effort of a joint repeats a value at a time of a run.
+    pub(crate) fn is_frozen(&self, joint: usize, run: u64, times: Range<f64>) -> bool {
+        let is_near = |event: &Event| event.since - EDGE < times.end && times.start < event.until + EDGE;
+        self.events.iter().any(|event| {
+            event.parameter == "frozen" && event.joint == Some(joint) && (event.run != run || is_near(event))
+        })
+    }
+
     /// The changes of a log, given by its equations; `None` where it is too short to compare.
     #[must_use]
     pub fn of(structure: &Structure, baseline: &Baseline, log: &Stretches) -> Option<Self> {
-        let selection = Selection::of(structure, baseline, log.list())?;
+        let frozen = Frozen::all(structure, baseline, log.list());
+        let list = Frozen::without(&frozen, baseline, log.list());
+        let selection = Selection::of(structure, baseline, &list)?;
         let findings = selection.findings();
-        let mut events: Vec<Event> =
-            findings.iter().map(|found| event(structure, baseline, &selection, found)).collect();
+        let mut events: Vec<Event> = frozen.iter().map(|frozen| frozen.event(structure, log.list())).collect();
+        events.extend(findings.iter().map(|found| event(structure, baseline, &selection, found)));
         let residual = residual(baseline, &selection);
         // the errors of a file are those of another motion
         let has_quiet_log = baseline.doubt == 1.0;
@@ -73,7 +107,8 @@ impl Changes {
         };
         let changes = selection.changes().into_iter();
         let windows = changes.map(|(window, change)| Window { ends: ends(&window), change }).collect();
-        Some(Self { events, statistics: selection.statistics(), residual, windows })
+        let effort_ratio = effort_ratio(structure, baseline, log);
+        Some(Self { events, statistics: selection.statistics(), residual, effort_ratio, exchanged: None, windows })
     }
 
     /// The torques that the changes add along a motion of a run, joint by joint, N m or N.
@@ -120,6 +155,21 @@ impl Changes {
         let watched = self.statistics.iter().filter(|statistic| scale.is_watched(statistic));
         watched.max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
     }
+}
+
+/// The efforts of a log over those of the baseline, in the median over the joints that have efforts in both.
+fn effort_ratio(structure: &Structure, baseline: &Baseline, log: &Stretches) -> f64 {
+    let size = structure.count() + 1;
+    let total = |joint: usize| {
+        let mut total = DMatrix::zeros(size, size);
+        log.list().iter().for_each(|stretch| stretch.add_joint(structure, joint, &mut total));
+        total
+    };
+    let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
+    let now = Scale::of(structure, &baseline.model, &totals).effort;
+    let ratios = now.iter().zip(&baseline.scale.effort).map(|(now, before)| now / before);
+    let ratios: Vec<f64> = ratios.filter(|ratio| *ratio > 0.0 && ratio.is_finite()).collect();
+    if ratios.is_empty() { 1.0 } else { median(ratios) }
 }
 
 /// Values that come later by a delay, s.

@@ -60,7 +60,8 @@ pub struct Event {
     /// The joint, counted from 0; a payload and the delay have none.
     pub joint: Option<usize>,
     /// The parameter: `coulomb`, `viscous`, `offset`, `gain`, `delay`, `mass`, `external` (the largest torque of the
-    /// environment) or `residual` (the root mean square of what the model leaves).
+    /// environment), `residual` (the root mean square of what the model leaves), `frozen` (the value that an effort
+    /// repeats) or `exchanged` (the efforts of `joint` and of the joint in `others`; it has no value).
     pub parameter: &'static str,
     /// The value in the log, in `unit`.
     pub value: f64,

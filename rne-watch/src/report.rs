@@ -7,6 +7,7 @@ use rne_model::Robot;
 use crate::contact::{Contact, ContactNoise, contacts};
 use crate::dates::Dates;
 use crate::event::{Cause, Event, unit};
+use crate::sensor::exchanged_efforts;
 use crate::{Baseline, Candidate, Changes, Settings, Signals, WatchError};
 
 /// s: contacts that are closer are one, such as those on both sides of the border of two pieces.
@@ -109,7 +110,16 @@ pub fn watch(
     settings.check()?;
     let structure = Baseline::structure(robot, baseline.cutoff);
     let changes = changes(&structure, baseline, log, progress)?;
-    let explain = |run: u64, motion: &Motion| Ok(changes.torques(&structure, baseline, run, motion)?);
+    let explain = |run: u64, motion: &Motion| {
+        let mut added = changes.torques(&structure, baseline, run, motion)?;
+        if let Some([first, second]) = changes.exchanged {
+            for (at, (one, other)) in motion.tau[first].iter().zip(&motion.tau[second]).enumerate() {
+                added[first][at] += one - other;
+                added[second][at] += other - one;
+            }
+        }
+        Ok(added)
+    };
     let contact = match &baseline.contact {
         Some(contact) => contact.clone(),
         None => ContactNoise::typical(&noise(robot, log, settings, progress, &explain)?)
@@ -121,7 +131,8 @@ pub fn watch(
     let mut is_cut = false;
     let mut explained = vec![Vec::new(); robot.dof()];
     each_signals(robot, log, settings, progress, &explain, &mut |run, piece, added| {
-        let contacts = contacts(&piece, &contact, settings)?;
+        let mut contacts = contacts(&piece, &contact, settings)?;
+        contacts.retain(|contact| !changes.is_frozen(contact.joint, run, contact.start..contact.end));
         match found.last_mut() {
             Some((last, of_run)) if *last == run => of_run.extend(contacts),
             _ => found.push((run, contacts)),
@@ -196,12 +207,25 @@ pub fn changes(
             progress,
         )
         .map_err(WatchError::from)?;
+    let exchanged = exchanged_efforts(structure, baseline, &stretches, |[first, second]| {
+        let mut stretches = Stretches::new(structure, &baseline.model);
+        let mut absorb = |run: u64, motion: &Motion| {
+            let mut motion = motion.clone();
+            motion.tau.swap(first, second);
+            stretches.absorb(structure, run, &motion).map_err(WatchError::from)
+        };
+        judged.pass_runs(Part::All, &mut absorb, progress).map_err(WatchError::from)?;
+        Ok::<_, WatchError>(stretches)
+    })?;
     let is_silent = |joint: usize| stretches.list().iter().all(|stretch| stretch.is_silent(joint));
     if stretches.rows() > 0 && (0..structure.dof()).all(is_silent) {
         return Err(WatchError::NoEffort);
     }
     if stretches.rows() >= FEWEST
-        && let Some(mut found) = Changes::of(structure, baseline, &stretches)
+        && let Some(mut found) = match &exchanged {
+            Some((joints, exchanged)) => Changes::of_exchanged(structure, baseline, exchanged, *joints),
+            None => Changes::of(structure, baseline, &stretches),
+        }
     {
         Dates::of(log, baseline.span).give(&mut found.events);
         return Ok(found);

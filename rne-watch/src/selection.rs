@@ -9,8 +9,9 @@ use rne_logs::median;
 
 use crate::Baseline;
 use crate::baseline::Residual;
-use crate::candidate::{Candidate, Scale, speeds};
+use crate::candidate::{Candidate, speeds};
 use crate::score::{Change, Estimate, Projected, Score};
+use crate::sensor::is_dead;
 use rne_identify::SLOWEST;
 
 /// A change is an event from this many deviations on.
@@ -308,7 +309,7 @@ impl<'a> Selection<'a> {
             Candidate::Delay => median(self.speed_ratios.iter().map(|ratio| 1.0 / ratio).collect()).max(1.0),
             _ => 1.0,
         };
-        // a gain is known no better than the model explains the effort, unless there is none
+        // errors of the model are errors of a gain, too; an effort of zero has no such error
         let unexplained = match candidate {
             Candidate::Gain(joint) if scale.effort[joint] > 0.0 && !self.is_dead(joint) => {
                 UNEXPLAINED * residual[joint] / scale.effort[joint]
@@ -473,11 +474,6 @@ impl<'a> Selection<'a> {
     }
 }
 
-/// Whether the effort of a joint is zero throughout, but not in the quiet log.
-fn is_dead(baseline: &Baseline, stretches: &[&Stretch], joint: usize) -> bool {
-    baseline.scale.effort[joint] > 0.0 && stretches.iter().all(|stretch| stretch.is_silent(joint))
-}
-
 /// The unknowns of one joint's torque, of all unknowns and gains: a gain changes the whole torque of the baseline.
 pub(crate) fn of_joint(
     structure: &Structure,
@@ -501,12 +497,4 @@ fn speed_ratios(structure: &Structure, baseline: &Baseline, stretches: &[&Stretc
     let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
     let speeds = speeds(structure, &totals).into_iter().zip(&baseline.scale.speed);
     speeds.map(|(now, before)| now.max(SLOWEST) / before.max(SLOWEST)).collect()
-}
-
-impl Scale {
-    /// Whether a candidate's friction is known well enough for this scale.
-    #[must_use]
-    pub fn is_watched(&self, statistic: &Statistic) -> bool {
-        statistic.deviation < 2.0 * self.least(statistic.candidate)
-    }
 }

@@ -26,7 +26,7 @@ use crate::states::{self, Numbers, State};
 const ARMS: u64 = 2400;
 
 /// Where not all are asked for: one in so many of those with at most so many joints.
-const SOME: [(usize, u64); 3] = [(2, 40), (3, 160), (usize::MAX, 1100)];
+const SOME: [(usize, u64); 3] = [(2, 80), (3, 320), (usize::MAX, 1200)];
 
 /// Arms of whose variables two once had one name; they are always asked for.
 const TWICE: [u64; 3] = [549, 661, 1810];
@@ -36,7 +36,7 @@ const CHOSEN: u64 = 60;
 
 /// Arms whose code in C is compiled, and how many where not all are asked for.
 const IN_C: u64 = 60;
-const SOME_IN_C: u64 = 4;
+const SOME_IN_C: u64 = 2;
 
 /// Of what numbers of a function are measured by.
 const fn tolerance(form: Form) -> f64 {

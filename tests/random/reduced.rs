@@ -63,10 +63,10 @@ fn random_plan(rng: &mut Rng, dof: usize, rarity: usize) -> Plan {
         if targets {
             joint.targets = [0, 1, 2].map(|target| one(rng, RegroupingTarget::CHOICES[target]));
         }
-        joint.origin_shift = if origin_shift { one(rng, OriginShift::ALL) } else { plain.origin_shift };
-        joint.outward_offset = if outward { one(rng, Side::ALL) } else { plain.outward_offset };
+        joint.origin_shift = if origin_shift { one(rng, &OriginShift::ALL) } else { plain.origin_shift };
+        joint.outward_offset = if outward { one(rng, &Side::ALL) } else { plain.outward_offset };
         joint.inward_offset = if inward { Side::Parent } else { plain.inward_offset };
-        joint.moment = if moment { one(rng, Moment::ALL) } else { plain.moment };
+        joint.moment = if moment { one(rng, &Moment::ALL) } else { plain.moment };
     }
     plan
 }

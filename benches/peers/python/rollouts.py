@@ -8,7 +8,8 @@ write their states into arrays that exist before.
 
 Before the measurement the script compares both: one step from each of the initial states, relative to the largest
 number. The exit code is 1 if the difference is above 1e-12. Nanoseconds are time of the processor: medians of rounds
-that alternate between the programs. The ratio is the median of the ratios of the rounds.
+that alternate between the programs. In each round a program runs twice, and its second run counts. The ratio is the
+median of the ratios of the rounds.
 
 MuJoCo has Coulomb friction only as a constraint, which is another equation. So the second line compares the same
 rollout of MuJoCo, without friction, with a rollout of rne that has viscous and Coulomb friction in every joint (smooth
@@ -107,6 +108,7 @@ def compare(name, samples, steps, step, rounds):
     times = {label: [] for label in calls}
     for _ in range(rounds):
         for label, call in calls.items():
+            call()  # not measured: a controller calls one program again and again, with its own data in the caches
             times[label].append(seconds(call) / (samples * steps) * 1e9)
     for label, of_label in times.items():
         ratio = statistics.median(theirs / ours for theirs, ours in zip(times["mujoco"], of_label))

@@ -27,6 +27,8 @@ pub(crate) struct Origin {
     pub(crate) settings: BTreeMap<String, f64>,
     /// Of a URDF: the joints that do not move, and where they stand.
     pub(crate) held: BTreeMap<String, f64>,
+    /// Of a URDF: what the import remarks, in sentences.
+    pub(crate) notes: Vec<String>,
 }
 
 /// A form; the reduced one unless told.
@@ -231,6 +233,18 @@ impl Arm {
         &self.origin.robot
     }
 
+    /// The named frames of the robot file: words for the keyword `frame`, beside the joints.
+    #[getter]
+    fn frames(&self) -> Vec<String> {
+        self.robot().frames.iter().map(|frame| frame.name.clone()).collect()
+    }
+
+    /// Of an arm from a URDF: remarks of the import, such as which tip was chosen and which links were joined.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.origin.notes.clone()
+    }
+
     /// Of an arm from a URDF: the movable joints that are held still, and where, rad or m.
     #[getter]
     fn held(&self) -> BTreeMap<String, f64> {
@@ -254,8 +268,8 @@ impl Arm {
 
     /// From its texts, in whatever process.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Origin { robot, plan, form, rotors, run_time, settings, held, .. } = self.origin.clone();
-        let arguments = (robot, plan, form.0.name(), rotors, run_time, settings, held).into_pyobject(py)?;
+        let Origin { robot, plan, form, rotors, run_time, settings, held, notes, .. } = self.origin.clone();
+        let arguments = (robot, plan, form.0.name(), rotors, run_time, settings, held, notes).into_pyobject(py)?;
         Ok((py.import("rne._rne")?.getattr("Arm")?.getattr("_of_texts")?, arguments))
     }
 
@@ -269,9 +283,10 @@ impl Arm {
         run_time: Vec<String>,
         settings: BTreeMap<String, f64>,
         held: BTreeMap<String, f64>,
+        notes: Vec<String>,
     ) -> PyResult<Self> {
         let form = FormOr(name(form)?);
-        Self::of(py, Origin { file: None, robot, plan, form, rotors, run_time, settings, held })
+        Self::of(py, Origin { file: None, robot, plan, form, rotors, run_time, settings, held, notes })
     }
 
     fn __repr__(&self) -> String {

@@ -113,7 +113,7 @@ fn evaluate_in<'py, T: Element + Number>(
     }
 }
 
-/// The arrays that are held, as the arguments of so many states.
+/// The arguments of a call: the arrays of Python as those of the machine, for a number of states.
 pub(crate) fn arguments<'a, T: Element + Number>(
     given: &[Given<'_>],
     held: &'a [Held<'_, T>],

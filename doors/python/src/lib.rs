@@ -1,6 +1,6 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
-//! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`rollout`] and [`insight`] its methods,
+//! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`pose`], [`rollout`] and [`insight`] its methods,
 //! [`arrays`] what numpy's arrays are to the machine, [`load`] how an arm is read, [`errors`] what goes wrong.
 //! [`logs`], [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes
 //! wrong there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
@@ -20,6 +20,7 @@ mod logs;
 mod notebook;
 mod operational_space;
 mod payload;
+mod pose;
 mod rollout;
 mod watching;
 
@@ -42,6 +43,8 @@ mod _rne {
     use super::logs::{log_content, log_motion};
     #[pymodule_export]
     use super::payload::payload_identified;
+    #[pymodule_export]
+    use super::pose::pose_log;
     #[pymodule_export]
     use super::watching::{followed, watched};
 

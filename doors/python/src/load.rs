@@ -64,7 +64,7 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// Warns
 /// -----
 /// RobotFileWarning
-///     For numbers that are allowed but probably wrong, such as links without mass or with placeholder inertias.
+///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=true,
     keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
@@ -125,7 +125,8 @@ pub(crate) fn load(
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
     let held = imported.account.held.iter().cloned().collect();
-    let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, ..origin })?;
+    let notes = imported.account.remarks.clone();
+    let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, ..origin })?;
     // nobody has written the lines of this robot file, and `snap` has decided on its angles
     let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");
     warn_of(py, &imported.account.lints, |lint| (!is_rounded(lint)).then(|| name.clone()))?;

@@ -29,8 +29,9 @@ impl Arm {
     /// world axes. Units: kg between linear rows, kg m² between angular rows, kg m between both.
     ///
     /// rows: the m rows of the Jacobian that the task controls, such as [0, 1, 2] for the position alone. None is all
-    /// six. An arm of n joints has at most n independent rows; more are a ValueError. At a singular pose, where the
-    /// rows are linearly dependent, the elements are not finite, or so large that they contain only rounding errors.
+    /// six. If n joints move the tip or the frame, at most n rows are independent; more are a ValueError. At a singular
+    /// pose, where the rows are linearly dependent, the elements are not finite, or so large that they contain only
+    /// rounding errors.
     ///
     /// frame: the name of a frame in the place of the tip: a frame in the list `frames` of the robot file, or a joint
     /// for its link frame. payload: a body at the tip, shape (10,) or (N, 10); `rne.payload` makes one.
@@ -47,15 +48,16 @@ impl Arm {
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let rows = self.task(rows, frame)?;
         let [mass, jacobian] = self.mass_and_jacobian(py, q, frame, payload, parameters)?;
-        self.in_operational_space(&mass, &jacobian, rows, Returned::Inertia, out)
+        in_operational_space(&mass, &jacobian, &rows, Returned::Inertia, out)
     }
 
     /// The dynamically consistent inverse M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ of the Jacobian at the tip or at a frame (Khatib, 1987).
     ///
-    /// Of all joint velocities that give the tip a velocity v, its product with v has the least kinetic energy. With J̄
-    /// for the result, J J̄ = 1, and torques (1 - Jᵀ J̄ᵀ) τ do not accelerate the tip for any τ. Row i belongs to joint
-    /// i, column k to row k of `rows`: rad/s or m/s of the joint per m/s or rad/s of the tip.
+    /// The result J̄ has J J̄ = 1. The joint velocities J̄ v move the tip with the velocity v and have less kinetic
+    /// energy than all other joint velocities that do so. Torques (1 - Jᵀ J̄ᵀ) τ do not accelerate the tip, for any τ.
+    /// Row i belongs to joint i, column k to row k of `rows`: rad/s or m/s of the joint per m/s or rad/s of the tip.
     ///
     /// The arguments, the errors and the results at a singular pose are those of `operational_space_inertia`.
     ///
@@ -71,8 +73,9 @@ impl Arm {
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let rows = self.task(rows, frame)?;
         let [mass, jacobian] = self.mass_and_jacobian(py, q, frame, payload, parameters)?;
-        self.in_operational_space(&mass, &jacobian, rows, Returned::Inverse, out)
+        in_operational_space(&mass, &jacobian, &rows, Returned::Inverse, out)
     }
 }
 
@@ -103,24 +106,13 @@ impl Arm {
         Ok([mass, jacobian])
     }
 
-    fn in_operational_space<'py>(
-        &self,
-        mass: &Bound<'py, PyAny>,
-        jacobian: &Bound<'py, PyAny>,
-        rows: Option<Vec<usize>>,
-        returned: Returned,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let rows = self.task(rows)?;
-        match (mass.cast::<PyArrayDyn<f32>>(), jacobian.cast::<PyArrayDyn<f32>>()) {
-            (Ok(mass), Ok(jacobian)) => computed(mass, jacobian, &rows, returned, out, "float32"),
-            _ => computed::<f64>(mass.cast()?, jacobian.cast()?, &rows, returned, out, "float64"),
-        }
-    }
-
     /// The rows of the Jacobian that are asked for.
-    fn task(&self, rows: Option<Vec<usize>>) -> PyResult<Vec<usize>> {
-        let dof = self.arm.dof();
+    fn task(&self, rows: Option<Vec<usize>>, frame: Option<&str>) -> PyResult<Vec<usize>> {
+        let robot = self.robot();
+        let id = frame.map(|name| robot.frame(name)).transpose();
+        let id = id.map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
+        // the joints up to the link that carries the frame
+        let moving = id.map_or(self.arm.dof(), |id| robot.fixed_frame(id).on.map_or(0, |joint| joint + 1));
         let rows = rows.unwrap_or_else(|| (0..ROWS).collect());
         let is_repeated = |at: usize| rows[..at].contains(&rows[at]);
         if rows.is_empty() || rows.iter().any(|&row| row >= ROWS) || (0..rows.len()).any(is_repeated) {
@@ -129,15 +121,31 @@ impl Arm {
                  the velocity, then x, y, z of the angular velocity"
             )));
         }
-        if rows.len() > dof {
+        if rows.len() > moving {
+            let what = frame.map_or_else(|| "the tip".to_owned(), |frame| format!("the frame `{frame}`"));
+            let most = match moving {
+                0 => "choose another frame".to_owned(),
+                _ => format!("name at most {moving} of them, such as rows={:?}", (0..moving).collect::<Vec<_>>()),
+            };
             return Err(PyValueError::new_err(format!(
-                "an arm of {dof} joints cannot control {} rows of the Jacobian at once: name at most {dof} of them, \
-                 such as rows={:?}",
-                rows.len(),
-                (0..dof).collect::<Vec<_>>()
+                "{moving} joints move {what}, so {} rows of its Jacobian cannot be controlled at once: {most}",
+                rows.len()
             )));
         }
         Ok(rows)
+    }
+}
+
+fn in_operational_space<'py>(
+    mass: &Bound<'py, PyAny>,
+    jacobian: &Bound<'py, PyAny>,
+    rows: &[usize],
+    returned: Returned,
+    out: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match (mass.cast::<PyArrayDyn<f32>>(), jacobian.cast::<PyArrayDyn<f32>>()) {
+        (Ok(mass), Ok(jacobian)) => computed(mass, jacobian, rows, returned, out, "float32"),
+        _ => computed::<f64>(mass.cast()?, jacobian.cast()?, rows, returned, out, "float64"),
     }
 }
 

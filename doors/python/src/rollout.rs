@@ -36,7 +36,9 @@ impl Arm {
     ///     The duration of a step, s; above zero.
     /// friction : bool or float
     ///     A number w > 0 (rad/s or m/s) adds the friction of the robot file's motors, G² B qd + |G| (½ (Tc⁺ - Tc⁻) s +
-    ///     ½ (Tc⁺ + Tc⁻) s²) with s = qd / √(qd² + w²). True takes the key `coulomb_width` of each joint as w.
+    ///     ½ (Tc⁺ + Tc⁻) s²) with s = qd / √(qd² + w²). True takes the key `coulomb_width` of each joint as w. A
+    ///     joint of the inertia m needs step < 2 m / (G² B + |G| Tc / w); a longer step makes it swing about zero
+    ///     velocity.
     /// limits : bool or sequence of "effort", "velocity", "position"
     ///     Which limits of the robot file hold; True: all. A joint without a limit in the file has none.
     /// payload : array of shape (10,) or (N, 10), optional

@@ -101,7 +101,7 @@ def test_precision_and_out():
 
 def test_rows_that_no_arm_has():
     arm = rne.robots.planar2
-    with pytest.raises(ValueError, match=r"an arm of 2 joints cannot control 6 rows .* such as rows=\[0, 1\]"):
+    with pytest.raises(ValueError, match=r"2 joints move the tip, so 6 rows .* such as rows=\[0, 1\]"):
         arm.operational_space_inertia([0.1, 0.2])
     for rows in ([], [0, 6], [1, 1]):
         with pytest.raises(ValueError, match="write different numbers from 0 to 5"):

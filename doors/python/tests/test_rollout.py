@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[3]
 # All of them with CI_FULL=1.
 ARMS = 500 if os.environ.get("CI_FULL") else 100
 SAMPLES, STEPS, STEP = 2, 2, 2e-3
-# Of the larger of 1 and the numbers of the step. Where the mass matrix has a greater condition, accelerations are rounding.
+# The unit is the larger of 1 and the numbers of the step. Where the mass matrix has a greater condition, accelerations are rounding.
 TOLERANCE, CONDITION = 1e-12, 1e5
 
 random = np.random.default_rng(8)

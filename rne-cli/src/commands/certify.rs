@@ -23,7 +23,7 @@ use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::{self, Compiler};
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Frames};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
@@ -46,7 +46,8 @@ computes in double precision or calls a function of others.
 Needed: arm-none-eabi-gcc and its objdump. Used if they are installed:
 qemu-system-arm and cppcheck (MISRA C:2012). On Debian and Ubuntu:
   apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck
-docs/assurance.md says what each number means.")]
+The certificate is of one function. It has no joint friction and no limits of
+`rne emit --friction --limits`. docs/assurance.md says what each number means.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
@@ -121,6 +122,14 @@ impl Language {
             Self::Rust => "rust",
         }
     }
+
+    /// The compiler that is used if no other is named.
+    const fn compiler(self) -> &'static str {
+        match self {
+            Self::C => "arm-none-eabi-gcc",
+            Self::Rust => "rustc",
+        }
+    }
 }
 
 impl Arguments {
@@ -146,9 +155,16 @@ fn core(text: &str) -> Result<Core, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     is_observer_of_c(arguments)?;
-    let certificate = certificate(arguments)?;
+    let (certificate, lints) = certificate(arguments)?;
+    let mut outcome = written(arguments, &certificate)?;
+    outcome.remark += &lints;
+    Ok(outcome)
+}
+
+/// The certificate on standard output or in a file, or the check of a file.
+fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, Failure> {
     let text = if arguments.json {
-        serde_json::to_string_pretty(&certificate).map_err(Failure::input)? + "\n"
+        serde_json::to_string_pretty(certificate).map_err(Failure::input)? + "\n"
     } else {
         certificate.page()
     };
@@ -207,6 +223,11 @@ fn is_ours(text: &str) -> bool {
 fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
     let shown = file.display();
     let found = match output_file::existing(file) {
+        Existing::Text(found) if found.trim().is_empty() => {
+            return Err(Failure::input(format_args!(
+                "{shown} is empty; {TYPED}-o{TYPED:#} writes a certificate there"
+            )));
+        }
         Existing::Text(found) => found,
         Existing::Nothing => return Err(Failure::input(format_args!("there is no file {shown}"))),
         _ => return Err(Failure::input(format_args!("{shown} is no certificate of rne"))),
@@ -214,14 +235,20 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
     if found == text {
         return Ok(Outcome::remark(format!("{GOOD}up to date:{GOOD:#} {shown}\n")));
     }
-    let mut differences: Vec<String> = Vec::new();
+    // other figures before other hashes
+    let (mut differences, mut hashes): (Vec<String>, Vec<String>) = Default::default();
+    let mut section = "the head";
     let (old, new): (Vec<&str>, Vec<&str>) = (found.lines().collect(), text.lines().collect());
     for index in 0..old.len().max(new.len()) {
         let [a, b] = [&old, &new].map(|lines| lines.get(index).copied().unwrap_or("the end of the file"));
+        section = a.strip_prefix("## ").unwrap_or(section);
         if a != b {
-            differences.push(format!("line {}:\n  file: {a}\n  now:  {b}", index + 1));
+            let is_hash = |line: &str| line.split('`').any(|word| word.len() == 64);
+            let list = if is_hash(a) || is_hash(b) { &mut hashes } else { &mut differences };
+            list.push(format!("line {} ({section}):\n  file: {a}\n  now:  {b}", index + 1));
         }
     }
+    differences.append(&mut hashes);
     let count = differences.len();
     differences.truncate(5);
     Err(Failure::input(format_args!(
@@ -230,22 +257,27 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
     )))
 }
 
-fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[])?;
+/// The certificate, and a remark where the robot file has warnings.
+fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped)?;
     let robot = arguments.rotors.of(checked.robot);
     let program = Compiler::new(&arguments.file, &robot).compile(arguments.program(), arguments.form)?;
     let call = call(arguments, &robot, &program)?;
-    let compiler = arguments.cc.clone().unwrap_or_else(|| match arguments.lang {
-        Language::C => "arm-none-eabi-gcc".to_owned(),
-        Language::Rust => "rustc".to_owned(),
-    });
+    let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
+    let version = toolchain::version(&compiler)?;
+    if arguments.lang == Language::C && !toolchain::is_gcc(&compiler) {
+        return Err(Failure::usage(format_args!(
+            "{compiler} is no GCC ({version}); {TYPED}--cc{TYPED:#} takes GCC for Arm: its option -fstack-usage and \
+             its binary utilities give the numbers of the certificate"
+        )));
+    }
     let objdump = match arguments.lang {
         Language::C => toolchain::objdump_of(&compiler),
         Language::Rust => toolchain::objdump_of(""),
     };
     let mut tools = BTreeMap::from([
         ("rne".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-        (compiler.clone(), toolchain::version(&compiler)?),
+        (compiler.clone(), version),
         (objdump.clone(), toolchain::version(&objdump)?),
     ]);
     let folder = tempfile::tempdir().map_err(Failure::input)?;
@@ -294,8 +326,9 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         },
         |proof| rne_emit::evidence(&program, proof),
     );
-    Ok(Certificate {
+    let certificate = Certificate {
         command: command(arguments),
+        emit: emit(arguments, &code.source),
         robot: robot.name.clone(),
         function: arguments.name().to_owned(),
         language: arguments.lang.name(),
@@ -310,7 +343,8 @@ fn certificate(arguments: &Arguments) -> Result<Certificate, Failure> {
         proof,
         misra,
         trace: code.heads.iter().flat_map(|head| trace(&code.text, head)).collect(),
-    })
+    };
+    Ok((certificate, robot_file::lint_remark(&checked.lints, &arguments.file)))
 }
 
 /// The cost of a call: of the function and of those that it calls.
@@ -332,6 +366,7 @@ fn cost(core: Core, image: &Image, code: &Code) -> Result<Cost, Failure> {
     Ok(Cost {
         instructions: figures.instructions,
         cycles: worst.total,
+        bound: core.bound(),
         waits: worst.waits,
         classes: worst.classes,
         unknown: worst.unknown,
@@ -449,6 +484,20 @@ fn accuracy(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<A
 }
 
 /// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
+/// The command that writes the code that is certified.
+fn emit(arguments: &Arguments, source: &str) -> String {
+    let file = robot_file::shell(Path::new(&file_name(&arguments.file)));
+    let sine = if arguments.lang == Language::Rust { " --with-sin-cos" } else { "" };
+    let prefix = arguments.prefix.as_ref().map_or_else(String::new, |prefix| format!(" --prefix {prefix}"));
+    let rotors = if arguments.rotors.rotors { " --rotors" } else { "" };
+    format!(
+        "rne emit {file} --lang {} --function {} --form {}{sine}{prefix}{rotors} -o {source}",
+        arguments.lang.name(),
+        arguments.program(),
+        arguments.form
+    )
+}
+
 fn command(arguments: &Arguments) -> String {
     let lang = arguments.lang.name();
     let function = match arguments.low_pass() {
@@ -463,7 +512,7 @@ fn command(arguments: &Arguments) -> String {
         arguments.states,
         arguments.seed
     );
-    if let Some(compiler) = &arguments.cc {
+    if let Some(compiler) = arguments.cc.as_ref().filter(|compiler| *compiler != arguments.lang.compiler()) {
         let _ = write!(command, " --cc {}", robot_file::shell(Path::new(compiler)));
     }
     if let Some(prefix) = &arguments.prefix {

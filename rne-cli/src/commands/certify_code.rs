@@ -127,7 +127,8 @@ pub(super) fn c_code(
 
 /// The name of the files without their endings.
 pub(super) fn stem(arguments: &Arguments, robot: &Robot) -> String {
-    arguments.file.file_stem().map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned())
+    let stem = arguments.file.file_stem().filter(|_| !is_stream(&arguments.file));
+    stem.map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Links the code with the program of the board, which is GNU C.

@@ -139,9 +139,9 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
     let component = line.quantity.components()[first.component];
     let name = robot.joints.get(line.joint - 1).map_or("", |joint| &joint.name);
     let (symbol, what) = (line.symbol(), place(line));
-    let of = if component.is_empty() { String::new() } else { format!(", component {component}") };
+    let of_component = if component.is_empty() { String::new() } else { format!(", component {component}") };
     let mut text = format!(
-        "{ERROR}first difference{ERROR:#}: {TITLE}{what}, joint {} ({name}), {symbol}{of}{TITLE:#}\n\n",
+        "{ERROR}first difference{ERROR:#}: {TITLE}{what}, joint {} ({name}), {symbol}{of_component}{TITLE:#}\n\n",
         line.joint
     );
     let numbers = [first.theirs, first.ours, first.theirs - first.ours].map(fixed);

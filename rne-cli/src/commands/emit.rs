@@ -8,13 +8,13 @@ use rne_codegen::{Form, Function, Program};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
-use crate::commands::emit_c::{c_code, header_beside};
+use crate::commands::emit_c::{Header, c_code, header_beside};
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::Compiler;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Frames};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
@@ -174,12 +174,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names)?;
+    let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf)?;
     let robot = arguments.rotors.of(checked.robot);
-    let programs = programs(arguments, &robot)?;
-    let c_code = || c_code(arguments, &robot, &programs, &bytes);
+    let mut outcome = emitted(arguments, &robot, &bytes, out, header)?;
+    outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);
+    Ok(outcome)
+}
+
+/// The code in files or on standard output, or the check of files.
+fn emitted(
+    arguments: &Arguments,
+    robot: &Robot,
+    bytes: &[u8],
+    out: Option<&Path>,
+    header: Option<Header>,
+) -> Result<Outcome, Failure> {
+    let programs = programs(arguments, robot)?;
+    let c_code = || c_code(arguments, robot, &programs, bytes);
     let rust_file = if arguments.with_sin_cos { rne_emit::rust_file_with_sin_cos } else { rne_emit::rust_file };
-    let rust = || Ok::<_, Failure>(rust_file(&robot, &programs) + &rust_tests(arguments, &robot, &programs)?);
+    let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &rust_tests(arguments, robot, &programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {
@@ -286,7 +300,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     let compiler = Compiler::new(&arguments.file, robot);
     let functions = functions(arguments, robot);
-    let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|it| it.of_frame().is_some());
+    let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
     let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
     let mut programs: Vec<Program> =
         of_tip.iter().map(|&function| compiler.compile(function, arguments.form())).collect::<Result<_, _>>()?;

@@ -71,7 +71,7 @@ pub(super) fn c_code(
         return Ok(code);
     }
     let golden = golden::of_programs(robot, programs, precision)?;
-    Ok(code.with_tests(&rne_emit::c_tests(robot, programs, precision, &prefix, &golden)))
+    Ok(code.with_tests(&rne_emit::c_tests(robot, programs, precision, &prefix, &golden, &additions)))
 }
 
 /// The friction of the joints; an error says where to write what is missing.

@@ -15,7 +15,7 @@ use crate::files::chosen_arm::{AtFrame, ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
 use crate::files::plan_file;
 use crate::files::states;
-use crate::files::worksheet_file;
+use crate::files::worksheet_text;
 use crate::outcome::{Failure, Outcome};
 use crate::render::answer;
 use crate::render::answer::not_finite;
@@ -142,7 +142,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.states.as_ref().is_some_and(is_read_twice) {
         return Err(Failure::usage("FILE and --states are both standard input; give one of them as a file"));
     }
-    let robot = arguments.at.of(arguments.arm.robot()?)?;
+    let robot = arguments.arm.robot_at(&arguments.at)?;
     let is_at_frame = arguments.at.frame.is_some();
     let function = arguments.function.unwrap_or(match (&arguments.wrench, is_at_frame) {
         (Some(_), true) => Function::WrenchTorques,
@@ -168,10 +168,10 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
             arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
         return golden::file(&robot, states, &settings).map(Outcome::text);
     }
-    let loaded = function.with_payload().filter(|_| arguments.arm.payload.is_some());
+    let loaded = function.with_payload().filter(|_| arguments.arm.carried.payload.is_some());
     let function = loaded.unwrap_or(function);
     // of a function that takes no payload, the payload is a part of the last link
-    let robot = if function.takes(Argument::Payload) { robot } else { arguments.arm.carrying(robot)? };
+    let robot = if function.takes(Argument::Payload) { robot } else { arguments.arm.carried.of(robot)? };
     if arguments.trace && !function.returns_torques() {
         let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
         return Err(Failure::usage(format_args!(
@@ -212,10 +212,10 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     let axes = arguments.axes.unwrap_or(Axes::Link).into();
     let sheet = Worksheet::new(&robot, &situation, axes).map_err(Failure::usage)?;
     if arguments.csv {
-        return Ok(Outcome { remark, ..Outcome::text(worksheet_file::csv(&robot, &sheet, narrowed)) });
+        return Ok(Outcome { remark, ..Outcome::text(worksheet_text::csv(&robot, &sheet, narrowed)) });
     }
     if arguments.json {
-        let text = worksheet_file::json(&robot, &sheet, narrowed, &result())?;
+        let text = worksheet_text::json(&robot, &sheet, narrowed, &result())?;
         return Ok(Outcome { remark, ..Outcome::text(text) });
     }
     let mut text = worksheet::text(&robot, &sheet, narrowed, &state, arguments.letters);
@@ -234,7 +234,7 @@ impl Arguments {
             qdd: self.qdd.as_ref(),
             tau: self.tau.as_ref(),
             wrench: self.wrench.as_ref(),
-            payload: self.arm.payload.as_ref().filter(|_| function.takes(Argument::Payload)),
+            payload: self.arm.carried.payload.as_ref().filter(|_| function.takes(Argument::Payload)),
             base_omega: self.base_omega.as_ref(),
             base_omega_dot: self.base_omega_dot.as_ref(),
             base_acceleration: self.base_acceleration.as_ref(),

@@ -14,6 +14,7 @@ use rne_machine::{CompiledArm, Form};
 use rne_model::{Joint, Robot, exact_digits, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
+use crate::files::chosen_arm::Carried;
 use crate::files::file_name::{self, Format};
 use crate::files::interruption;
 use crate::files::output_file::{
@@ -22,8 +23,8 @@ use crate::files::output_file::{
 use crate::files::robot_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, WARNING};
+use crate::remedy;
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
-use crate::render::remedy;
 use crate::values::numbers::{List, checked, rounded};
 
 /// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.
@@ -78,6 +79,8 @@ pub(crate) struct Arguments {
     /// Also excite the rotor inertia of the motors
     #[arg(long)]
     rotors: bool,
+    #[command(flatten)]
+    carried: Carried,
     /// Number of motions that the search tries
     #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=MOTIONS))]
     evaluations: u64,
@@ -101,7 +104,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = arguments.carried.of(robot_file::robot(&arguments.file)?)?;
     if arguments.seconds * arguments.rate > MOST {
         return Err(Failure::usage(format_args!(
             "{} s at {} Hz are more than {MOST} samples; use a lower --rate",

@@ -116,8 +116,14 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     if let Some(parameter) = LinkParameter::parse(name) {
         return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
     }
-    let meant = did_you_mean(name, inspection.names.keys().map(String::as_str))
-        .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
+    // the components of a vector before a name that is nearly the same
+    let components = ["x", "y", "z", "xx", "xy", "xz", "yy", "yz", "zz"].map(|axis| format!("{name}_{axis}"));
+    let components: Vec<&str> =
+        components.iter().map(String::as_str).filter(|name| inspection.names.contains_key(*name)).collect();
+    let near = did_you_mean(name, inspection.names.keys().map(String::as_str)).filter(|_| components.is_empty());
+    let meant = if components.is_empty() { near.into_iter().collect() } else { components };
+    let meant =
+        if meant.is_empty() { String::new() } else { format!(" (did you mean {TYPED}{}{TYPED:#}?)", meant.join(", ")) };
     Err(Failure::usage(format_args!(
         "there is no name `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
          code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",

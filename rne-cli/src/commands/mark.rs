@@ -22,6 +22,7 @@ use crate::values::choice;
 
 /// Mark the worksheets of a class: points and first errors
 #[derive(Args)]
+#[allow(clippy::struct_excessive_bools)] // switches of the command line
 #[command(after_help = "\
 Examples:
   rne mark planar1 --states docs/lecture/class/key.csv docs/lecture/class/*.csv
@@ -29,10 +30,15 @@ Examples:
   rne mark planar2 --seed 7 sheets/ada.csv --hint
 
 A point is a right value of a worksheet, as `rne eval --trace --csv` and
-`rne worksheet` write it. The name of a student is in the first line of the
-worksheet, else it is the name of the file. KEY itself is not marked.
+`rne worksheet` write it. A value that is zero in every state of the arm, such
+as omega x of a planar arm, gives no point. With --carry, a value that is right
+for the student's own earlier, wrong values gives a point, too, unless it is
+zero. The steps that a worksheet asks for and the name of the student are in its
+first line; without a name there, the name is that of the file. KEY itself is
+not marked.
 
-Exit status: 1 if a file cannot be read; the other files are marked.")]
+Exit status: 1 if a file cannot be read (the other files are marked), or if
+every worksheet is for another state.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
@@ -43,8 +49,12 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     states: Chosen,
     /// Points only for these steps, such as 1,2,7: 1 angular velocity, …, 7 torque
+    /// [default: the steps of the worksheet]
     #[arg(long = "step", value_name = "S", value_parser = choice::step, value_delimiter = ',')]
     steps: Vec<Step>,
+    /// Points also for values that are right for the student's own earlier, wrong values
+    #[arg(long)]
+    carry: bool,
     /// Axes of worksheets that do not name their axes: link (default), joint, or base (frame 0)
     #[arg(long, value_enum, hide_possible_values = true)]
     axes: Option<Axes>,
@@ -91,7 +101,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let _ =
             writeln!(remark, "note: {} has several files: {}", marks::shown(student), marks::shown(&files.join(", ")));
     }
-    let at_fault = marked.iter().any(|one| one.mark.is_err());
+    let all_for_another = marked.iter().filter(|one| one.mark.is_ok()).all(Marked::is_for_another_state);
+    if all_for_another && marked.iter().any(|one| one.mark.is_ok()) {
+        let option = if arguments.states.seed.is_some() { "--seed" } else { "--states" };
+        let _ = writeln!(remark, "error: every worksheet is for another state; is {option} that of the worksheets?");
+    }
+    let at_fault = all_for_another || marked.iter().any(|one| one.mark.is_err());
     let text = if arguments.json {
         Outcome::json(&marks::json(&marked, arguments.hint))?.text
     } else if arguments.csv {
@@ -117,11 +132,15 @@ fn mark(
     steps: &[u8],
     arguments: &Arguments,
 ) -> Result<Marked, Failure> {
-    let Filled { values, axes, student } = worksheet_file::read(path, robot, arguments.axes.map(Into::into))?;
+    let Filled { values, axes, student, steps: asked } =
+        worksheet_file::read(path, robot, arguments.axes.map(Into::into))?;
     let student = student.unwrap_or_else(|| stem(path));
     let at = states.of(&student, robot)?;
     let sheet = Worksheet::new(robot, &at, axes.unwrap_or(worksheet::Axes::Link)).map_err(Failure::usage)?;
     let comparison = sheet.compare(robot, &at, &values, arguments.digits).map_err(Failure::usage)?;
-    let mark = Mark::new(&sheet, comparison, steps);
+    let always_zero = sheet.always_zero(robot, &at).map_err(Failure::usage)?;
+    // what the command line asks for, else what the worksheet asks for
+    let steps = asked.filter(|_| arguments.steps.is_empty()).unwrap_or_else(|| steps.to_vec());
+    let mark = Mark::new(&sheet, comparison, &steps, &always_zero, arguments.carry);
     Ok(Marked { student, file: path.display().to_string(), mark: Ok(mark) })
 }

@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     for Setting { name, value } in &arguments.arm.set {
         let _ = write!(about, ", {name} = {value}");
     }
-    if arguments.arm.payload.is_some() {
+    if arguments.arm.carried.payload.is_some() {
         about.push_str(", with a payload");
     }
     if robot.has_rotors() {
@@ -156,8 +156,8 @@ fn peaks(robot: &Robot, history: &TorqueHistory) -> String {
 /// Everything that the picture shows, as numbers.
 fn csv(robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory) -> String {
     let names = ["tau", "inertia", "velocity", "gravity", "power"];
-    let of = |name: &&str| (1..=robot.dof()).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
-    let mut text = format!("t,{}\n", names.iter().flat_map(of).collect::<Vec<_>>().join(","));
+    let columns = |name: &&str| (1..=robot.dof()).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
+    let mut text = format!("t,{}\n", names.iter().flat_map(columns).collect::<Vec<_>>().join(","));
     for ((time, parts), powers) in trajectory.time.iter().zip(&history.parts).zip(&history.powers) {
         text.push_str(&exact_digits(*time));
         let numbers = [&parts.total, &parts.inertia, &parts.velocity, &parts.gravity, powers].into_iter().flatten();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rne_codegen::{Form, Function};
 
-use crate::files::chosen_arm::Rotors;
+use crate::files::chosen_arm::{Carried, Rotors};
 use crate::files::file_name::Format;
 use crate::files::output_file::Output;
 use crate::files::plan_file::Compiler;
@@ -29,6 +29,8 @@ pub(crate) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
+    #[command(flatten)]
+    carried: Carried,
     /// HTML file to write; - is standard output
     #[arg(short, long = "output", value_name = "OUT.html")]
     out: PathBuf,
@@ -38,8 +40,12 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.rotors.robot(&arguments.file)?;
-    let reduced = Compiler::new(&arguments.file, &robot).compile(Function::InverseDynamics, Form::Reduced)?;
+    let robot = arguments.carried.of(arguments.rotors.robot(&arguments.file)?)?;
+    let compiler = match arguments.carried.payload {
+        Some(_) => Compiler::without_file(&arguments.file, &robot),
+        None => Compiler::new(&arguments.file, &robot),
+    };
+    let reduced = compiler.compile(Function::InverseDynamics, Form::Reduced)?;
     let page = rne_report::page(&robot, Some(&reduced))
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
     let output = Output { out: Some(arguments.out.clone()), force: arguments.force };

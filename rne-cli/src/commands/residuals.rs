@@ -8,11 +8,11 @@ use rne_identify::{Part, Prediction};
 use rne_logs::Motion;
 use rne_model::{Robot, one_line};
 
-use crate::files::motion_file::cell;
 use crate::files::motion_log::MotionLog;
 use crate::files::output_file::{Replacement, unwritable};
 use crate::outcome::Failure;
 use crate::palette::GOOD;
+use crate::render::layout::cell;
 
 /// Writes the torques of a robot and of parts of a log, both after the low-pass, as CSV. Each part of the log is
 /// marked as held out, or as not. The rows are the states of the picture; the picture has every n-th state of a long

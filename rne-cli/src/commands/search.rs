@@ -249,8 +249,11 @@ fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], pa
     for (function, rewritten) in &found.rewritten {
         line(function.name(), &rewritten.operations, &rewritten.accuracy);
     }
-    let lost: Vec<&str> =
-        left_out.iter().filter(|function| !found.rewritten.contains_key(function)).map(|it| it.name()).collect();
+    let lost: Vec<&str> = left_out
+        .iter()
+        .filter(|function| !found.rewritten.contains_key(function))
+        .map(|function| function.name())
+        .collect();
     if !lost.is_empty() {
         let lost = lost.join(",");
         let _ = writeln!(

@@ -56,6 +56,12 @@ pub(crate) fn version_of(program: &str) -> Option<String> {
     Some(String::from_utf8_lossy(&output.stdout).lines().next()?.trim().to_owned())
 }
 
+/// Whether a program is a compiler of GNU, by the lines that `--version` prints.
+pub(crate) fn is_gcc(program: &str) -> bool {
+    let said = Command::new(program).arg("--version").output();
+    said.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("Free Software Foundation"))
+}
+
 /// The first line of `--version`; an error says how to install the program.
 pub(crate) fn version(program: &str) -> Result<String, Failure> {
     Ok(text(Command::new(program).arg("--version"))?.lines().next().unwrap_or_default().trim().to_owned())

@@ -22,7 +22,7 @@ use crate::render::watch_dates::{LogName, LogNames};
 use crate::render::watch_reply::{Reply, TrendReply};
 use crate::render::watch_report;
 use crate::values::log_arguments::{self, LogArguments};
-use crate::values::numbers::above_zero;
+use crate::values::numbers::{above_zero, rounded};
 
 /// Find changes of an arm in its logs: friction, payload, contacts
 #[derive(Args)]
@@ -223,6 +223,24 @@ fn events(
     if let Some(path) = &arguments.plot {
         remark += &draw(path, arguments, robot, &report, settings, &log.words(), sources)?;
     }
+    let ratio = report.changes.effort_ratio;
+    if !UNIT.contains(&ratio) {
+        warn(
+            &mut remark,
+            &format!(
+                "the efforts are {} times as large as in the quiet log: do they have another unit, or another torque \
+                 constant? Then the events mean nothing",
+                rounded(ratio, 2)
+            ),
+        );
+    }
+    if arguments.logs.len() > 1 && arguments.quiet.is_empty() && arguments.baseline.is_none() {
+        warn(
+            &mut remark,
+            "the logs are joined to one, so a change between them can be hidden; --quiet names the log to compare \
+             with, and --by log compares each with the first",
+        );
+    }
     let judged = log.judged()?;
     let errors = prediction(robot, &judged, Part::All)?;
     let names = unexplained(robot, &errors);
@@ -240,7 +258,7 @@ fn events(
         remark += &output_file::write_new(path, &table, sources, arguments.force)?;
     }
     if arguments.json {
-        let reply = Reply::of(robot, &log, &words, &baseline, &report, &errors);
+        let reply = Reply::of(robot, log.words(), log.read_to(), &words, &baseline, &report, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
     }
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), baseline.cutoff);
@@ -297,12 +315,12 @@ fn groups(arguments: &Arguments, robot: &Robot, known: Option<&Known>, by: &str)
         let options = arguments.reading.options();
         let values = Log::values(&arguments.logs, by, &options, |share| reading::show(&bar, share))
             .map_err(|error| log_arguments::failure(&error, &[]))?;
-        let of = |found: LabelValue| Group {
+        let group = |found: LabelValue| Group {
             paths: arguments.logs.clone(),
             rows: Some((by.to_owned(), found.value.clone())),
             name: found.value,
         };
-        return Ok(values.into_iter().map(of).collect());
+        return Ok(values.into_iter().map(group).collect());
     }
     let mut groups: Vec<Group> = Vec::new();
     for path in &arguments.logs {
@@ -318,7 +336,7 @@ fn groups(arguments: &Arguments, robot: &Robot, known: Option<&Known>, by: &str)
                 ))
             })?;
         }
-        match groups.iter_mut().find(|of| by == "day" && of.name == group.name) {
+        match groups.iter_mut().find(|known| by == "day" && known.name == group.name) {
             Some(of) => of.paths.push(path.clone()),
             None => groups.push(group),
         }
@@ -357,7 +375,7 @@ fn trend(
     let (mut events, mut names) = (Vec::new(), Vec::new());
     let mut first_failure = None;
     for group in groups {
-        let mut one = || -> Result<Changes, Failure> {
+        let mut compare = || -> Result<Changes, Failure> {
             let log = open(arguments, &group, robot, Some(&known))?;
             remark += &log.remark_beside(&known.remarks, PAGE);
             known.remarks.extend(log.log().remarks().iter().cloned());
@@ -365,7 +383,7 @@ fn trend(
             changes(&structure, &known.baseline, log.log(), &mut |share| reading::show(&bar, share))
                 .map_err(|error| watch_failure(&error, &log.words()))
         };
-        match one() {
+        match compare() {
             Ok(found) => {
                 names.push(group.log_name());
                 trend.push(group.name, &found);
@@ -436,6 +454,9 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
     }
     Ok(())
 }
+
+/// The efforts of a log over those of the quiet log, where both have one unit: loads differ, and motions.
+const UNIT: std::ops::Range<f64> = 0.2..5.0;
 
 /// Why a robot file explains nothing: a file of the geometry alone predicts no torques.
 fn doubt(robot: &Robot, question: &'static str) -> &'static str {

@@ -13,7 +13,7 @@ use crate::files::input_file;
 use crate::files::output_file::unwritable;
 use crate::files::output_folder;
 use crate::files::robot_file;
-use crate::files::worksheet_file;
+use crate::files::worksheet_text;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::GOOD;
 use crate::render::worksheet::Axes;
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let at = states.of(student, &robot)?;
         let sheet = Worksheet::new(&robot, &at, arguments.axes.into()).map_err(Failure::usage)?;
         let text =
-            worksheet_file::of_student(&robot, &sheet, student, &steps, arguments.answers, arguments.decimal_comma);
+            worksheet_text::of_student(&robot, &sheet, student, &steps, arguments.answers, arguments.decimal_comma);
         files.push((PathBuf::from(format!("{student}.csv")), text));
     }
     output_folder::write(&arguments.out, &files).map_err(|(path, error)| unwritable(&path, &error))?;

@@ -8,7 +8,7 @@ use rne::Payload;
 use rne_codegen::Function;
 use rne_model::Robot;
 
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Frames};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 use crate::values::numbers::List;
@@ -95,6 +95,24 @@ impl FromStr for Setting {
     }
 }
 
+/// A body that the arm carries at its tip.
+#[derive(Args, Clone)]
+pub(crate) struct Carried {
+    /// Payload at the tip, m,cx,cy,cz[,xx,yy,zz,xy,xz,yz]: mass, centre of mass, inertia about it; kg, m, kg m²; tip
+    /// axes
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) payload: Option<List>,
+}
+
+impl Carried {
+    /// A robot with the payload as a part of its last link.
+    pub(crate) fn of(&self, robot: Robot) -> Result<Robot, Failure> {
+        let Some(list) = &self.payload else { return Ok(robot) };
+        let Payload { mass, com, inertia } = payload(list)?;
+        Ok(rne_convert::carrying(&robot, mass, com, inertia))
+    }
+}
+
 /// The arm whose numbers a command computes.
 #[derive(Args)]
 pub(crate) struct ChosenArm {
@@ -106,10 +124,8 @@ pub(crate) struct ChosenArm {
     /// Replace the value of a parameter; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub(crate) set: Vec<Setting>,
-    /// Payload at the tip, m,cx,cy,cz[,xx,yy,zz,xy,xz,yz]: mass, centre of mass, inertia about it; kg, m, kg m²; tip
-    /// axes
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub(crate) payload: Option<List>,
+    #[command(flatten)]
+    pub(crate) carried: Carried,
 }
 
 impl ChosenArm {
@@ -120,18 +136,20 @@ impl ChosenArm {
 
     /// The robot with the payload as a part of its last link.
     pub(crate) fn robot_with_payload(&self) -> Result<Robot, Failure> {
-        self.carrying(self.robot()?)
-    }
-
-    /// A robot with the payload as a part of its last link.
-    pub(crate) fn carrying(&self, robot: Robot) -> Result<Robot, Failure> {
-        let Some(list) = &self.payload else { return Ok(robot) };
-        let Payload { mass, com, inertia } = payload(list)?;
-        Ok(rne_convert::carrying(&robot, mass, com, inertia))
+        self.carried.of(self.robot()?)
     }
 
     /// The robot without the payload.
     pub(crate) fn robot(&self) -> Result<Robot, Failure> {
+        self.read(Frames::Dropped)
+    }
+
+    /// The robot without the payload, seen from a frame.
+    pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<Robot, Failure> {
+        at.of(self.read(if at.frame.is_some() { Frames::Kept } else { Frames::Dropped })?)
+    }
+
+    fn read(&self, frames: Frames) -> Result<Robot, Failure> {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
@@ -139,17 +157,17 @@ impl ChosenArm {
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
-        Ok(self.rotors.of(with_settings(&self.file, &self.set)?))
+        Ok(self.rotors.of(with_settings(&self.file, &self.set, frames)?))
     }
 }
 
 /// The robot of a file with other values of its parameters.
-fn with_settings(path: &Path, settings: &[Setting]) -> Result<Robot, Failure> {
+fn with_settings(path: &Path, settings: &[Setting], frames: Frames) -> Result<Robot, Failure> {
     for (index, Setting { name, .. }) in settings.iter().enumerate() {
         if settings[..index].iter().any(|other| other.name == *name) {
             return Err(Failure::usage(format_args!("--set gives {name} twice")));
         }
     }
     let settings: Vec<(&str, f64)> = settings.iter().map(|Setting { name, value }| (name.as_str(), *value)).collect();
-    Ok(robot_file::read_with(path, &settings)?.robot)
+    Ok(robot_file::read_with(path, &settings, frames)?.robot)
 }

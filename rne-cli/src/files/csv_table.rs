@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use rne_model::Report;
+use rne_model::{Diagnostic, Report};
 
 use crate::outcome::Failure;
 
@@ -38,10 +38,16 @@ pub(crate) struct Mistakes<'a> {
     name: &'a str,
     text: &'a str,
     report: Option<Report>,
+    /// How many mistakes have the same remedy, in the order in which the remedies came first.
+    alike: Vec<(String, usize)>,
 }
 
-/// Most mistakes that are reported: a file with another decimal mark has one in each cell.
+/// Most mistakes that are reported.
 const TOLD: usize = 20;
+
+/// Most mistakes with one remedy that are reported; the others are counted. A file with another decimal mark has one in
+/// each cell.
+const ALIKE: usize = 3;
 
 /// The text of a file, without a byte order mark.
 pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Failure> {
@@ -60,11 +66,20 @@ pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Failur
 
 impl<'a> Mistakes<'a> {
     pub(crate) const fn new(name: &'a str, text: &'a str) -> Self {
-        Self { name, text, report: None }
+        Self { name, text, report: None, alike: Vec::new() }
     }
 
     pub(crate) fn push(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<&str>) {
         if self.are_enough() {
+            return;
+        }
+        let message = message.into();
+        let remedy = help.unwrap_or(&message);
+        match self.alike.iter_mut().find(|(other, _)| other == remedy) {
+            Some((_, count)) => *count += 1,
+            None => self.alike.push((remedy.to_owned(), 1)),
+        }
+        if self.alike.iter().any(|(other, count)| other == remedy && *count > ALIKE) {
             return;
         }
         let report = Report::of_error(self.name, self.text, span, message, help);
@@ -88,6 +103,13 @@ impl<'a> Mistakes<'a> {
         match self.report {
             Some(mut report) => {
                 report.diagnostics.sort_by_key(|found| found.span.start);
+                for (remedy, count) in self.alike.iter().filter(|(_, count)| *count > ALIKE) {
+                    let is_alike = |found: &&mut Diagnostic| found.help.as_ref().unwrap_or(&found.message) == remedy;
+                    if let Some(last) = report.diagnostics.iter_mut().rev().find(is_alike) {
+                        let more = format!("{} more lines have a mistake of this kind", count - ALIKE);
+                        last.help = Some(last.help.take().map_or(more.clone(), |help| format!("{help}; {more}")));
+                    }
+                }
                 Err(Failure::from(&report))
             }
             None => Ok(value),
@@ -162,7 +184,12 @@ fn cells(line: &str, start: usize, separator: char) -> Result<Vec<Cell<'_>>, usi
 }
 
 /// A number with a decimal point where it has a decimal comma, as spreadsheets write it in half of Europe: `0,5`.
+/// U+2212 is a minus sign, as they write it, too.
 pub(crate) fn with_point(number: &str) -> Cow<'_, str> {
+    if number.contains('\u{2212}') {
+        let ascii = number.replace('\u{2212}', "-");
+        return Cow::Owned(with_point(&ascii).into_owned());
+    }
     let is_plain = number.chars().all(|c| c.is_ascii_digit() || "+-eE,".contains(c));
     if is_plain && number.matches(',').count() == 1 {
         return Cow::Owned(number.replace(',', "."));
@@ -224,8 +251,19 @@ mod tests {
     fn so_many_mistakes_are_told() {
         let text = "x\n".repeat(1000);
         let mut mistakes = Mistakes::new("x.csv", &text);
-        (0..1000).for_each(|at| mistakes.push(2 * at..2 * at + 1, "no", None));
+        (0..1000).for_each(|at| mistakes.push(2 * at..2 * at + 1, format!("no {at}"), None));
         let failure = mistakes.finish(()).unwrap_err();
         assert_eq!(failure.text.matches("x.csv:").count(), TOLD, "{}", failure.text);
+    }
+
+    #[test]
+    fn mistakes_of_one_kind_are_counted() {
+        let text = "x\n".repeat(60);
+        let mut mistakes = Mistakes::new("x.csv", &text);
+        (0..60)
+            .for_each(|at| mistakes.push(2 * at..2 * at + 1, format!("no {at}"), Some(["write y", "write z"][at % 2])));
+        let failure = mistakes.finish(()).unwrap_err();
+        assert_eq!(failure.text.matches("x.csv:").count(), 2 * ALIKE, "{}", failure.text);
+        assert_eq!(failure.text.matches("; 27 more lines have a mistake of this kind").count(), 2, "{}", failure.text);
     }
 }

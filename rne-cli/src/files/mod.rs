@@ -18,3 +18,4 @@ pub(crate) mod state_table;
 pub(crate) mod states;
 pub(crate) mod trajectory_file;
 pub(crate) mod worksheet_file;
+pub(crate) mod worksheet_text;

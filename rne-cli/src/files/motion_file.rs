@@ -13,6 +13,7 @@ use crate::files::file_name::{self, Format};
 use crate::files::reading;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
+use crate::render::layout::cell;
 
 /// The format of a file of motions, by its name.
 pub(crate) fn format(path: &Path, is_raw: bool) -> Result<Format, Failure> {
@@ -247,9 +248,4 @@ impl<W: Write + Send> Table<W> {
             Self::Parquet(table) => table.finish(),
         }
     }
-}
-
-/// A text as a cell of CSV.
-pub(crate) fn cell(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

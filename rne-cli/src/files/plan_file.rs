@@ -184,6 +184,11 @@ impl<'a> Compiler<'a> {
         Ok(Self { planned: OnceCell::from(codegen::Compiler::new(robot).with_plans(plan)), ..Self::new(file, robot) })
     }
 
+    /// Without the plan file, which is for the robot of the file: for a robot with other numbers.
+    pub(crate) fn without_file(file: &'a Path, robot: &'a Robot) -> Self {
+        Self { planned: OnceCell::from(codegen::Compiler::new(robot)), ..Self::new(file, robot) }
+    }
+
     /// Without some tricks of the reduced form; the other choices of its plan stay.
     pub(crate) fn without(self, tricks: &'a [Trick]) -> Self {
         Self { without: tricks, ..self }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rne_convert::{Account, Description, OpenError, Options};
-use rne_model::{Checked, Reader, Robot};
+use rne_model::{Checked, Reader, Report, Robot};
 
 use crate::files::input_file;
 use crate::outcome::Failure;
@@ -12,23 +12,36 @@ use crate::terminal::remark;
 
 /// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
-    read_with(path, &[])
+    read_with(path, &[], Frames::Dropped)
+}
+
+/// The links of a URDF as named frames. A robot file has the frames of its list in any case.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Frames {
+    /// For `--frame`.
+    Kept,
+    Dropped,
 }
 
 /// Reads a robot file with other values of its parameters.
-pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked, Failure> {
-    Ok(read_by(path, settings, &[])?.0)
+pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)], frames: Frames) -> Result<Checked, Failure> {
+    Ok(read_by(path, settings, &[], frames)?.0)
 }
 
 /// A valid robot some of whose parameters stay free until run time, and the bytes of its file.
-pub(crate) fn read_with_run_time(path: &Path, names: &[&str]) -> Result<(Checked, Vec<u8>), Failure> {
-    read_by(path, &[], names)
+pub(crate) fn read_with_run_time(path: &Path, names: &[&str], frames: Frames) -> Result<(Checked, Vec<u8>), Failure> {
+    read_by(path, &[], names, frames)
 }
 
-fn read_by(path: &Path, settings: &[(&str, f64)], run_time: &[&str]) -> Result<(Checked, Vec<u8>), Failure> {
+fn read_by(
+    path: &Path,
+    settings: &[(&str, f64)],
+    run_time: &[&str],
+    frames: Frames,
+) -> Result<(Checked, Vec<u8>), Failure> {
     let (name, bytes) = match open(path)? {
         Opened::RobotFile(name, bytes) => (name, bytes),
-        Opened::Urdf(name, text) => (format!("{name} (imported)"), imported(&name, &text)?.into_bytes()),
+        Opened::Urdf(name, text) => (format!("{name} (imported)"), imported(&name, &text, frames)?.into_bytes()),
     };
     let checked = checked(&name, &bytes, settings, run_time)?;
     Ok((checked, bytes))
@@ -58,8 +71,9 @@ fn open(path: &Path) -> Result<Opened, Failure> {
 
 /// The robot file of the one arm of a URDF, as `rne import` makes it. A note names the ends of the arm, because the
 /// user may mean another arm.
-fn imported(name: &str, text: &str) -> Result<String, Failure> {
-    let imported = rne_convert::import(name, text, &Options::default()).map_err(|report| {
+fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
+    let options = Options { frames: frames == Frames::Kept, ..Options::default() };
+    let imported = rne_convert::import(name, text, &options).map_err(|report| {
         // the options that the help names are those of `rne import`
         let mut failure = Failure::from(&report);
         failure.text = format!(
@@ -103,7 +117,24 @@ pub(crate) fn not_opened(error: &OpenError) -> Failure {
     }
 }
 
-/// A valid robot. `rne check` tells of its lints, the other commands do not.
+/// A line for standard error where a robot file has warnings; code for a machine is written of it all the same.
+pub(crate) fn lint_remark(lints: &Report, path: &Path) -> String {
+    match lints.warnings().count() {
+        0 => String::new(),
+        1 => format!(
+            "{TITLE}note{TITLE:#}: 1 warning in the robot file; {TYPED}rne check {}{TYPED:#} shows it\n",
+            shell(path)
+        ),
+        count => {
+            format!(
+                "{TITLE}note{TITLE:#}: {count} warnings in the robot file; {TYPED}rne check {}{TYPED:#} shows them\n",
+                shell(path)
+            )
+        }
+    }
+}
+
+/// A valid robot. `rne check` prints its lints; `rne emit` and `rne certify` count its warnings; others say nothing.
 pub(crate) fn robot(path: &Path) -> Result<Robot, Failure> {
     Ok(read(path)?.robot)
 }

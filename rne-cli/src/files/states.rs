@@ -31,7 +31,7 @@ pub(crate) struct Job<'a> {
 fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
     let axes = ["x", "y", "z"];
     let payload = ["m", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"];
-    let of = |&(name, elements): &(&str, usize)| -> Vec<String> {
+    let headings = |&(name, elements): &(&str, usize)| -> Vec<String> {
         match name {
             "payload" => payload.map(str::to_owned).into(),
             "parameters" => arm.robot().run_time.names.clone(),
@@ -41,19 +41,19 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
             _ => axes.map(|axis| format!("{name}_{axis}")).into(),
         }
     };
-    compiled.arguments().iter().flat_map(of).collect()
+    compiled.arguments().iter().flat_map(headings).collect()
 }
 
 /// The same columns as `rne log` names them in a table: elements of joints by the names of the robot's joints.
 fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<String>> {
     let joints: Vec<String> = arm.robot().joints.iter().map(|joint| joint.name.clone()).collect();
-    let of = |&(name, elements): &(&str, usize)| -> Vec<Option<String>> {
+    let headings = |&(name, elements): &(&str, usize)| -> Vec<Option<String>> {
         match Heading::quantity(name).filter(|_| elements == joints.len()) {
             Some(quantity) => Heading::of(&joints).columns(quantity).into_iter().map(Some).collect(),
             None => vec![None; if name == "parameters" { arm.robot().run_time.names.len() } else { elements }],
         }
     };
-    compiled.arguments().iter().flat_map(of).collect()
+    compiled.arguments().iter().flat_map(headings).collect()
 }
 
 /// The column of a payload's mass.
@@ -135,12 +135,12 @@ impl Job<'_> {
             0 => String::new(),
             _ => format!(" {QUIET}({rate:.2e} a second, reading and writing included){QUIET:#}"),
         };
-        let of = if states == 1 { "state" } else { "states" };
+        let noun = if states == 1 { "state" } else { "states" };
         let place = self
             .out
             .filter(|out| !is_standard_output(out))
             .map_or(String::new(), |out| format!("{GOOD}wrote{GOOD:#} {}: ", out.display()));
-        let remark = format!("{place}{} of {states} {of}{rate}\n{}", self.function, not_finite.remark());
+        let remark = format!("{place}{} of {states} {noun}{rate}\n{}", self.function, not_finite.remark());
         Ok(Outcome::remark(remark))
     }
 }

@@ -81,18 +81,18 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     }
     mistakes.finish(())?;
     let mut mistakes = Mistakes::new(&name, text);
-    let of = |columns: &[usize]| -> Vec<Vec<f64>> {
+    let series = |columns: &[usize]| -> Vec<Vec<f64>> {
         samples.iter().map(|sample| columns.iter().map(|&column| sample[column]).collect()).collect()
     };
     let time = samples.iter().map(|sample| sample[columns.time]).collect();
-    let (qd, qdd) = (columns.qd.as_deref().map(of), columns.qdd.as_deref().map(of));
+    let (qd, qdd) = (columns.qd.as_deref().map(series), columns.qdd.as_deref().map(series));
     let derived = match (&qd, &qdd) {
         (Some(_), Some(_)) => "",
         (Some(_), None) => "accelerations derived from the velocities",
         (None, Some(_)) => "velocities derived from the positions",
         (None, None) => "velocities and accelerations derived from the positions",
     };
-    match Trajectory::new(time, of(&columns.q), qd, qdd) {
+    match Trajectory::new(time, series(&columns.q), qd, qdd) {
         Ok(trajectory) => Ok(Given { trajectory, derived }),
         Err(error) => {
             let (span, help) = match &error {

@@ -1,126 +1,28 @@
-//! Worksheets in files: a row per joint, step, quantity and component, as CSV and as JSON.
+//! Worksheets that are read: a row per joint, step, quantity and component, as CSV and as JSON.
 //!
-//! What `rne eval --trace` writes, `--compare` reads, and any part of it.
+//! `rne eval --trace` and `rne worksheet` write them by [`worksheet_text`](super::worksheet_text); any part of one can
+//! be read.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
-use rne_diagnose::worksheet::{Axes, GivenValue, Line, Quantity, Worksheet};
-use rne_model::{Report, Robot, did_you_mean, exact_digits};
-use serde::Serialize;
+use rne_diagnose::worksheet::{Axes, GivenValue, Quantity};
+use rne_model::{Report, Robot, did_you_mean};
 use serde_json::value::RawValue;
 
 use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of, with_point};
 use crate::files::input_file;
+use crate::files::worksheet_text::{COLUMNS, FORMAT};
 use crate::outcome::Failure;
-use crate::render::worksheet::Narrowed;
 use crate::values::numbers::resolution;
-
-/// The version of both shapes.
-const FORMAT: u32 = 1;
-
-/// The columns of CSV, the keys of a row in JSON.
-const COLUMNS: [&str; 7] = ["joint", "step", "quantity", "component", "value", "unit", "frame"];
 
 /// A worksheet of 64 joints has half a megabyte.
 const LONGEST: usize = 4 << 20;
 
 /// More rows than any worksheet has for a joint.
 const MOST: usize = 200;
-
-/// One number of a worksheet.
-#[derive(Serialize)]
-struct Row {
-    joint: usize,
-    step: u8,
-    quantity: &'static str,
-    component: &'static str,
-    value: f64,
-    unit: &'static str,
-    frame: &'static str,
-}
-
-impl Row {
-    /// Appends a line of CSV with a text for the value.
-    fn write(&self, text: &mut String, separator: char, value: &str) {
-        let Self { joint, step, quantity, component, unit, frame, .. } = self;
-        let s = separator;
-        let _ = writeln!(text, "{joint}{s}{step}{s}{quantity}{s}{component}{s}{value}{s}{unit}{s}{frame}");
-    }
-}
-
-fn rows(sheet: &Worksheet, narrowed: Narrowed) -> impl Iterator<Item = Row> {
-    let of_line = |line: &Line| {
-        let (joint, quantity, unit) = (line.joint, line.quantity, line.unit());
-        let frame = if quantity.has_axes() { sheet.axes.name() } else { "" };
-        let row = move |(component, value): (&&'static str, &f64)| Row {
-            joint,
-            step: quantity.step(),
-            quantity: quantity.name(),
-            component,
-            value: *value,
-            unit,
-            frame,
-        };
-        quantity.components().iter().zip(&line.values).map(row).collect::<Vec<_>>()
-    };
-    sheet.lines.iter().filter(move |line| narrowed.has(line)).flat_map(of_line)
-}
-
-/// The worksheet as CSV.
-pub(crate) fn csv(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed) -> String {
-    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}\n{}\n", robot.name, COLUMNS.join(","));
-    for row in rows(sheet, narrowed) {
-        row.write(&mut text, ',', &exact_digits(row.value));
-    }
-    text
-}
-
-/// A student's worksheet as CSV: the state is filled in, and with `answers` everything else, too. `comma` writes
-/// numbers with a decimal comma and semicolons between the columns.
-pub(crate) fn of_student(
-    robot: &Robot,
-    sheet: &Worksheet,
-    student: &str,
-    steps: &[u8],
-    answers: bool,
-    comma: bool,
-) -> String {
-    let separator = if comma { ';' } else { ',' };
-    let columns = COLUMNS.join(separator.encode_utf8(&mut [0; 4]));
-    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}, student {student}\n{columns}\n", robot.name);
-    for row in rows(sheet, Narrowed::default()) {
-        let is_state = ["q", "qd", "qdd"].contains(&row.quantity);
-        if !is_state && !steps.contains(&row.step) {
-            continue;
-        }
-        let value = if is_state || answers { exact_digits(row.value) } else { String::new() };
-        row.write(&mut text, separator, &if comma { value.replace('.', ",") } else { value });
-    }
-    text
-}
-
-/// The worksheet as JSON has it, beside the result of the function: a row on each line.
-pub(crate) fn json(
-    robot: &Robot,
-    sheet: &Worksheet,
-    narrowed: Narrowed,
-    result: &serde_json::Value,
-) -> Result<String, Failure> {
-    let rows: Vec<String> = rows(sheet, narrowed)
-        .map(|row| serde_json::to_string(&row))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::input)?;
-    let rows = rows.join(",\n      ");
-    let (name, axes) = (serde_json::Value::from(robot.name.as_str()), sheet.axes.name());
-    let about = format!(r#""format": {FORMAT}, "robot": {name}, "axes": "{axes}""#);
-    Ok(format!(
-        "{{\n  \"result\": {result},\n  \"trace\": {{\n    {about},\n    \"rows\": [\n      {rows}\n    ]\n  }}\n}}\n"
-    ))
-}
 
 /// A worksheet that a student filled in.
 #[derive(Debug)]
@@ -130,6 +32,15 @@ pub(crate) struct Filled {
     pub(crate) axes: Option<Axes>,
     /// The student whom the file names.
     pub(crate) student: Option<String>,
+    /// The steps that the file asks for, where it names them.
+    pub(crate) steps: Option<Vec<u8>>,
+}
+
+/// Contents of the first line of a worksheet.
+#[derive(Default)]
+struct Head {
+    student: Option<String>,
+    steps: Option<Vec<u8>>,
 }
 
 /// The cells of a row, by their columns.
@@ -146,23 +57,23 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
     let text = text_of(&name, &bytes)?;
     let mut mistakes = Mistakes::new(&name, text);
     let is_json = text.trim_start().starts_with(['{', '[']);
-    let mut student = None;
+    let mut head = Head::default();
     let rows = if is_json {
         json_rows(&name, text, robot, &mut mistakes)?
     } else {
-        csv_rows(text, robot, &mut student, &mut mistakes)
+        csv_rows(text, robot, &mut head, &mut mistakes)
     };
     if mistakes.are_there() {
-        return mistakes.finish(Filled { values: Vec::new(), axes: None, student: None });
+        return mistakes.finish(Filled { values: Vec::new(), axes: None, student: None, steps: None });
     }
     let reading = Reading { robot, mistakes, axes, seen: HashMap::new(), values: Vec::new(), text };
-    Ok(Filled { student, ..reading.rows(&rows)? })
+    Ok(Filled { student: head.student, steps: head.steps, ..reading.rows(&rows)? })
 }
 
 fn csv_rows<'a>(
     text: &'a str,
     robot: &Robot,
-    student: &mut Option<String>,
+    head: &mut Head,
     mistakes: &mut Mistakes<'_>,
 ) -> Vec<(Cells<'a>, Range<usize>)> {
     let mut lines = Vec::new();
@@ -175,13 +86,21 @@ fn csv_rows<'a>(
             csv_table::Line::Row(row) => lines.push(row),
             csv_table::Line::OpenQuote(span) => mistakes.push(span, OPEN_QUOTE, None),
             csv_table::Line::Comment(comment, span) => {
-                if let Some(about) = comment.strip_prefix("rne worksheet,") {
-                    // a spreadsheet ends each line with the separators of the other columns
-                    let about = about.trim_end_matches([';', ',', '"', ' ']);
-                    let word =
-                        |key: &str| about.split(',').find_map(|part| part.trim().strip_prefix(key).map(str::trim));
+                if let Some(about) = comment.strip_prefix("rne worksheet") {
+                    // a spreadsheet has other separators, ends each line with those of the other columns, and may put
+                    // each part in quotes
+                    let word = |key: &str| {
+                        let mut parts = about.split([',', ';']).map(|part| part.trim_matches(['"', ' ']));
+                        parts.find_map(|part| part.strip_prefix(key).map(str::trim))
+                    };
                     is_ours(word("format "), word("robot "), &span, robot, mistakes);
-                    *student = word("student ").map(str::to_owned);
+                    head.student = word("student ").map(str::to_owned);
+                    let named = word("steps ");
+                    head.steps = named.and_then(steps_of);
+                    if named.is_some() && head.steps.is_none() {
+                        let help = "write numbers from 1 to 7 with blanks between them, such as `steps 1 2 7`";
+                        mistakes.push(span, "the steps in this line are not steps", Some(help));
+                    }
                 }
             }
         }
@@ -228,6 +147,11 @@ fn csv_rows<'a>(
         rows.push((cells.collect(), row.span.clone()));
     }
     rows
+}
+
+/// The steps of a text such as `1 2 7`.
+fn steps_of(text: &str) -> Option<Vec<u8>> {
+    text.split_whitespace().map(|step| step.parse().ok().filter(|step| (1..=7).contains(step))).collect()
 }
 
 fn too_many(span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) {
@@ -354,7 +278,7 @@ impl Reading<'_> {
             let help = "each row has a joint, a quantity, its component and a value; empty values are left out";
             self.mistakes.push(0..0, "the worksheet has no value to compare", Some(help));
         }
-        let filled = Filled { values: self.values, axes: self.axes, student: None };
+        let filled = Filled { values: self.values, axes: self.axes, student: None, steps: None };
         self.mistakes.finish(filled)
     }
 

@@ -81,8 +81,9 @@ fn of_other(view: View<'_>, name: &str) -> String {
 
 fn of_cell(view: View<'_>, cell: &Cell) -> String {
     let Cell { joint, step, title, before, after, .. } = cell;
-    let of = if *joint > view.inspection.robot.joints.len() { "payload".to_owned() } else { format!("joint {joint}") };
-    let mut text = format!("{TITLE}{of}, step {step}: {title}{TITLE:#}\n");
+    let body =
+        if *joint > view.inspection.robot.joints.len() { "payload".to_owned() } else { format!("joint {joint}") };
+    let mut text = format!("{TITLE}{body}, step {step}: {title}{TITLE:#}\n");
     for formula in &cell.formulas {
         let _ = writeln!(text, "{}", styled(FORMULA, &view.fill(&formula.text, "  ", "      ")));
     }

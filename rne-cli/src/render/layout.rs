@@ -81,6 +81,11 @@ pub(crate) fn wrap(text: &str, to: usize, indent: &str) -> String {
     textwrap::fill(text, options.wrap_algorithm(WrapAlgorithm::FirstFit))
 }
 
+/// A text as a cell of CSV.
+pub(crate) fn cell(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

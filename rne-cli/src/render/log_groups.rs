@@ -108,8 +108,8 @@ pub(crate) fn text(files: &[PathBuf], column: &str, groups: &[Group]) -> String 
     remarks.sort_by_key(|(word, ..)| ["error", "warning", "note"].iter().position(|other| other == word));
     for (word, remark, values) in &remarks {
         let style = if *word == "note" { QUIET } else { WARNING };
-        let of = if values.len() == groups.len() { "all".to_owned() } else { values.join(", ") };
-        push_remark(&mut text, word, style, &format!("{of}: {remark}"));
+        let groups_with_it = if values.len() == groups.len() { "all".to_owned() } else { values.join(", ") };
+        push_remark(&mut text, word, style, &format!("{groups_with_it}: {remark}"));
     }
     text
 }

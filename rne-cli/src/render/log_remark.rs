@@ -5,7 +5,7 @@ use rne_logs::{Mapping, Quantity, Remark, Target, suggested};
 use rne_model::one_line;
 
 use crate::palette::TYPED;
-use crate::render::log_remedy;
+use crate::remedy;
 
 /// A remark on a log, with the options that help.
 pub(crate) fn log_remark(remark: &Remark) -> String {
@@ -13,7 +13,7 @@ pub(crate) fn log_remark(remark: &Remark) -> String {
         Remark::MayBeDegrees { .. } => ": use --degrees if they are degrees, --radians if they are radians or metres",
         Remark::TimeGoesBack { columns, .. } => {
             let column = columns.first().map_or("COLUMN", String::as_str);
-            return format!("{remark}: `rne log` describes each with --by {}", log_remedy::quoted(column.to_owned()));
+            return format!("{remark}: `rne log` describes each with --by {}", remedy::log::quoted(column.to_owned()));
         }
         Remark::VelocitiesDisagree { .. } => "; --derive-velocities ignores them",
         Remark::Currents(_) => ": give the factor to torques in N m/A with --torque-constant",
@@ -37,7 +37,7 @@ pub(crate) fn remark_sentence(remark: &ArmLogRemark) -> String {
 /// An error of the logs of an arm, with the options that help.
 pub(crate) fn error_sentence(error: &ArmLogError) -> String {
     match error {
-        ArmLogError::Log { error, joints } => log_remedy::sentence(error, joints),
+        ArmLogError::Log { error, joints } => remedy::log::sentence(error, joints),
         ArmLogError::NamedJoints { .. } => {
             error.to_string().replacen("the list of joints", &format!("{TYPED}--joints{TYPED:#}"), 1)
         }
@@ -51,7 +51,7 @@ pub(crate) fn error_sentence(error: &ArmLogError) -> String {
             let is_effort = |target: &Target| matches!(target, Target::Joint { quantity: Quantity::Effort, .. });
             let efforts = suggested(unread, logged).into_iter().filter(|mapping| is_effort(&mapping.target));
             let efforts: Vec<Mapping> = efforts.collect();
-            format!("{error}; name the columns: {}", one_line(&log_remedy::map(&efforts)))
+            format!("{error}; name the columns: {}", one_line(&remedy::log::map(&efforts)))
         }
         ArmLogError::NoCutoff => format!("{error}; give a cut-off with {TYPED}--cutoff HZ{TYPED:#}"),
         ArmLogError::Cutoff { .. } => {

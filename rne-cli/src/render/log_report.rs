@@ -249,7 +249,7 @@ fn runs(survey: &Survey) -> String {
     for group in groups.iter().take(SHOWN) {
         shown += group.len();
         let runs = || group.iter().map(|(_, run)| *run);
-        let most = |of: fn(&Run) -> f64| runs().map(of).fold(0.0, f64::max);
+        let most = |quantity: fn(&Run) -> f64| runs().map(quantity).fold(0.0, f64::max);
         let number = group[0].0 + 1;
         lines.push(vec![
             if group.len() == 1 { number.to_string() } else { format!("{number} and {} more", group.len() - 1) },

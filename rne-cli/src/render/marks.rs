@@ -1,9 +1,9 @@
 //! The marks of a class: as a table, as CSV and as JSON.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use rne_diagnose::worksheet::{Comparison, Quantity, Reach, Worksheet};
+use rne_diagnose::worksheet::{Comparison, Quantity, Reach, Verdict, Worksheet};
 use serde::Serialize;
 
 use crate::outcome::Failure;
@@ -19,11 +19,16 @@ pub(crate) struct Marked {
     pub(crate) mark: Result<Mark, Failure>,
 }
 
+/// The cause that a state has which is not the one asked about.
+const OTHER_STATE: &str = "the worksheet is for another state";
+
 /// The mark of a worksheet.
 #[derive(Serialize)]
 pub(crate) struct Mark {
     points: usize,
     of: usize,
+    /// Points for values that are right only with the student's own earlier values.
+    carried: usize,
     /// Values that are asked for and not filled in.
     missing: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -50,16 +55,33 @@ struct FirstError {
 }
 
 impl Mark {
-    /// Points are the right values of these steps.
-    pub(crate) fn new(sheet: &Worksheet, comparison: Comparison, steps: &[u8]) -> Self {
-        let lines = sheet.lines.iter().filter(|line| steps.contains(&line.quantity.step()));
-        let of = lines.map(|line| line.values.len()).sum();
-        let sum = |counts: [usize; 8]| steps.iter().map(|step| counts[usize::from(*step)]).sum::<usize>();
-        let (points, given) = (sum(comparison.right), sum(comparison.given));
+    /// Points are the right values of these steps without those that are `always_zero`; with `carry`, also the values
+    /// that are right with the student's own earlier values.
+    pub(crate) fn new(
+        sheet: &Worksheet,
+        comparison: Comparison,
+        steps: &[u8],
+        always_zero: &BTreeSet<(usize, usize)>,
+        carry: bool,
+    ) -> Self {
+        let counts = |place: &(usize, usize)| {
+            let step = sheet.lines.get(place.0).map_or(0, |line| line.quantity.step());
+            steps.contains(&step) && !always_zero.contains(place)
+        };
+        let all = sheet.lines.iter().enumerate();
+        let all = all.flat_map(|(index, line)| (0..line.values.len()).map(move |component| (index, component)));
+        let most = all.filter(counts).count();
+        let of_verdict = |verdict| {
+            let counted = comparison.verdicts.iter().filter(|(place, own)| counts(place) && **own == verdict);
+            counted.count()
+        };
+        let [right, followed, wrong] = [Verdict::Right, Verdict::Followed, Verdict::Wrong].map(of_verdict);
+        let (carried, given) = (if carry { followed } else { 0 }, right + followed + wrong);
+        let points = right + carried;
         let first_error = comparison.first.map(|first| {
             let line = &sheet.lines[first.line];
             let is_state = matches!(line.quantity, Quantity::Q | Quantity::Qd | Quantity::Qdd);
-            let other = is_state.then(|| "the worksheet is for another state".to_owned());
+            let other = is_state.then(|| OTHER_STATE.to_owned());
             let reason = first.reasons.first();
             FirstError {
                 step: line.quantity.step(),
@@ -74,7 +96,15 @@ impl Mark {
                 explains_everything: reason.is_some_and(|reason| reason.reach == Reach::Everything),
             }
         });
-        Self { points, of, missing: of.saturating_sub(given), first_error }
+        Self { points, of: most, carried, missing: most.saturating_sub(given), first_error }
+    }
+}
+
+impl Marked {
+    /// Whether the worksheet was made for another state.
+    pub(crate) fn is_for_another_state(&self) -> bool {
+        let first = self.mark.as_ref().ok().and_then(|mark| mark.first_error.as_ref());
+        first.is_some_and(|first| first.cause.as_deref() == Some(OTHER_STATE))
     }
 }
 
@@ -167,6 +197,7 @@ pub(crate) fn csv(all: &[Marked], hint: bool) -> Result<String, Failure> {
         "file",
         "points",
         "of",
+        "carried",
         "missing",
         "step",
         "joint",
@@ -187,7 +218,7 @@ pub(crate) fn csv(all: &[Marked], hint: bool) -> Result<String, Failure> {
             Err(failure) => (None, harmless(&failure.sentence().replace('\n', " "))),
         };
         let first = mark.and_then(|mark| mark.first_error.as_ref());
-        let counts = mark.map_or([None; 3], |mark| [mark.points, mark.of, mark.missing].map(Some));
+        let counts = mark.map_or([None; 4], |mark| [mark.points, mark.of, mark.carried, mark.missing].map(Some));
         cells.extend(counts.map(text_of));
         cells.extend([text_of(first.map(|first| first.step)), text_of(first.map(|first| first.joint))]);
         cells.extend([text_of(first.map(|first| first.quantity)), text_of(first.map(|first| first.component))]);
@@ -231,15 +262,15 @@ struct Row {
 }
 
 pub(crate) fn json(all: &[Marked], hint: bool) -> Reply {
-    let of = |one: &Marked| {
+    let row = |marked: &Marked| {
         let first_error = |mark: &Mark| {
             let first = mark.first_error.clone()?;
             Some(FirstError { right: first.right.filter(|_| !hint), ..first })
         };
-        let mark = one.mark.as_ref().ok().map(|mark| Mark { first_error: first_error(mark), ..*mark });
-        let refused = one.mark.as_ref().err().map(Failure::sentence);
-        Row { student: one.student.clone(), file: one.file.clone(), mark, refused }
+        let mark = marked.mark.as_ref().ok().map(|mark| Mark { first_error: first_error(mark), ..*mark });
+        let refused = marked.mark.as_ref().err().map(Failure::sentence);
+        Row { student: marked.student.clone(), file: marked.file.clone(), mark, refused }
     };
     let most = all.iter().filter_map(|one| one.mark.as_ref().ok()).map(|mark| mark.of).max().unwrap_or(0);
-    Reply { of: most, marks: all.iter().map(of).collect() }
+    Reply { of: most, marks: all.iter().map(row).collect() }
 }

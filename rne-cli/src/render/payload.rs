@@ -181,8 +181,8 @@ struct Number {
 
 impl Number {
     fn of(number: &PayloadNumber, unit: &'static str) -> Self {
-        let of = |value: f64| finite(value).filter(|_| number.is_excited);
-        Self { value: of(number.value), deviation: of(number.deviation), unit, excited: number.is_excited }
+        let known = |value: f64| finite(value).filter(|_| number.is_excited);
+        Self { value: known(number.value), deviation: known(number.deviation), unit, excited: number.is_excited }
     }
 }
 

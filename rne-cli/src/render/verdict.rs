@@ -105,14 +105,14 @@ impl Worded<'_> {
 
     /// Joints for whose reasons there is no room.
     fn others(&self, joints: &[(&Joint, &JointVerdict)], is_more: bool) -> Option<String> {
-        let of = |(joint, verdict): &(&Joint, &JointVerdict)| match (verdict.growth(), verdict.fitted) {
+        let with_fitted_part = |(joint, verdict): &(&Joint, &JointVerdict)| match (verdict.growth(), verdict.fitted) {
             (Some(_), Some(fitted)) => {
                 let both = format!("; {} on the fitted part)", percent(fitted.error));
                 named(joint, verdict).trim_end_matches(')').to_owned() + &both
             }
             _ => named(joint, verdict),
         };
-        let mut named: Vec<String> = joints.iter().take(SHOWN).map(of).collect();
+        let mut named: Vec<String> = joints.iter().take(SHOWN).map(with_fitted_part).collect();
         if joints.len() > SHOWN {
             named.push(format!("{} more", joints.len() - SHOWN));
         }
@@ -328,11 +328,11 @@ const KINDS: [(&str, std::ops::Range<usize>); 3] = [("mass", 0..1), ("moment of 
 fn groups(parameters: &[Parameter]) -> Vec<String> {
     let mut said = Vec::new();
     for (kind, range) in KINDS {
-        let of = |parameter: &Parameter| match parameter {
+        let link = |parameter: &Parameter| match parameter {
             Parameter::Link(link, index) if range.contains(index) => Some(*link),
             _ => None,
         };
-        said.extend(group(kind, "link", &parameters.iter().filter_map(of).collect::<Vec<_>>()));
+        said.extend(group(kind, "link", &parameters.iter().filter_map(link).collect::<Vec<_>>()));
     }
     let rotor = |parameter: &Parameter| if let Parameter::Rotor(joint) = parameter { Some(*joint) } else { None };
     said.extend(group("rotor inertia", "joint", &parameters.iter().filter_map(rotor).collect::<Vec<_>>()));

@@ -6,8 +6,6 @@ use rne_model::Robot;
 use rne_watch::{Baseline, Candidate, Cause, Event, Report, Statistic, Trend, unit};
 use serde::Serialize;
 
-use crate::files::motion_log::MotionLog;
-
 /// The result for a log as JSON.
 #[derive(Serialize)]
 pub(crate) struct Reply {
@@ -128,7 +126,8 @@ impl OfEvent {
 impl Reply {
     pub(crate) fn of(
         robot: &Robot,
-        log: &MotionLog,
+        log: String,
+        read_to: f64,
         words: &str,
         baseline: &Baseline,
         report: &Report,
@@ -157,10 +156,10 @@ impl Reply {
         };
         Self {
             robot: robot.name.clone(),
-            log: log.words(),
+            log,
             baseline: words.to_owned(),
             low_pass: baseline.cutoff,
-            read_to: log.read_to(),
+            read_to,
             events: report.events.iter().map(|event| OfEvent::of(robot, event)).collect(),
             parameters: report.changes.statistics.iter().map(of_parameter).collect(),
             joints: errors.iter().enumerate().map(of_joint).collect(),

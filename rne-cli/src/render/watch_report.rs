@@ -5,9 +5,8 @@ use std::fmt::Write as _;
 use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Candidate, Cause, Changes, Event, Report, Statistic, Trend, TrendValue, unit};
 
-use crate::files::motion_file::cell;
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
-use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::render::layout::{Align, PAGE, cell, push_table, shortened, wrap};
 use crate::render::watch_dates::{LogNames, times};
 use crate::render::watch_reply::name;
 use crate::values::numbers::{rounded, with_deviation};
@@ -118,8 +117,13 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
         Cause::Friction => {
             let change = event.change();
             let sign = if change < 0.0 { "" } else { "+" };
+            let impossible = if event.value < 0.0 {
+                "; friction cannot be negative: suspect the sensor of this joint, or a unit"
+            } else {
+                ""
+            };
             format!(
-                "friction of {joint}: {} {sign}{}{}, from {} to {}{}",
+                "friction of {joint}: {} {sign}{}{}, from {} to {}{}{impossible}",
                 friction(event.parameter),
                 with_unit(&with_deviation(change, event.deviation), unit),
                 percent(event.baseline_value),
@@ -135,6 +139,18 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             // no minus before zero
             (1e3 * event.baseline_value).round() / 1e3 + 0.0
         ),
+        Cause::Sensor if event.parameter == "frozen" => {
+            let value = with_unit(&rounded(event.value, 3), unit);
+            format!("sensor of {joint}: the effort stays at {value}, although the joint moves: the channel is frozen")
+        }
+        Cause::Sensor if event.parameter == "exchanged" => {
+            let others: Vec<String> = event.others.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect();
+            let other = others.join(", ");
+            format!(
+                "sensors: the efforts of {joint} and {other} look exchanged; the other results hold for the efforts \
+                 exchanged back"
+            )
+        }
         Cause::Sensor if event.parameter == "gain" => {
             format!("sensor of {joint}: the effort is {value} of the torque{}", gain(event))
         }
@@ -143,7 +159,7 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             rounded(event.baseline_value, 3)
         ),
         Cause::Contact => {
-            let others: Vec<String> = event.others.iter().map(|of| one_line(&robot.joints[*of].name)).collect();
+            let others: Vec<String> = event.others.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect();
             let too = if others.is_empty() { String::new() } else { format!(" (also at {})", others.join(", ")) };
             format!("contact at {joint}{too}: external torque up to {} {unit}", rounded(event.value, 3))
         }
@@ -162,8 +178,8 @@ fn friction(parameter: &str) -> &'static str {
 
 /// Other causes that the log cannot tell from the change.
 fn rivals(event: &Event) -> String {
-    let of = |rival: &&'static str| format!("; {} would explain it almost as well", friction(rival));
-    event.rivals.iter().map(of).collect::<Vec<_>>().concat()
+    let sentence = |rival: &&'static str| format!("; {} would explain it almost as well", friction(rival));
+    event.rivals.iter().map(sentence).collect::<Vec<_>>().concat()
 }
 
 /// The reason for which an effort can have another gain.
@@ -228,7 +244,7 @@ pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>], names: 
     let joints = changing(trend);
     let mut cells = vec![vec!["  log".to_owned(), "events".to_owned(), "payload, kg".to_owned()]];
     cells[0].extend(joints.iter().map(|joint| shortened(&one_line(&robot.joints[*joint].name), 14)));
-    let with = |of: TrendValue| with_deviation(of.value, of.deviation);
+    let with = |found: TrendValue| with_deviation(found.value, found.deviation);
     for row in &trend.rows {
         let mut line = vec![format!("  {}", shortened(&row.name, 20)), row.events.to_string(), with(row.payload)];
         line.extend(joints.iter().map(|joint| with(row.friction[*joint])));

@@ -5,7 +5,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use rne_logs::{Angles, LogError, Mapping, Options, Target, TimeUnit};
 
 use crate::outcome::Failure;
-use crate::render::log_remedy;
+use crate::remedy;
 use crate::values::numbers::List;
 
 /// How a log is read.
@@ -133,6 +133,6 @@ impl LogArguments {
 
 /// A log that cannot be read, or a request that it cannot serve; `joints` are those of the arm, as far as it is known.
 pub(crate) fn failure(error: &LogError, joints: &[String]) -> Failure {
-    let text = log_remedy::sentence(error, joints);
+    let text = remedy::log::sentence(error, joints);
     if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
 }

@@ -77,6 +77,19 @@ fn close(found: &[f64], expected: &[f64]) {
     }
 }
 
+/// Placeholders of an exporter are told where code is made of them, and the code is the same.
+#[test]
+fn warnings_of_the_robot_file_are_counted() {
+    let link = "{mass: 1, com: [0, 0, 0], inertia: {xx: 1, yy: 1, zz: 1}}";
+    let joint = format!("  - {{type: revolute, dh: {{theta: 0, d: 0.1, a: 0.8, alpha: 0}}, link: {link}}}\n");
+    let head = "format: 1\nname: p\nsource: own\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n";
+    let called = crate::call::rne_reading(&["emit", "-", "--lang", "c"], &format!("{head}{}", joint.repeat(3)));
+    assert_eq!(called.status, 0, "{called:?}");
+    assert_eq!(called.err, "note: 1 warning in the robot file; rne check - shows it\n");
+    assert!(called.out.contains("p_inverse_dynamics"), "{}", called.out);
+    assert_eq!(rne(&["emit", DESK, "--lang", "c"]).err, "");
+}
+
 #[test]
 fn the_file_compiles_by_itself_and_computes_the_same() {
     let folder = folder("compiles");

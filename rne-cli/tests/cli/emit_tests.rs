@@ -103,6 +103,18 @@ fn c_passes_its_tests() {
         let Some(output) = tested_c(&folder, &code) else { return };
         assert!(output.status.success() && said(&output).contains(" tests, 0 wrong"), "{robot:?}: {}", said(&output));
     }
+    // friction and limits are tested, too, and a wrong number of theirs is noticed
+    for real in ["float", "double"] {
+        let joints = ["emit", "docs/desk_arm_identified.yaml", "--lang", "c", "--tests", "--friction", "--limits"];
+        let code = fine(&[&joints[..], &["--real", real]].concat());
+        let Some(output) = tested_c(&folder, &code) else { return };
+        assert!(output.status.success() && said(&output).contains(" tests, 0 wrong"), "{}", said(&output));
+        for (right, wrong) in [(" + coulomb1;", " - coulomb1;"), ("limited[0] = ", "limited[0] = -")] {
+            assert!(code.contains(right), "{right}: {code}");
+            let Some(output) = tested_c(&folder, &code.replace(right, wrong)) else { return };
+            assert_eq!(output.status.code(), Some(1), "{right}: {}", said(&output));
+        }
+    }
     let plain = fine(&["emit", "robots/planar2.yaml", "--lang", "c"]);
     assert!(fine(&["emit", "robots/planar2.yaml", "--lang", "c", "--tests"]).starts_with(&plain));
     let out = folder.join("none.c");

@@ -149,3 +149,11 @@ fn gravity_beyond_the_effort_limits_is_told_apart() {
     has(&friction, &["swing would need", slower]);
     assert!(!friction.contains("gravity"), "{friction}");
 }
+
+/// Effort limits hold for the arm with what it carries.
+#[test]
+fn a_payload_counts_for_the_effort_limits() {
+    assert_eq!(rne(&excite(&["--payload", "0.5,0,0,0"])).status, 0);
+    fails(1, &excite(&["--payload", "30,0,0,0"]), &["gravity alone needs"]);
+    fails(2, &excite(&["--payload", "1,2"]), &["--payload needs 10 numbers, not 2"]);
+}

@@ -158,6 +158,10 @@ fn the_example_is_what_is_written() {
 /// `firmware/example/run --written`, in `.ci/run`, gets Debian's compiler.
 #[test]
 fn what_is_written_builds() {
+    if !shipped::is_exhaustive() {
+        eprintln!("skipped: cargo xtask verify certify builds the firmware");
+        return;
+    }
     let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
     let libraries = libraries.ok().and_then(|output| String::from_utf8(output.stdout).ok()).unwrap_or_default();
     if !Path::new(libraries.trim()).is_dir() {

@@ -168,3 +168,35 @@ fn conversions_and_exports_have_the_same_torques() {
     fails(2, &["export", "robots/puma560.yaml"], &["--urdf"]);
     fails(2, &["convert", "robots/puma560.yaml"], &["--convention"]);
 }
+
+/// The frame of a URDF that is read as it is: the one of the robot file that `rne import --frames` writes.
+#[test]
+fn a_frame_of_a_urdf_needs_no_import() {
+    let folder = folder("import_frame");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let (urdf, file) = (path("arm.urdf"), path("arm.yaml"));
+    fs::write(&urdf, URDF.replace("name=\"grip\" type=\"prismatic\"", "name=\"grip\" type=\"fixed\""))
+        .expect("written");
+    let imported = rne(&["import", &urdf, "--tip", "tip", "--frames", "--name", "two_links", "-o", &file]);
+    assert_eq!(imported.status, 0, "{imported:?}");
+    let at = |robot: &str, frame: &str| {
+        let called = rne(&["eval", robot, "--frame", frame, "--q", "0.5,0.3", "--json"]);
+        assert_eq!(called.status, 0, "{called:?}");
+        called.out
+    };
+    for frame in ["upper", "lower", "finger", "tip"] {
+        assert_eq!(at(&urdf, frame), at(&file, frame), "{frame}");
+    }
+    let of_elbow: serde_json::Value = serde_json::from_str(&at(&urdf, "lower")).expect("JSON");
+    let place = &of_elbow["result"]["translation"];
+    for (found, expected) in [(&place[0], 0.4318 * 0.5_f64.cos()), (&place[1], 0.4318 * 0.5_f64.sin())] {
+        assert!((found.as_f64().expect("a number") - expected).abs() < 1e-12, "{of_elbow}");
+    }
+    fails(2, &["eval", &urdf, "--frame", "lover", "--q", "0.5,0.3"], &["did you mean `lower`"]);
+    // the frames are those that were asked for, and none otherwise
+    let emit = |more: &[&str]| rne(&[&["emit", &urdf, "--lang", "c", "--function", "jacobian"], more].concat()).out;
+    let code = emit(&["--frame", "lower"]);
+    assert!(code.contains("_jacobian_of_lower(") && !code.contains("_of_upper("), "{code}");
+    let code = emit(&[]);
+    assert!(code.contains("_jacobian(") && !code.contains("_jacobian_of_"), "{code}");
+}

@@ -31,21 +31,25 @@ impl Pendulum {
 /// A mistake of a student, and what the mark says of it.
 type Mistake = (fn(&mut Pendulum, [f64; 3]), u64, Option<(&'static str, u64)>, &'static str);
 
-/// Mistakes that students make; points of 10, the first wrong quantity with its step, and the likely cause.
+/// Mistakes that students make; points of the 5 values that are not always zero, the first wrong quantity with its
+/// step, and the likely cause.
 const MISTAKES: [Mistake; 8] = [
-    (|_, _| {}, 10, None, ""),
-    (|all, _| all.acceleration[0] = 0.0, 9, Some(("acceleration", 4)), "the term ω1 × (ω1 × d1) is left out"),
-    (|all, _| all.acceleration[0] *= -1.0, 9, Some(("acceleration", 4)), "the term ω1 × (ω1 × d1) has the other sign"),
-    (|all, _| all.omega *= 180.0 / std::f64::consts::PI, 9, Some(("omega", 1)), "in degrees"),
-    (|all, _| all.omega_dot *= -1.0, 9, Some(("omega_dot", 2)), "sign"),
-    (|all, [q, ..]| all.tau -= M * G * A * q.cos(), 9, Some(("tau", 7)), "gravity points the other way"),
-    (|all, [.., qdd]| all.tau -= M * A * A / 4.0 * qdd, 9, Some(("tau", 7)), ""),
-    (|all, _| all.acceleration.swap(0, 1), 8, Some(("acceleration", 4)), "two components are exchanged: y, x, z"),
+    (|_, _| {}, 5, None, ""),
+    (|all, _| all.acceleration[0] = 0.0, 4, Some(("acceleration", 4)), "the term ω1 × (ω1 × d1) is left out"),
+    (|all, _| all.acceleration[0] *= -1.0, 4, Some(("acceleration", 4)), "the term ω1 × (ω1 × d1) has the other sign"),
+    (|all, _| all.omega *= 180.0 / std::f64::consts::PI, 4, Some(("omega", 1)), "in degrees"),
+    (|all, _| all.omega_dot *= -1.0, 4, Some(("omega_dot", 2)), "sign"),
+    (|all, [q, ..]| all.tau -= M * G * A * q.cos(), 4, Some(("tau", 7)), "gravity points the other way"),
+    (|all, [.., qdd]| all.tau -= M * A * A / 4.0 * qdd, 4, Some(("tau", 7)), ""),
+    (|all, _| all.acceleration.swap(0, 1), 3, Some(("acceleration", 4)), "two components are exchanged: y, x, z"),
 ];
 
 /// Fills in the rows of a blank worksheet; every other one with commas and semicolons as a German spreadsheet.
 fn filled(blank: &str, mistake: fn(&mut Pendulum, [f64; 3])) -> String {
-    let separator = if blank.lines().nth(1).expect("a header").contains(';') { ';' } else { ',' };
+    // the numbers of the arm stand above the header
+    assert!(blank.contains("\n# link 1: m = ") && blank.contains("# acceleration of gravity in frame 0: "), "{blank}");
+    let header = blank.lines().find(|line| line.starts_with("joint")).expect("a header");
+    let separator = if header.contains(';') { ';' } else { ',' };
     let cells = |line: &str| line.split(separator).map(str::to_owned).collect::<Vec<_>>();
     let given = |quantity: &str| {
         let row = blank.lines().map(cells).find(|row| row.len() == 7 && row[2] == quantity).expect("a row");
@@ -118,7 +122,7 @@ fn forty_worksheets_are_marked_by_one_command() {
     assert_eq!((called.status, called.err.as_str()), (0, ""), "{called:?}");
     let reply: Value = serde_json::from_str(&called.out).expect("JSON");
     let marks = reply["marks"].as_array().expect("marks");
-    assert_eq!((marks.len(), &reply["of"]), (40, &10.into()));
+    assert_eq!((marks.len(), &reply["of"]), (40, &5.into()));
     for (index, mark) in marks.iter().enumerate() {
         let (_, points, first, cause) = &MISTAKES[index % MISTAKES.len()];
         assert_eq!(mark["student"], format!("student {:02}", index + 1));
@@ -142,10 +146,10 @@ fn forty_worksheets_are_marked_by_one_command() {
         table.starts_with("student     points  first error") && table.contains("\n  5 × gravity points the other way"),
         "{table}"
     );
-    assert_eq!(table.matches("10/10  none").count(), 5, "{table}");
+    assert_eq!(table.matches("5/5  none").count(), 5, "{table}");
     let csv = marked(&files, &["--csv"]).out;
     assert_eq!(csv.lines().count(), 41);
-    assert_eq!(csv.lines().filter(|line| line.contains(",10,10,0,,,")).count(), 5, "{csv}");
+    assert_eq!(csv.lines().filter(|line| line.contains(",5,5,0,0,,,")).count(), 5, "{csv}");
 }
 
 /// `--hint` has the place and the cause, and nowhere the right value.
@@ -220,7 +224,7 @@ fn hostile_files_are_refused_at_their_line() {
     }
     let reply: Value = serde_json::from_str(&called.out).expect("JSON");
     let marks = reply["marks"].as_array().expect("marks");
-    assert_eq!((&marks[0]["points"], marks.len()), (&10.into(), 11));
+    assert_eq!((&marks[0]["points"], marks.len()), (&5.into(), 11));
     for mark in &marks[1..] {
         assert!(mark["points"].is_null() && mark["refused"].is_string(), "{mark}");
     }
@@ -245,9 +249,9 @@ fn states_of_a_class() {
         rne(&["mark", "planar1", "--states", path(&key), "docs/lecture/class/ada.csv", "docs/lecture/class/carl.csv"])
     };
     let one = with("q1,qd1,qdd1\n0.3,0.5,1\n");
-    assert!(one.status == 0 && one.out.contains("ada       34/34"), "{one:?}");
+    assert!(one.status == 0 && one.out.contains("ada       14/14"), "{one:?}");
     let each = with("name;q1;qd1;qdd1\nada;0,3;0,5;1\ncarl;0,3;0,5;pi/2\n");
-    assert!(each.out.contains("34/34  none") && each.out.contains("the worksheet is for another state"), "{each:?}");
+    assert!(each.out.contains("14/14  none") && each.out.contains("the worksheet is for another state"), "{each:?}");
     let unknown = with("name,q1\nada,0.3\ncarla,0.3\n");
     assert!(unknown.status == 1 && unknown.err.contains("no row for the student `carl`; did you mean `carla`?"));
     for (text, parts) in [
@@ -297,7 +301,90 @@ fn answers_have_all_points() {
                 ["worksheet", "stanford", "--seed", "3", "--answers", "--axes", axes, "ada", "-o", path(&sheets)];
             assert_eq!(rne(&[&words, comma].concat()).status, 0);
             let table = fine(&["mark", "stanford", "--seed", "3", path(&sheets.join("ada.csv"))]);
-            assert!(table.contains("204/204  none"), "{axes}: {table}");
+            let points = table.lines().nth(1).and_then(|line| line.split_whitespace().nth(1)).unwrap_or_default();
+            let (points, of) = points.split_once('/').expect("points");
+            assert!(points == of && of.len() == 3 && table.contains("  none\n"), "{axes}: {table}");
         }
+    }
+}
+
+/// Values that are zero in every state, such as ω_x of a planar arm, give no points: a sheet of zeros has none.
+#[test]
+fn zeros_have_no_points() {
+    let sheets = folder("mark_zeros").join("sheets");
+    assert_eq!(rne(&["worksheet", "planar2", "--seed", "3", "ada", "-o", path(&sheets)]).status, 0);
+    let file = sheets.join("ada.csv");
+    let blank = fs::read_to_string(&file).expect("a worksheet");
+    let zeros: String =
+        blank.lines().map(|line| line.replace(",,rad", ",0,rad").replace(",,N", ",0,N") + "\n").collect();
+    let zeros = zeros.replace(",,m/s", ",0,m/s");
+    fs::write(&file, zeros).expect("a file");
+    for carry in [&[][..], &["--carry"]] {
+        let mark = rne(&[&["mark", "planar2", "--seed", "3", "--json", path(&file)], carry].concat());
+        let reply: Value = serde_json::from_str(&mark.out).expect("JSON");
+        let mark = &reply["marks"][0];
+        // by hand: of each link ω_z, ω̇_z, τ, x and y of c̈, g and f, n_z, and x, y and z of what it takes at its joint;
+        // once ċ1 (y alone, about a joint at rest), x and y of ċ2, and x, y and z of what link 1 hands on
+        assert_eq!((&mark["points"], &mark["missing"], &mark["of"]), (&0.into(), &0.into(), &32.into()), "{mark}");
+    }
+}
+
+/// The steps that a worksheet asks for are in its first line; a spreadsheet changes the separators of this line and the
+/// minus signs.
+#[test]
+fn the_first_line_says_what_is_asked() {
+    let sheets = folder("mark_head").join("sheets");
+    let words = ["worksheet", "planar1", "--seed", "7", "--step", "1,2,7", "--answers", "m6", "-o", path(&sheets)];
+    assert_eq!(rne(&words).status, 0);
+    let text = fs::read_to_string(sheets.join("m6.csv")).expect("a worksheet");
+    let (head, rest) = text.split_once('\n').expect("a line");
+    assert_eq!(head, "# rne worksheet, format 1, robot planar1, steps 1 2 7, student m6");
+    // with another name: the student's is in the file
+    let file = sheets.join("handed in.csv");
+    let rest = rest.replace(',', ";").replace('-', "\u{2212}").replace('.', ",");
+    let quoted = head.split(", ").map(|part| format!("\"{part}\"")).collect::<Vec<_>>().join(";");
+    for head in [head.to_owned(), head.replace(',', ";") + ";;;", head.to_owned() + ";;;;;;", quoted] {
+        fs::write(&file, format!("{head}\n{rest}")).expect("a file");
+        let table = fine(&["mark", "planar1", "--seed", "7", path(&file)]);
+        assert!(table.contains("m6          3/3  none\n"), "{head}: {table}");
+    }
+    fs::write(&file, text.replace("steps 1 2 7", "steps 1 9")).expect("a file");
+    let called = rne(&["mark", "planar1", "--seed", "7", path(&file)]);
+    assert!(called.status == 1 && called.err.contains(":1:1") && called.err.contains("are not steps"), "{called:?}");
+}
+
+/// A wrong seed is asked about once.
+#[test]
+fn another_seed_is_asked_about() {
+    let files = class("mark_seed");
+    let mut words = vec!["mark", "planar1", "--seed", "12", path(&files[0]), path(&files[1])];
+    let called = rne(&words);
+    assert_eq!(called.status, 1, "{called:?}");
+    assert!(called.err.contains("is --seed that of the worksheets?"), "{called:?}");
+    words[3] = "11";
+    let called = rne(&words);
+    assert_eq!((called.status, called.err.as_str()), (0, ""), "{called:?}");
+}
+
+/// With --carry, a value that is right for the student's own wrong value before it gives a point: c̈x = -a/2 ω².
+#[test]
+fn values_that_follow_from_a_wrong_one_have_points() {
+    let files = class("mark_carry");
+    let blank = fs::read_to_string(&files[0]).expect("a worksheet");
+    let twice = |all: &mut Pendulum, _: [f64; 3]| {
+        all.omega *= 2.0;
+        all.acceleration[0] *= 4.0;
+    };
+    fs::write(&files[0], filled(&blank, twice)).expect("a file");
+    let thrice = |all: &mut Pendulum, _: [f64; 3]| {
+        all.omega *= 2.0;
+        all.acceleration[0] *= 3.0;
+    };
+    fs::write(&files[1], filled(&fs::read_to_string(&files[1]).expect("a worksheet"), thrice)).expect("a file");
+    for (more, points) in [(&["--json"][..], [3, 3]), (&["--json", "--carry"], [4, 3])] {
+        let reply: Value = serde_json::from_str(&marked(&files[..2], more).out).expect("JSON");
+        let marks = [0, 1].map(|index| reply["marks"][index]["points"].as_u64());
+        assert_eq!(marks, points.map(Some), "{reply}");
+        assert_eq!(reply["marks"][0]["carried"], points[0] - 3, "{reply}");
     }
 }

@@ -49,3 +49,22 @@ fn what_is_wrong_is_said() {
     );
     fails(1, &["report", "nowhere.yaml", "-o", "x.html"], &["nowhere.yaml"]);
 }
+
+/// The page is of the arm with what it carries, whose numbers are not those of the plan file.
+#[test]
+fn a_page_has_the_payload() {
+    let page = |payload: &[&str]| {
+        let path = folder("report_payload").join("planar2.html");
+        let out = path.to_str().expect("UTF-8");
+        let called = rne(&[&["report", "planar2", "-o", out], payload].concat());
+        assert_eq!(called.status, 0, "{called:?}");
+        let page = fs::read_to_string(&path).expect("a page");
+        let (_, rest) = page.split_once("id=\"data\">").expect("data");
+        let (data, _) = rest.split_once("</script>").expect("data end");
+        let data: serde_json::Value = serde_json::from_str(data).expect("JSON");
+        assert_eq!(data["programs"]["reduced"]["outputs"].as_array().map(Vec::len), Some(2));
+        page
+    };
+    let nothing = page(&["--payload", "0,0,0,0"]);
+    assert!(page(&["--payload", "0,0,0,0,0,0,0,0,0,0"]) == nothing && page(&["--payload", "1,0,0,0"]) != nothing);
+}

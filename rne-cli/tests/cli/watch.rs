@@ -420,6 +420,21 @@ fn what_cannot_be_watched_is_said() {
     write("bag/metadata.yaml", "rosbag2_bagfile_information: {}\n");
     let bag = folder.join("bag").to_str().expect("UTF-8").to_owned();
     fails(1, &["watch", &bag, QUIET], &["is a ROS bag, but here a robot file is expected"]);
+    // another unit, and a quiet log that is watched
+    let milli = log.lines().enumerate().map(|(row, line)| {
+        let times = |(at, word): (usize, &str)| match word.parse::<f64>() {
+            Ok(number) if row > 0 && at > 6 => (1000.0 * number).to_string(),
+            _ => word.to_owned(),
+        };
+        line.split(',').enumerate().map(times).collect::<Vec<_>>().join(",") + "\n"
+    });
+    let milli = write("milli.csv", &milli.collect::<String>());
+    let words = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = words(rne(&["watch", ARM, &milli, "--quiet", QUIET]).err);
+    assert!(said.contains("times as large as in the quiet log"), "{said}");
+    let said = words(rne(&["watch", ARM, QUIET, WORN]).err);
+    assert!(said.contains("the logs are joined to one") && said.contains("--quiet"), "{said}");
+    assert!(!said.contains("times as large"), "{said}");
     // the geometry alone
     let massless = fs::read_to_string(format!("{ROOT}/docs/desk_arm.yaml")).expect("a robot file");
     let massless = massless.lines().filter(|line| !line.trim_start().starts_with("link:")).collect::<Vec<_>>();

@@ -30,7 +30,7 @@ use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 pub(crate) struct Mount<'s> {
     /// Turns components in the axes of the joint at θ = 0, or of the tip frame, into components in those of the parent.
     pub(crate) rotation: Matrix<'s>,
-    /// From the parent's centre of mass to the joint or the tip; of the base, from the origin of frame 0.
+    /// Vector from the parent's centre of mass to the joint or the tip; for the base, from the origin of frame 0.
     pub(crate) r: Vector<'s>,
     /// To the same point from the end of the parent's offset, where the link frame of the table stands.
     pub(crate) lever: Vector<'s>,
@@ -46,7 +46,7 @@ pub(crate) struct Link<'s> {
     pub(crate) kind: JointKind,
     /// The constant part of the joint angle.
     pub(crate) theta: Angle,
-    /// Its sine and cosine, where they are known at run time only.
+    /// The sine and cosine of the angle, if they are known at run time only.
     pub(crate) varying_turn: Option<[Symbol<'s>; 2]>,
     /// (a_i, 0, b_i) of a standard, (0, 0, b_i) of a modified row; b_i without the joint variable.
     pub(crate) offset: Vector<'s>,
@@ -114,7 +114,7 @@ impl<'s> Arm<'s> {
             let mount = Mount { rotation, r, lever, label };
             let com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
             let inertia = inertia(builder, robot, index);
-            // the twist behind joint i of a standard table is that of its own row
+            // in a standard table, the twist after joint i is in row i
             let (length, table_axes) = match robot.convention {
                 Convention::Standard => (number(Entry::A(index), row.dh.a), Some(twists[index])),
                 Convention::Modified => (zero(), None),
@@ -218,7 +218,7 @@ fn from_com<'s>(
     }
 }
 
-/// The mass of a link. A constant says of itself which one it is.
+/// The mass of a link. A constant mass has its name as the cause.
 fn mass<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Symbol<'s> {
     let name = Name::scalar(Quantity::Mass, index + 1);
     match robot.run_time.formula(Entry::Mass(index)) {
@@ -268,16 +268,16 @@ pub(crate) fn number<'s>(builder: &'s Builder, robot: &Robot, entry: Entry, valu
 }
 
 fn formula<'s>(builder: &'s Builder, written: &Formula) -> Symbol<'s> {
-    let of = |written: &Formula| formula(builder, written);
+    let symbol = |written: &Formula| formula(builder, written);
     match written {
         Formula::Number(value) => builder.constant(*value, Cause::Arithmetic),
         Formula::Parameter(index) => builder.argument(Name::scalar(Quantity::Parameter, index + 1)),
-        Formula::Negative(a) => -of(a),
-        Formula::Sum(a, b) => of(a) + of(b),
-        Formula::Difference(a, b) => of(a) - of(b),
-        Formula::Product(a, b) => of(a) * of(b),
+        Formula::Negative(a) => -symbol(a),
+        Formula::Sum(a, b) => symbol(a) + symbol(b),
+        Formula::Difference(a, b) => symbol(a) - symbol(b),
+        Formula::Product(a, b) => symbol(a) * symbol(b),
         Formula::Quotient(a, b) => {
-            let (a, b) = (of(a), of(b));
+            let (a, b) = (symbol(a), symbol(b));
             builder.quotient(a, b)
         }
     }
@@ -311,7 +311,7 @@ fn turn_about_x<'s>(builder: &'s Builder, robot: &Robot, index: usize, alpha: &A
     turned(builder, Axis::X, (s, c), Cause::TurnAboutX)
 }
 
-/// A turn about an axis by sine and cosine; `cause` tells why it leaves the axis alone.
+/// A rotation about an axis by sine and cosine; `cause` is the reason why it does not change the axis.
 pub(crate) fn turned<'s>(
     builder: &'s Builder,
     axis: Axis,
@@ -332,7 +332,7 @@ pub(crate) fn identity(builder: &Builder) -> Matrix<'_> {
     Matrix::from_rows([[one, zero, zero], [zero, one, zero], [zero, zero, one]])
 }
 
-/// Gravity in frame 0; a component that is zero says so.
+/// Gravity in frame 0. The trace records that a zero component is due to the direction of gravity.
 fn gravity<'s>(builder: &'s Builder, robot: &Robot) -> Vector<'s> {
     let [x, y, z] = robot.gravity;
     let component = |axis: Axis, value| {

@@ -1,4 +1,4 @@
-//! Formulas of each function of a robot: the seven steps and what stands beside them, written on a builder.
+//! Formulas of each function of a robot, written with a builder: the seven steps and the other functions.
 
 pub(crate) mod actuation;
 pub(crate) mod arm;
@@ -126,7 +126,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         self.loads().into_iter().map(|load| load.torque).collect()
     }
 
-    /// From each joint to the centre of mass of its link, in its axes.
+    /// The vector from each joint to the centre of mass of its link, in the axes of the link.
     fn centres(&self) -> Vec<Vector<'s>> {
         self.motions().iter().map(|motion| motion.d).collect()
     }
@@ -309,13 +309,13 @@ pub(crate) fn square<'s>(dof: usize, element: impl Fn(usize, usize) -> (Name, Sy
         .collect()
 }
 
-/// One number per joint.
+/// One result for each joint.
 pub(crate) fn by_joint(quantity: Quantity, numbers: Vec<Symbol<'_>>) -> Outputs<'_> {
     let numbers = numbers.into_iter().enumerate();
     numbers.map(|(index, number)| (Name::scalar(quantity, index + 1), number)).collect()
 }
 
-/// The components of a vector that bears this name.
+/// The components of the vector with this name.
 fn components(name: Name, vector: Vector<'_>) -> [(Name, Symbol<'_>); 3] {
     Axis::ALL.map(|axis| (Name { component: Component::Vector(axis), ..name }, vector.0[axis as usize]))
 }

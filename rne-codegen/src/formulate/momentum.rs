@@ -28,14 +28,14 @@ use crate::formulate::seven_steps::with;
 use crate::formulate::{Arm, AtTip, Joint, JointState, Motion, Payload};
 use crate::ir::{Name, Quantity, Symbol, Vector};
 
-/// A link and all that it carries: as one body, about its joint, in its axes or in those of its parent.
+/// A link and everything that it carries as one body, about its joint, in its axes or in the axes of its parent.
 #[derive(Clone, Copy)]
 struct Carried<'s> {
     mass: Symbol<'s>,
     first_moment: Vector<'s>,
     linear: Vector<'s>,
     angular: Vector<'s>,
-    /// From the parent's centre of mass to the joint, in the parent's axes.
+    /// The vector from the parent's centre of mass to the joint, in the axes of the parent.
     r: Vector<'s>,
 }
 
@@ -103,7 +103,7 @@ fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Mo
     }
 }
 
-/// Link i with what it carries.
+/// Link i with everything that it carries, as one body.
 fn body<'s>(joint: &Joint<'_, 's>, motion: &Motion<'s>, carries: &[Carried<'s>]) -> Carried<'s> {
     let Joint { lines: line, link, .. } = *joint;
     let Motion { d, c_dot, .. } = *motion;

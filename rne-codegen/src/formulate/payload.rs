@@ -16,14 +16,14 @@ use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
 #[derive(Clone, Copy)]
 pub(crate) struct Payload<'s> {
     pub(crate) mass: Symbol<'s>,
-    /// From the origin of the tip frame.
+    /// The centre of mass from the origin of the tip frame.
     pub(crate) com: Vector<'s>,
     /// About the centre of mass.
     pub(crate) inertia: Matrix<'s>,
 }
 
 impl<'s> Payload<'s> {
-    /// The argument of the function that is being written, if it has one.
+    /// The payload among the arguments of the function that is being written, if the function has one.
     pub(crate) fn argument(builder: &'s Builder, dof: usize) -> Option<Self> {
         if !builder.function.takes(Argument::Payload) {
             return None;
@@ -91,7 +91,7 @@ impl<'s> Payload<'s> {
 /// The load of the last link at the tip.
 #[derive(Clone, Copy)]
 pub(crate) enum AtTip<'s> {
-    /// Nothing.
+    /// The tip is free.
     Nothing,
     /// A wrench, which the last link exerts on the environment.
     Wrench(Wrench<'s>),

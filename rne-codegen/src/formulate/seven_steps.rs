@@ -59,7 +59,7 @@ impl<'s> Motion<'s> {
         Self { turning, d: at_rest, c_dot: at_rest, c_ddot, gravity }
     }
 
-    /// A base that stands still.
+    /// A base that does not move.
     pub(crate) fn of_fixed_base(builder: &'s Builder, gravity: Vector<'s>) -> Self {
         Self::of_base(builder, [builder.zeros(Cause::FixedBase); 3], gravity)
     }

@@ -1,7 +1,7 @@
 //! The arguments of functions, and the arrays that they are passed in.
 
 use super::Length;
-use crate::ir::Quantity;
+use crate::quantity::Quantity;
 
 /// An argument of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

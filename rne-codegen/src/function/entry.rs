@@ -1,8 +1,8 @@
 //! Entries of the table of functions.
 
-use super::table::{Capability, Function};
 use super::{Answer, Argument, Returned};
-use crate::ir::Quantity;
+use super::{Capability, Function};
+use crate::quantity::Quantity;
 
 /// The signature of a function, and the words for its callers.
 #[derive(Debug)]
@@ -92,7 +92,7 @@ impl Own {
         Self { quantity, heading, meaning: None }
     }
 
-    /// An argument whose names stand for something of this function.
+    /// An argument whose names have a special meaning in this function.
     pub(super) const fn names(quantity: Quantity, meaning: &'static str) -> Self {
         Self::meaning(quantity, meaning, |_| String::new())
     }

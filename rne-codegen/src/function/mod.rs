@@ -2,29 +2,24 @@
 
 mod answer;
 mod argument;
+mod capability;
 mod entry;
 mod layout;
 mod table;
 
 use rne_model::{FrameId, Robot};
 
-use crate::ir::Quantity;
 use crate::named::named;
+use crate::quantity::Quantity;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
 pub use argument::{Argument, ArgumentPart};
+pub use capability::Capability;
 use entry::Signature;
 pub use entry::{Entry, Own};
 pub use layout::{Layout, Length, Record, Returned, Shape};
-pub use table::{Capability, Function};
+pub use table::Function;
 use table::{SIGNATURES, TABLE};
-
-impl Capability {
-    /// The methods of its trait.
-    pub fn functions(self) -> impl Iterator<Item = Function> {
-        Function::ALL.into_iter().filter(move |function| function.capability() == self)
-    }
-}
 
 impl Function {
     /// The functions of the trait `InverseDynamics`: torques of an arm whose base stands still.

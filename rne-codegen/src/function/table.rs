@@ -4,9 +4,9 @@
 //! implementation. The entries stand in the order of the variants. A new function is the last one, whatever its
 //! capability, so that the others keep their places, which are the ids of the C library.
 
-use super::{Answer, AnswerTable, Argument, Entry, Labels, MatrixUnit, Own, Returned, Signature};
-use crate::ir::Quantity;
+use super::{Answer, AnswerTable, Argument, Capability, Entry, Labels, MatrixUnit, Own, Returned, Signature};
 use crate::named::named;
+use crate::quantity::Quantity;
 
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
 /// what it returns, and what it computes. `at NAME` follows what is returned where the function of the tip can be taken
@@ -176,40 +176,6 @@ macro_rules! signatures {
 }
 
 functions!(signatures);
-
-named! {
-    /// A capability of a robot, named as the trait that a struct derives.
-    Capability, "capability" {
-        /// Torques from motion.
-        InverseDynamics = "InverseDynamics",
-        /// M(q).
-        MassMatrix = "MassMatrix",
-        /// C(q, q̇).
-        CoriolisMatrix = "CoriolisMatrix",
-        /// Motion from torques.
-        ForwardDynamics = "ForwardDynamics",
-        /// Poses and Jacobian.
-        Kinematics = "Kinematics",
-        /// Kinetic and potential.
-        Energy = "Energy",
-        /// The centre of mass of the arm.
-        CentreOfMass = "CentreOfMass",
-        /// Torques per inertial parameter.
-        Regressor = "Regressor",
-        /// ∂τ/∂q and ∂τ/∂q̇.
-        InverseDynamicsDerivatives = "InverseDynamicsDerivatives",
-        /// Bearing loads.
-        JointWrenches = "JointWrenches",
-        /// External torques without accelerations.
-        MomentumObserver = "MomentumObserver",
-        /// Torques on a base that moves.
-        MovingBase = "MovingBase",
-        /// Rotors, gears, friction.
-        Actuation = "Actuation",
-        /// The arm with a payload that is known when the program runs.
-        PayloadDynamics = "PayloadDynamics",
-    }
-}
 
 const AXES: Labels = Labels::Names(&["x", "y", "z"]);
 

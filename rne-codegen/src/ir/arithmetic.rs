@@ -41,7 +41,7 @@ impl Graph {
         (at.signed(negative), outcome)
     }
 
-    /// A sum that keeps the order of its operands, for those who read it.
+    /// A sum with its operands in the given order, because people read it.
     fn sum_as_written(&mut self, a: Ref, b: Ref, residue: Residue) -> (Ref, Outcome) {
         // pull out the sign of the first operand: (-a) + b = -(a - b)
         let mut negative = a.is_negative();

@@ -6,10 +6,10 @@ use rne_model::{Angle, Joint};
 
 use super::{
     Axis, Birth, Cause, CausesId, Definition, Embedding, ExactAngle, Graph, Input, Matrix, Name, Number, Operation,
-    Outcome, Place, Policy, Quantity, Ref, Symbol, TermId, Trace, Traced, Vector, WithRespectTo, Written, WrittenTerms,
+    Operator, Outcome, Place, Policy, Quantity, Ref, Symbol, TermId, Trace, Traced, Vector, WithRespectTo, Written,
+    WrittenTerms,
 };
 use crate::function::Function;
-use crate::values::Operator;
 
 /// The motion of the joints in the formulas that are being written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub(crate) enum Moving {
 pub(crate) struct Builder {
     pub(crate) graph: RefCell<Graph>,
     trace: Option<RefCell<Trace>>,
-    /// The function that is being written: what it does not take is zero.
+    /// The function that is being written. Arguments that this function does not have are zero.
     pub(crate) function: Function,
     /// The variable of the derivatives that are being written.
     by: Cell<Option<WithRespectTo>>,
@@ -64,7 +64,7 @@ impl Builder {
         self.trace.is_some()
     }
 
-    /// Starts anew, for another reading of the numbers.
+    /// Clears the graph, to use another embedding of the numbers.
     pub(crate) fn restart(&mut self, embedding: Embedding) {
         self.graph.get_mut().clear(embedding);
     }
@@ -79,7 +79,7 @@ impl Builder {
     }
 
     fn caused(&self, at: Ref, cause: Cause) -> Symbol<'_> {
-        let causes = self.trace.as_ref().map_or(CausesId::ARITHMETIC, |trace| trace.borrow_mut().causes.one(cause));
+        let causes = self.trace.as_ref().map_or(CausesId::ARITHMETIC, |trace| trace.borrow_mut().causes.single(cause));
         Symbol { builder: self, at, causes, term: TermId::NONE }
     }
 
@@ -149,7 +149,7 @@ impl Builder {
         }
     }
 
-    /// A number that stands for itself; `cause` tells why it is what it is.
+    /// A number without a name; `cause` is the reason for its value.
     pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
         let number = self.embedding().decimal(value);
         self.caused(self.graph.borrow_mut().constant(number), cause)
@@ -181,7 +181,7 @@ impl Builder {
         let graph = self.graph.borrow();
         // the two halves of a symmetric tensor are zero because of one number of the table
         let told = if graph.is_zero(symbol.at) { name.of_upper_half() } else { name };
-        let causes = if is_entry { trace.causes.one(Cause::Table(told)) } else { symbol.causes };
+        let causes = if is_entry { trace.causes.single(Cause::Table(told)) } else { symbol.causes };
         let after = graph.len();
         let told = trace.causes.get(causes).clone();
         let place = if name.quantity.step().is_some() { trace.place() } else { None };
@@ -355,16 +355,16 @@ impl Builder {
 #[derive(Clone, Copy)]
 pub(crate) struct JointLines<'s> {
     pub(crate) builder: &'s Builder,
-    /// The joint at whose place the lines stand.
+    /// The joint to which the lines belong.
     joint: usize,
-    /// The joint whose name the quantities bear.
+    /// The joint whose number is in the names of the quantities.
     named: usize,
     /// Which of the things that the link carries they belong to; 0 for the first.
     carried: usize,
 }
 
 impl<'s> JointLines<'s> {
-    /// The same lines, for quantities that bear the number of another joint.
+    /// The same lines, for quantities with the number of another joint in their names.
     pub(crate) fn named(self, joint: usize) -> Self {
         Self { named: joint, ..self }
     }

@@ -9,7 +9,7 @@ use super::{Alternatives, Cause, Causes};
 pub(crate) struct CausesId(u32);
 
 impl CausesId {
-    /// The first: constants that happen to give it.
+    /// The id of the set that contains only the cause `Arithmetic`. It is the first set.
     pub(crate) const ARITHMETIC: Self = Self(0);
 }
 
@@ -17,21 +17,21 @@ impl CausesId {
 pub(crate) struct KnownCauses {
     list: Vec<Alternatives>,
     ids: HashMap<Alternatives, CausesId>,
-    /// By two of them, and whether both are needed.
+    /// The joint causes of two of them, and whether both are needed.
     joined: HashMap<(CausesId, CausesId, bool), CausesId>,
 }
 
 impl Default for KnownCauses {
     fn default() -> Self {
-        let arithmetic = Alternatives::one(Cause::Arithmetic);
+        let arithmetic = Alternatives::single(Cause::Arithmetic);
         let ids = HashMap::from([(arithmetic.clone(), CausesId::ARITHMETIC)]);
         Self { list: vec![arithmetic], ids, joined: HashMap::new() }
     }
 }
 
 impl KnownCauses {
-    pub(crate) fn one(&mut self, cause: Cause) -> CausesId {
-        self.id(Alternatives::one(cause))
+    pub(crate) fn single(&mut self, cause: Cause) -> CausesId {
+        self.id(Alternatives::single(cause))
     }
 
     fn id(&mut self, alternatives: Alternatives) -> CausesId {

@@ -1,4 +1,4 @@
-//! The constants of a graph: exact numbers, each kept once, and what is made from them while formulas are written.
+//! The constants of a graph: exact numbers, each stored once, and the operations on them.
 
 use rne_model::Angle;
 
@@ -39,7 +39,7 @@ impl Graph {
         at
     }
 
-    /// A constant of another graph, and what it is if it is an angle.
+    /// A constant of another graph, and its sine and cosine if it is an angle.
     pub(crate) fn constant_like(&mut self, other: &Self, place: u32) -> Ref {
         let at = self.constant(other.numbers.get(place).0);
         if let (Some(turn), Op::Constant(own)) = (other.turns.get(&place), self.op(at)) {
@@ -48,7 +48,7 @@ impl Graph {
         at
     }
 
-    /// The places of its constants so far, without those that are angles.
+    /// The places of the constants that the graph has now, without angles.
     pub(crate) fn factors(&self) -> Vec<u32> {
         let places = (0..self.numbers.len()).filter_map(|place| u32::try_from(place).ok());
         places.filter(|place| !self.turns.contains_key(place)).collect()

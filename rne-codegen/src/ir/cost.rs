@@ -7,7 +7,7 @@ use super::{Graph, Op, Ref, mark_live};
 pub struct Cost {
     /// Products.
     pub mul: usize,
-    /// Sums, those of angles included.
+    /// Sums, including sums of angles.
     pub add: usize,
     /// Angles whose sine or cosine is needed.
     pub sincos: usize,
@@ -31,7 +31,7 @@ impl Cost {
 }
 
 impl Graph {
-    /// Operations of what is returned.
+    /// Operations that the results need.
     pub(crate) fn cost(&self, live: &mut Vec<bool>) -> Cost {
         mark_live(&self.nodes, &self.outputs, live);
         let mut cost = Cost::default();

@@ -9,8 +9,10 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
 use super::numbers::canonical;
-use super::{Name, Number, Residue};
-use crate::program::{Exactly, Program};
+use super::{ExactAngle, Name, Number, Residue};
+
+/// The exact constants of a program: each as a number and, if it is an angle, as a turn.
+pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A step of an expression, by the places of its operands among the steps before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +52,7 @@ pub enum ExactConstant {
 /// The exact expressions of the constants of a program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Derivation {
-    /// The steps. An operand stands before the step that uses it.
+    /// The steps. An operand comes before the step that uses it.
     pub steps: Vec<ExactStep>,
     /// The constants, by their names.
     pub constants: Vec<(Name, ExactConstant)>,
@@ -126,19 +128,17 @@ pub(crate) struct Ways {
 }
 
 impl Ways {
-    /// The expressions of the constants of a program; `None` if one did not come about by operations that are noted.
-    pub(crate) fn derivation(&self, program: &Program) -> Option<Derivation> {
+    /// The expressions of the constants of a program, which are given by name and value; `None` if one was not computed
+    /// by operations that are recorded.
+    pub(crate) fn derivation(&self, constants: &[(Name, f64)]) -> Option<Derivation> {
         let is_of_program = |exactly: &&Exactly| {
-            program.constants().all(|constant| {
-                exactly.get(&constant.name).is_some_and(|(number, _)| number.to_f64() == constant.value)
-            })
+            constants.iter().all(|(name, value)| exactly.get(name).is_some_and(|(number, _)| number.to_f64() == *value))
         };
         // what was lowered before was refused, or is what the program was compared with
         let exactly = self.lowered.iter().rev().find(is_of_program)?;
         let mut derivation = Derivation::default();
         let mut places = HashMap::new();
-        for constant in program.constants() {
-            let name = constant.name;
+        for &(name, _) in constants {
             let (number, turn) = exactly.get(&name)?;
             let mut place = |number: &Number| self.place(number.residue, &mut derivation.steps, &mut places);
             let exact = match turn {

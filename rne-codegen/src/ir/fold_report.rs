@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::{Axis, Name, Quantity, Step, WithRespectTo};
 
-/// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
+/// Why a number is exactly zero or one. Of two causes, the later variant is reported, because it explains more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Cause {
     /// Constants that happen to give it.
@@ -31,9 +31,9 @@ pub enum Cause {
     AtRest,
     /// The function is for an arm that does not accelerate, q̈ = 0.
     NoAcceleration,
-    /// One joint accelerates, the others do not.
+    /// The function is for one joint that accelerates; all other joints do not.
     UnitAcceleration,
-    /// The joint is behind the frame, on the side of the tip.
+    /// The joint is between the frame and the tip, so it does not move the frame.
     BehindFrame,
     /// The function has nothing to do with gravity.
     NoGravity,
@@ -69,7 +69,7 @@ impl fmt::Display for Cause {
 pub struct Causes(Arc<[Cause]>);
 
 impl Causes {
-    pub(crate) fn one(cause: Cause) -> Self {
+    pub(crate) fn single(cause: Cause) -> Self {
         Self(Arc::new([cause]))
     }
 
@@ -111,7 +111,7 @@ impl Causes {
         self.iter().filter(|cause| !cause.is_geometry())
     }
 
-    /// Whether it says no more than the other, so that the other can be left out.
+    /// Whether the other set contains this set, so that the other set is not needed.
     fn is_within(&self, other: &Self) -> bool {
         self.facts().all(|fact| other.0.contains(&fact))
     }
@@ -126,8 +126,8 @@ impl Alternatives {
     /// Sets that are kept; the fewest causes are found among them.
     const MOST: usize = 8;
 
-    pub(crate) fn one(cause: Cause) -> Self {
-        Self(vec![Causes::one(cause)])
+    pub(crate) fn single(cause: Cause) -> Self {
+        Self(vec![Causes::single(cause)])
     }
 
     /// The best of them.
@@ -228,7 +228,7 @@ pub enum Operation {
 pub enum Fold {
     /// It stands in the generated code.
     Kept,
-    /// A factor or summand is zero, mainly because of this.
+    /// A factor or summand is zero; the cause is the main reason.
     Zero(Cause),
     /// A factor is 1 or -1, because of this.
     One(Cause),
@@ -238,7 +238,7 @@ pub enum Fold {
     Cancelled,
     /// The same value had been computed before.
     Shared,
-    /// Nothing the function returns depends on it.
+    /// No returned number depends on it.
     Unused,
 }
 
@@ -255,7 +255,7 @@ pub struct Place {
     pub by: Option<WithRespectTo>,
 }
 
-/// How many operations at one place met one fate.
+/// How many operations of one place have the same fate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Where.

@@ -37,9 +37,9 @@ pub(crate) enum Outcome {
     Computed,
     /// The same node was there before.
     Shared,
-    /// One operand is zero; which one.
+    /// This operand is zero.
     Zero(Side),
-    /// One factor is 1 or -1; which one.
+    /// This factor is 1 or -1.
     One(Side),
     /// Both operands are constants.
     Constants,
@@ -54,7 +54,7 @@ pub(crate) enum Side {
     Right,
 }
 
-/// Nodes in order of creation, which is an order of evaluation too, and what is returned of them.
+/// The nodes in the order of their creation, which is also an order of evaluation, and the results among them.
 #[derive(Clone, Debug)]
 pub(crate) struct Graph {
     pub(crate) nodes: Vec<Node>,
@@ -137,7 +137,7 @@ impl Graph {
         self.nodes[at.index()].residue.signed(at.is_negative())
     }
 
-    /// Whether it is the constant 0: the number, not what rounds to it.
+    /// Whether a node is the constant 0: exactly zero, not a number that rounds to zero.
     pub(crate) fn is_zero(&self, at: Ref) -> bool {
         match self.policy {
             Policy::Structure => self.number(at).is_some_and(|number| number.is_zero() && number.to_f64() == 0.0),
@@ -187,16 +187,16 @@ impl Graph {
 
     /// The residue of a node at a point, when those before it are `images`.
     pub(crate) fn image_at(&self, op: Op, residues: &[Residue], point: &SamplePoint) -> Residue {
-        let of = |at: Ref| at.residue(residues);
+        let residue = |at: Ref| at.residue(residues);
         match op {
             Op::Constant(place) => self.numbers.get(place).0.residue,
             Op::Input(input) => point.argument(input),
             Op::Sine(angle) => self.turn_image(angle, point).0,
             Op::Cosine(angle) => self.turn_image(angle, point).1,
-            Op::Sum(a, b) => of(a) + of(b),
-            Op::Product(a, b) => of(a) * of(b),
-            Op::Quotient(a, b) => of(a) * of(b).inverse().unwrap_or(Residue::ZERO),
-            Op::BySign(operands) => Residue::by_sign(operands.map(of)),
+            Op::Sum(a, b) => residue(a) + residue(b),
+            Op::Product(a, b) => residue(a) * residue(b),
+            Op::Quotient(a, b) => residue(a) * residue(b).inverse().unwrap_or(Residue::ZERO),
+            Op::BySign(operands) => Residue::by_sign(operands.map(residue)),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Axis, Component, Name, Quantity};
 
-/// One number that is given to a function.
+/// A number among the arguments of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Input {
     quantity: Quantity,

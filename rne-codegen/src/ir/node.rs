@@ -30,14 +30,14 @@ impl Ref {
         Self(self.0 ^ u32::from(negative))
     }
 
-    /// Its residue, when those of the nodes are `values`.
+    /// The residue of the value, if `values` are the residues of the nodes.
     pub(crate) fn residue(self, values: &[Residue]) -> Residue {
         values[self.index()].signed(self.is_negative())
     }
 
     /// The reference in another graph, whose nodes for those of this graph are listed.
-    pub(crate) fn mapped(self, residues: &[Self]) -> Self {
-        residues[self.index()].signed(self.is_negative())
+    pub(crate) fn mapped(self, nodes: &[Self]) -> Self {
+        nodes[self.index()].signed(self.is_negative())
     }
 }
 
@@ -49,10 +49,10 @@ impl Neg for Ref {
     }
 }
 
-/// The operation of a node. Operands always stand before the nodes that use them.
+/// The operation of a node. Operands always come before the nodes that use them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Op {
-    /// A constant, never negative: its place among the numbers.
+    /// A constant by its place among the numbers; it is never negative.
     Constant(u32),
     /// An argument of the function.
     Input(Input),
@@ -66,7 +66,7 @@ pub(crate) enum Op {
     Product(Ref, Ref),
     /// A quotient of two nodes, without signs.
     Quotient(Ref, Ref),
-    /// One of two values, by the sign of the first; 0 where that is 0.
+    /// `[x, a, b]`: a where x is positive, b where x is negative, 0 where x is 0.
     BySign([Ref; 3]),
 }
 

@@ -5,7 +5,7 @@ use rne_model::{Angle, Double, InertiaReference, Joint, QuarterTurns, decimal_di
 use super::derivation::{Way, note};
 use super::{operators, residue::Residue};
 
-/// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
+/// A constant. The residues decide whether two constants are equal; the value is only rounded once, at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Number {
     pub(crate) value: Double,
@@ -16,7 +16,7 @@ impl Number {
     pub(crate) const ZERO: Self = Self { value: Double::new(0.0), residue: Residue::ZERO };
     pub(crate) const ONE: Self = Self { value: Double::new(1.0), residue: Residue::ONE };
 
-    /// A number that was rounded, with the residue of what it stands for.
+    /// A rounded number, with the residue of the exact number.
     pub(crate) fn rounded(value: f64, residue: Residue) -> Self {
         // -0 is 0
         Self { value: Double::new(value + 0.0), residue }
@@ -74,7 +74,7 @@ impl Number {
     /// round to less than this part of it. It happens when equal numbers are read as different ones.
     pub(crate) fn is_dust(self, scale: f64) -> bool {
         const PART: f64 = 1e-25;
-        // what is not a number is no value either
+        // a comparison with NaN is false, so NaN counts as no value
         let has_value = self.value.high.abs() > PART * scale;
         !self.is_zero() && !has_value
     }
@@ -83,7 +83,7 @@ impl Number {
         if self.is_negative() { -self } else { self }
     }
 
-    /// Zero has no dust: what is zero in the fields is zero.
+    /// The value of a number whose residue is zero becomes exactly zero.
     fn settled(self) -> Self {
         if self.residue.is_zero() { Self::ZERO } else { self }
     }
@@ -144,7 +144,7 @@ impl ExactAngle {
     pub(crate) fn angle(self) -> Number {
         let radians = self.sin.to_f64().atan2(self.cos.to_f64());
         let (sin, cos) = Double::new(radians).sin_cos();
-        // one step of Newton: the sine of what is left
+        // one step of Newton's method: the sine of the remaining angle
         let rest = self.sin.value * cos - self.cos.value * sin;
         // an angle has no image, so any will do that changes its sign with the turn
         let two = Residue::integer(2);

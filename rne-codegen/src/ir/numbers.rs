@@ -7,12 +7,12 @@ use super::{Number, Ref, Residue};
 /// How a constant came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// From the robot and the plan.
+    /// A number from the robot and the plan.
     Given,
-    /// From two others by their places: negative factors and summands are references with a sign.
+    /// The sum of two constants, by their places. The sign of a summand is in its reference.
     Sum(Ref, Ref),
     Product(Ref, Ref),
-    /// One over another.
+    /// The inverse of another constant.
     Inverse(u32),
 }
 

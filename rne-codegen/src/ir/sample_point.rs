@@ -2,7 +2,7 @@
 
 use super::{Embedding, Input, Quantity, Residue};
 
-/// Random values for all arguments: what a function of the robot is compared at.
+/// Random values for all arguments. Functions are compared at these values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SamplePoint {
     embedding: Embedding,

@@ -11,7 +11,7 @@ use super::{Axis, Builder, CausesId, Number, Ref, TermId, operators};
 pub(crate) struct Symbol<'s> {
     pub(crate) builder: &'s Builder,
     pub(crate) at: Ref,
-    /// Why it is the constant that it is, if it is one.
+    /// The reasons for its value, if it is a constant.
     pub(crate) causes: CausesId,
     /// The formula that it is, where formulas are kept.
     pub(crate) term: TermId,

@@ -19,11 +19,11 @@ pub(crate) struct Definition {
     pub(crate) after: usize,
     /// The formula that got the name.
     pub(crate) term: TermId,
-    /// Where its operations are counted.
+    /// The place at which its operations are counted.
     pub(crate) place: Option<Place>,
 }
 
-/// Where a node was created.
+/// The place at which a node was created.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Birth {
     pub(crate) place: Place,
@@ -35,7 +35,7 @@ pub(crate) struct Birth {
 pub(crate) struct Trace {
     pub(crate) fold_report: FoldReport,
     pub(crate) definitions: Vec<Definition>,
-    /// By node; `None` for what belongs to no step.
+    /// The place of each node; `None` for a node that belongs to no step.
     pub(crate) births: Vec<Option<Birth>>,
     /// As what a constant entered a node: (node, constant) → its name there.
     pub(crate) roles: HashMap<(Ref, Ref), Name>,
@@ -60,7 +60,7 @@ impl Trace {
         place: Option<Place>,
         axis: Option<Axis>,
     ) -> (Option<Place>, Option<Axis>) {
-        // leaves and constants of the table that came before belong to no step
+        // leaves and table constants that were made before belong to no step
         self.births.resize_with(nodes, || None);
         (std::mem::replace(&mut self.place, place), std::mem::replace(&mut self.axis, axis))
     }
@@ -120,7 +120,7 @@ impl Trace {
             // the other operand is left
             (Operation::Sum, Outcome::Zero(Side::Right)) | (_, Outcome::One(Side::Right)) => (a, b),
             (Operation::Sum, Outcome::Zero(Side::Left)) | (_, Outcome::One(Side::Left)) => (b, a),
-            (Operation::Sum, _) if graph.is_zero(at) => (self.causes.one(Cause::Cancellation), none),
+            (Operation::Sum, _) if graph.is_zero(at) => (self.causes.single(Cause::Cancellation), none),
             // a product is zero when either is
             (Operation::Product, Outcome::Zero(side)) => {
                 let either = match side {

@@ -28,7 +28,7 @@ impl Traced {
         });
         let after = numbered.len();
         for definition in told.definitions {
-            // zero and one are called what they are
+            // values that are zero or one keep no name
             let at = numbered.valued(graph.residue(definition.at)).filter(|at| at.index() > 1);
             if let Some(at) = at {
                 trace.definitions.push(Definition { at, after, ..definition });
@@ -41,7 +41,7 @@ impl Traced {
 impl Traced {
     /// A graph of the same values that knows less: names and places of those values go over to it.
     pub(crate) fn told_by(mut self, other: &Self) -> Self {
-        // what is new has no place among the seven steps
+        // a new node belongs to none of the seven steps
         let place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term, by: None };
         self.trace.births.resize(self.graph.len(), None);
         for (birth, node) in self.trace.births.iter_mut().zip(&self.graph.nodes) {

@@ -1,14 +1,35 @@
 //! Formulas as they were written, kept beside the graph: terms that folded away have no node in the graph.
 
 use super::{CausesId, Name, Outcome, Ref};
-use crate::values::Operator;
+
+/// An operator between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// a + b
+    Sum,
+    /// a - b
+    Difference,
+    /// a · b
+    Product,
+    /// a / b
+    Quotient,
+}
+
+/// Whether a value enters as itself or negated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// The value itself.
+    Plus,
+    /// Negated.
+    Minus,
+}
 
 /// A term that was written down; [`TermId::NONE`] is a leaf, of which the graph knows all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TermId(u32);
 
 impl TermId {
-    /// Nothing but a node of the graph.
+    /// A term that is only a node of the graph.
     pub(crate) const NONE: Self = Self(0);
 }
 
@@ -23,7 +44,7 @@ pub(crate) enum Written {
     Negative(TermId),
     /// An operation, the node that it became and how, and why it folded; `counted` if it belongs to a step.
     Operation { operator: Operator, operands: [TermId; 2], at: Ref, outcome: Outcome, reason: CausesId, counted: bool },
-    /// One of two values by the sign of the first.
+    /// The first term selects one of the other two by its sign.
     BySign([TermId; 3]),
 }
 

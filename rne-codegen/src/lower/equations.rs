@@ -4,8 +4,7 @@ use std::collections::HashSet;
 
 use super::{Lowering, sign};
 use crate::equation::{Equation, Operation, Term};
-use crate::ir::{Causes, CausesId, Fold, Number, Op, Outcome, Ref, TermId, Written};
-use crate::values::Operator;
+use crate::ir::{Causes, CausesId, Fold, Number, Op, Operator, Outcome, Ref, TermId, Written};
 
 impl Lowering<'_> {
     /// The formula of every component, in the order in which they are computed; none where formulas are not kept.

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::{Definition, Lowering, Returned};
-use crate::ir::{Name, Op, Place, Quantity, Ref, Step};
+use crate::ir::{Name, Op, Operator, Place, Quantity, Ref, Step};
 use crate::program::{Output, SineCosine, Statement};
-use crate::values::{Operator, Value, ValueId, Values};
+use crate::values::{Value, ValueId, Values};
 
 /// Writes the values of a program.
 pub(super) struct Writing<'w> {

@@ -1,17 +1,18 @@
-//! The cost of a plan: the form is written, equal values are merged, and what is left is counted.
+//! The cost of a plan: writes the form, merges equal values, and counts the remaining operations.
 
 use rne_model::{JointKind, Robot};
 
+use crate::CompileError;
 use crate::formulate::Outputs;
+use crate::formulation::Formulation;
 use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Number, Policy, Ref, number_values};
-use crate::pipeline::Formulation;
 use crate::plan::{OriginShift, Plan, Scale};
 use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
 use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
 
-/// A table and what it offers.
+/// A table and the choices that it offers.
 #[derive(Clone, Debug)]
 pub(crate) struct FramedRobot {
     frames: FrameChoice,
@@ -127,6 +128,22 @@ impl FramedRobot {
         let [length, force] = [parameters.lambda, parameters.mu].map(Number::to_f64);
         let scales = Some(Scales { length, force }).filter(|scales| *scales != Scales::default());
         Some(Formulation { names, traced: traced.numbered(), scales })
+    }
+}
+
+impl Formulation {
+    /// A function written by one algorithm under a plan, every value once.
+    ///
+    /// # Errors
+    /// When the plan does not fit the robot.
+    pub fn by_plan(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Result<Self, CompileError> {
+        if !robot.is_serial() {
+            return Err(CompileError::PlanDoesNotFit { robot: robot.name.clone() });
+        }
+        let sphere = plan.gyrostat && !function.takes(Argument::Payload);
+        let plan = &Plan { gyrostat: sphere, ..plan.clone() };
+        let written = frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
+        written.ok_or_else(|| CompileError::PlanDoesNotFit { robot: robot.name.clone() })
     }
 }
 

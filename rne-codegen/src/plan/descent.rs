@@ -60,7 +60,7 @@ impl<'v> Descent<'v> {
         self.counted
     }
 
-    /// From now on no plan becomes the best that `veto` is true of.
+    /// From now on, no plan for which `veto` is true becomes the best plan.
     pub fn refuse(&mut self, veto: impl Fn(&Plan) -> bool + 'v) {
         self.veto = Some(Box::new(veto));
     }
@@ -90,7 +90,7 @@ impl<'v> Descent<'v> {
         cost
     }
 
-    /// Takes the choices in the order in which they pay, each for all joints at once and then joint by joint.
+    /// Tries the choices in the order of their usual savings, each for all joints at once and then for each joint.
     pub fn greedy(&mut self, most: usize) {
         let limit = self.counted + most;
         for round in 0..2 {

@@ -11,6 +11,7 @@
 
 use std::collections::HashMap;
 
+use crate::error::GraphMistake;
 use crate::function::Function;
 use crate::ir::{
     Builder, Graph, Number, Numbers, Op, Policy, Ref, Residue, Source, Symbol, Traced, mark_live_outside_angles,
@@ -138,9 +139,9 @@ impl Constants<'_> {
             Source::Given => String::from("1"),
             Source::Sum(a, b) => self.made(a, "+", b),
             Source::Product(a, b) => self.made(a, "*", b),
-            Source::Inverse(of) => {
-                let of = self.number(of);
-                format!("/{}", self.places.len() + 1 - of)
+            Source::Inverse(inverted) => {
+                let number = self.number(inverted);
+                format!("/{}", self.places.len() + 1 - number)
             }
         };
         self.places.push(place);
@@ -173,8 +174,8 @@ impl Constants<'_> {
 /// The graph of a text; `plain` is the one before it was rewritten.
 ///
 /// # Errors
-/// What is wrong with which word of the text, counted from 1.
-pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
+/// The number of the wrong word, counted from 1, and the mistake in it.
+pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Traced, (usize, GraphMistake)> {
     let builder = Builder::traced(Policy::Numbered, plain.embedding(), function);
     let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).chain([Number::ONE]).collect();
     let divisors =
@@ -190,12 +191,11 @@ pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Trac
         results: Vec::new(),
     };
     for (index, word) in text.split_whitespace().enumerate() {
-        reader.read(word).map_err(|message| (index + 1, message))?;
+        reader.read(word).map_err(|mistake| (index + 1, mistake))?;
     }
     let (found, needed) = (reader.results.len(), plain.outputs.len());
     if found != needed {
-        let message = format!("`{function}` returns {needed} numbers, but the graph has {found} results");
-        return Err((text.split_whitespace().count(), message));
+        return Err((text.split_whitespace().count(), GraphMistake::Results { function, needed, found }));
     }
     let results = reader.results.iter().map(|result| result.at).collect();
     drop(reader);
@@ -233,7 +233,7 @@ fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
     angle.signed(at.is_negative())
 }
 
-/// A graph that was read, with the numbers of its plan in their places and its own behind them.
+/// A graph that was read: first the numbers of its plan in their places, then the graph's own numbers.
 pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
     let mut graph = plan.clone();
     graph.clear_nodes();
@@ -250,7 +250,7 @@ pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
     graph
 }
 
-/// Makes a constant of another graph from what it was made of there.
+/// Computes a constant of another graph again, from the same operands as there.
 fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, Ref>, place: u32) -> Ref {
     if let Some(&known) = places.get(&place) {
         return known;
@@ -270,9 +270,9 @@ fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, R
             let (a, b) = (operand(graph, a), operand(graph, b));
             graph.product(a, b).0
         }
-        Source::Inverse(of) => {
-            let of = operand(graph, Ref::new(of as usize));
-            graph.constant_inverse(of).unwrap_or_else(|| graph.zero())
+        Source::Inverse(inverted) => {
+            let value = operand(graph, Ref::new(inverted as usize));
+            graph.constant_inverse(value).unwrap_or_else(|| graph.zero())
         }
     };
     // a place holds the magnitude
@@ -296,7 +296,7 @@ struct Reader<'s> {
 }
 
 impl<'s> Reader<'s> {
-    fn read(&mut self, word: &str) -> Result<(), String> {
+    fn read(&mut self, word: &str) -> Result<(), GraphMistake> {
         match self.section {
             _ if [CONSTANTS, OPERATIONS, RESULTS].contains(&word) => {
                 self.section = [CONSTANTS, OPERATIONS, RESULTS].into_iter().find(|name| *name == word).unwrap_or("");
@@ -304,13 +304,13 @@ impl<'s> Reader<'s> {
             CONSTANTS => self.constants.push(self.constant(word)?),
             OPERATIONS => self.operations.push(self.operation(word)?),
             RESULTS => self.results.push(self.operand(word)?),
-            _ => return Err(format!("a graph begins with `{CONSTANTS}` or `{OPERATIONS}`, not with `{word}`")),
+            _ => return Err(GraphMistake::NoSection(word.to_owned())),
         }
         Ok(())
     }
 
     /// A constant, which is kept without its sign.
-    fn constant(&self, word: &str) -> Result<Symbol<'s>, String> {
+    fn constant(&self, word: &str) -> Result<Symbol<'s>, GraphMistake> {
         let constant = match (word.parse::<f64>(), word.strip_prefix('/')) {
             (Ok(value), _) => self.given(word, value)?,
             (_, Some(of)) => self.operand(of)?.inverse(),
@@ -319,11 +319,10 @@ impl<'s> Reader<'s> {
         Ok(self.builder.symbol(constant.at.magnitude()))
     }
 
-    fn operation(&self, word: &str) -> Result<Symbol<'s>, String> {
-        let no_operation = || format!("`{word}` is not an operation of a graph, such as `s2*qd3`");
+    fn operation(&self, word: &str) -> Result<Symbol<'s>, GraphMistake> {
         // the first character may be a sign
         let mut signs = word.char_indices().skip(1).filter(|(_, c)| "+-*/".contains(*c));
-        let (at, sign) = signs.next().ok_or_else(no_operation)?;
+        let (at, sign) = signs.next().ok_or_else(|| GraphMistake::NoOperation(word.to_owned()))?;
         let (a, b) = (self.operand(&word[..at])?, self.operand(&word[at + 1..])?);
         match sign {
             '+' => Ok(a + b),
@@ -331,7 +330,7 @@ impl<'s> Reader<'s> {
             '*' => Ok(a * b),
             _ if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
             _ if self.divides_by(b.at) => Ok(self.builder.quotient(a, b)),
-            _ => Err(format!("`{word}` divides by a value by which the code of the plan never divides")),
+            _ => Err(GraphMistake::Division(word.to_owned())),
         }
     }
 
@@ -341,7 +340,7 @@ impl<'s> Reader<'s> {
     }
 
     /// A value by its name, or by how far back it is: `1` is the one before.
-    fn operand(&self, text: &str) -> Result<Symbol<'s>, String> {
+    fn operand(&self, text: &str) -> Result<Symbol<'s>, GraphMistake> {
         let (name, is_negative) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
         let earlier = if self.section == CONSTANTS { &self.constants } else { &self.operations };
         let value = match (count(name), name.strip_prefix('k').and_then(count)) {
@@ -349,20 +348,18 @@ impl<'s> Reader<'s> {
             (_, Some(number)) => number.checked_sub(1).and_then(|index| self.constants.get(index)),
             _ => self.leaves.get(name),
         };
-        let value = value.ok_or_else(|| format!("the graph defines no value `{name}` before this word"))?;
+        let value = value.ok_or_else(|| GraphMistake::UnknownValue(name.to_owned()))?;
         Ok(value.signed(is_negative))
     }
 
     /// The number of the graph before that is nearest. A change of the formulas may move a number by a rounding.
-    fn given(&self, word: &str, value: f64) -> Result<Symbol<'s>, String> {
+    fn given(&self, word: &str, value: f64) -> Result<Symbol<'s>, GraphMistake> {
         if !value.is_finite() {
-            return Err(format!("`{word}` is not a finite number"));
+            return Err(GraphMistake::NotFinite(word.to_owned()));
         }
         let distance = |number: &Number| (number.to_f64() - value).abs();
         let nearest = self.given.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let nearest = nearest.filter(|number| distance(number) <= ROUNDING * value.abs());
-        nearest
-            .map(|&number| self.builder.number(number))
-            .ok_or_else(|| format!("the number {word} does not occur in the code of the plan"))
+        nearest.map(|&number| self.builder.number(number)).ok_or_else(|| GraphMistake::UnknownNumber(word.to_owned()))
     }
 }

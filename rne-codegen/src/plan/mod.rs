@@ -1,5 +1,5 @@
 //! Plans: which choices the reduced form makes for a robot, what they cost, and the short search of a build that finds
-//! no plan file. A long search and plan files are the crate `rne-search`.
+//! no plan file. The crate `rne-search` has the long search and the plan files.
 
 mod cost;
 mod descent;
@@ -11,11 +11,10 @@ mod rewritten;
 mod tests;
 mod trick;
 
+pub use crate::formulation::Formulation;
 pub use crate::ir::Cost;
-pub use crate::pipeline::Formulation;
 pub use crate::prove::{Reference, divides_by_zero};
 pub use crate::reduced::choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
-pub(crate) use cost::frame;
 pub use cost::{OpenChoices, OpenJoint};
 pub use descent::Descent;
 pub use plan_set::PlanSet;

@@ -21,12 +21,12 @@ pub struct PlanSet {
     maker: Maker,
 }
 
-/// Who made the choices.
+/// The origin of the choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Maker {
-    /// The build, which takes what it proves: what cannot be proved is left out.
+    /// The build chose them. It leaves out choices that it cannot prove.
     Build,
-    /// Somebody, in a plan file: it is compiled as it stands or not at all.
+    /// A plan file contains them. They are compiled without a change, or refused.
     PlanFile,
 }
 
@@ -129,7 +129,7 @@ fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorit
     best.map(|(_, plan, algorithm)| (plan, algorithm))
 }
 
-/// A plan to be compiled as it stands.
+/// A plan that is compiled without a change.
 impl From<Plan> for PlanSet {
     fn from(plan: Plan) -> Self {
         Self { plan, rewritten: BTreeMap::new(), maker: Maker::PlanFile }

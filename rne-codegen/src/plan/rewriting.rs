@@ -20,7 +20,7 @@ const FACTORS: std::ops::Range<f64> = 1e-4..1e4;
 #[derive(Clone, Debug)]
 pub struct Rewriting {
     /// The entry of the plan file, but for the graph as text.
-    of: Rewritten,
+    rewritten: Rewritten,
     graph: Graph,
     /// Places of the numbers of the graph as the plan gives it.
     given: Vec<u32>,
@@ -31,19 +31,19 @@ impl Rewriting {
     ///
     /// # Errors
     /// When the plan does not fit the robot.
-    pub fn of(robot: &Robot, function: Function, of: Rewritten) -> Result<Self, CompileError> {
-        let before = of.before(robot, function)?.traced.graph;
+    pub fn of(robot: &Robot, function: Function, rewritten: Rewritten) -> Result<Self, CompileError> {
+        let before = rewritten.before(robot, function)?.traced.graph;
         let given = before.factors();
         // the graph's own constants follow those of the plan, as in a graph that has just been rewritten
-        let read = graph_text::read(&of.graph, &before, function).ok();
+        let read = graph_text::read(&rewritten.graph, &before, function).ok();
         let graph = read.map(|read| graph_text::on_numbers_of(&read.graph, &before)).unwrap_or(before);
-        Ok(Self { of: Rewritten { operations: graph.cost(&mut Vec::new()), ..of }, graph, given })
+        Ok(Self { rewritten: Rewritten { operations: graph.cost(&mut Vec::new()), ..rewritten }, graph, given })
     }
 
     /// The cost of the graph.
     #[must_use]
     pub const fn cost(&self) -> Cost {
-        self.of.operations
+        self.rewritten.operations
     }
 
     /// Anneals from a temperature downwards until the clock says that all of its time is over, and keeps the smallest
@@ -52,14 +52,14 @@ impl Rewriting {
     pub fn anneal(&mut self, seed: u64, hottest: f64, clock: &mut dyn FnMut(Cost) -> Option<f64>) -> ControlFlow<()> {
         let mut annealing = Annealing::new(self.graph.clone(), seed, Graph::cost);
         let ended = annealing.anneal(hottest, clock);
-        (self.of.operations, self.graph) = annealing.best;
+        (self.rewritten.operations, self.graph) = annealing.best;
         ended
     }
 
     /// The graph as a plan file keeps it.
     #[must_use]
     pub fn written(self) -> Rewritten {
-        Rewritten { graph: graph_text::written(&self.graph, &self.given), ..self.of }
+        Rewritten { graph: graph_text::written(&self.graph, &self.given), ..self.rewritten }
     }
 }
 
@@ -68,7 +68,7 @@ pub(super) struct Annealing<C> {
     current: Graph,
     next: Graph,
     live: Vec<bool>,
-    /// By node: whether it is live otherwise than as an angle.
+    /// For each node, whether something other than an angle needs it.
     computed: Vec<bool>,
     map: Vec<Ref>,
     cost: C,
@@ -95,7 +95,7 @@ impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Annealing<C> {
         }
     }
 
-    /// Anneals until the clock says that all of its time is over.
+    /// Anneals until the clock returns that the time is over.
     pub(super) fn anneal(&mut self, hottest: f64, clock: &mut dyn FnMut(Cost) -> Option<f64>) -> ControlFlow<()> {
         let mut weight = (self.cost)(&self.current, &mut self.live).weight();
         let mut over = 0.0;
@@ -318,7 +318,7 @@ fn factored_one(graph: &mut Graph, (a, p): (Ref, Pair), b: Ref) -> Option<Ref> {
     None
 }
 
-/// A quotient of two constants that is neither huge nor tiny.
+/// The quotient of two constants; `None` if it is huge or tiny.
 fn bounded_quotient(graph: &mut Graph, a: Ref, b: Ref) -> Option<Ref> {
     let quotient = graph.number(a)?.to_f64() / graph.number(b)?.to_f64();
     if !FACTORS.contains(&quotient.abs()) {

@@ -3,9 +3,9 @@
 use rne_model::Robot;
 
 use crate::CompileError;
+use crate::formulation::Formulation;
 use crate::function::Function;
 use crate::ir::Cost;
-use crate::pipeline::Formulation;
 use crate::plan::{Plan, graph_text};
 use crate::program::Proof;
 use crate::reduced::algorithm::Algorithm;
@@ -63,7 +63,7 @@ impl Rewritten {
     pub fn formulation(&self, robot: &Robot, function: Function) -> Result<Formulation, CompileError> {
         let before = self.before(robot, function)?;
         let read = graph_text::read(&self.graph, &before.traced.graph, function)
-            .map_err(|(word, message)| CompileError::Graph { robot: robot.name.clone(), function, word, message })?;
+            .map_err(|(word, mistake)| CompileError::Graph { robot: robot.name.clone(), function, word, mistake })?;
         Ok(Formulation { traced: read.told_by(&before.traced), ..before })
     }
 

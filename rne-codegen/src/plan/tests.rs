@@ -1,4 +1,4 @@
-//! Whatever a search may find is the function of the seven steps, and what is not is refused.
+//! Every program that a search can find computes the function of the seven steps; every other program is refused.
 
 mod algorithms;
 mod unusual;
@@ -7,11 +7,10 @@ use rne_model::{Reader, Robot};
 
 use super::*;
 use crate::fma::{contracted, ordered_for_latency};
-use crate::ir::{Embedding, Graph, Traced};
-use crate::plan::cost::Evaluator;
+use crate::ir::{Embedding, Exactly, Graph, Traced};
+use crate::plan::cost::{Evaluator, frame};
 use crate::plan::descent::default_plan;
 use crate::plan::rewriting::Annealing;
-use crate::program::Exactly;
 use crate::prove;
 use crate::reduced::Algorithm;
 use crate::{CompileError, Compiler, Form, Function, Operator, Program, Value};
@@ -139,7 +138,8 @@ fn mistakes_in_a_graph_name_their_word() {
         ("constants /1", 2, "the graph defines no value `1`"),
     ] {
         let read = graph_text::read(text, &plain.graph, Function::InverseDynamics);
-        let Err((at, message)) = read else { panic!("{text}") };
+        let Err((at, mistake)) = read else { panic!("{text}") };
+        let message = mistake.to_string();
         assert!(message.contains(what), "{text}: {message}");
         assert_eq!(at, word, "{text}");
     }
@@ -196,7 +196,7 @@ fn a_wrong_literal_is_refused_by_rounding() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
     let (mut program, exactly, embedding) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
-    // the proof does not see how a constant was rounded, the states in double precision do
+    // the proof does not see how a constant was rounded; the states in double precision do
     let numbers = program.values.iter().filter_map(|(id, value)| match value {
         Value::Constant(number) => Some((id, number)),
         _ => None,

@@ -1,8 +1,9 @@
-//! Every discrete choice of the reduced form, as data.
+//! The choices of the reduced form, as data.
 
 use std::fmt;
 use std::str::FromStr;
 
+use crate::named::named;
 use crate::reduced::{Entry, FrameChoice};
 
 /// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
@@ -30,11 +31,11 @@ pub struct Plan {
 pub struct JointPlan {
     /// The three parameters that the rods on this axis annul (section 4.5).
     pub targets: [RegroupingTarget; 3],
-    /// Where on its axis the frame's origin sits (section 5.4).
+    /// The position of the frame's origin on the joint axis (section 5.4).
     pub origin_shift: OriginShift,
     /// Where the offset along the axis acts on the way out (section 5.2).
     pub outward_offset: Side,
-    /// Where it acts on the way back.
+    /// Where this offset acts on the way back.
     pub inward_offset: Side,
     /// The moment of the link (section 3.3).
     pub moment: Moment,
@@ -70,9 +71,9 @@ macro_rules! switches {
 switches! {
     /// U z is the same for both links of this axis (section 5.3).
     axis_column,
-    /// The twist on the way out with seven products (section 5.1).
+    /// Vectors are rotated with seven products on the way out (section 5.1).
     scaled_twist_outward,
-    /// The twist on the way back with seven products.
+    /// Vectors are rotated with seven products on the way back (section 5.1).
     scaled_twist_inward,
     /// The next joint's origin is accelerated in the frame that does not turn with this joint (section 5.7).
     origin_unturned,
@@ -94,34 +95,10 @@ switches! {
     group_wrench,
 }
 
-macro_rules! named {
-    ($(#[$doc:meta])* $type:ident { $($(#[$variant_doc:meta])* $variant:ident = $name:literal),* $(,)? }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-        pub enum $type { $($(#[$variant_doc])* $variant),* }
-
-        impl $type {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
-
-            /// Its name in a plan file.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),* }
-            }
-        }
-
-        impl fmt::Display for $type {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(self.name())
-            }
-        }
-    };
-}
-
 named! {
     /// A parameter that a rod annuls: one of the link's own, or one of the link before.
-    RegroupingTarget {
+    #[derive(Default)]
+    RegroupingTarget, "target" {
         /// The link's own: mass, h_z and S33 in this order.
         #[default] Own = "own",
         /// h_x of the link before.
@@ -169,7 +146,8 @@ impl RegroupingTarget {
 
 named! {
     /// A rule for where on its axis a frame's origin sits; never a number.
-    OriginShift {
+    #[derive(Default)]
+    OriginShift, "origin shift" {
         /// Where the table has it.
         #[default] None = "none",
         /// -d: the offset moves on to the next joint.
@@ -193,7 +171,8 @@ named! {
 
 named! {
     /// Where an offset along an axis acts.
-    Side {
+    #[derive(Default)]
+    Side, "side" {
         /// In the link's frame.
         #[default] Link = "link",
         /// In the axes of the link before.
@@ -205,7 +184,8 @@ named! {
 
 named! {
     /// The three equal forms of a link's moment.
-    Moment {
+    #[derive(Default)]
+    Moment, "moment" {
         /// Second moments.
         #[default] Second = "second",
         /// Second moments, with the diagonal split into accelerations and products of rates.

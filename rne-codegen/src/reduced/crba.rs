@@ -208,7 +208,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
     (0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect()
 }
 
-/// Torques against gravity, by the first moments of the composite bodies alone: τ = (h × a)_z.
+/// Gravity torques from the first moments of the composite bodies only: τ = (h × a)_z.
 pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();

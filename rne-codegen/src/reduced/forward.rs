@@ -76,7 +76,7 @@ pub(crate) struct Moved<'s> {
     /// In frame N on its axis.
     pub(crate) unturned: Motion<'s>,
     pub(crate) twist: SymbolicTurn<'s>,
-    /// From frame N of the group to the link's.
+    /// Transform from frame N of the group to the frame of the link.
     pub(crate) group_turn: SymbolicTurn<'s>,
     /// From the frame of the link before, about z.
     pub(crate) turn: SymbolicTurn<'s>,
@@ -119,7 +119,7 @@ impl<'a> Arm<'a, '_> {
         ([x, y, z - before].map(|length| length * scale), d * scale)
     }
 
-    /// Whether the last link is only a spin.
+    /// Whether this is the last link, and the plan makes it a spinning sphere (section 5.6).
     pub(crate) fn is_spin(&self, index: usize) -> bool {
         self.parameters.sphere.is_some() && index + 1 == self.rows().len()
     }

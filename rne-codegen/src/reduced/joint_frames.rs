@@ -101,11 +101,12 @@ impl JointFrames {
         let reach: f64 = self.rows.iter().map(length).sum();
         self.rows.iter().all(|row| {
             let PseudoInertia { mass, h, s } = row.matter;
-            let largest = |of: &[Number], least: f64| of.iter().map(|x| x.to_f64().abs()).fold(least, f64::max);
+            let largest =
+                |numbers: &[Number], least: f64| numbers.iter().map(|x| x.to_f64().abs()).fold(least, f64::max);
             let first = largest(&h, mass.to_f64().abs() * reach);
             let second = largest(s.as_flattened(), mass.to_f64().abs() * reach * reach);
             let turns = [row.alpha, row.theta].map(|turn| [turn.sin, turn.cos]);
-            let is_clear = |of: &[Number], scale: f64| !of.iter().any(|x| x.is_dust(scale));
+            let is_clear = |numbers: &[Number], scale: f64| !numbers.iter().any(|x| x.is_dust(scale));
             is_clear(&row.offset, reach)
                 && is_clear(&[row.d], reach)
                 && is_clear(&h, first)

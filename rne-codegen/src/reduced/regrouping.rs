@@ -77,7 +77,7 @@ impl Offers {
             .map_or_else(Vec::new, |(links, _)| links);
         for (index, row) in rows.iter().enumerate() {
             let mut origin_shifts: Vec<(OriginShift, Number)> = Vec::new();
-            for &rule in OriginShift::ALL {
+            for rule in OriginShift::ALL {
                 let Some(value) = origin_shift(rows, &links, index, rule) else { continue };
                 let is_new = origin_shifts.iter().all(|(_, other)| other.residue != value.residue);
                 if is_new && value.to_f64().abs() <= LONGEST_SLIDE * reach {

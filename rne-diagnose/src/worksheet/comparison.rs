@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rne_model::Robot;
 use rne_runtime::WrongLength;
 
-use super::{Line, Quantity, Situation, Worksheet, local, norm, slipped};
+use super::{Computed, Line, Quantity, ROUNDING, Situation, Worksheet, followed, local, norm, slipped};
 use crate::{Diagnosis, Observation, diagnose};
 
 /// A value that somebody found for a component of a line.
@@ -31,14 +31,23 @@ pub struct Comparison {
     pub compared: usize,
     /// Number of values that differ.
     pub differing: usize,
-    /// Number of given values, by the step that finds them: index 0 counts the inputs of the steps.
-    pub given: [usize; 8],
-    /// Number of values that agree, by step.
-    pub right: [usize; 8],
+    /// The verdict on each given value, by the index of its line in [`Worksheet::lines`] and its own index.
+    pub verdicts: BTreeMap<(usize, usize), Verdict>,
     /// The steps, 1 to 7, of which no value is given.
     pub steps_not_given: Vec<u8>,
     /// The first that differs in the order of computation; `None` when all agree.
     pub first: Option<Difference>,
+}
+
+/// A verdict on a given value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It agrees.
+    Right,
+    /// It differs, but the formula of its line gives it with the values that were given before. It is not zero.
+    Followed,
+    /// It differs.
+    Wrong,
 }
 
 /// The first value that differs.
@@ -88,9 +97,6 @@ pub enum Reach {
 /// Explanations that are kept.
 const MOST: usize = 4;
 
-/// The error of a double-precision computation, in parts of the largest value of that unit.
-const ROUNDING: f64 = 1e-9;
-
 /// One digit alone would explain anything: digits count to this part of a line's size.
 const COARSEST: f64 = 0.05;
 
@@ -109,18 +115,11 @@ impl Worksheet {
         digits: u8,
     ) -> Result<Comparison, WrongLength> {
         let given = Ordered::new(self, given, digits);
-        let by_step = |only_right: bool| {
-            let mut counts = [0; 8];
-            let counted = given.values.iter().filter(|(at, _)| !only_right || given.agrees(**at, self.value(**at)));
-            counted.for_each(|(_, value)| counts[usize::from(value.quantity.step())] += 1);
-            counts
-        };
-        let (all, right) = (by_step(false), by_step(true));
+        let verdicts = given.verdicts(robot, at)?;
         let mut comparison = Comparison {
             compared: given.values.len(),
-            differing: given.values.len() - right.iter().sum::<usize>(),
-            given: all,
-            right,
+            differing: verdicts.values().filter(|verdict| **verdict != Verdict::Right).count(),
+            verdicts,
             steps_not_given: given.steps_not_given(),
             first: None,
         };
@@ -138,7 +137,7 @@ impl Worksheet {
 }
 
 /// A line and a component of it, both by index.
-type Place = (usize, usize);
+pub(super) type Place = (usize, usize);
 
 /// Given values in the order of computation.
 struct Ordered<'a> {
@@ -157,11 +156,8 @@ impl<'a> Ordered<'a> {
             let line = *places.get(&(value.joint, value.quantity))?;
             Some(((line, value.component), *value)).filter(|_| value.component < value.quantity.components().len())
         };
-        let mut rounding = BTreeMap::new();
-        for line in &sheet.lines {
-            let largest = rounding.entry(line.unit()).or_insert(0.0_f64);
-            *largest = largest.max(ROUNDING * line.size());
-        }
+        let units = sheet.lines.iter().map(Line::unit);
+        let rounding = units.map(|unit| (unit, ROUNDING * sheet.largest(unit))).collect();
         Self { sheet, values: given.iter().filter_map(place).collect(), digits, rounding }
     }
 
@@ -173,7 +169,11 @@ impl<'a> Ordered<'a> {
 
     /// Largest deviation that is allowed of a value at a place.
     fn allowed(&self, place: Place) -> f64 {
-        let Some(line) = self.sheet.lines.get(place.0) else { return 0.0 };
+        self.sheet.lines.get(place.0).map_or(0.0, |line| self.allowed_of(line, place))
+    }
+
+    /// Largest deviation that is allowed of a value at a place, from a line with other values.
+    fn allowed_of(&self, line: &Line, place: Place) -> f64 {
         let size = line.size();
         let written = self.values.get(&place).map_or(0.0, |given| given.resolution.min(COARSEST * size));
         let by_hand = self.by_hand(size);
@@ -191,6 +191,37 @@ impl<'a> Ordered<'a> {
             _ => difference,
         };
         off.abs() <= self.allowed(place)
+    }
+
+    /// The verdict on each given value. Line by line in the order of computation, the formula takes the values that are
+    /// given before it, and its own results where none is given.
+    fn verdicts(&self, robot: &Robot, at: &Situation) -> Result<BTreeMap<Place, Verdict>, WrongLength> {
+        let of_place = |(place, _): (&Place, _)| {
+            (*place, if self.agrees(*place, self.sheet.value(*place)) { Verdict::Right } else { Verdict::Wrong })
+        };
+        let mut verdicts: BTreeMap<Place, Verdict> = self.values.iter().map(of_place).collect();
+        if verdicts.values().all(|verdict| *verdict == Verdict::Right) {
+            return Ok(verdicts);
+        }
+        let computed = Computed::new(robot, at, self.sheet.axes)?;
+        let mut links = computed.links.clone();
+        for (index, line) in self.sheet.lines.iter().enumerate() {
+            let Some(own) = computed.formulas(robot, at, &links).by_formula(line.joint, line.quantity) else {
+                continue;
+            };
+            for (component, value) in own.values.iter().enumerate() {
+                let place = (index, component);
+                let theirs = self.values.get(&place).map(|given| given.value);
+                let allowed = self.allowed_of(&own, place);
+                let follows = theirs.is_some_and(|theirs| (theirs - value).abs() <= allowed && value.abs() > allowed);
+                if let Some(verdict) = verdicts.get_mut(&place).filter(|verdict| follows && **verdict == Verdict::Wrong)
+                {
+                    *verdict = Verdict::Followed;
+                }
+                followed::set(&mut links[line.joint - 1], line.quantity, component, theirs.unwrap_or(*value));
+            }
+        }
+        Ok(verdicts)
     }
 
     fn steps_not_given(&self) -> Vec<u8> {

@@ -106,6 +106,21 @@ impl Formulas<'_> {
         Here { i: index + 1, kind, row, link, rotation: link.rotation_matrix(), turn, e, q, before }
     }
 
+    /// The line of a quantity of steps 1 to 7 of a joint, counted from 1.
+    pub(super) fn line(&self, joint: usize, quantity: Quantity) -> Option<Line> {
+        let here = self.here(joint.checked_sub(1)?, &orientations(self.fixed));
+        let lines = if quantity.is_inward() { self.inward(&here) } else { self.outward(&here) };
+        lines.into_iter().find(|line| line.quantity == quantity)
+    }
+
+    /// A vector in the axes of the joint after this one, in the axes of this one, counted from 1.
+    pub(super) fn turned(&self, joint: usize, own: [f64; 3]) -> Vec<f64> {
+        match self.links.get(joint).filter(|_| self.axes != Axes::Base) {
+            Some(next) => list(&(next.rotation_matrix() * V::from(own))),
+            None => own.to_vec(),
+        }
+    }
+
     /// The lines of the inputs of the steps.
     fn given(&self, here: &Here<'_>, orientations: &[Matrix3<f64>]) -> Vec<Line> {
         let Here { i, kind, row, link, turn, .. } = here;

@@ -4,6 +4,7 @@
 //! The numbers are those of [`DynArm::trace`]. Numbers in, data out: nothing here reads a file or prints.
 
 mod comparison;
+mod followed;
 mod formulas;
 mod local;
 mod quantity;
@@ -12,8 +13,12 @@ mod slipped;
 use rne_model::{Convention, JointKind, Robot};
 use rne_runtime::{BaseMotion, DynArm, LinkTrace, Payload, Wrench, WrongLength};
 
-pub use self::comparison::{Comparison, Difference, GivenValue, Reach, Reason};
+pub use self::comparison::{Comparison, Difference, GivenValue, Reach, Reason, Verdict};
+use self::formulas::Formulas;
 pub use self::quantity::{Quantity, UnknownQuantity};
+
+/// The error of a double-precision computation, in parts of the largest value of that unit.
+const ROUNDING: f64 = 1e-9;
 
 /// Axes in which the vectors of a joint's entry are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -149,6 +154,44 @@ impl Worksheet {
     /// # Errors
     /// When a list of the situation does not have one number per joint.
     pub fn new(robot: &Robot, at: &Situation, axes: Axes) -> Result<Self, WrongLength> {
+        let computed = Computed::new(robot, at, axes)?;
+        let lines = computed.formulas(robot, at, &computed.links).lines();
+        Ok(Self { axes, lines })
+    }
+
+    /// The line of a quantity of a joint, counted from 1.
+    #[must_use]
+    pub fn line(&self, joint: usize, quantity: Quantity) -> Option<&Line> {
+        self.lines.iter().find(|line| line.joint == joint && line.quantity == quantity)
+    }
+
+    /// The largest size of a line in a unit.
+    fn largest(&self, unit: &str) -> f64 {
+        self.lines.iter().filter(|line| line.unit() == unit).map(Line::size).fold(0.0, f64::max)
+    }
+
+    /// The torques and forces of the actuators, base to tip.
+    #[must_use]
+    pub fn tau(&self) -> Vec<f64> {
+        let is_torque = |line: &&Line| line.quantity == Quantity::Tau;
+        let mut lines: Vec<&Line> = self.lines.iter().filter(is_torque).collect();
+        lines.sort_by_key(|line| line.joint);
+        lines.iter().flat_map(|line| line.values.iter().copied()).collect()
+    }
+}
+
+/// The numbers that the lines are made of.
+struct Computed {
+    base: BaseMotion<f64>,
+    axes: Axes,
+    /// In these axes.
+    links: Vec<LinkTrace<f64>>,
+    /// In axes fixed to each link.
+    fixed: Vec<LinkTrace<f64>>,
+}
+
+impl Computed {
+    fn new(robot: &Robot, at: &Situation, axes: Axes) -> Result<Self, WrongLength> {
         let arm = DynArm::from_robot(robot);
         let base = at.base.unwrap_or_else(|| arm.fixed_base());
         let trace = match &at.payload {
@@ -160,23 +203,12 @@ impl Worksheet {
             Axes::Joint => trace.to_lecture(),
             Axes::Base => trace.to_base(),
         };
-        let lines = formulas::Formulas { robot, at, base, axes, links: &links, fixed: &trace.links }.lines();
-        Ok(Self { axes, lines })
+        Ok(Self { base, axes, links, fixed: trace.links })
     }
 
-    /// The line of a quantity of a joint, counted from 1.
-    #[must_use]
-    pub fn line(&self, joint: usize, quantity: Quantity) -> Option<&Line> {
-        self.lines.iter().find(|line| line.joint == joint && line.quantity == quantity)
-    }
-
-    /// The torques and forces of the actuators, base to tip.
-    #[must_use]
-    pub fn tau(&self) -> Vec<f64> {
-        let is_torque = |line: &&Line| line.quantity == Quantity::Tau;
-        let mut lines: Vec<&Line> = self.lines.iter().filter(is_torque).collect();
-        lines.sort_by_key(|line| line.joint);
-        lines.iter().flat_map(|line| line.values.iter().copied()).collect()
+    /// The formulas with the values of `links`.
+    fn formulas<'a>(&'a self, robot: &'a Robot, at: &'a Situation, links: &'a [LinkTrace<f64>]) -> Formulas<'a> {
+        Formulas { robot, at, base: self.base, axes: self.axes, links, fixed: &self.fixed }
     }
 }
 

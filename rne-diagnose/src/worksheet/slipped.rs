@@ -16,7 +16,7 @@ pub(super) struct Slipped {
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// Every slip that can be made at a situation: those of [`Slip::all_of`], and those that no torque shows. None of a
+/// Every slip that can be made at a situation: those of [`Slip::candidates`], and those that no torque shows. None of a
 /// base that moves or of a payload.
 pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
     if at.base.is_some() || at.payload.is_some() {
@@ -24,7 +24,7 @@ pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Ve
     }
     let unseen = [Misprint::E5NoDot, Misprint::E6FactorsSwapped].map(Slip::Misprint);
     let mut all = Vec::new();
-    for slip in Slip::all_of(robot).into_iter().chain(unseen) {
+    for slip in Slip::candidates(robot).into_iter().chain(unseen) {
         let Some(computation) = Computation::with(robot, &[slip]) else { continue };
         let values = values(&computation, robot, at, sheet)?;
         all.push(Slipped { slip, values });

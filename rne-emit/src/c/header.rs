@@ -93,7 +93,7 @@ fn initialiser(name: &str, numbers: &[String]) -> String {
     if start.len() + numbers.len() < WIDTH {
         return format!("{start}{numbers}}}\n");
     }
-    // a definition goes on behind a backslash
+    // a backslash continues the definition on the next line
     let lines = fill(&numbers, WIDTH - 2, "    ", "    ").replace('\n', " \\\n");
     format!("{start} \\\n{lines}}}\n")
 }
@@ -107,10 +107,25 @@ fn limits(file: &File, upper: &str) -> String {
     };
     let limits = || file.robot.joints.iter().map(|joint| joint.limits);
     let kinds: [(&str, &str, f64, Vec<Option<f64>>); 4] = [
-        ("POSITION_LOWER", "Lowest positions, rad or m", -largest, limits().map(|of| Some(of.position?.0)).collect()),
-        ("POSITION_UPPER", "Highest positions, rad or m", largest, limits().map(|of| Some(of.position?.1)).collect()),
-        ("VELOCITY_LIMIT", "Largest speeds, rad/s or m/s", largest, limits().map(|of| of.velocity).collect()),
-        ("EFFORT_LIMIT", "Largest torques or forces, N m or N", largest, limits().map(|of| of.effort).collect()),
+        (
+            "POSITION_LOWER",
+            "Lowest positions, rad or m",
+            -largest,
+            limits().map(|limits| Some(limits.position?.0)).collect(),
+        ),
+        (
+            "POSITION_UPPER",
+            "Highest positions, rad or m",
+            largest,
+            limits().map(|limits| Some(limits.position?.1)).collect(),
+        ),
+        ("VELOCITY_LIMIT", "Largest speeds, rad/s or m/s", largest, limits().map(|limits| limits.velocity).collect()),
+        (
+            "EFFORT_LIMIT",
+            "Largest torques or forces, N m or N",
+            largest,
+            limits().map(|limits| limits.effort).collect(),
+        ),
     ];
     let mut text = String::new();
     for (name, about, none, values) in kinds {

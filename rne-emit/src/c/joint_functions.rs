@@ -58,6 +58,13 @@ impl JointFriction {
         Ok(frictions)
     }
 
+    /// The friction at a speed, N m or N.
+    #[must_use]
+    pub fn torque(&self, qd: f64) -> f64 {
+        let s = qd / (qd * qd + self.width * self.width).sqrt();
+        self.viscous * qd + self.odd * s + self.even * s * s
+    }
+
     fn of_joint(robot: &Robot, index: usize, joint: &Joint) -> Result<Self, NoFriction> {
         let Some(motor) = joint.motor else { return Ok(Self { viscous: 0.0, odd: 0.0, even: 0.0, width: 1.0 }) };
         let name = || joint.name.clone();

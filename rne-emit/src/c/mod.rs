@@ -1,4 +1,4 @@
-//! Programs as C99 without a library: a header that says what the functions do, and the source.
+//! Programs as C99 without a library: a header that documents the functions, and the source.
 
 mod header;
 mod joint_functions;
@@ -80,7 +80,7 @@ pub struct Additions<'a> {
     pub limits: bool,
 }
 
-/// As [`c_code`], with additions.
+/// The code of [`c_code`], with additions.
 ///
 /// # Errors
 /// When a constant is too large for the number type.
@@ -104,7 +104,7 @@ struct File<'a> {
     additions: &'a Additions<'a>,
 }
 
-/// The robot file of which code is made: its name, without folders, and what tells its contents from others.
+/// The robot file of the code: its name without folders, and a hash of its contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     file: String,
@@ -143,7 +143,7 @@ impl<'a> File<'a> {
 /// A constant that the number type cannot hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstantTooLarge {
-    /// Its name in the code.
+    /// The name of the constant in the code.
     pub name: Name,
     /// Its value.
     pub value: f64,
@@ -169,7 +169,7 @@ impl fmt::Display for ConstantTooLarge {
 
 impl std::error::Error for ConstantTooLarge {}
 
-/// Words in a comment, each line behind `start`; without words an empty one.
+/// Words as a comment, in which each line begins with `start`; an empty comment if there are no words.
 fn comment(start: &str, text: &str) -> String {
     let blank = format!("{start} ");
     let lines = if text.is_empty() { start.to_owned() } else { fill(&c_comment(text), WIDTH, &blank, &blank) };

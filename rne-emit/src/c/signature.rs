@@ -1,4 +1,4 @@
-//! The functions as C declares them: arrays in, then what is returned.
+//! The functions as C declares them: first the arrays of arguments, then the results.
 
 use std::fmt::Write;
 
@@ -74,7 +74,7 @@ pub(crate) fn element_type(prefix: &str, precision: Precision, element: &Layout)
     }
 }
 
-/// A parameter through which a result is written: a record by its address, arrays as what they are.
+/// A parameter for a result: the address of a record, or an array.
 fn declared(file: &File, layout: &Layout, name: &str) -> String {
     let (lengths, of) = elements_of(layout);
     let star = if matches!(layout, Layout::Record(..)) { "*" } else { "" };
@@ -120,7 +120,7 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
     records
 }
 
-/// Where the numbers of a result are written, in their order.
+/// The variables for the numbers of a result, in their order.
 pub(super) fn places(program: &Program) -> Vec<String> {
     let mut places = Vec::new();
     // a record is written by its address

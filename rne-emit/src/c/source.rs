@@ -14,7 +14,7 @@ use crate::parameters::{self, Parameter};
 use crate::syntax::Precision;
 use crate::text::legend;
 
-/// Sine and cosine in C; PREFIX stands for the prefix.
+/// Sine and cosine in C; PREFIX is replaced by the prefix.
 const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_cos_double.c")];
 
 /// The source after the inclusion of the header.
@@ -112,7 +112,7 @@ fn arguments(file: &File, program: &Program) -> String {
 /// The place for a sine or cosine that nothing needs.
 pub(crate) const UNUSED: &str = "unused";
 
-/// One call for each angle. Several share the place for what none of them needs.
+/// One call for each angle. Results that nobody needs go to one shared variable.
 fn turns(file: &File, program: &Program) -> String {
     let (real, prefix) = (file.precision.c_type(), file.prefix);
     let (mut places, mut calls) = (String::new(), String::new());

@@ -7,7 +7,7 @@ use rne_model::Robot;
 
 use super::{Golden, Law, floor, program, results};
 use crate::Precision;
-use crate::c::{Prefix, array_name, element_type, elements_of, inputs, result_elements};
+use crate::c::{Additions, JointFriction, Prefix, array_name, element_type, elements_of, inputs, result_elements};
 use crate::parameters::{self};
 use crate::wrap::{WIDTH, fill};
 
@@ -21,10 +21,13 @@ pub fn c_tests(
     precision: Precision,
     prefix: &Prefix,
     golden: &[Golden],
+    additions: &Additions<'_>,
 ) -> String {
     let tests = Tests { robot, programs, precision, prefix: prefix.as_str(), golden };
     let mut functions: Vec<(String, String)> = (0..programs.len()).filter_map(|index| tests.values(index)).collect();
     functions.extend(Law::of(programs).filter_map(|law| tests.law(law)));
+    functions.extend(additions.friction.map(|frictions| tests.friction(frictions)));
+    functions.extend(additions.limits.then(|| tests.limits()));
     let (mut bodies, mut calls) = (String::new(), String::new());
     for (name, body) in &functions {
         let _ = write!(bodies, "\n{body}");
@@ -72,7 +75,7 @@ struct Tests<'a> {
 }
 
 impl Tests<'_> {
-    /// Rounding of the number type and of its constants, of sums of hundreds of terms.
+    /// The rounding errors of the number type, its constants, and sums of hundreds of terms.
     const fn tolerance(&self) -> &'static str {
         match self.precision {
             Precision::Single => "1e-4",
@@ -81,7 +84,7 @@ impl Tests<'_> {
     }
 
     fn numbers(&self, numbers: &[f64]) -> String {
-        // what is too large for the type is infinite, and found to be wrong
+        // a number that is too large for the type becomes infinite, and the test fails
         let numbers = numbers.iter().map(|&number| self.precision.literal(number).unwrap_or("(1.0f / 0.0f)".into()));
         numbers.collect::<Vec<_>>().join(", ")
     }
@@ -191,11 +194,57 @@ impl Tests<'_> {
         Some((name, text))
     }
 
+    /// The function that compares friction with its law in double precision, at the speeds of the states.
+    fn friction(&self, frictions: &[JointFriction]) -> (String, String) {
+        let speeds: Vec<&[f64]> = self.golden.iter().map(|state| state.argument("qd")).collect();
+        let of_state =
+            |qd: &&[f64]| -> Vec<f64> { frictions.iter().zip(*qd).map(|(law, qd)| law.torque(*qd)).collect() };
+        let expected: Vec<Vec<f64>> = speeds.iter().map(of_state).collect();
+        let largest = expected.iter().flatten().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
+        let compared = format!("{}_friction_torques(test_qd[state], found);", self.prefix);
+        self.joints("friction_torques", &compared, "", &expected, &format!("test_tolerance * {largest:?}"))
+    }
+
+    /// The function that compares limited torques: above, below and within the limits of each joint.
+    fn limits(&self) -> (String, String) {
+        let efforts = || self.robot.joints.iter().map(|joint| joint.limits.effort);
+        let parts = [2.0, -2.0, 0.5];
+        let given: Vec<Vec<f64>> =
+            parts.iter().map(|part| efforts().map(|effort| part * effort.unwrap_or(1.0)).collect()).collect();
+        let limited = |torque: f64, effort: Option<f64>| effort.map_or(torque, |effort| torque.clamp(-effort, effort));
+        let expected: Vec<Vec<f64>> = given
+            .iter()
+            .map(|torques| torques.iter().zip(efforts()).map(|(torque, effort)| limited(*torque, effort)).collect())
+            .collect();
+        let (real, dof) = (self.precision.c_type(), self.robot.dof());
+        let rows: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
+        let table = self.table(&format!("    static const {real} given[{}][{dof}]", rows.len()), &rows);
+        let call = format!("{}_limit_torques(given[state], found);", self.prefix);
+        // the limits are the same constants here and there
+        self.joints("limit_torques", &call, &table.replace("\n};", "\n    };"), &expected, "0.0")
+    }
+
+    /// A function that compares what `call` writes into `found`, a number per joint, with a row for each state.
+    fn joints(&self, what: &str, call: &str, tables: &str, expected: &[Vec<f64>], allowed: &str) -> (String, String) {
+        let (real, dof, states) = (self.precision.c_type(), self.robot.dof(), expected.len());
+        let rows: Vec<&[f64]> = expected.iter().map(Vec::as_slice).collect();
+        let table = self.table(&format!("    static const {real} expected[{states}][{dof}]"), &rows);
+        let text = format!(
+            "static void test_{what}(void)\n{{\n{tables}{}    unsigned state;\n    \
+             for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        \
+             {real} found[{dof}];\n        {call}\n        for (i = 0u; i < {dof}u; ++i) {{\n            \
+             test_compare(\"{what}\", state, i, (double)found[i], (double)expected[state][i],\n                \
+             {allowed});\n        }}\n    }}\n}}\n",
+            table.replace("\n};", "\n    };"),
+        );
+        (format!("test_{what}"), text)
+    }
+
     fn law(&self, law: Law) -> Option<(String, String)> {
         let (dof, states, real) = (self.robot.dof(), self.golden.len(), self.precision.c_type());
         let words = law.name().replace('_', " ");
         let body = match law {
-            // what it needs are differences of energies, of which single precision leaves nothing
+            // it needs differences of energies, which single precision cannot represent
             Law::Power => return None,
             Law::Symmetry => format!(
                 "{}        for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < i; ++j) {{\n                \

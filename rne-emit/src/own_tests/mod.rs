@@ -25,13 +25,13 @@ pub struct Golden {
 }
 
 impl Golden {
-    /// The numbers of an argument.
+    /// The numbers of an argument array, by its name.
     fn argument(&self, name: &str) -> &[f64] {
         self.arguments.iter().find(|(known, _)| *known == name).map_or(&[], |(_, numbers)| numbers)
     }
 }
 
-/// The arguments that all functions share, of which laws are made.
+/// The arguments that all functions share; the tests of physical laws use them.
 const MOTION: [&str; 4] = ["q", "qd", "qdd", "tau"];
 
 /// A law that functions obey together.
@@ -55,7 +55,7 @@ impl Law {
     const ALL: [Self; 6] =
         [Self::Symmetry, Self::Linearity, Self::Gravity, Self::Bias, Self::KineticEnergy, Self::Power];
 
-    /// The functions of which it speaks.
+    /// The functions that the law contains.
     const fn functions(self) -> &'static [Function] {
         match self {
             Self::Symmetry => &[Function::MassMatrix],
@@ -67,7 +67,7 @@ impl Law {
         }
     }
 
-    /// The function that returns the torques of motion where rates, accelerations or both are `zero`, and which.
+    /// The function that returns torques for zero rates, zero accelerations or both, and these arguments as `zero`.
     fn of_zeros(self, zero: &str) -> (Function, Vec<(&'static str, &str)>) {
         match self {
             Self::Gravity => (Function::GravityTorques, vec![("qd", zero), ("qdd", zero)]),
@@ -87,7 +87,7 @@ impl Law {
         }
     }
 
-    /// Those whose functions are all there.
+    /// The laws whose functions are all in the file.
     fn of(programs: &[Program]) -> impl Iterator<Item = Self> {
         let is_there = |function: &Function| self::program(programs, *function).is_some();
         Self::ALL.into_iter().filter(move |law| law.functions().iter().all(is_there))

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeSet, HashMap};
 
+use crate::columns::header::{Found, Header, by_joint};
 use crate::columns::quantity::Quantity;
-use crate::columns::table::{Found, Header, by_joint};
 use crate::columns::unit::{Dimension, Unit};
 use crate::limits::{MOST_JOINTS, work};
 use crate::options::Angles;

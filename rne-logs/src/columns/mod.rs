@@ -1,6 +1,7 @@
 //! Columns of tables: which joint, quantity and unit a column has, by its name.
 
 pub(crate) mod checks;
+pub(crate) mod header;
 pub(crate) mod heading;
 pub(crate) mod label;
 pub(crate) mod mapping;

@@ -95,6 +95,21 @@ impl Format {
             return Err(LogError::file(path, format_args!("this is {other}")));
         }
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+        let is_xml = first.starts_with(b"<") || ["urdf", "xacro"].contains(&extension.as_str());
+        let is_yaml = first.starts_with(b"format:") || ["yaml", "yml"].contains(&extension.as_str());
+        if path.file_name().is_some_and(|name| name == "metadata.yaml") {
+            return Err(LogError::file(path, "this describes a bag of ROS 2; name the folder of the bag"));
+        }
+        if is_xml || is_yaml {
+            let what = if is_xml { "a URDF or another XML file" } else { "a robot file or another YAML file" };
+            return Err(LogError::file(
+                path,
+                format_args!(
+                    "this is {what}, but a log is needed here: a CSV, Parquet or npy file, or a bag of ROS 2. One \
+                     robot file comes first, then the logs"
+                ),
+            ));
+        }
         let promised = match extension.as_str() {
             "db3" => Some(Self::Sqlite),
             "mcap" => Some(Self::Mcap),

@@ -182,6 +182,10 @@ impl Log {
         let time = |sample: &&Sample| if recorded { sample.recorded } else { sample.measured };
         let times: Vec<i64> = states.iter().map(time).collect();
         let step = median_step(&times).ok_or_else(|| no_step(path, &times))?;
+        let back = times.windows(2).filter(|pair| pair[1] < pair[0]).count();
+        if chain.format.has_rows() && 4 * back > times.len() {
+            return Err(LogError::file(path, unsorted(back, times.len())));
+        }
         if step >= SLOWEST && !is_time_unit_known {
             let error = LogError::request(path, unknown_unit(step)).remedy(Remedy::Give(Setting::TimeUnit));
             return Err(error.remedy(Remedy::Give(Setting::Rate)));
@@ -292,6 +296,14 @@ fn median_step(times: &[i64]) -> Option<f64> {
         return None;
     }
     Some(*steps.select_nth_unstable(middle).1 as f64 * 1e-9)
+}
+
+/// Message for rows that are not in the order of time.
+fn unsorted(back: usize, count: usize) -> String {
+    format!(
+        "the rows are not in the order of time: in the first {count} rows, time goes back {back} times; sort the rows \
+         by their time"
+    )
 }
 
 /// Message for times whose unit is not known.

@@ -398,6 +398,10 @@ fn other_schemas_are_told() {
         ("empty.db3", Vec::new(), "the file is empty, so it is not rosbag2, SQLite"),
         ("text.mcap", b"hello".to_vec(), "does not begin like a file of the format rosbag2, MCAP"),
         ("old.bag", b"#ROSBAG V2.0\n".to_vec(), "a bag of ROS 1"),
+        ("arm.yaml", b"name: arm\nformat: 1\n".to_vec(), "this is a robot file or another YAML file, but a log"),
+        ("arm.txt", b"format: 1\nname: arm\n".to_vec(), "One robot file comes first"),
+        ("arm.urdf", b"<?xml version=\"1.0\"?>\n".to_vec(), "this is a URDF or another XML file"),
+        ("metadata.yaml", b"rosbag2_bagfile_information:\n".to_vec(), "name the folder of the bag"),
         ("empty.csv", Vec::new(), "the file is empty"),
         ("numbers.csv", b"0,1,2\n3,4,5\n".to_vec(), "the first line has numbers"),
         (
@@ -417,6 +421,11 @@ fn other_schemas_are_told() {
             "line 3: a line has more than a million bytes",
         ),
         ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not increase"),
+        (
+            "shuffled.csv",
+            b"time,q1\n0.3,1\n0.1,2\n0.4,1\n0.0,2\n0.2,3\n".to_vec(),
+            "in the first 5 rows, time goes back 2 times; sort the rows by their time",
+        ),
         ("binary.csv", vec![1, 0, 2, 0], "bytes with the value zero"),
         ("ints.npy", npy(&times()[..3], true, "<i8"), "the numbers are"),
         ("wide.npy", npy(&times()[..3], false, "<f8"), "which does not fit the order time,q,qd,tau"),

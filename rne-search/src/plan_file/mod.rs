@@ -18,7 +18,7 @@ use rne_model::{Convention, JointKind, Report, Robot};
 
 use self::shapes::Mistake;
 
-/// A plan file, as it stands on disk.
+/// A plan file, as it is stored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanFile {
     /// The robot's name.
@@ -185,7 +185,7 @@ impl PlanFile {
     #[must_use]
     pub fn located(name: &str, text: &str, (function, plans): (Function, &PlanSet), error: &CompileError) -> Report {
         let (place, message) = match error {
-            CompileError::Graph { word, message, .. } => (word_of_graph(text, function, *word), message.clone()),
+            CompileError::Graph { word, mistake, .. } => (word_of_graph(text, function, *word), mistake.to_string()),
             _ if !plans.rewritten.contains_key(&function) => (value_of(text, &["reduced", "plan"]), error.to_string()),
             CompileError::NotIdentical { .. } => {
                 (value_of(text, &["rewritten", function.name(), "graph"]), error.to_string())
@@ -195,7 +195,7 @@ impl PlanFile {
         Report::of_error(name, text, place, message, None)
     }
 
-    /// Checks that a function that it describes takes as many operations as the file says.
+    /// Checks that a function of the file takes as many operations as the file states.
     ///
     /// # Errors
     /// The operations that are not those of the program; [`Remedy::CountAnew`] helps.
@@ -219,7 +219,7 @@ impl PlanFile {
         Err(Report::of_error(name, text, value_of(text, keys), message, None))
     }
 
-    /// Takes what is better in another file of the same robot, which has come about meanwhile.
+    /// Takes the better results of another file of the same robot that was written in the meantime.
     pub fn merge(&mut self, other: Self) {
         if other.reduced.operations.weight() < self.reduced.operations.weight() {
             self.reduced = other.reduced;

@@ -131,14 +131,14 @@ fn plan(node: &Node) -> Result<Plan, Mistake> {
 fn joint(node: &Node) -> Result<JointPlan, Mistake> {
     let keys = ["targets", "origin_shift", "outward_offset", "inward_offset", "moment", "on"];
     let joint = Fields::open(node, "a joint", &keys)?;
-    let target = |node: &Node| word(node, "target", &named(RegroupingTarget::ALL, RegroupingTarget::name));
-    let shift = |node: &Node| word(node, "origin shift", &named(OriginShift::ALL, OriginShift::name));
-    let side = |node: &Node| word(node, "side", &named(Side::ALL, Side::name));
+    let target = |node: &Node| word(node, "target", &named(&RegroupingTarget::ALL, RegroupingTarget::name));
+    let shift = |node: &Node| word(node, "origin shift", &named(&OriginShift::ALL, OriginShift::name));
+    let side = |node: &Node| word(node, "side", &named(&Side::ALL, Side::name));
     let inward = |node: &Node| match side(node)? {
         Side::Joint => Err(Mistake::new(node.span.clone(), "`inward_offset` must be `link` or `parent`, not `joint`")),
         side => Ok(side),
     };
-    let moment = |node: &Node| word(node, "moment", &named(Moment::ALL, Moment::name));
+    let moment = |node: &Node| word(node, "moment", &named(&Moment::ALL, Moment::name));
     Ok(JointPlan {
         targets: joint.optional("targets", |node| array(node, target))?,
         origin_shift: joint.optional("origin_shift", shift)?,

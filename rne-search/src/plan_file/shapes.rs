@@ -102,7 +102,7 @@ pub(super) fn parsed<T: FromStr<Err: Display>>(node: &Node) -> Result<T, Mistake
     text(node)?.parse().map_err(|error: T::Err| Mistake::new(node.span.clone(), error.to_string()))
 }
 
-/// One of these words.
+/// The word must be one of these words.
 pub(super) fn word<T: Copy>(node: &Node, what: &str, words: &[(T, &str)]) -> Result<T, Mistake> {
     let word = text(node)?;
     words.iter().find(|(_, name)| *name == word).map(|(value, _)| *value).ok_or_else(|| {
@@ -113,7 +113,7 @@ pub(super) fn word<T: Copy>(node: &Node, what: &str, words: &[(T, &str)]) -> Res
     })
 }
 
-/// On or off.
+/// The value must be `true` or `false`.
 pub(super) fn switch(node: &Node) -> Result<bool, Mistake> {
     match plain(node) {
         Some("true") => Ok(true),

@@ -5,7 +5,7 @@ use std::fmt::Write;
 /// A value of a plan file.
 #[derive(Debug)]
 pub(super) enum Value {
-    /// One line that means itself.
+    /// A text of one line that is written without quotes.
     Plain(String),
     /// A text.
     Text(String),
@@ -118,7 +118,7 @@ fn scalar(text: &str, indent: usize) -> String {
     quoted
 }
 
-/// Whether every character is of ASCII and shows itself.
+/// Whether every character is a visible ASCII character.
 fn is_visible(text: &str) -> bool {
     text.chars().all(|c| matches!(c, ' '..='~')) && !text.ends_with(' ')
 }

@@ -24,6 +24,7 @@ from ._rne import (
     builtin as _builtin,
     load,
     names as _names,
+    pose_log,
 )
 from .excitation import Excitation, excite
 from .identification import Identification, identify
@@ -50,6 +51,7 @@ __all__ = [
     "load",
     "log",
     "payload",
+    "pose_log",
     "robots",
     "watch",
     "__version__",

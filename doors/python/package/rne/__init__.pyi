@@ -61,6 +61,10 @@ class Arm:
     @property
     def yaml(self) -> str: ...
     @property
+    def frames(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
     def held(self) -> dict[str, float]: ...
     @property
     def parameters(self) -> list[str]: ...
@@ -234,6 +238,10 @@ class Arm:
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """States of N samples after each of T steps under torques, by semi-implicit Euler."""
+    def pose_error(
+        self, q: ArrayLike, target: ArrayLike, *, frame: str | None = ..., parameters: Parameters = ...,
+    ) -> Floats:
+        """How far the tip or a frame is from a target pose, in world axes."""
     def operational_space_inertia(
         self, q: ArrayLike, *,
         frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
@@ -291,6 +299,8 @@ def load(
 ) -> Arm:
     """Return the arm of a robot file (YAML), a URDF, the text of either, or the name of a built-in robot."""
 
+def pose_log(pose: ArrayLike) -> Floats:
+    """The logarithm of a pose: the constant twist that leads from the world to it in one unit of time."""
 def payload(mass: float, com: ArrayLike = ..., inertia: ArrayLike | None = ...) -> Floats:
     """The argument `payload` of the functions of an `Arm`, shape (10,)."""
 

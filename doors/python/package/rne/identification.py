@@ -2,8 +2,8 @@
 
 import pathlib
 
-from ._rne import identified, load
-from .logs import as_arm, warn
+from ._rne import identified
+from .logs import as_arm, load_unchecked, warn
 from .sources import files, reading
 from .verdicts import Verdict
 
@@ -26,7 +26,7 @@ class Identification:
         side = self.verdict.errors_on
         self.errors = [{"joint": of["joint"], "name": of["name"], "unit": of["unit"], **of[side]} for of in self.joints]
         self.robot_file = reply["robot_file"]
-        self.arm = None if self.robot_file is None else load(self.robot_file)
+        self.arm = None if self.robot_file is None else load_unchecked(self.robot_file)
         self.logs, self.robot = reply["logs"], reply["robot"]
         self.delay, self.cutoff, self.held_out = reply["delay"], reply["cutoff"], reply["held_out"]
         self.states, self.duration = reply["states"], reply["duration"]

@@ -4,13 +4,20 @@ import warnings
 
 import numpy as np
 
-from ._rne import Arm, load, log_content, log_motion
+from ._rne import Arm, RobotFileWarning, load, log_content, log_motion
 from .sources import files, reading
+
+
+def load_unchecked(robot):
+    """The arm that `rne.load` reads, without its warnings: a file for logs may have no masses yet."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RobotFileWarning)
+        return load(robot)
 
 
 def as_arm(robot):
     """An arm as it is; of a path, a text or the name of a built-in robot the arm that `rne.load` reads."""
-    return robot if isinstance(robot, Arm) else load(robot)
+    return robot if isinstance(robot, Arm) else load_unchecked(robot)
 
 
 def warn(remarks):

@@ -2,8 +2,8 @@
 
 import pathlib
 
-from ._rne import load, payload_identified
-from .logs import as_arm, warn
+from ._rne import payload_identified
+from .logs import as_arm, load_unchecked, warn
 from .sources import files, reading
 
 
@@ -24,7 +24,7 @@ class IdentifiedPayload:
         self.logs, self.robot = reply["logs"], reply["robot"]
         self.states, self.duration = reply["states"], reply["duration"]
         self.robot_file = reply["robot_file"]
-        self.arm = None if self.robot_file is None else load(self.robot_file)
+        self.arm = None if self.robot_file is None else load_unchecked(self.robot_file)
         self.notes = [words for _, words in reply["remarks"]]
 
     def save(self, path):

@@ -1,5 +1,7 @@
 //! Remedies against errors, in the words of the command line.
 
+pub(crate) mod log;
+
 use std::path::Path;
 
 use rne_codegen::{CompileError, Remedy};

@@ -38,7 +38,7 @@ impl Step {
         Self::Torque,
     ];
 
-    /// The one of a number: 0 of none, 8 beyond the lecture.
+    /// The number of a step: 0 for no step, 8 for a formula beyond the lecture.
     const fn of(number: usize) -> Option<Self> {
         match number {
             0 => None,
@@ -116,7 +116,7 @@ impl Component {
 /// The indices that follow the beginning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Indices {
-    /// None: there is one of it.
+    /// No index: the quantity exists once.
     Alone,
     /// A count.
     Counted,
@@ -164,7 +164,7 @@ struct Row {
     meaning: &'static str,
 }
 
-/// The enumeration of the quantities and the table of what is known of each, from one row per quantity.
+/// Makes the enumeration of the quantities and the table of their properties from one row for each quantity.
 macro_rules! quantities {
     ($(
         $quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $letter:literal,
@@ -177,7 +177,7 @@ macro_rules! quantities {
             $(#[doc = $meaning] $quantity,)*
         }
 
-        /// By quantity, in the order of the variants.
+        /// The row of each quantity, in the order of the variants.
         const TABLE: &[Row] = &[$(Row {
             prefix: $prefix,
             indices: Indices::$indices,
@@ -337,7 +337,7 @@ quantities! {
     OmegaCrossMoment:           "wxh",       Vector,    6, false, "(ω×h)", "kg m/s", "ω × h";
     MasslessForce:              "uh",        Vector,    6, false, "(Uh)", "N", "ω̇ × h + ω × (ω × h)";
 
-    // Of the momentum, beyond the seven steps.
+    // Quantities of the momentum, beyond the seven steps.
     MomentBehind:               "mb",        Vector,    8, false, "", "",
         "first moment of link i and all behind it, about joint i";
     LinearMomentum:             "lin",       Vector,    8, true,  "", "",
@@ -401,7 +401,7 @@ impl Quantity {
         self.row().prefix
     }
 
-    /// The indices in its names.
+    /// The indices that the names of the quantity have.
     pub(crate) const fn indices(self) -> Indices {
         self.row().indices
     }

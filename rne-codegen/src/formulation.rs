@@ -1,0 +1,53 @@
+//! The formulas of a function as a graph, before it is lowered.
+
+use rne_model::Robot;
+
+use crate::formulate;
+use crate::function::Function;
+use crate::ir::{Builder, Cost, Embedding, Name, Policy, Traced};
+use crate::program::Scales;
+
+/// A function as a graph that has not been lowered: what it returns, by name, and the graph of that with its trace.
+#[allow(missing_debug_implementations)] // a graph of thousands of nodes
+pub struct Formulation {
+    pub(crate) names: Vec<Name>,
+    pub(crate) traced: Traced,
+    /// The factors of lengths and forces, if it measures them in units of the arm.
+    pub(crate) scales: Option<Scales>,
+}
+
+impl Formulation {
+    /// The plain formulas of a function.
+    pub(crate) fn plain(policy: Policy, robot: &Robot, function: Function) -> Self {
+        Self::on(Builder::traced(policy, Embedding::default(), function), robot, function)
+    }
+
+    /// The seven steps with the formulas as they are before anything folds.
+    pub(crate) fn explained(robot: &Robot, function: Function) -> Self {
+        Self::on(Builder::explained(Policy::Structure, Embedding::default(), function), robot, function)
+    }
+
+    fn on(builder: Builder, robot: &Robot, function: Function) -> Self {
+        let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
+        Self { names, traced: builder.finish(outputs), scales: None }
+    }
+
+    /// The plain formulas with every value computed once, however often and in whatever way they compute it: the
+    /// reduced form of what has no recursion of its own.
+    #[must_use]
+    pub fn numbered(robot: &Robot, function: Function) -> Self {
+        let plain = Self::plain(Policy::Value, robot, function);
+        Self { traced: plain.traced.numbered(), ..plain }
+    }
+
+    /// How its constants are read in the fields of the proof.
+    pub(crate) fn embedding(&self) -> Embedding {
+        self.traced.graph.embedding()
+    }
+
+    /// Its operations.
+    #[must_use]
+    pub fn cost(&self) -> Cost {
+        self.traced.graph.cost(&mut Vec::new())
+    }
+}

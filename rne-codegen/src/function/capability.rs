@@ -1,0 +1,45 @@
+//! The capabilities of a robot: each is a trait that a struct derives.
+
+use super::Function;
+use crate::named::named;
+
+named! {
+    /// A capability of a robot, named as the trait that a struct derives.
+    Capability, "capability" {
+        /// Torques from motion.
+        InverseDynamics = "InverseDynamics",
+        /// M(q).
+        MassMatrix = "MassMatrix",
+        /// C(q, q̇).
+        CoriolisMatrix = "CoriolisMatrix",
+        /// Motion from torques.
+        ForwardDynamics = "ForwardDynamics",
+        /// Poses and Jacobian.
+        Kinematics = "Kinematics",
+        /// Kinetic and potential.
+        Energy = "Energy",
+        /// The centre of mass of the arm.
+        CentreOfMass = "CentreOfMass",
+        /// Torques per inertial parameter.
+        Regressor = "Regressor",
+        /// ∂τ/∂q and ∂τ/∂q̇.
+        InverseDynamicsDerivatives = "InverseDynamicsDerivatives",
+        /// Bearing loads.
+        JointWrenches = "JointWrenches",
+        /// External torques without accelerations.
+        MomentumObserver = "MomentumObserver",
+        /// Torques on a base that moves.
+        MovingBase = "MovingBase",
+        /// Rotors, gears, friction.
+        Actuation = "Actuation",
+        /// The arm with a payload that is known when the program runs.
+        PayloadDynamics = "PayloadDynamics",
+    }
+}
+
+impl Capability {
+    /// The methods of its trait.
+    pub fn functions(self) -> impl Iterator<Item = Function> {
+        Function::ALL.into_iter().filter(move |function| function.capability() == self)
+    }
+}
