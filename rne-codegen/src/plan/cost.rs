@@ -137,9 +137,6 @@ impl Formulation {
     /// # Errors
     /// When the plan does not fit the robot.
     pub fn by_plan(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Result<Self, CompileError> {
-        if !robot.is_serial() {
-            return Err(CompileError::PlanDoesNotFit { robot: robot.name.clone() });
-        }
         let sphere = plan.gyrostat && !function.takes(Argument::Payload);
         let plan = &Plan { gyrostat: sphere, ..plan.clone() };
         let written = frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));

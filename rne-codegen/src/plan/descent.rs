@@ -237,10 +237,6 @@ fn greedy_candidate(open: &OpenChoices, plan: &Plan, candidate: usize, round: us
 
 /// The plan of a build that finds no plan file: a fixed number of plans is counted, on every machine the same.
 pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
-    // of a tree the choices say nothing
-    if !robot.is_serial() {
-        return Plan::new(robot.dof());
-    }
     let mut descent = Descent::new(robot, without);
     descent.greedy(DEFAULT_EVALUATIONS);
     let plan = descent.best.1.clone();

@@ -228,7 +228,7 @@ impl<'s> Outward<'s> for Accelerated<'s> {
 /// The way out: each joint's acceleration from that of the link before it.
 fn outward<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>], pivots: &[Pivot<'s>]) -> Vec<Symbol<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
-    let gravity = builder.vector(arm.joint_frames.gravity.map(|g| -g));
+    let gravity = builder.vector(arm.joint_frames.gravity[0].map(|g| -g));
     let mut last = Accelerated { omega: builder.no_vector(), omega_dot: builder.no_vector(), acceleration: gravity };
     // in frame N of the joint before, and the turn from there
     let (mut unturned, mut turn) = (last, builder.fixed_turn(ExactAngle::NONE));

@@ -1,5 +1,7 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
+use rne_model::Robot;
+
 use crate::formulate::{self, Outputs, by_joint, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
@@ -7,7 +9,7 @@ use crate::reduced::backward::torques;
 use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
-use crate::reduced::{Arm, JointFrames, aba, crba, momentum};
+use crate::reduced::{Arm, aba, crba, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,16 +102,26 @@ impl Algorithm {
         }
     }
 
-    /// The ways of a function that are worth counting for an arm of `joints` joints. Those that write the recursion
-    /// anew for every joint grow faster than composite bodies, and lose long before `MANY`.
-    pub(crate) fn of_so_many(function: Function, joints: usize) -> Vec<Self> {
+    /// The ways of a function that are worth counting for a robot. Those that write the recursion anew for every joint
+    /// grow faster than composite bodies, and lose long before `MANY`. Bodies are gathered along one chain only, and
+    /// articulated ones are those of links alone.
+    pub(crate) fn of_robot(function: Function, robot: &Robot) -> Vec<Self> {
         const MANY: usize = 10;
-        let is_of_columns = |algorithm: Self| {
-            algorithm == Algorithm::UnitColumns
-                || algorithm == Algorithm::Rnea
-                    && matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives)
+        let is_worth = |algorithm: Self| match algorithm {
+            Self::UnitColumns => robot.dof() < MANY,
+            Self::Rnea if matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives) => {
+                robot.dof() < MANY
+            }
+            Self::Rnea | Self::UnturnedPayload => true,
+            Self::Crba(_) => robot.is_serial(),
+            Self::Aba(_) => robot.is_serial() && !robot.has_rotors(),
         };
-        Self::of(function).iter().copied().filter(|algorithm| joints < MANY || !is_of_columns(*algorithm)).collect()
+        let gathers = matches!(function, Function::MomentumAndRate | Function::MomentumAndRateWithPayload);
+        Self::of(function)
+            .iter()
+            .copied()
+            .filter(|&algorithm| is_worth(algorithm) && (robot.is_serial() || !gathers))
+            .collect()
     }
 
     /// The frames of its composite or articulated bodies.
@@ -204,7 +216,7 @@ fn mass_matrix<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s
     if algorithm != Algorithm::UnitColumns {
         return crba::mass_matrix(arm);
     }
-    let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
+    let joint_frames = arm.joint_frames.without_gravity();
     let still = Arm { joint_frames: &joint_frames, ..*arm };
     let dof = arm.rows().len();
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];

@@ -214,7 +214,7 @@ pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
     let dof = rows.len();
     // acceleration of the base in the frame N of each joint, or of its group
     let mut fields: Vec<Vector<'s>> = Vec::with_capacity(dof);
-    let mut own = builder.vector(arm.joint_frames.gravity.map(|g| -g));
+    let mut own = builder.vector(arm.joint_frames.gravity[0].map(|g| -g));
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::OriginAcceleration, index + 1);
         let field = match fields.last() {

@@ -245,7 +245,7 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion
     let mut last = Motion {
         omega: zeros,
         omega_dot: zeros,
-        acceleration: builder.vector(arm.joint_frames.gravity.map(|g| -g)),
+        acceleration: builder.vector(arm.joint_frames.gravity[0].map(|g| -g)),
         twice_omega: zeros,
         twice_velocity: zeros,
     };
