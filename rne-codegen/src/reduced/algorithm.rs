@@ -103,8 +103,7 @@ impl Algorithm {
     }
 
     /// The ways of a function that are worth counting for a robot. Those that write the recursion anew for every joint
-    /// grow faster than composite bodies, and lose long before `MANY`. Bodies are gathered along one chain only, and
-    /// articulated ones are those of links alone.
+    /// grow faster than composite bodies, and lose long before `MANY`. Articulated bodies are those of links alone.
     pub(crate) fn of_robot(function: Function, robot: &Robot) -> Vec<Self> {
         const MANY: usize = 10;
         let is_worth = |algorithm: Self| match algorithm {
@@ -113,15 +112,10 @@ impl Algorithm {
                 robot.dof() < MANY
             }
             Self::Rnea | Self::UnturnedPayload => true,
-            Self::Crba(_) => robot.is_serial(),
-            Self::Aba(_) => robot.is_serial() && !robot.has_rotors(),
+            Self::Crba(_) => true,
+            Self::Aba(_) => !robot.has_rotors(),
         };
-        let gathers = matches!(function, Function::MomentumAndRate | Function::MomentumAndRateWithPayload);
-        Self::of(function)
-            .iter()
-            .copied()
-            .filter(|&algorithm| is_worth(algorithm) && (robot.is_serial() || !gathers))
-            .collect()
+        Self::of(function).iter().copied().filter(|&algorithm| is_worth(algorithm)).collect()
     }
 
     /// The frames of its composite or articulated bodies.

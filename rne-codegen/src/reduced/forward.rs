@@ -13,7 +13,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::ir::{Builder, ExactAngle, Matrix, Number, Quantity, Symbol, Vector};
 use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
-use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn};
+use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn, Turned};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
 #[derive(Clone, Copy)]
@@ -92,7 +92,7 @@ pub(crate) struct Twist<'s> {
 }
 
 impl<'s> Twist<'s> {
-    fn new(builder: &'s Builder, row: &JointFrame) -> Self {
+    pub(crate) fn new(builder: &'s Builder, row: &JointFrame) -> Self {
         let gamma = (row.gamma != ExactAngle::NONE).then(|| builder.fixed_turn(row.gamma));
         Self { gamma, alpha: builder.fixed_turn(row.alpha) }
     }
@@ -112,8 +112,13 @@ impl<'s> Twist<'s> {
         self.about_parent(self.alpha.about_x(v))
     }
 
+    /// Both turns, one after the other.
+    pub(crate) fn turns(self) -> impl Iterator<Item = Turned<'s>> {
+        [Some(Turned::AboutX(self.alpha)), self.gamma.map(Turned::AboutZ)].into_iter().flatten()
+    }
+
     /// (Rz(γ) Rx(α))ᵀ v
-    fn back(self, v: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn back(self, v: Vector<'s>) -> Vector<'s> {
         self.alpha.back_about_x(self.back_about_parent(v))
     }
 }
