@@ -283,21 +283,22 @@ pub(crate) fn torque_by(row: usize, by: WithRespectTo) -> Name {
     Name { by: Some(by), ..Name::scalar(Quantity::Torque, row + 1) }
 }
 
-/// M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹: column j is solved from row j on, and the rest is its mirror. Row i of `upper` holds the elements
-/// (i, i) to (i, n) of M.
+/// M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹: column j is solved from joint j on in the order of elimination, and the rest is its mirror. Row i
+/// of `upper` holds the elements (i, i) to (i, n) of M.
 pub(crate) fn inverse_mass_matrix<'s>(builder: &'s Builder, upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
     let factors = ldlt::Factors::of(builder, upper);
     let (zero, one) = (builder.constant(0.0, Cause::Arithmetic), builder.constant(1.0, Cause::Arithmetic));
     let name = |quantity, row: usize, column: usize| Name::indexed(quantity, row + 1, column + 1);
-    let columns: Vec<Vec<Symbol<'s>>> = (0..upper.len())
+    let columns: Vec<Vec<Option<Symbol<'s>>>> = (0..upper.len())
         .map(|column| {
             let unit: Vec<_> = (0..upper.len()).map(|row| if row == column { one } else { zero }).collect();
-            factors.solved(column, &unit, |quantity, row| name(quantity, row, column))
+            factors.solved(factors.place(column), &unit, |quantity, row| name(quantity, row, column))
         })
         .collect();
     square(upper.len(), |row, column| {
-        let (row, column) = (row.max(column), row.min(column));
-        (name(Quantity::RateDot, row, column), columns[column][row - column])
+        let is_mirror = factors.place(row) < factors.place(column);
+        let (row, column) = if is_mirror { (column, row) } else { (row, column) };
+        (name(Quantity::RateDot, row, column), columns[column][row].unwrap_or(zero))
     })
 }
 
