@@ -1,11 +1,14 @@
 //! Rollouts of an arm over numpy's arrays.
 
+use std::ffi::CStr;
+
 use numpy::{Element, PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyTuple};
 use rne::compiled::{CompiledArm, FrictionWidth, Number, Rollout, RolloutLimits};
 use rne_codegen::Argument;
+use rne_model::{Joint, Robot};
 
 use crate::arm::Arm;
 use crate::arrays::{Given, Held, are_single, memory, refuse_masked, room, states, writable};
@@ -80,6 +83,7 @@ impl Arm {
         let friction = friction.map(width).transpose()?.flatten();
         let limits = limits.map(which).transpose()?.unwrap_or_default();
         let rollout = Rollout { friction, limits, ..Rollout::new(steps, step) };
+        warn_of_nothing(py, self.robot(), &rollout)?;
         if is_single {
             roll_out::<f32>(py, &self.arm, &rollout, &given, out, "float32")
         } else {
@@ -110,6 +114,27 @@ fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<usize> {
     given.elements = steps * dof;
     given.value = array.call_method1("reshape", (PyTuple::new(array.py(), flat)?,))?;
     Ok(steps)
+}
+
+/// Warns where limits or friction are asked for and no joint has any.
+fn warn_of_nothing(py: Python<'_>, robot: &Robot, rollout: &Rollout) -> PyResult<()> {
+    let RolloutLimits { effort, velocity, position } = rollout.limits;
+    let has_limit = robot.joints.iter().any(|Joint { limits, .. }| {
+        effort && limits.effort.is_some()
+            || velocity && limits.velocity.is_some()
+            || position && limits.position.is_some()
+    });
+    let is_friction = |value: &f64| value.abs() > 0.0;
+    let mut motors = robot.joints.iter().filter_map(|joint| joint.motor.as_ref());
+    let has_friction = motors.any(|motor| is_friction(&motor.viscous) || motor.coulomb.iter().any(is_friction));
+    let warn = |text: &CStr| PyErr::warn(py, &py.get_type::<PyUserWarning>(), text, 1);
+    if rollout.limits != RolloutLimits::NONE && !has_limit {
+        warn(c"no joint of the robot file has a limit that `limits` asks for: the samples are not limited")?;
+    }
+    if rollout.friction.is_some() && !has_friction {
+        warn(c"no joint of the robot file has friction in `motor`: the samples have no friction")?;
+    }
+    Ok(())
 }
 
 /// The width of Coulomb friction.
