@@ -10,8 +10,13 @@
 use crate::ir::{Builder, Name, Quantity, Symbol};
 
 /// The solution of M x = b; row i of `upper` holds the elements (i, i) to (i, n) of M.
-pub(crate) fn solved<'s>(builder: &'s Builder, upper: &[Vec<Symbol<'s>>], b: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
-    let x = Factors::of(builder, upper).solved(0, b, |quantity, index| Name::scalar(quantity, index + 1));
+pub(crate) fn solved<'s>(
+    builder: &'s Builder,
+    parents: &[Option<usize>],
+    upper: &[Vec<Symbol<'s>>],
+    b: &[Symbol<'s>],
+) -> Vec<Symbol<'s>> {
+    let x = Factors::of(builder, parents, upper).solved(0, b, |quantity, index| Name::scalar(quantity, index + 1));
     x.into_iter().flatten().collect()
 }
 
@@ -27,10 +32,10 @@ pub(crate) struct Factors<'s> {
 }
 
 impl<'s> Factors<'s> {
-    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix.
-    pub(crate) fn of(builder: &'s Builder, upper: &[Vec<Symbol<'s>>]) -> Self {
+    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix. `parents` are the links that carry the joints.
+    pub(crate) fn of(builder: &'s Builder, parents: &[Option<usize>], upper: &[Vec<Symbol<'s>>]) -> Self {
         let dof = upper.len();
-        let order = elimination_order(upper);
+        let order = elimination_order(parents);
         let between = |quantity, row: usize, column: usize| Name::indexed(quantity, order[row] + 1, order[column] + 1);
         let element = |row: usize, column: usize| between(Quantity::LowerFactor, row, column);
         let scaled = |row: usize, column: usize| between(Quantity::ScaledFactor, row, column);
@@ -101,22 +106,24 @@ fn element_of<'s>(upper: &[Vec<Symbol<'s>>], row: usize, column: usize) -> Symbo
 }
 
 /// The order of the joints, or the reverse where fewer elements of L are not zero.
-fn elimination_order(upper: &[Vec<Symbol<'_>>]) -> Vec<usize> {
-    let outward: Vec<usize> = (0..upper.len()).collect();
+fn elimination_order(parents: &[Option<usize>]) -> Vec<usize> {
+    let outward: Vec<usize> = (0..parents.len()).collect();
     let inward: Vec<usize> = outward.iter().rev().copied().collect();
-    if elements_of_factor(upper, &inward) < elements_of_factor(upper, &outward) { inward } else { outward }
+    if elements_of_factor(parents, &inward) < elements_of_factor(parents, &outward) { inward } else { outward }
 }
 
-/// How many elements of L below the diagonal are not zero when joints are eliminated in this order.
-fn elements_of_factor(upper: &[Vec<Symbol<'_>>], order: &[usize]) -> usize {
-    let dof = order.len();
-    let mut is_there: Vec<Vec<bool>> = order
-        .iter()
-        .map(|&row| order.iter().map(|&column| !element_of(upper, row, column).is_zero()).collect())
-        .collect();
+/// How many elements of L below the diagonal are not zero when joints are eliminated in this order. An element of M is
+/// not zero where one joint moves the other.
+fn elements_of_factor(parents: &[Option<usize>], order: &[usize]) -> usize {
+    let moves = |joint: usize, other: usize| {
+        std::iter::successors(Some(other), |&link| parents[link]).any(|link| link == joint)
+    };
+    let is_element = |row: usize, column: usize| moves(row, column) || moves(column, row);
+    let row = |&row: &usize| order.iter().map(|&column| is_element(row, column)).collect();
+    let mut is_there: Vec<Vec<bool>> = order.iter().map(row).collect();
     let mut count = 0;
-    for column in 0..dof {
-        let rows: Vec<usize> = (column + 1..dof).filter(|&row| is_there[row][column]).collect();
+    for column in 0..order.len() {
+        let rows: Vec<usize> = (column + 1..order.len()).filter(|&row| is_there[row][column]).collect();
         count += rows.len();
         for &row in &rows {
             rows.iter().for_each(|&other| is_there[row][other] = true);

@@ -146,6 +146,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
     let builder = arm.builder;
     let dof = arm.rows().len();
     let upper_half = || mass_matrix(arm, algorithm);
+    let parents: Vec<_> = arm.rows().iter().map(|row| row.parent).collect();
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function, algorithm) {
         (Function::GravityTorques | Function::GravityTorquesWithPayload, Algorithm::Crba(_)) => {
@@ -156,12 +157,12 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
         (Function::MassMatrix | Function::MassMatrixWithPayload, _) => formulate::mass_matrix(&upper_half()),
-        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &upper_half()),
+        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &parents, &upper_half()),
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
             by_joint(Quantity::RateDot, aba::forward_dynamics(arm))
         }
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, _) => {
-            formulate::forward_dynamics(builder, &upper_half(), recursion(arm, algorithm))
+            formulate::forward_dynamics(builder, &parents, &upper_half(), recursion(arm, algorithm))
         }
         (
             Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload,
