@@ -4,7 +4,7 @@
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
 use rne::{BaseMotion, Payload, Wrench};
-use rne_codegen::Function;
+use rne_codegen::{Algorithm, Compiler, Form, Function, Reason, Refusal};
 use rne_model::{Convention, Reader, Robot};
 
 use crate::arm::{Arm, Given, Maker};
@@ -295,6 +295,64 @@ fn code_of_trees_is_the_runtime() {
             compare_at_states(&Arm::new(&robot(&tree(seed, dof)), maker), maker, &mut worst);
         }
         worst.at_most(TOLERANCE, &format!("trees, {maker}"));
+    }
+}
+
+/// The first of four legs on a base, each with the first axis in another direction: a quadruped whose trunk is held.
+fn legs(count: usize) -> Robot {
+    let places = [("lf", "pi/2", 0.3), ("rf", "-pi/2", 0.3), ("lh", "pi/2", -0.3), ("rh", "-pi/2", -0.3)];
+    let mut yaml = "{format: 2, name: quadruped, source: own, convention: modified, gravity: [0, 0, -9.81], \
+                    tool: {on: lf3}, joints: ["
+        .to_owned();
+    for (name, gamma, d) in places.into_iter().take(count) {
+        let hip = format!("gamma: {gamma}, b: 0.1, alpha: pi/2, a: 0.2, theta: 0, d: {d}");
+        yaml.push_str(&format!(
+            "{{name: {name}1, parent: base, type: revolute, dh: {{{hip}}}, link: {{mass: 2, com: [0.01, 0.02, 0.15],
+               inertia: {{xx: 0.05, yy: 0.055, zz: 0.006, xy: 0.001, xz: -0.002, yz: 0.003}}}}}},
+             {{name: {name}2, type: revolute, dh: {{alpha: pi/2, a: 0.08, theta: 0, d: 0}}, link: {{mass: 2.5,
+               com: [0.15, -0.03, 0.02], inertia: {{xx: 0.004, yy: 0.027, zz: 0.028, xy: -0.003}}}}}},
+             {{name: {name}3, type: revolute, dh: {{alpha: 0, a: 0.35, theta: 0, d: 0}}, link: {{mass: 0.9,
+               com: [0.12, 0.01, 0], inertia: {{xx: 0.001, yy: 0.013, zz: 0.013, xy: 0.0002}}}}}}, "
+        ));
+    }
+    yaml.push_str("]}");
+    robot(&yaml)
+}
+
+/// Every function that has a reduced recursion is written by it on trees, and costs less than the seven steps.
+#[test]
+fn trees_have_the_reduced_recursion() {
+    for robot in [legs(4), robot(&tree(1, 4)), robot(&tree(2, 5)), robot(&tree(3, 6))] {
+        let compiler = Compiler::new(&robot);
+        let mut seen = 0;
+        for function in Function::ALL.into_iter().filter(|function| Algorithm::is_planned(*function)) {
+            let [plain, reduced] = [Form::SevenSteps, Form::Reduced].map(|form| compiler.compile(function, form));
+            let (plain, reduced) = (plain.expect("a program"), reduced.expect("a program"));
+            if matches!(reduced.refusals[..], [Refusal { reason: Reason::DividesByZero, .. }]) {
+                continue; // links without mass behind a joint
+            }
+            assert!(reduced.refusals.is_empty(), "{} {function}: {:?}", robot.name, reduced.refusals);
+            assert!(reduced.proof.is_some(), "{} {function}", robot.name);
+            let [plain, reduced] = [plain, reduced].map(|program| program.operations().total());
+            assert!(reduced < plain, "{} {function}: {reduced} of {plain}", robot.name);
+            seen += 1;
+        }
+        assert!(seen > 10, "{}: {seen} functions", robot.name);
+    }
+}
+
+/// A joint does not move the links of another branch: no element of M between them is computed, and none of its factors
+/// fills. So four legs take four times the operations of one.
+#[test]
+fn zeros_of_branches_are_not_computed() {
+    for function in [Function::MassMatrix, Function::ForwardDynamics, Function::InverseMassMatrix] {
+        for form in Form::ALL {
+            let [one, four] = [1, 4].map(|count| {
+                let program = Compiler::new(&legs(count)).compile(function, form).expect("a program");
+                program.operations().total()
+            });
+            assert!(four <= 4 * one, "{form} {function}: {four} for four legs, {one} for one");
+        }
     }
 }
 

@@ -136,3 +136,20 @@ fn within<'s>(builder: &'s Builder, name: Name, value: &dyn Fn() -> Symbol<'s>) 
     let value = builder.joint(name.joint).within(name.quantity, value);
     builder.name(name, value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joints_of_a_tree_are_eliminated_from_its_ends_on() {
+        // a torso with two arms of two joints: each joint keeps its elements with those that move it
+        let torso = [None, Some(0), Some(1), Some(0), Some(3)];
+        assert_eq!(elements_of_factor(&torso, &[4, 3, 2, 1, 0]), 6);
+        assert_eq!(elements_of_factor(&torso, &[0, 1, 2, 3, 4]), 10, "the torso couples both arms");
+        assert_eq!(elimination_order(&torso), [4, 3, 2, 1, 0]);
+        // nothing fills in a chain, nor where branches meet at the base alone
+        assert_eq!(elimination_order(&[None, Some(0), Some(1)]), [0, 1, 2]);
+        assert_eq!(elimination_order(&[None, Some(0), None, Some(2)]), [0, 1, 2, 3]);
+    }
+}
