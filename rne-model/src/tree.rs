@@ -72,7 +72,7 @@ fn needs_format_2(key: &str, node: &Node) -> Diagnostic {
         .help("write `format: 2` at the top of the file; everything else keeps its meaning")
 }
 
-/// What is wrong with a `gamma` or a `b`.
+/// The mistake of a `gamma` or a `b` in a row that cannot have one.
 fn misplaced(key: &str, node: &Node, convention: Convention, has_placement: bool) -> Option<Diagnostic> {
     if convention == Convention::Standard {
         let message = format!("a standard row has no `{key}`, because its frame 0 is the link frame of its parent");

@@ -1,6 +1,8 @@
 //! Trees: every function of random ones beside projected Newton-Euler by products of 4 × 4 matrices, and beside the
 //! runtime; the same tree by rows in another order.
 
+use std::fmt::Write as _;
+
 use fastrand::Rng;
 use nalgebra::{Matrix3, Vector3};
 use rne::{BaseMotion, Payload, Wrench};
@@ -33,7 +35,7 @@ fn tree(seed: u64, dof: usize) -> String {
             text.push_str(base);
             text.push('\n');
             if !yaml.contains("\ntool:") {
-                text.push_str(&format!("tool: {{on: j{}}}\n", rng.usize(0..dof)));
+                let _ = write!(text, "tool: {{on: j{}}}\n", rng.usize(0..dof));
             }
         }
         let mut any = |scale: f64| (2.0 * rng.f64() - 1.0) * scale;
@@ -49,15 +51,17 @@ fn tree(seed: u64, dof: usize) -> String {
         let (gamma, b) = (any(3.0), any(0.5));
         let place = rng.usize(0..4);
         if let Some(kind) = line.strip_prefix("  - type: ") {
-            text.push_str(&format!("  - name: j{index}\n    type: {kind}\n"));
+            let _ = write!(text, "  - name: j{index}\n    type: {kind}\n");
             match rng.usize(0..3) {
                 0 => {}
                 1 => text.push_str("    parent: base\n"),
                 _ if index == 0 => {}
-                _ => text.push_str(&format!("    parent: j{}\n", rng.usize(0..index))),
+                _ => {
+                    let _ = write!(text, "    parent: j{}\n", rng.usize(0..index));
+                }
             }
             if place == 0 {
-                text.push_str(&format!("    {at}\n"));
+                let _ = write!(text, "    {at}\n");
             }
             index += 1;
         } else if let (Some(row), true, 1) = (line.strip_prefix("    dh: {"), is_modified, place) {
@@ -65,9 +69,9 @@ fn tree(seed: u64, dof: usize) -> String {
             let has_at =
                 text.lines().rev().take_while(|line| !line.starts_with("  - ")).any(|line| line.contains("at: {"));
             let before = if has_at { String::new() } else { format!("gamma: {gamma}, b: {b}, ") };
-            text.push_str(&format!("    dh: {{{before}{row}\n"));
+            let _ = write!(text, "    dh: {{{before}{row}\n");
         } else if let Some(tool) = line.strip_prefix("tool: {") {
-            text.push_str(&format!("tool: {{on: j{}, {tool}\n", rng.usize(0..dof)));
+            let _ = write!(text, "tool: {{on: j{}, {tool}\n", rng.usize(0..dof));
         } else {
             text.push_str(line);
             text.push('\n');
@@ -308,14 +312,15 @@ fn legs(count: usize) -> Robot {
         .to_owned();
     for (name, gamma, d) in places.into_iter().take(count) {
         let hip = format!("gamma: {gamma}, b: 0.1, alpha: pi/2, a: 0.2, theta: 0, d: {d}");
-        yaml.push_str(&format!(
+        let _ =
+            write!(yaml,
             "{{name: {name}1, parent: base, type: revolute, dh: {{{hip}}}, link: {{mass: 2, com: [0.01, 0.02, 0.15],
                inertia: {{xx: 0.05, yy: 0.055, zz: 0.006, xy: 0.001, xz: -0.002, yz: 0.003}}}}}},
              {{name: {name}2, type: revolute, dh: {{alpha: pi/2, a: 0.08, theta: 0, d: 0}}, link: {{mass: 2.5,
                com: [0.15, -0.03, 0.02], inertia: {{xx: 0.004, yy: 0.027, zz: 0.028, xy: -0.003}}}}}},
              {{name: {name}3, type: revolute, dh: {{alpha: 0, a: 0.35, theta: 0, d: 0}}, link: {{mass: 0.9,
                com: [0.12, 0.01, 0], inertia: {{xx: 0.001, yy: 0.013, zz: 0.013, xy: 0.0002}}}}}}, "
-        ));
+        );
     }
     yaml.push_str("]}");
     robot(&yaml)

@@ -175,7 +175,7 @@ impl<'s> Arm<'s> {
         self.links.iter().enumerate().filter(move |(_, link)| link.parent == Some(index))
     }
 
-    /// What belongs to the link of the tip.
+    /// The element that belongs to the link of the tip.
     pub(crate) fn at_tip<'a, T>(&self, of_links: &'a [T]) -> Option<&'a T> {
         of_links.get(self.tip_link?)
     }

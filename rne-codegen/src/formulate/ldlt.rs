@@ -32,7 +32,8 @@ pub(crate) struct Factors<'s> {
 }
 
 impl<'s> Factors<'s> {
-    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix. `parents` are the links that carry the joints.
+    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix. `parents` are the links that carry the
+    /// joints.
     pub(crate) fn of(builder: &'s Builder, parents: &[Option<usize>], upper: &[Vec<Symbol<'s>>]) -> Self {
         let dof = upper.len();
         let order = elimination_order(parents);
@@ -67,8 +68,8 @@ impl<'s> Factors<'s> {
         self.order.iter().position(|other| *other == joint).unwrap_or_default()
     }
 
-    /// The solution by joint, where `b`, by joint, is zero for all joints that are eliminated before `first`: these have
-    /// no element then. `name` names what is written for a joint.
+    /// The solution by joint, where `b`, by joint, is zero for all joints that are eliminated before `first`: these
+    /// have no element then. `name` names what is written for a joint.
     pub(crate) fn solved(
         &self,
         first: usize,
@@ -126,7 +127,9 @@ fn elements_of_factor(parents: &[Option<usize>], order: &[usize]) -> usize {
         let rows: Vec<usize> = (column + 1..order.len()).filter(|&row| is_there[row][column]).collect();
         count += rows.len();
         for &row in &rows {
-            rows.iter().for_each(|&other| is_there[row][other] = true);
+            for &other in &rows {
+                is_there[row][other] = true;
+            }
         }
     }
     count

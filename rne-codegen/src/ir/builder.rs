@@ -359,7 +359,7 @@ pub(crate) struct JointLines<'s> {
     joint: usize,
     /// The joint whose number is in the names of the quantities.
     named: usize,
-    /// Which of the things that the link carries they belong to; 0 for the first.
+    /// The place of the joint or tip that they belong to, among those that the link carries; 0 for the first.
     carried: usize,
 }
 

@@ -243,17 +243,14 @@ fn outward<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>], pivots: &[Pivot<
     let mut accelerations = Vec::with_capacity(rows.len());
     for (index, (row, (station, pivot))) in rows.iter().zip(stations.iter().zip(pivots)).enumerate() {
         builder.at(Quantity::OmegaDot, index + 1);
-        let before = match row.parent {
-            Some(parent) => {
-                let (own, unturned, turn) = links[parent];
-                arm.outward(index, own, unturned, turn)
-            }
-            None => {
-                let gravity = builder.vector(arm.joint_frames.gravity[index].map(|g| -g));
-                let base = Accelerated { omega: zeros, omega_dot: zeros, acceleration: gravity };
-                arm.outward(index, base, base, builder.fixed_turn(ExactAngle::NONE))
-            }
+        let (last, last_unturned, last_turn) = if let Some(parent) = row.parent {
+            links[parent]
+        } else {
+            let gravity = builder.vector(arm.joint_frames.gravity[index].map(|g| -g));
+            let base = Accelerated { omega: zeros, omega_dot: zeros, acceleration: gravity };
+            (base, base, builder.fixed_turn(ExactAngle::NONE))
         };
+        let before = arm.outward(index, last, last_unturned, last_turn);
         let (angular, linear) = (before.omega_dot + pivot.drift[0], before.acceleration + pivot.drift[1]);
         // U · (ω̇' + drift, a' + drift): what the drift does to n° and f° has been added for the links before only
         let resisted = pivot.resistance[0].dot(angular) + pivot.resistance[1].dot(linear);

@@ -111,8 +111,7 @@ impl Algorithm {
             Self::Rnea if matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives) => {
                 robot.dof() < MANY
             }
-            Self::Rnea | Self::UnturnedPayload => true,
-            Self::Crba(_) => true,
+            Self::Rnea | Self::UnturnedPayload | Self::Crba(_) => true,
             Self::Aba(_) => !robot.has_rotors(),
         };
         Self::of(function).iter().copied().filter(|&algorithm| is_worth(algorithm)).collect()

@@ -80,7 +80,7 @@ pub(crate) struct Moved<'s> {
     pub(crate) group_turn: SymbolicTurn<'s>,
     /// From the frame of the link before, about z.
     pub(crate) turn: SymbolicTurn<'s>,
-    /// What the group of parallel axes has so far; of a revolute joint.
+    /// The motion of its group of parallel axes up to this joint; `None` for a prismatic joint.
     group: Option<Group<'s>>,
 }
 
@@ -150,8 +150,8 @@ impl<'a> Arm<'a, '_> {
         &self.joint_frames.rows
     }
 
-    /// From the parent's frame to axis i, in axes of the parent and with the slide of its frame, and d with that of frame
-    /// i; times `scale`.
+    /// From the parent's frame to axis i, in axes of the parent and with the slide of its frame, and d with that of
+    /// frame i; times `scale`.
     pub(crate) fn lengths(&self, index: usize, scale: Number) -> ([Number; 3], Number) {
         let row = &self.rows()[index];
         let [x, y, z] = row.offset;

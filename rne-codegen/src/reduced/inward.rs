@@ -66,7 +66,7 @@ pub(crate) trait Inward<'s>: Sized {
     fn moved(self, t: Vector<'s>) -> Self;
 }
 
-/// What is gathered on the way to the base.
+/// A body that is gathered on the way to the base.
 pub(crate) trait Body<'s>: Inward<'s> + Copy {
     fn plus(self, other: Self) -> Self;
 }
@@ -102,8 +102,8 @@ pub(crate) trait Outward<'s>: Copy {
     fn at(self, p: Vector<'s>) -> Self;
 }
 
-/// A load of a link: bodies behind it and the columns of their joints, about the origin of its frame, in its axes or in
-/// the frame N of its group.
+/// A load of a link: the bodies that its joints move and the columns of these joints, about the origin of its frame, in
+/// its axes or in the frame N of its group.
 pub(crate) struct Carried<B, C> {
     pub(crate) behind: Option<B>,
     pub(crate) columns: Vec<C>,
@@ -163,8 +163,8 @@ impl<'s, B: Body<'s>, C: Inward<'s>> LoadOfLink<B, C> {
         self.own.behind.map_or(link, |behind| link.plus(behind))
     }
 
-    /// Of what is given in the axes of the link, everything: in frame N of a revolute joint of this turn, or in the axes
-    /// of a sliding link.
+    /// Everything in one frame: frame N of a revolute joint with this turn, or the axes of a sliding link. `in_axes` is
+    /// given in the axes of the link.
     pub(crate) fn whole(&self, in_axes: B, turn: Option<SymbolicTurn<'s>>) -> B {
         let own = turn.map_or(in_axes, |turn| in_axes.turned(Turned::AboutZ(turn)));
         self.unturned.behind.map_or(own, |behind| own.plus(behind))
@@ -219,8 +219,8 @@ impl<'s> Arm<'_, 's> {
         self.turn(if self.is_grouped(index) { group_start(self.rows(), index) } else { index }, index)
     }
 
-    /// From the parent to the origin of a joint, in frame N (prismatic: in the axes of the sliding link). In the frame N
-    /// of a group `unturned` of the joint before goes on, whose turn is `turn`.
+    /// From the parent to the origin of a joint, in frame N (prismatic: in the axes of the sliding link). In the frame
+    /// N of a group `unturned` of the joint before goes on, whose turn is `turn`.
     pub(crate) fn outward<T: Outward<'s>>(&self, index: usize, last: T, unturned: T, turn: SymbolicTurn<'s>) -> T {
         let (builder, row) = (self.builder, &self.rows()[index]);
         let (offset, d) = self.lengths(index, Number::ONE);

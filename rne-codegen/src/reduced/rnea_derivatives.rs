@@ -245,19 +245,20 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::Omega, index + 1);
         let (rate, rate_dot) = (arm.rate(index), arm.rate_dot(index));
-        let before = match row.parent.map(|parent| &stations[parent]) {
-            Some(parent) => arm.outward(index, parent.own, parent.unturned, parent.turn),
-            None => {
-                let base = Motion {
-                    omega: zeros,
-                    omega_dot: zeros,
-                    acceleration: builder.vector(arm.joint_frames.gravity[index].map(|g| -g)),
-                    twice_omega: zeros,
-                    twice_velocity: zeros,
-                };
-                arm.outward(index, base, base, still)
-            }
+        let (last, last_unturned, last_turn) = if let Some(parent) = row.parent {
+            let parent = &stations[parent];
+            (parent.own, parent.unturned, parent.turn)
+        } else {
+            let base = Motion {
+                omega: zeros,
+                omega_dot: zeros,
+                acceleration: builder.vector(arm.joint_frames.gravity[index].map(|g| -g)),
+                twice_omega: zeros,
+                twice_velocity: zeros,
+            };
+            (base, base, still)
         };
+        let before = arm.outward(index, last, last_unturned, last_turn);
         let (own, unturned, turn) = match row.kind {
             Revolute => {
                 let turn = if arm.is_spin(index) { still } else { arm.turn_of_group(index) };
