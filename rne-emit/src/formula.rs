@@ -13,8 +13,8 @@ pub struct Formula {
     pub text: String,
 }
 
-/// Quantities and their formulas; `{i}` is a joint and `{p}` its parent, with `{r}` from the parent to the joint. A term
-/// with `{n}` is written for everything that the link carries, each with its `{rn}`.
+/// Quantities and their formulas; `{i}` is a joint and `{p}` its parent, with `{r}` from the parent to the joint. A
+/// term with `{n}` is written for everything that the link carries, each with its `{rn}`.
 type Templates = &'static [(Quantity, &'static str)];
 
 /// The numbers in the formulas of a joint: its own, that of its parent, and those of the joints that its link carries
@@ -36,7 +36,7 @@ impl Numbers {
         Self { lever: parent.clone(), carried: vec![[next, joint.clone()]], joint, parent }
     }
 
-    /// Those of a joint of a robot, counted from 1; n + 1 is the tip.
+    /// The numbers of a joint of a robot, counted from 1; n + 1 is the tip.
     pub(super) fn of(robot: &Robot, joint: usize) -> Self {
         let tip = robot.dof() + 1;
         // links by the number of their joint; 0 is the base

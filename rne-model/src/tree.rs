@@ -163,7 +163,7 @@ pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], tip_on: Option
     let Some((place, what)) = of_joint.or(of_tip) else { return };
     let message =
         format!("{what} does not follow the row before: the robot is a tree, and trees are not supported here");
-    let help = "the commands `rne check`, `eval`, `emit`, `explain`, `ops`, `search` and `show`, the derives, and the \
-                Rust types `Arm` and `DynArm` take trees; everything else takes serial arms";
+    let help = "the section Trees of docs/robot-file.md lists the commands, derives and types that take trees; \
+                everything else takes serial arms";
     cx.report(Diagnostic::error(place, message).label("a tree").help(help));
 }

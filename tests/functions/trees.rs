@@ -35,7 +35,7 @@ fn tree(seed: u64, dof: usize) -> String {
             text.push_str(base);
             text.push('\n');
             if !yaml.contains("\ntool:") {
-                let _ = write!(text, "tool: {{on: j{}}}\n", rng.usize(0..dof));
+                let _ = writeln!(text, "tool: {{on: j{}}}", rng.usize(0..dof));
             }
         }
         let mut any = |scale: f64| (2.0 * rng.f64() - 1.0) * scale;
@@ -51,17 +51,17 @@ fn tree(seed: u64, dof: usize) -> String {
         let (gamma, b) = (any(3.0), any(0.5));
         let place = rng.usize(0..4);
         if let Some(kind) = line.strip_prefix("  - type: ") {
-            let _ = write!(text, "  - name: j{index}\n    type: {kind}\n");
+            let _ = writeln!(text, "  - name: j{index}\n    type: {kind}");
             match rng.usize(0..3) {
                 0 => {}
                 1 => text.push_str("    parent: base\n"),
                 _ if index == 0 => {}
                 _ => {
-                    let _ = write!(text, "    parent: j{}\n", rng.usize(0..index));
+                    let _ = writeln!(text, "    parent: j{}", rng.usize(0..index));
                 }
             }
             if place == 0 {
-                let _ = write!(text, "    {at}\n");
+                let _ = writeln!(text, "    {at}");
             }
             index += 1;
         } else if let (Some(row), true, 1) = (line.strip_prefix("    dh: {"), is_modified, place) {
@@ -69,9 +69,9 @@ fn tree(seed: u64, dof: usize) -> String {
             let has_at =
                 text.lines().rev().take_while(|line| !line.starts_with("  - ")).any(|line| line.contains("at: {"));
             let before = if has_at { String::new() } else { format!("gamma: {gamma}, b: {b}, ") };
-            let _ = write!(text, "    dh: {{{before}{row}\n");
+            let _ = writeln!(text, "    dh: {{{before}{row}");
         } else if let Some(tool) = line.strip_prefix("tool: {") {
-            let _ = write!(text, "tool: {{on: j{}, {tool}\n", rng.usize(0..dof));
+            let _ = writeln!(text, "tool: {{on: j{}, {tool}", rng.usize(0..dof));
         } else {
             text.push_str(line);
             text.push('\n');

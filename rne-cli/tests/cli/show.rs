@@ -321,6 +321,6 @@ fn a_tree_is_shown_by_its_branches() {
 fn commands_that_take_serial_arms_refuse_a_tree_at_its_line() {
     for command in [&["plot"][..], &["identify", "motion.csv"], &["export", "--urdf"], &["certify"]] {
         let arguments = [&command[..1], &["docs/tree.yaml"], &command[1..]].concat();
-        fails(1, &arguments, &["docs/tree.yaml:14:13", "the robot is a tree", "`rne check`"]);
+        fails(1, &arguments, &["docs/tree.yaml:14:13", "the robot is a tree", "docs/robot-file.md"]);
     }
 }

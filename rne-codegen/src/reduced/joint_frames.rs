@@ -3,9 +3,9 @@
 //! Whatever the table's convention, row i leads from the frame of its parent to frame i as a modified one does, Rx(α)
 //! Tx(a) Rz(θ) Tz(d), and the matter of link i is about the origin of frame i in its axes (the reduced form, section
 //! 2). What costs nothing is put right here: the base is turned into the frame of each joint on it, the constant angle
-//! of the last joint of a branch into its link, anti-parallel axes are made parallel. Where a link carries several joints,
-//! its frame is turned about its axis so that the first of them needs no other row; those of the others begin with one
-//! more constant turn Rz(γ).
+//! of the last joint of a branch into its link, anti-parallel axes are made parallel. Where a link carries several
+//! joints, its frame is turned about its axis so that the first of them needs no other row; those of the others begin
+//! with one more constant turn Rz(γ) (section 15).
 
 use rne_model::{Convention, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Row, Transform};
 
