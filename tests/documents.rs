@@ -24,7 +24,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
     ("docs/ros2.md", &["ros2_controller"]),
-    ("docs/robot-file.md", &["frames", "two_bars", "desk_arm", "every_key"]),
+    ("docs/robot-file.md", &["frames", "tree", "two_bars", "desk_arm", "every_key"]),
     ("docs/teaching.md", &["code"]),
     ("robots/README.md", &["sources", "robots"]),
 ];
@@ -81,6 +81,7 @@ fn block(name: &str) -> String {
             format!("```yaml\n{}\n```\n", list.join("\n"))
         }
         "two_bars" => format!("```yaml\n{}```\n", read(&root().join("docs/two_bars.yaml"))),
+        "tree" => format!("```yaml\n{}```\n", read(&root().join("docs/tree.yaml"))),
         "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),
         "headline" => headline(),
         "twelve_lines" => code(2),

@@ -151,6 +151,10 @@ impl<'r> Compiler<'r> {
             return Ok(Program { refusals, ..seven_steps_within(LARGEST, robot, function, &[], false)? });
         }
         let reference = Reference::of(robot, function)?;
+        if Algorithm::is_planned(function) && Algorithm::of_robot(function, robot).is_empty() {
+            let refusal = Refusal::new(Attempt::Planned(LeftOut::Nothing), Reason::Tree);
+            return Ok(self.numbered(function, reference, vec![refusal]));
+        }
         // numbers that are not known cannot be regrouped
         if !robot.run_time.is_empty() {
             return Ok(self.numbered(function, reference, Vec::new()));

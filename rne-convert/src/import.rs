@@ -202,6 +202,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         Joint {
             name: printable(&joint.name),
             row: Row { kind, dh: *dh, link },
+            branch: None,
             written_inertia: (
                 link.inertia,
                 if link.has_first_moment() { InertiaReference::Origin } else { InertiaReference::Com },
@@ -221,6 +222,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         gravity: gravity.rounded(10.0),
         base: transform(start),
         tool: transform(table.tool),
+        tip_on: None,
         parameters: Vec::new(),
         joints: joints.collect(),
         frames: Vec::new(),

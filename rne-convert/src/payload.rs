@@ -11,7 +11,7 @@ use crate::geometry::Pose;
 pub fn carrying(robot: &Robot, mass: f64, com: [f64; 3], inertia: Inertia) -> Robot {
     let tool = Pose::new(robot.tool.xyz, robot.tool.rpy.map(|angle| angle.radians));
     let mut robot = robot.clone();
-    if let Some(last) = robot.joints.last_mut() {
+    if let Some(last) = robot.tip().on.and_then(|on| robot.joints.get_mut(on)) {
         let payload = Body::at(mass, Pose::new(com, [0.0; 3]), inertia).seen_from(tool);
         last.row.link = (Body::of_link(&last.row.link) + payload).to_link();
         last.written_inertia = (last.row.link.inertia, InertiaReference::Com);

@@ -2,6 +2,7 @@
 
 use rne_codegen::{Quantity, Step};
 use rne_model::JointKind::{self, Prismatic, Revolute};
+use rne_model::Robot;
 
 /// A formula of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,57 +13,101 @@ pub struct Formula {
     pub text: String,
 }
 
-/// Quantities and their formulas; `{i}`, `{p}` and `{n}` are a joint, the one before and the next.
+/// Quantities and their formulas; `{i}` is a joint and `{p}` its parent, with `{r}` from the parent to the joint. A
+/// term with `{n}` is written for everything that the link carries, each with its `{rn}`.
 type Templates = &'static [(Quantity, &'static str)];
 
-/// The formulas of a step for joint `joint`, in the letters of the lecture; of a link without mass that has a first
+/// The numbers in the formulas of a joint: its own, that of its parent, and those of the joints that its link carries
+/// and of the tip if it carries that.
+#[derive(Clone, Debug)]
+pub(super) struct Numbers {
+    joint: String,
+    parent: String,
+    /// The subscript of r from the parent to the joint.
+    lever: String,
+    /// Everything that the link carries, with the subscript of r.
+    carried: Vec<[String; 2]>,
+}
+
+impl Numbers {
+    /// The letters in the place of numbers: i for the joint, h = i - 1 and j = i + 1 for its neighbours.
+    pub(super) fn letters() -> Self {
+        let [joint, parent, next] = ["i", "h", "j"].map(str::to_owned);
+        Self { lever: parent.clone(), carried: vec![[next, joint.clone()]], joint, parent }
+    }
+
+    /// The numbers of a joint of a robot, counted from 1; n + 1 is the tip.
+    pub(super) fn of(robot: &Robot, joint: usize) -> Self {
+        let tip = robot.dof() + 1;
+        // links by the number of their joint; 0 is the base
+        let parent = |joint: usize| {
+            let link = if joint == tip { robot.tip().on } else { robot.parent(joint.saturating_sub(1)) };
+            link.map_or(0, |link| link + 1)
+        };
+        let carried_by = |link: usize| (1..=tip).filter(move |&joint| parent(joint) == link);
+        // the first thing that a link carries needs no number of its own
+        let lever = |link: usize, joint: usize| match carried_by(link).next() {
+            Some(first) if first != joint => format!("{link}_{joint}"),
+            _ => link.to_string(),
+        };
+        let carried = carried_by(joint).filter(|_| joint < tip).map(|next| [next.to_string(), lever(joint, next)]);
+        Self {
+            joint: joint.to_string(),
+            parent: parent(joint).to_string(),
+            lever: lever(parent(joint), joint),
+            carried: carried.collect(),
+        }
+    }
+}
+
+/// The formulas of a step for a joint, in the letters of the lecture; of a link without mass that has a first
 /// moment, `has_first_moment`, with its terms.
-pub(super) fn formulas(step: Step, kind: JointKind, joint: usize, has_first_moment: bool) -> Vec<Formula> {
+pub(super) fn formulas(step: Step, kind: JointKind, numbers: &Numbers, has_first_moment: bool) -> Vec<Formula> {
     let templates: Templates = match (step, kind) {
         (Step::AngularVelocity, Revolute) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p} + q̇{i} e")],
         (Step::AngularVelocity, Prismatic) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p}")],
         (Step::AngularAcceleration, Revolute) => &[(Quantity::OmegaDot, "ω̇{i} = R{i}ᵀ ω̇{p} + q̈{i} e + q̇{i} ω{i} × e")],
         (Step::AngularAcceleration, Prismatic) => &[(Quantity::OmegaDot, "ω̇{i} = R{i}ᵀ ω̇{p}")],
-        (Step::Velocity, Revolute) => &[(Quantity::Velocity, "ċ{i} = R{i}ᵀ (ċ{p} + ω{p} × r{p}) + ω{i} × d{i}")],
+        (Step::Velocity, Revolute) => &[(Quantity::Velocity, "ċ{i} = R{i}ᵀ (ċ{p} + ω{p} × r{r}) + ω{i} × d{i}")],
         (Step::Velocity, Prismatic) => {
-            &[(Quantity::Velocity, "ċ{i} = R{i}ᵀ (ċ{p} + ω{p} × r{p}) + ω{i} × d{i} + q̇{i} e")]
+            &[(Quantity::Velocity, "ċ{i} = R{i}ᵀ (ċ{p} + ω{p} × r{r}) + ω{i} × d{i} + q̇{i} e")]
         }
         (Step::Acceleration, Revolute) => &[(
             Quantity::Acceleration,
-            "c̈{i} = R{i}ᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})) + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i})",
+            "c̈{i} = R{i}ᵀ (c̈{p} + ω̇{p} × r{r} + ω{p} × (ω{p} × r{r})) + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i})",
         )],
         (Step::Acceleration, Prismatic) => &[(
             Quantity::Acceleration,
-            "c̈{i} = R{i}ᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})) + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i}) \
+            "c̈{i} = R{i}ᵀ (c̈{p} + ω̇{p} × r{r} + ω{p} × (ω{p} × r{r})) + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i}) \
              + q̈{i} e + 2 q̇{i} ω{i} × e",
         )],
         (Step::Gravity, _) => &[(Quantity::Gravity, "g{i} = R{i}ᵀ g{p}")],
         (Step::Wrenches, _) if has_first_moment => &[
             (Quantity::InertiaMoment, "n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i} + h{i} × c̈{i}"),
             (Quantity::JointForce, "f{p},{i} = m{i} (c̈{i} - g{i}) + ω̇{i} × h{i} + ω{i} × (ω{i} × h{i}) + f{i},{n}"),
-            (Quantity::JointMoment, "n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n} - h{i} × g{i}"),
+            (Quantity::JointMoment, "n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{rn} × f{i},{n} - h{i} × g{i}"),
         ],
         (Step::Wrenches, _) => &[
             (Quantity::InertiaMoment, "n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i}"),
             (Quantity::JointForce, "f{p},{i} = m{i} (c̈{i} - g{i}) + f{i},{n}"),
-            (Quantity::JointMoment, "n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n}"),
+            (Quantity::JointMoment, "n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{rn} × f{i},{n}"),
         ],
         (Step::Torque, Revolute) => &[(Quantity::Torque, "τ{i} = e · n{p},{i}")],
         (Step::Torque, Prismatic) => &[(Quantity::Torque, "τ{i} = e · f{p},{i}")],
         (Step::Beyond, _) => &[],
     };
-    of_joint(templates, joint)
+    written(templates, numbers)
 }
 
 /// The formulas of a step for a payload, as the link after the last; `{p}` is the last one, R turns tip axes into its
 /// own.
-pub(super) fn payload_formulas(step: Step, joint: usize) -> Vec<Formula> {
+pub(super) fn payload_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     let templates: Templates = match step {
         Step::AngularVelocity => &[(Quantity::Omega, "ω{i} = Rᵀ ω{p}")],
         Step::AngularAcceleration => &[(Quantity::OmegaDot, "ω̇{i} = Rᵀ ω̇{p}")],
         Step::Acceleration => &[(
             Quantity::Acceleration,
-            "c̈{i} = Rᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})) + ω̇{i} × com{i} + ω{i} × (ω{i} × com{i})",
+            "c̈{i} = Rᵀ (c̈{p} + ω̇{p} × r{r} + ω{p} × (ω{p} × r{r})) + ω̇{i} × com{i} + ω{i} × (ω{i} × com{i})",
         )],
         Step::Gravity => &[(Quantity::Gravity, "g{i} = Rᵀ g{p}")],
         Step::Wrenches => &[
@@ -72,12 +117,12 @@ pub(super) fn payload_formulas(step: Step, joint: usize) -> Vec<Formula> {
         ],
         Step::Velocity | Step::Torque | Step::Beyond => &[],
     };
-    of_joint(templates, joint)
+    written(templates, numbers)
 }
 
 /// The formulas of the reduced form that stand in the place of a step. The order of their terms and the frame in which
 /// they are evaluated are choices of the plan.
-pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula> {
+pub(super) fn reduced_formulas(step: Step, kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
     const GRADIENT: (Quantity, &str) = (Quantity::Gradient, "U{i} = [ω̇{i}]× + [ω{i}]×[ω{i}]×");
     let templates: Templates = match (step, kind) {
         (Step::AngularVelocity, Revolute) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p} + q̇{i} z")],
@@ -100,23 +145,62 @@ pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec
         // gravity is in the acceleration of the base, the velocity is not needed
         (Step::Velocity | Step::Gravity | Step::Beyond, _) => &[],
     };
-    of_joint(templates, joint)
+    written(templates, numbers)
 }
 
-fn of_joint(templates: Templates, joint: usize) -> Vec<Formula> {
-    let formula = |(quantity, text)| Formula { quantity, text };
-    if joint == ANY {
-        return written(templates, ["i", "h", "j"].map(str::to_owned)).map(formula).collect();
+fn written(templates: Templates, numbers: &Numbers) -> Vec<Formula> {
+    templates.iter().map(|&(quantity, template)| Formula { quantity, text: text(template, numbers) }).collect()
+}
+
+fn text(template: &str, numbers: &Numbers) -> String {
+    let Numbers { joint, parent, lever, carried } = numbers;
+    let terms = template.split_inclusive(" + ").flat_map(|part| part.split_inclusive(" - "));
+    // a term ends with the operator before the next one
+    let mut text = String::new();
+    for term in terms {
+        let (term, operator) = match term.strip_suffix(" + ").map(|term| (term, " + ")) {
+            Some(split) => split,
+            None => term.strip_suffix(" - ").map_or((term, ""), |term| (term, " - ")),
+        };
+        if term.contains("{n}") {
+            let of_next = |[next, lever]: &[String; 2]| term.replace("{n}", next).replace("{rn}", lever);
+            text += &carried.iter().map(of_next).collect::<Vec<_>>().join(" + ");
+            if carried.is_empty() {
+                // the operator before it goes with it
+                text.truncate(text.trim_end_matches([' ', '+']).len());
+            }
+        } else {
+            text += term;
+        }
+        text += operator;
     }
-    written(templates, [joint, joint.saturating_sub(1), joint + 1].map(|number| number.to_string()))
-        .map(formula)
-        .collect()
+    text.replace("{i}", joint).replace("{p}", parent).replace("{r}", lever)
 }
 
-/// The letters in the place of a joint's number: i for the joint, h = i - 1 and j = i + 1 for its neighbours.
-pub(super) const ANY: usize = usize::MAX;
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn written(templates: Templates, [i, p, n]: [String; 3]) -> impl Iterator<Item = (Quantity, String)> {
-    let text = move |template: &str| template.replace("{i}", &i).replace("{p}", &p).replace("{n}", &n);
-    templates.iter().map(move |&(quantity, template)| (quantity, text(template)))
+    const TREE: &str = include_str!("../../docs/tree.yaml");
+
+    fn texts(joint: usize, step: Step) -> Vec<String> {
+        let robot = rne_model::Reader::new("tree.yaml").trees().read(TREE).unwrap().robot;
+        let kind = robot.joints[joint - 1].row.kind;
+        formulas(step, kind, &Numbers::of(&robot, joint), false).into_iter().map(|formula| formula.text).collect()
+    }
+
+    #[test]
+    fn formulas_of_a_tree_name_the_parent_and_all_that_a_link_carries() {
+        // the waist carries both arms, 2 and 5; the right arm carries nothing; finger 3 has the tip, 6
+        assert_eq!(texts(5, Step::AngularVelocity), ["ω5 = R5ᵀ ω1 + q̇5 e"]);
+        assert_eq!(texts(5, Step::Velocity), ["ċ5 = R5ᵀ (ċ1 + ω1 × r1_5) + ω5 × d5"]);
+        assert_eq!(texts(2, Step::Velocity), ["ċ2 = R2ᵀ (ċ1 + ω1 × r1) + ω2 × d2"]);
+        let [moment, force, about] = texts(1, Step::Wrenches).try_into().unwrap();
+        assert_eq!(moment, "n1 = I1 ω̇1 + ω1 × I1 ω1");
+        assert_eq!(force, "f0,1 = m1 (c̈1 - g1) + f1,2 + f1,5");
+        assert_eq!(about, "n0,1 = n1 + n1,2 + n1,5 + d1 × f0,1 + r1 × f1,2 + r1_5 × f1,5");
+        let [_, force, about] = texts(5, Step::Wrenches).try_into().unwrap();
+        assert_eq!((force, about), ("f1,5 = m5 (c̈5 - g5)".to_owned(), "n1,5 = n5 + d5 × f1,5".to_owned()));
+        assert_eq!(texts(3, Step::Wrenches)[1], "f2,3 = m3 (c̈3 - g3) + f3,6");
+    }
 }

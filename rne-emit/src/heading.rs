@@ -1,9 +1,9 @@
 //! Heading of everything that is made from a robot.
 
-use rne_model::{Convention, Robot, Transform};
+use rne_model::{Convention, Robot, Transform, one_line};
 
 use super::inert;
-use super::table::{angle, dh_table};
+use super::table::{angle, carrier, dh_table};
 use super::wrap::fill;
 
 /// The words of every generated file about itself, before the robot's name in backticks.
@@ -18,7 +18,8 @@ pub struct Heading {
     pub source: String,
     /// The convention of its table, and gravity: a line each.
     pub frames: String,
-    /// The base and the tool, one line for each, if they differ from the beginning and the end of the table.
+    /// The base, the beginnings of rows in a tree, and the tool, one line for each, if they differ from what the table
+    /// says.
     pub ends: Vec<String>,
     /// The Denavit-Hartenberg table of the robot: a line for each joint.
     pub table: String,
@@ -33,8 +34,19 @@ impl Heading {
             Convention::Modified => "modified (proximal) Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
         };
         let [x, y, z] = robot.gravity;
-        let ends = [("base, from the world to frame 0", &robot.base), ("tool, behind the last frame", &robot.tool)];
-        let place = |(what, Transform { xyz, rpy }): (&str, &Transform)| {
+        let tool = if robot.is_serial() {
+            "tool, behind the last frame".to_owned()
+        } else {
+            format!("tool, in the link frame of {}", carrier(robot, robot.tip().on))
+        };
+        let beginnings = robot.joints.iter().filter_map(|joint| {
+            let branch = joint.branch.as_ref()?;
+            let (row, on) = (one_line(&joint.name), carrier(robot, branch.on));
+            Some((format!("row of {row}, in the link frame of {on}"), &branch.placement))
+        });
+        let ends = std::iter::once(("base, from the world to frame 0".to_owned(), &robot.base));
+        let ends: Vec<_> = ends.chain(beginnings).chain([(tool, &robot.tool)]).collect();
+        let place = |(what, Transform { xyz, rpy }): (String, &Transform)| {
             let ([x, y, z], [roll, pitch, yaw]) = (xyz, rpy.map(|turn| angle(&turn)));
             format!("{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad")
         };

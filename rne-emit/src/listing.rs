@@ -12,7 +12,7 @@ use rne_model::{JointKind, Robot};
 
 use super::annotated::{Annotated, Part};
 use super::expression;
-use super::formula::{Formula, formulas, payload_formulas, reduced_formulas};
+use super::formula::{Formula, Numbers, formulas, payload_formulas, reduced_formulas};
 use super::line_breaks::statement as written;
 use super::syntax::Syntax;
 use super::table::angle;
@@ -357,13 +357,14 @@ fn has_first_moment(robot: &Robot, joint: usize) -> bool {
 
 fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
+    let numbers = Numbers::of(robot, joint);
     let formulas = match recursion(program) {
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),
-        Form::SevenSteps if joint > program.dof => payload_formulas(step, joint),
-        Form::SevenSteps => formulas(step, kind, joint, has_first_moment(robot, joint)),
+        Form::SevenSteps if joint > program.dof => payload_formulas(step, &numbers),
+        Form::SevenSteps => formulas(step, kind, &numbers, has_first_moment(robot, joint)),
         Form::Reduced if program.is_of_bodies() => Vec::new(),
-        Form::Reduced => reduced_formulas(step, kind, joint),
+        Form::Reduced => reduced_formulas(step, kind, &numbers),
     };
     let title = Line::Heading(step_title(program, joint, step));
     std::iter::once(title).chain(formulas.into_iter().map(Line::Formula)).collect()

@@ -3,7 +3,7 @@
 use rne_codegen::{Form, Program, Statement, Step};
 use rne_model::{JointKind, Robot};
 
-use super::formula::{ANY, formulas, reduced_formulas};
+use super::formula::{Numbers, formulas, reduced_formulas};
 use super::listing::recursion;
 
 /// The formulas of the steps in which a program computes something, for joint i between h = i - 1 and j = i + 1: a line
@@ -21,8 +21,8 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
     let has_kind = |kind| robot.rows().any(|row| row.kind == kind);
     let has_first_moment = robot.rows().any(|row| row.link.has_first_moment());
     let written = |step, kind| match recursion {
-        Form::SevenSteps => formulas(step, kind, ANY, has_first_moment),
-        Form::Reduced => reduced_formulas(step, kind, ANY),
+        Form::SevenSteps => formulas(step, kind, &Numbers::letters(), has_first_moment),
+        Form::Reduced => reduced_formulas(step, kind, &Numbers::letters()),
     };
     let mut lines = Vec::new();
     for step in Step::ALL.into_iter().filter(|&step| has(step)) {

@@ -6,7 +6,7 @@ use unicode_width::UnicodeWidthStr;
 
 /// The table of a robot as text: one line per joint, aligned, angles as multiples of π where they are right angles.
 pub(super) fn dh_table(robot: &Robot) -> String {
-    let titles = ["i", "joint", "type", "theta", "d", "a", "alpha", "mass"].map(str::to_owned);
+    let titles = ["i", "joint", "on", "type", "theta", "d", "a", "alpha", "mass"].map(str::to_owned);
     let mut lines = vec![titles];
     for (index, joint) in robot.joints.iter().enumerate() {
         let (row, i) = (&joint.row, index + 1);
@@ -17,6 +17,7 @@ pub(super) fn dh_table(robot: &Robot) -> String {
         lines.push([
             i.to_string(),
             one_line(&joint.name),
+            carrier(robot, robot.parent(index)),
             row.kind.name().to_owned(),
             theta,
             d,
@@ -25,7 +26,22 @@ pub(super) fn dh_table(robot: &Robot) -> String {
             number(row.link.mass),
         ]);
     }
-    columns(&lines).join("\n") + "\n"
+    let lines = if robot.is_serial() {
+        // each joint is on the link before it
+        columns(&lines.into_iter().map(|[i, joint, _, rest @ ..]| without_carrier(i, joint, rest)).collect::<Vec<_>>())
+    } else {
+        columns(&lines)
+    };
+    lines.join("\n") + "\n"
+}
+
+fn without_carrier(i: String, joint: String, [kind, theta, d, a, alpha, mass]: [String; 6]) -> [String; 8] {
+    [i, joint, kind, theta, d, a, alpha, mass]
+}
+
+/// The name of the joint whose link carries another joint; `base` for none.
+pub(super) fn carrier(robot: &Robot, joint: Option<usize>) -> String {
+    joint.map_or_else(|| "base".to_owned(), |joint| one_line(&robot.joints[joint].name))
 }
 
 /// Lines of cells, each column as wide as its widest cell, three blanks between them.

@@ -45,13 +45,14 @@ pub struct Reader<'a> {
     name: &'a str,
     run_time: Vec<&'a str>,
     settings: Vec<(&'a str, f64)>,
+    takes_trees: bool,
 }
 
 impl<'a> Reader<'a> {
     /// A reader of a file that messages call `name`, usually its path.
     #[must_use]
     pub const fn new(name: &'a str) -> Self {
-        Self { name, run_time: Vec::new(), settings: Vec::new() }
+        Self { name, run_time: Vec::new(), settings: Vec::new(), takes_trees: false }
     }
 
     /// These parameters of the file, each once, stay free until run time. The robot is that of their values in the
@@ -67,6 +68,14 @@ impl<'a> Reader<'a> {
     #[must_use]
     pub fn run_time(mut self, names: &[&'a str]) -> Self {
         self.run_time.extend(names);
+        self
+    }
+
+    /// Trees are read, too: robots of `format: 2` whose joints branch off or begin at a placement. Without this they
+    /// are refused at their line, because not every function of rne takes a tree.
+    #[must_use]
+    pub fn trees(mut self) -> Self {
+        self.takes_trees = true;
         self
     }
 
@@ -118,7 +127,7 @@ impl<'a> Reader<'a> {
             .flatten()
             .and_then(|root| {
                 let context = Context::new(text, &problems, &self.run_time).with_settings(&self.settings);
-                schema::robot(&context, &root)
+                schema::robot(&context, &root, self.takes_trees)
             });
         let report = problems.finish(self.name, text);
         match robot {
@@ -133,7 +142,7 @@ impl Robot {
     ///
     /// # Errors
     ///
-    /// Everything that is wrong with the text.
+    /// Everything that is wrong with the text; also a tree, which [`Reader::trees`] takes.
     pub fn from_yaml(text: &str) -> Result<Self, Report> {
         Reader::new("<yaml>").read(text).map(|checked| checked.robot)
     }

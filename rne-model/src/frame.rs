@@ -155,7 +155,7 @@ pub(crate) fn frames(cx: &Context, node: &Node, root: &Node) -> Option<Vec<Frame
 }
 
 /// The names of the joints, whatever else is wrong with them.
-fn joint_names(root: &Node) -> Vec<String> {
+pub(crate) fn joint_names(root: &Node) -> Vec<String> {
     let Some(Content::Sequence(items)) = root.get("joints").map(|joints| &joints.content) else { return Vec::new() };
     let name = |(index, joint): (usize, &std::rc::Rc<Node>)| match joint.get("name").map(|name| &name.content) {
         Some(Content::Scalar(scalar)) => scalar.text.trim_end().to_owned(),
@@ -168,7 +168,7 @@ fn joint_names(root: &Node) -> Vec<String> {
 fn frame(cx: &Context, node: &Node, index: usize, joints: &[String]) -> Option<Frame> {
     read_mapping!(cx, node, "a frame", {
         name: required "name" |cx, node| frame_name(cx, node, joints),
-        on: required "on" |cx, node| carrier(cx, node, joints),
+        on: required "on" |cx, node| carrier(cx, node, joints, "on"),
         xyz: or([0.0; 3]) "xyz" |cx, node| position(cx, node, |axis| Entry::FrameXyz(index, axis)),
         rpy: or([Angle::ZERO; 3]) "rpy" roll_pitch_yaw,
     });
@@ -202,9 +202,9 @@ fn frame_name(cx: &Context, node: &Node, joints: &[String]) -> Option<String> {
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("choose another name").help(help))
 }
 
-/// The joint that moves the link, from 0; `None` for frame 0.
+/// The joint that moves the link that the value of `key` names, from 0; `None` for frame 0.
 #[allow(clippy::option_option)] // the outer `None` is a reported mistake
-fn carrier(cx: &Context, node: &Node, joints: &[String]) -> Option<Option<usize>> {
+pub(crate) fn carrier(cx: &Context, node: &Node, joints: &[String], key: &str) -> Option<Option<usize>> {
     let name = text(cx, node)?;
     let joint = joints.iter().position(|joint| *joint == name);
     if name != BASE {
@@ -214,18 +214,19 @@ fn carrier(cx: &Context, node: &Node, joints: &[String]) -> Option<Option<usize>
         let listed = joints.iter().take(12).map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         let rest = if joints.len() > 12 { ", and the other joints of the file" } else { "" };
         let message = format!(
-            "`on` names {}, which is no joint of this file; it must be `base` or the name of a joint: {listed}{rest}",
+            "`{key}` names {}, which is no joint of this file; it must be `base` or the name of a joint: \
+             {listed}{rest}",
             quoted(&name)
         );
         let number = name.parse::<usize>().ok().and_then(|number| joints.get(number.checked_sub(1)?));
         let help = match (number, cx.did_you_mean(&name, joints.iter().map(String::as_str).chain([BASE]))) {
-            (Some(joint), _) => Some(format!("name the joint instead of its number: `on: {joint}`")),
+            (Some(joint), _) => Some(format!("name the joint instead of its number: `{key}: {joint}`")),
             (None, Some(meant)) => Some(format!("did you mean {}?", quoted(meant))),
             (None, None) => None,
         };
         return cx.refuse(Diagnostic::error(node.span.clone(), message).label("no such joint").maybe_help(help));
     }
     let Some(joint) = joint else { return Some(None) };
-    let message = format!("`on: base` means frame 0, but joint {} has the name `base`, too", joint + 1);
+    let message = format!("`{key}: base` means frame 0, but joint {} has the name `base`, too", joint + 1);
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("two meanings").help("rename the joint"))
 }

@@ -31,7 +31,8 @@ pub struct Key {
 /// let mappings = rne_model::mappings("joints: [{dh: {}}]");
 /// let names: Vec<&str> = mappings.iter().map(|mapping| mapping.name).collect();
 /// assert_eq!(names, ["a robot file", "a joint", "`dh`"]);
-/// assert!(mappings[2].keys.iter().all(|key| key.is_required));
+/// let required = mappings[2].keys.iter().filter(|key| key.is_required).map(|key| key.name);
+/// assert_eq!(required.collect::<Vec<_>>(), ["theta", "d", "a", "alpha"]);
 /// ```
 #[must_use]
 pub fn mappings(text: &str) -> Vec<Mapping> {
@@ -41,7 +42,7 @@ pub fn mappings(text: &str) -> Vec<Mapping> {
         && let Some(root) = document::parse(text, document::ROBOT_FILE, &problems)
     {
         let cx = Context::new(text, &problems, &[]);
-        let _ = schema::robot(&cx, &root);
+        let _ = schema::robot(&cx, &root, true);
         mappings = cx.mappings.take();
     }
     let _ = problems.finish("", text);

@@ -43,7 +43,6 @@ mod table;
 pub use angle::{Angle, LARGEST_ANGLE, QuarterTurns};
 pub use table::{
     Convention, Dh, FixedFrame, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, PER_LINK, Row, Transform,
-    parent,
 };
 
 #[cfg(feature = "std")]
@@ -90,6 +89,8 @@ mod schema;
 mod source;
 #[cfg(feature = "std")]
 mod spelling;
+#[cfg(feature = "std")]
+mod tree;
 #[cfg(feature = "std")]
 mod unit;
 #[cfg(feature = "std")]

@@ -1,6 +1,7 @@
 //! Joints that no inertia resists: the mass matrix is singular in every state.
 
-use crate::{Convention, Joint, JointKind, Row, parent};
+use crate::robot::parent;
+use crate::{Angle, Convention, FixedFrame, Joint, JointKind, Row};
 
 /// An inertia below this part of the largest moment that the links could have, at their distance from the base, is
 /// rounding.
@@ -87,7 +88,7 @@ fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec
         let mut carrier = Some(index);
         while let Some(joint) = carrier {
             carriers.push(joint);
-            carrier = parent(joint);
+            carrier = parent(joints, joint);
         }
         let columns: Vec<(usize, Vector, Vector)> = carriers
             .into_iter()
@@ -136,8 +137,12 @@ fn frames(convention: Convention, joints: &[Joint], state: u32) -> Vec<Frame> {
     for (index, joint) in joints.iter().enumerate() {
         let Row { kind, dh, .. } = &joint.row;
         let identity = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
-        let (rotation, origin) =
-            parent(index).and_then(|parent| frames.get(parent)).map_or(identity, |it| (it.rotation, it.origin));
+        let carrier = parent(joints, index).and_then(|parent| frames.get(parent));
+        let (mut rotation, mut origin) = carrier.map_or(identity, |it| (it.rotation, it.origin));
+        if let Some(FixedFrame { placement, .. }) = joint.branch {
+            origin = add(origin, turned(&rotation, placement.xyz));
+            rotation = product(&rotation, &turn(placement.rpy));
+        }
         // multiples of the golden ratio: no joint at a right angle, no two in step
         #[allow(clippy::cast_precision_loss)] // small numbers
         let q = 0.3 + 1.618_033_988_749_895 * ((index + 1) as f64 * f64::from(state)).rem_euclid(3.7);
@@ -165,6 +170,14 @@ fn frames(convention: Convention, joints: &[Joint], state: u32) -> Vec<Frame> {
         });
     }
     frames
+}
+
+/// Rz(yaw) Ry(pitch) Rx(roll)
+fn turn([roll, pitch, yaw]: [Angle; 3]) -> [Vector; 3] {
+    let x = [[1.0, 0.0, 0.0], [0.0, roll.cos, -roll.sin], [0.0, roll.sin, roll.cos]];
+    let y = [[pitch.cos, 0.0, pitch.sin], [0.0, 1.0, 0.0], [-pitch.sin, 0.0, pitch.cos]];
+    let z = [[yaw.cos, -yaw.sin, 0.0], [yaw.sin, yaw.cos, 0.0], [0.0, 0.0, 1.0]];
+    product(&product(&z, &y), &x)
 }
 
 fn add(a: Vector, b: Vector) -> Vector {

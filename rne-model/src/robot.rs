@@ -1,6 +1,8 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
-use crate::{Convention, Frame, FrameId, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia};
+use crate::{
+    Convention, FixedFrame, Frame, FrameId, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia,
+};
 
 /// A validated robot, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,11 +21,13 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// World → frame 0. Places the arm; never turns gravity.
     pub base: Transform,
-    /// Frame n → tip frame.
+    /// Link frame → tip frame: of the last row, or of [`tip_on`](Self::tip_on).
     pub tool: Transform,
+    /// The joint whose link carries the tip frame, counted from 0; `None` for the last row.
+    pub tip_on: Option<usize>,
     /// The named constants of the file, in its order, evaluated.
     pub parameters: Vec<(String, f64)>,
-    /// The joints, base to tip; 1 to 64.
+    /// The joints, 1 to 64: base to tip, and in a tree each behind the joint that carries it.
     pub joints: Vec<Joint>,
     /// The named frames of the file, in its order: places on links, beside the tip.
     pub frames: Vec<Frame>,
@@ -44,6 +48,9 @@ pub struct Joint {
     pub name: String,
     /// Kind, Denavit-Hartenberg parameters and link (inertia about the centre of mass).
     pub row: Row,
+    /// Where its row begins, if that is not the link frame of the row before: the link that carries the joint, and a
+    /// placement in the link frame of that link. A `gamma` and a `b` of the file are such a placement, Rz(gamma) Tz(b).
+    pub branch: Option<FixedFrame>,
     /// The inertia as the file writes it, and the point it refers to.
     pub written_inertia: (Inertia, InertiaReference),
     /// Position, velocity and effort limits.
@@ -127,10 +134,23 @@ impl Robot {
         self.rotors && self.joints.iter().any(|joint| joint.motor.is_some_and(resists))
     }
 
-    /// The joint whose link carries `joint`, both counted from 0; `None` for the base. A robot is a chain.
+    /// The joint whose link carries `joint`, both counted from 0; `None` for the base. What goes from link to link asks
+    /// here, and nowhere takes one from an index.
     #[must_use]
-    pub const fn parent(&self, joint: usize) -> Option<usize> {
-        crate::parent(joint)
+    pub fn parent(&self, joint: usize) -> Option<usize> {
+        parent(&self.joints, joint)
+    }
+
+    /// The tip frame: the link that carries it, and its place there.
+    #[must_use]
+    pub fn tip(&self) -> FixedFrame {
+        FixedFrame { on: self.tip_on.or(self.dof().checked_sub(1)), placement: self.tool }
+    }
+
+    /// Whether each row begins where the row before it ends, and the last link carries the tip.
+    #[must_use]
+    pub fn is_serial(&self) -> bool {
+        self.tip_on.is_none() && self.joints.iter().all(|joint| joint.branch.is_none())
     }
 
     /// The rows alone, base to tip.
@@ -138,11 +158,20 @@ impl Robot {
         self.joints.iter().map(|joint| &joint.row)
     }
 
-    /// The robot as a plain [`Model`], or `None` when it does not have `DOF` joints.
+    /// The robot as a plain [`Model`], or `None` when it does not have `DOF` joints. A model does not say where the
+    /// rows of a tree begin: [`Joint::branch`] and [`Robot::tip_on`] do.
     #[must_use]
     pub fn model<const DOF: usize>(&self) -> Option<Model<DOF>> {
         let rows: Vec<Row> = self.rows().copied().collect();
         let rows = rows.try_into().ok()?;
         Some(Model { convention: self.convention, gravity: self.gravity, base: self.base, tool: self.tool, rows })
+    }
+}
+
+/// The joint whose link carries `joint`, both counted from 0; `None` for the base.
+pub(crate) fn parent(joints: &[Joint], joint: usize) -> Option<usize> {
+    match joints.get(joint).and_then(|joint| joint.branch) {
+        Some(branch) => branch.on,
+        None => joint.checked_sub(1),
     }
 }

@@ -15,15 +15,15 @@ use crate::varying::{
     without_effect,
 };
 use crate::{
-    Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits,
-    Link, Motor, Robot, Row, Transform, inertia, lint,
+    Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaElement, InertiaReference, Joint, JointKind,
+    LARGEST_ANGLE, Limits, Link, Motor, Robot, Row, Transform, inertia, lint, tree,
 };
 
 /// More than every number of 64 joints with a name of its own.
 const MAX_PARAMETERS: usize = 2000;
 
 /// A whole robot file.
-pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
+pub(crate) fn robot(cx: &Context, node: &Node, takes_trees: bool) -> Option<Robot> {
     // In another format every key may mean something else.
     if let Some(version) = node.get("format") {
         format(cx, version)?;
@@ -31,7 +31,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     unknown_names(cx, node);
     unknown_settings(cx, node);
     read_mapping!(cx, node, "a robot file", {
-        _format: required "format" format,
+        format: required "format" format,
         name: required "name" robot_name,
         title: optional "title" |cx, node| text_of_one_line(cx, node, "title"),
         source: required "source" lines,
@@ -40,10 +40,12 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         convention: required "convention" convention,
         gravity: required "gravity" gravity,
         base: or(Transform::IDENTITY) "base" |cx, node| transform(cx, node, Entry::BaseXyz),
-        tool: or(Transform::IDENTITY) "tool" |cx, node| transform(cx, node, Entry::ToolXyz),
+        tool: or(Transform::IDENTITY) "tool" tool,
         frames: or(Vec::new()) "frames" |cx, list| frames(cx, list, node),
         joints: required "joints" joints,
     });
+    let mut joints = joints;
+    let tip_on = tree::branches(cx, node, (format, convention), &mut joints)?;
     if let Some(node) = node.get("gravity") {
         lint::gravity_upwards(cx, node, gravity, &base);
     }
@@ -53,7 +55,13 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         without_effect(cx);
         lint::inertias(cx, node, convention, &joints);
         lint::placeholders(cx, node, &joints);
-        lint::light_for_reach(cx, node, &joints);
+        // the reach of a tree is not the sum of its rows
+        if joints.iter().all(|joint| joint.branch.is_none()) {
+            lint::light_for_reach(cx, node, &joints);
+        }
+        if !takes_trees {
+            tree::refuse(cx, node, &joints, tip_on);
+        }
     }
     let run_time = cx.run_time.take();
     Some(Robot {
@@ -65,6 +73,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         gravity,
         base,
         tool,
+        tip_on,
         parameters,
         joints,
         frames,
@@ -74,8 +83,8 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     })
 }
 
-fn format(cx: &Context, node: &Node) -> Option<()> {
-    choice(cx, node, "format", &[("1", ())])
+fn format(cx: &Context, node: &Node) -> Option<u32> {
+    choice(cx, node, "format", &[("1", 1), ("2", 2)])
 }
 
 fn robot_name(cx: &Context, node: &Node) -> Option<String> {
@@ -194,6 +203,32 @@ fn transform(cx: &Context, node: &Node, place: fn(usize) -> Entry) -> Option<Tra
     Some(Transform { xyz, rpy })
 }
 
+/// The tip frame on its link; which link that is, [`tree`] reads.
+fn tool(cx: &Context, node: &Node) -> Option<Transform> {
+    read_mapping!(cx, node, "`tool`", {
+        _on: optional "on" |_, _| Some(()),
+        xyz: or([0.0; 3]) "xyz" |cx, node| position(cx, node, Entry::ToolXyz),
+        rpy: or([Angle::ZERO; 3]) "rpy" roll_pitch_yaw,
+    });
+    Some(Transform { xyz, rpy })
+}
+
+/// A placement that run-time parameters do not change.
+fn fixed_transform(cx: &Context, node: &Node) -> Option<Transform> {
+    read_mapping!(cx, node, "a placement", {
+        xyz: or([0.0; 3]) "xyz" |cx, node| list(cx, node, "[x, y, z] (m)", |cx, node, _| fixed_length(cx, node)),
+        rpy: or([Angle::ZERO; 3]) "rpy" roll_pitch_yaw,
+    });
+    Some(Transform { xyz, rpy })
+}
+
+/// A length that run-time parameters do not change.
+fn fixed_length(cx: &Context, node: &Node) -> Option<f64> {
+    let value = fixed("the length")(cx, node)?;
+    lint::length(cx, node, value);
+    Some(value)
+}
+
 pub(crate) fn roll_pitch_yaw(cx: &Context, node: &Node) -> Option<[Angle; 3]> {
     let angles = list(cx, node, "[roll, pitch, yaw] (rad)", |cx, node, _| angle(cx, node))?;
     Some(angles.map(Angle::new))
@@ -260,6 +295,8 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
     }
     read_mapping!(cx, node, "a joint", {
         name: or(format!("joint{}", index + 1)) "name" |cx, node| text_of_one_line(cx, node, "joint name"),
+        _parent: optional "parent" |_, _| Some(()),
+        at: optional "at" fixed_transform,
         kind: required "type" joint_kind,
         dh: required "dh" |cx, node| dh(cx, node, index),
         link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link"
@@ -273,22 +310,30 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
     let (link, written_inertia) = link;
     let (motor, [coulomb_width, coulomb_displacement]) =
         motor.map_or((None, [None; 2]), |(motor, changes)| (Some(motor), changes));
+    let (dh, before) = dh;
+    // the link that carries it is not known yet
+    let branch = at.or(before).map(|placement| FixedFrame { on: index.checked_sub(1), placement });
     let row = Row { kind, dh, link };
-    Some(Joint { name, row, written_inertia, limits, motor, coulomb_width, coulomb_displacement })
+    Some(Joint { name, row, branch, written_inertia, limits, motor, coulomb_width, coulomb_displacement })
 }
 
 fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {
     choice(cx, node, "joint type", &[("revolute", JointKind::Revolute), ("prismatic", JointKind::Prismatic)])
 }
 
-fn dh(cx: &Context, node: &Node, joint: usize) -> Option<Dh> {
+/// The row, and Rz(gamma) Tz(b) before it.
+fn dh(cx: &Context, node: &Node, joint: usize) -> Option<(Dh, Option<Transform>)> {
     read_mapping!(cx, node, "`dh`", {
         theta: required "theta" angle,
         d: required "d" length(Entry::D(joint)),
         a: required "a" length(Entry::A(joint)),
         alpha: required "alpha" angle,
+        gamma: or(0.0) "gamma" angle,
+        b: or(0.0) "b" fixed_length,
     });
-    Some(Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) })
+    let before = Transform { xyz: [0.0, 0.0, b], rpy: [Angle::ZERO, Angle::ZERO, Angle::new(gamma)] };
+    let before = (before != Transform::IDENTITY).then_some(before);
+    Some((Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) }, before))
 }
 
 /// The link with its inertia about the centre of mass, and the inertia as written.

@@ -61,13 +61,6 @@ impl JointKind {
     }
 }
 
-/// The joint whose link carries `joint`, both counted from 0; `None` for the base. Every robot is a chain: each joint
-/// stands on the link before it. What goes from link to link asks here, and nowhere takes one from an index.
-#[must_use]
-pub const fn parent(joint: usize) -> Option<usize> {
-    joint.checked_sub(1)
-}
-
 /// One row of Denavit-Hartenberg parameters; rad and m. The joint variable is added to `theta` or `d`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dh<S = f64> {

@@ -37,7 +37,7 @@ fn keys() {
             "unknown key `colour`; a robot file has the keys",
         ),
         ("name: first", "name: first\n    offset: 1", 10, 5, "offset", "unknown key `offset`; a joint has the keys"),
-        ("{theta: 0, d: 0.4", "{theta: 0, d: 0.4, b: 1", 11, 28, "b", "`dh` has the keys theta, d, a, alpha"),
+        ("{theta: 0, d: 0.4", "{theta: 0, d: 0.4, c: 1", 11, 28, "c", "`dh` has the keys theta, d, a, alpha"),
         ("mass: 2.5", "mass: 2.5\n      masse: 1", 14, 7, "masse", "a link has the keys mass, com, first_moment"),
         ("zz: 0.02}", "zz: 0.02, zx: 1}", 15, 46, "zx", "an inertia has the keys"),
         ("velocity: 2.0", "torque: 2.0", 17, 35, "torque", "`limits` has the keys position, velocity, effort"),
@@ -99,6 +99,53 @@ fn missing_fields_point_at_the_mapping_that_lacks_them() {
     assert_eq!(report.errors().count(), 4, "{report}");
 }
 
+/// Trees: what is wrong has its place, and a reader that does not take trees says so at the first branch.
+#[test]
+fn trees() {
+    let file = |convention: &str, tool: &str, rows: &str| {
+        format!(
+            "format: 2\nname: x\nsource: own\nconvention: {convention}\ngravity: [0, 0, -9.81]\n{tool}\njoints:\n\
+             - {{name: a, type: revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {{mass: 1}}}}\n{rows}"
+        )
+    };
+    let row = |keys: &str, dh: &str| {
+        format!("- {{{keys}, type: revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0{dh}}}, link: {{mass: 1}}}}\n")
+    };
+    let two = row("name: b, parent: a", "") + &row("name: c, parent: a", "");
+    let first = |text: &str| Reader::new("x").trees().read(text).unwrap_err().short();
+    for (text, expected) in [
+        (file("modified", "", &row("name: b, parent: c", "")), "x:9:21: error: `parent` names `c`, which is no joint"),
+        (
+            file("modified", "", &(row("name: b, parent: c", "") + &row("name: c", ""))),
+            "x:9:21: error: the parent `c` stands below",
+        ),
+        (file("modified", "", &row("name: b, parent: b", "")), "x:9:21: error: joint 2 names itself as its parent"),
+        (file("standard", "", &row("name: b", ", gamma: 1")), "x:9:73: error: a standard row has no `gamma`"),
+        (
+            file("modified", "", &row("name: b, at: {xyz: [0, 0, 1]}", ", b: 1")),
+            "error: the joint has both `at` and `b`",
+        ),
+        (file("modified", "", &two), "error: the robot has 2 ends (`b`, `c`)"),
+        (file("modified", "tool: {on: base}", &two), "x:6:12: error: the tip cannot be on `base`"),
+        (
+            file("modified", "tool: {on: c}", &two).replace("format: 2", "format: 1"),
+            "the key `parent` needs `format: 2`",
+        ),
+    ] {
+        let found = first(&text);
+        assert!(found.contains(expected), "{found}\n{expected}");
+    }
+    let tree = file("modified", "tool: {on: b}", &two);
+    let robot = Reader::new("x").trees().read(&tree).unwrap().robot;
+    assert_eq!([0, 1, 2].map(|joint| robot.parent(joint)), [None, Some(0), Some(0)]);
+    assert_eq!((robot.tip().on, robot.is_serial()), (Some(1), false));
+    let refused = Reader::new("x").read(&tree).unwrap_err().short();
+    assert!(refused.starts_with("x:10:21: error: joint 3 (`c`) does not follow the row before"), "{refused}");
+    // a chain in the words of a tree is that chain
+    let chain = file("modified", "tool: {on: b}", &row("name: b, parent: a", ""));
+    assert!(Reader::new("x").read(&chain).unwrap().robot.is_serial());
+}
+
 #[test]
 fn shapes() {
     assert_cases(&[
@@ -115,7 +162,7 @@ fn shapes() {
             11,
             9,
             "[0, 1, 2, 3]",
-            "found a list of 4 where a mapping (theta, d, a, alpha)",
+            "found a list of 4 where a mapping (theta, d, a, alpha, gamma, b)",
         ),
         ("{xx: 0.1, yy: 0.12, zz: 0.02}", "[1, 2, 3]", 15, 16, "[1, 2, 3]", "a mapping (xx, yy, zz, xy, xz, yz)"),
         ("source: test", "source: [a, b]", 3, 9, "[a, b]", "found a list of 2 where a text is needed"),
@@ -125,7 +172,14 @@ fn shapes() {
         ("convention: standard", "convention: [standard]", 4, 13, "[standard]", "`standard` or `modified` is needed"),
         ("mass: 2.5", "mass:", 13, 7, "mass", "a number is missing"),
         ("theta: 0, d: 0.4", "theta, d: 0.4", 11, 10, "theta", "a number is missing"),
-        ("- name: second", "- 5\n  - name: second", 19, 5, "5", "found `5` where a mapping (name, type, dh"),
+        (
+            "- name: second",
+            "- 5\n  - name: second",
+            19,
+            5,
+            "5",
+            "found `5` where a mapping (name, parent, at, type, dh",
+        ),
     ]);
     for (text, message) in [
         ("format: 1\njoints: {}\n", "where a list of joints is needed"),
@@ -141,7 +195,7 @@ fn shapes() {
 #[test]
 fn values() {
     assert_cases(&[
-        ("format: 1", "format: 2", 1, 9, "2", "unknown format `2`; it must be `1`"),
+        ("format: 1", "format: 3", 1, 9, "3", "unknown format `3`; it must be `1` or `2`"),
         ("format: 1", "format: 1.0", 1, 9, "1.0", "unknown format `1.0`"),
         ("name: base", "name: Base", 2, 7, "Base", "the name `Base` is not an identifier"),
         ("name: base", "name: 7dof", 2, 7, "7dof", "the name `7dof` is not an identifier"),

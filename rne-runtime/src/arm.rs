@@ -5,7 +5,7 @@ use core::array;
 use rne_model::{FixedFrame, Model, Motor};
 
 use crate::at_tip::AtTip;
-use crate::link_frame::{Chain, LinkFrame};
+use crate::link_frame::{Chain, LinkFrame, Table};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
@@ -51,6 +51,8 @@ use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Payload, Scalar, 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm<const DOF: usize, S = f64> {
     model: Model<DOF, S>,
+    branches: [Option<FixedFrame<S>>; DOF],
+    tip_on: Option<usize>,
     links: [LinkFrame<S>; DOF],
     tip: Mount<S>,
     motors: [Option<Motor<S>>; DOF],
@@ -62,10 +64,30 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     /// The robot of a plain table, without motors. Needs neither `std` nor an allocator.
     #[must_use]
     pub fn new(model: Model<DOF, S>) -> Self {
-        let Model { convention, tool, rows, .. } = &model;
-        let links = array::from_fn(|index| LinkFrame::new(*convention, rows, index));
-        let tip = Mount::of_tip(*convention, rows, tool);
-        Self { model, links, tip, motors: [None; DOF], rotors: false, at: None }
+        Self::prepared(model, [None; DOF], None)
+    }
+
+    pub(crate) fn prepared(
+        model: Model<DOF, S>,
+        branches: [Option<FixedFrame<S>>; DOF],
+        tip_on: Option<usize>,
+    ) -> Self {
+        let table = table_of(&model, &branches, tip_on);
+        let (links, tip) = (array::from_fn(|index| LinkFrame::new(table, index)), Mount::of_tip(table));
+        Self { model, branches, tip_on, links, tip, motors: [None; DOF], rotors: false, at: None }
+    }
+
+    /// Returns this robot as a tree. Row `i` begins at `branches[i]` on an earlier link or on the base; `None` for a
+    /// row that begins at the link frame of the row before. The tip is on the link of the joint `tip_on`; `None` for
+    /// the last one. `None` when a row does not stand behind its parent, or when there is no joint `tip_on`.
+    #[must_use]
+    pub fn on_tree(self, branches: [Option<FixedFrame<S>>; DOF], tip_on: Option<usize>) -> Option<Self> {
+        let is_earlier = |(joint, branch): (usize, &Option<FixedFrame<S>>)| {
+            branch.and_then(|branch| branch.on).is_none_or(|parent| parent < joint)
+        };
+        let is_tree = branches.iter().enumerate().all(is_earlier) && tip_on.is_none_or(|joint| joint < DOF);
+        let Self { model, motors, rotors, at, .. } = self;
+        is_tree.then(|| Self { motors, rotors, at, ..Self::prepared(model, branches, tip_on) })
     }
 
     /// Returns this robot with other motors, base to tip; `None` for a joint without a motor.
@@ -141,12 +163,21 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Known<DOF>, S> {
-        let Model { convention, gravity, base, tool, rows } = &self.model;
-        let chain = Chain { links: &self.links, tip: &self.tip };
-        let (motors, rotors) = (&self.motors, self.rotors);
-        let (convention, at) = (*convention, self.at.as_ref());
-        Mechanism { per_joint: Known, chain, convention, rows, motors, rotors, gravity, base, tool, at }
+        let table = table_of(&self.model, &self.branches, self.tip_on);
+        let chain = Chain { links: &self.links, tip: &self.tip, tip_link: table.tip().on };
+        let (motors, rotors, at) = (&self.motors, self.rotors, self.at.as_ref());
+        let Model { gravity, base, .. } = &self.model;
+        Mechanism { per_joint: Known, chain, table, motors, rotors, gravity, base, at }
     }
+}
+
+fn table_of<'a, const DOF: usize, S>(
+    model: &'a Model<DOF, S>,
+    branches: &'a [Option<FixedFrame<S>>; DOF],
+    tip_on: Option<usize>,
+) -> Table<'a, S> {
+    let Model { convention, rows, tool, .. } = model;
+    Table { convention: *convention, rows, branches, tool, tip_on }
 }
 
 impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {

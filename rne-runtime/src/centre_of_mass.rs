@@ -3,7 +3,7 @@
 //! ```text
 //! μ_i = m_i (1 / Σ m)                                     sums of masses from the base to the tip
 //! c = Σ μ_i c_i + p_b                                  c_i from the base's origin, in world axes, which stands at p_b
-//! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j          from the tip to the base
+//! s_j = Σ s_k + μ_j c_j,   w_j = Σ w_k + μ_j              from the ends to the base; k: joints that link j carries
 //! column j                                                z_j × (s_j - w_j p_j)   (revolute),   w_j z_j   (prismatic)
 //! ```
 //!
@@ -23,7 +23,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// One by the mass of all links.
     fn inverse_of_mass<T: Scalar>(self) -> T {
         let mut total = T::zero();
-        for row in self.rows {
+        for row in self.table.rows {
             total += row.link.mass.to();
         }
         T::one() / total
@@ -31,7 +31,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
     /// μ_i c_i, with a first moment + h_i (1 / Σ m); and μ_i, what part of the mass link i has.
     fn part<T: Scalar>(self, i: usize, links: &[Placement<T>], inverse: T) -> (Vector3<T>, T) {
-        let part = self.rows[i].link.mass.to::<T>() * inverse;
+        let part = self.table.rows[i].link.mass.to::<T>() * inverse;
         let moment = self.centre(i, links) * part;
         (self.first_moment(i, links).map_or(moment, |beside| moment + beside * inverse), part)
     }
@@ -44,11 +44,11 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn centre_of_mass<T: Scalar>(self, q: &[T]) -> [T; 3] {
         let links = self.placements(self.turned_base(), q);
         let (mut centre, inverse) = (Vector3::zeros(), self.inverse_of_mass());
-        for i in 0..self.rows.len() {
+        for i in 0..self.table.rows.len() {
             centre += self.part(i, links.as_ref(), inverse).0;
         }
         // nor has an arm without joints
-        if self.rows.is_empty() {
+        if self.table.rows.is_empty() {
             centre = centre.map(|zero: T| zero / T::zero());
         }
         (centre + Vector3::from(self.base.xyz).map(S::to)).into()
@@ -57,15 +57,22 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn centre_of_mass_jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 3] {
         let base = self.turned_base();
         let (links, inverse) = (self.placements(base, q), self.inverse_of_mass());
-        let (mut moment, mut part) = (Vector3::zeros(), T::zero());
+        // of what each link carries
+        let mut carried = self.per_joint.all(&(Vector3::zeros(), T::zero()));
         let mut columns = self.per_joint.all(&Vector3::zeros());
         for (i, column) in columns.as_mut().iter_mut().enumerate().rev() {
+            let (mut moment, mut part) = carried.as_ref()[i];
             let of_link = self.part(i, links.as_ref(), inverse);
             moment += of_link.0;
             part += of_link.1;
+            if let Some(parent) = self.chain.links[i].parent {
+                let of_parent = &mut carried.as_mut()[parent];
+                of_parent.0 += moment;
+                of_parent.1 += part;
+            }
             let frame = self.joint_frame(i, base, links.as_ref());
             let axis = frame.rotation.column(2).into_owned();
-            *column = match self.rows[i].kind {
+            *column = match self.table.rows[i].kind {
                 JointKind::Revolute => axis.cross(&(moment - frame.translation * part)),
                 JointKind::Prismatic => axis * part,
             };

@@ -3,7 +3,7 @@
 use rne_model::{Convention, FixedFrame, Model, Motor, Robot, Row, Transform};
 
 use crate::at_tip::AtTip;
-use crate::link_frame::{Chain, LinkFrame};
+use crate::link_frame::{Chain, LinkFrame, Table};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
@@ -22,6 +22,8 @@ pub struct DynArm<S = f64> {
     base: Transform<S>,
     tool: Transform<S>,
     rows: Vec<Row<S>>,
+    branches: Vec<Option<FixedFrame<S>>>,
+    tip_on: Option<usize>,
     links: Vec<LinkFrame<S>>,
     tip: Mount<S>,
     motors: Vec<Option<Motor<S>>>,
@@ -41,10 +43,12 @@ impl DynArm {
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
         let motors = robot.joints.iter().map(|joint| joint.motor).collect();
-        let rows = robot.rows().copied().collect();
-        let rotors = robot.rotors;
+        let rows: Vec<Row> = robot.rows().copied().collect();
+        let branches: Vec<_> = robot.joints.iter().map(|joint| joint.branch).collect();
+        let (convention, tool, tip_on) = (robot.convention, &robot.tool, robot.tip_on);
+        let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on };
         let at = robot.at.map(|frame| robot.fixed_frame(frame));
-        Self { motors, rotors, at, ..Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, rows) }
+        Self { motors, rotors: robot.rotors, at, ..Self::of_table(table, robot.gravity, robot.base) }
     }
 }
 
@@ -53,20 +57,25 @@ impl<S: Constant> DynArm<S> {
     #[must_use]
     pub fn new<const DOF: usize>(model: &Model<DOF, S>) -> Self {
         let Model { convention, gravity, base, tool, rows } = model;
-        Self::of_rows(*convention, *gravity, *base, *tool, rows.to_vec())
+        Self::of_table(Table { convention: *convention, rows, branches: &[], tool, tip_on: None }, *gravity, *base)
     }
 
-    fn of_rows(
-        convention: Convention,
-        gravity: [S; 3],
-        base: Transform<S>,
-        tool: Transform<S>,
-        rows: Vec<Row<S>>,
-    ) -> Self {
-        let links = (0..rows.len()).map(|index| LinkFrame::new(convention, &rows, index)).collect();
-        let tip = Mount::of_tip(convention, &rows, &tool);
-        let motors = vec![None; rows.len()];
-        Self { convention, gravity, base, tool, rows, links, tip, motors, rotors: false, at: None }
+    fn of_table(table: Table<'_, S>, gravity: [S; 3], base: Transform<S>) -> Self {
+        let Table { convention, rows, tool, tip_on, .. } = table;
+        Self {
+            convention,
+            gravity,
+            base,
+            tool: *tool,
+            rows: rows.to_vec(),
+            branches: (0..rows.len()).map(|joint| table.branch(joint).copied()).collect(),
+            tip_on,
+            links: (0..rows.len()).map(|index| LinkFrame::new(table, index)).collect(),
+            tip: Mount::of_tip(table),
+            motors: vec![None; rows.len()],
+            rotors: false,
+            at: None,
+        }
     }
 
     /// Returns this robot with other motors, base to tip; `None` for a joint without a motor.
@@ -291,9 +300,11 @@ impl<S: Constant> DynArm<S> {
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Counted, S> {
-        let Self { convention, gravity, base, tool, rows, links, tip, motors, rotors, at } = self;
-        let (per_joint, convention, rotors, at) = (Counted(rows.len()), *convention, *rotors, at.as_ref());
-        Mechanism { per_joint, chain: Chain { links, tip }, convention, rows, motors, rotors, gravity, base, tool, at }
+        let Self { convention, gravity, base, tool, rows, branches, tip_on, links, tip, motors, rotors, at } = self;
+        let table = Table { convention: *convention, rows, branches, tool, tip_on: *tip_on };
+        let chain = Chain { links, tip, tip_link: table.tip().on };
+        let (per_joint, rotors, at) = (Counted(rows.len()), *rotors, at.as_ref());
+        Mechanism { per_joint, chain, table, motors, rotors, gravity, base, at }
     }
 }
 
@@ -303,16 +314,13 @@ impl DynArm<f64> {
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
     pub fn to_f32(&self) -> DynArm<f32> {
-        let rows = self.rows.iter().map(|row| row.to_f32()).collect();
+        let rows: Vec<_> = self.rows.iter().map(|row| row.to_f32()).collect();
+        let branches: Vec<_> = self.branches.iter().map(|branch| branch.map(FixedFrame::to_f32)).collect();
         let motors = self.motors.iter().map(|motor| motor.map(Motor::to_f32)).collect();
-        let (base, tool) = (self.base.to_f32(), self.tool.to_f32());
+        let (convention, tool, tip_on) = (self.convention, &self.tool.to_f32(), self.tip_on);
         let (rotors, at) = (self.rotors, self.at.map(FixedFrame::to_f32));
-        DynArm {
-            motors,
-            rotors,
-            at,
-            ..DynArm::of_rows(self.convention, self.gravity.map(|x| x as f32), base, tool, rows)
-        }
+        let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on };
+        DynArm { motors, rotors, at, ..DynArm::of_table(table, self.gravity.map(|x| x as f32), self.base.to_f32()) }
     }
 }
 

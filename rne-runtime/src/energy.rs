@@ -48,7 +48,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let gravity = Vector3::from(*self.gravity).map(S::to::<T>);
         let links = self.placements(Placement::identity(), q);
         let mut sum = T::zero();
-        for (i, row) in self.rows.iter().enumerate() {
+        for (i, row) in self.table.rows.iter().enumerate() {
             sum += row.link.mass.to::<T>() * gravity.dot(&self.centre(i, links.as_ref()));
             if let Some(moment) = self.first_moment(i, links.as_ref()) {
                 sum += gravity.dot(&moment);

@@ -87,8 +87,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn placements<T: Scalar>(self, start: Placement<T>, q: &[T]) -> J::Of<Placement<T>> {
         let mut placements = self.per_joint.all(&start);
         for (i, link) in self.chain.links.iter().enumerate() {
-            let parent = link.parent.map_or(start, |parent| placements.as_ref()[parent]);
-            let row = Placement::of_row(self.convention, &self.rows[i], link, q[i]);
+            let parent = self.row_start(i, start, placements.as_ref());
+            let row = Placement::of_row(self.table.convention, &self.table.rows[i], link, q[i]);
             placements.as_mut()[i] = parent.then(&row);
         }
         placements
@@ -97,29 +97,33 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// The frame whose z axis is joint i: the parent's link frame in a standard table, the link's own in a modified
     /// one.
     pub(crate) fn joint_frame<T: Scalar>(self, i: usize, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
-        match (self.convention, self.chain.links[i].parent) {
-            (Convention::Modified, _) => links[i],
-            (Convention::Standard, Some(parent)) => links[parent],
-            (Convention::Standard, None) => start,
+        match self.table.convention {
+            Convention::Modified => links[i],
+            Convention::Standard => self.row_start(i, start, links),
         }
+    }
+
+    /// Where row i begins: at the parent's link frame, or at a placement there.
+    fn row_start<T: Scalar>(self, i: usize, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
+        let parent = self.chain.links[i].parent.map_or(start, |parent| links[parent]);
+        self.table.placement(i).map_or(parent, |placement| parent.then(&Placement::constant(placement)))
     }
 
     /// The centre of mass of link i.
     pub(crate) fn centre<T: Scalar>(self, i: usize, links: &[Placement<T>]) -> Vector3<T> {
         let Placement { rotation, translation } = links[i];
-        rotation * Vector3::from(self.rows[i].link.com).map(S::to) + translation
+        rotation * Vector3::from(self.table.rows[i].link.com).map(S::to) + translation
     }
 
     /// The first moment of link i beside its mass, in the axes in which the links are placed; `None` of a body.
     pub(crate) fn first_moment<T: Scalar>(self, i: usize, links: &[Placement<T>]) -> Option<Vector3<T>> {
         self.chain.links[i].first_moment?;
-        Some(links[i].rotation * Vector3::from(self.rows[i].link.first_moment).map(S::to))
+        Some(links[i].rotation * Vector3::from(self.table.rows[i].link.first_moment).map(S::to))
     }
 
     /// The frame that is observed: the tip, or the frame that stands in its place.
     fn observed(self) -> FixedFrame<S> {
-        let tip = || FixedFrame { on: self.rows.len().checked_sub(1), placement: *self.tool };
-        self.at.copied().unwrap_or_else(tip)
+        self.at.copied().unwrap_or_else(|| self.table.tip())
     }
 
     /// Returns the observed frame, after one of `links`.
@@ -163,7 +167,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             }
             let frame = self.joint_frame(i, base, links.as_ref());
             let axis = frame.rotation.column(2).into_owned();
-            match self.rows[i].kind {
+            match self.table.rows[i].kind {
                 JointKind::Revolute => (axis.cross(&(tip.translation - frame.translation)), axis),
                 JointKind::Prismatic => (axis, Vector3::zeros()),
             }
@@ -194,11 +198,12 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         for (i, (link, this)) in
             self.chain.links().zip(motions.as_ref()).enumerate().filter(|(i, _)| self.moves_tip(*i))
         {
-            let mount = match self.at {
-                Some(_) if frame.on == Some(i) => Mount::of_frame(self.convention, self.rows, &frame).to(),
-                _ => self.chain.mount_behind(i),
+            let towards = frame.on.and_then(|end| self.chain.mount_towards(end, i));
+            let at_end = || match self.at {
+                Some(frame) => Mount::of_frame(self.table.convention, self.table.rows, frame).to(),
+                None => self.chain.tip.to(),
             };
-            let span = link.span(q[i], &mount);
+            let span = link.span(q[i], &towards.unwrap_or_else(at_end));
             let centripetal = this.omega.cross(&this.omega.cross(&span));
             let rigid = (this.rotation.tr_mul(&linear) + this.omega_dot.cross(&span)) + centripetal;
             linear = link.kind.acceleration(rigid, &this.omega, qd[i], T::zero());
@@ -230,7 +235,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             }
             let frame = self.joint_frame(i, base, links.as_ref());
             let axis = frame.rotation.column(2).into_owned();
-            match self.rows[i].kind {
+            match self.table.rows[i].kind {
                 JointKind::Revolute => axis.dot(&((tip.translation - frame.translation).cross(&force) + moment)),
                 JointKind::Prismatic => axis.dot(&force),
             }

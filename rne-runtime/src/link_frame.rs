@@ -15,7 +15,7 @@
 //! joint, belong to that joint: [`Mount`].
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Angle, Convention, JointKind, QuarterTurns, Row, Transform, parent};
+use rne_model::{Angle, Convention, FixedFrame, JointKind, QuarterTurns, Row, Transform};
 
 use crate::joint::JointLaws;
 use crate::mount::Mount;
@@ -46,19 +46,60 @@ pub(crate) struct LinkFrame<S> {
     pub(crate) first_moment: Option<Vector3<S>>,
 }
 
+/// The rows of a robot, and where each begins, whatever owns them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Table<'a, S> {
+    pub(crate) convention: Convention,
+    pub(crate) rows: &'a [Row<S>],
+    /// Where a row begins, if not at the link frame of the row before; shorter than `rows` where no other row does.
+    pub(crate) branches: &'a [Option<FixedFrame<S>>],
+    /// Link frame → tip frame.
+    pub(crate) tool: &'a Transform<S>,
+    /// The link that carries the tip, if not the last one.
+    pub(crate) tip_on: Option<usize>,
+}
+
+impl<'a, S: Constant> Table<'a, S> {
+    /// Where a row begins, if not at the link frame of the row before.
+    pub(crate) fn branch(self, joint: usize) -> Option<&'a FixedFrame<S>> {
+        self.branches.get(joint)?.as_ref()
+    }
+
+    /// The link that carries a joint; `None` for the base.
+    pub(crate) fn parent(self, joint: usize) -> Option<usize> {
+        self.branch(joint).map_or(joint.checked_sub(1), |branch| branch.on)
+    }
+
+    /// Where a row begins in the link frame of its parent, if not there.
+    pub(crate) fn placement(self, joint: usize) -> Option<&'a Transform<S>> {
+        let placement = &self.branch(joint)?.placement;
+        let is_zero = |angle: &Angle<S>| angle.right == Some(QuarterTurns::Zero);
+        let is_nothing = placement.xyz == [S::zero(); 3] && placement.rpy.iter().all(is_zero);
+        (!is_nothing).then_some(placement)
+    }
+
+    /// The tip frame on its link.
+    pub(crate) fn tip(self) -> FixedFrame<S> {
+        FixedFrame { on: self.tip_on.or(self.rows.len().checked_sub(1)), placement: *self.tool }
+    }
+}
+
 /// All links of a robot, whatever owns them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chain<'a, S> {
     pub(crate) links: &'a [LinkFrame<S>],
-    /// Where the tip frame stands on the last link.
+    /// Where the tip frame stands on its link.
     pub(crate) tip: &'a Mount<S>,
+    /// The link that carries the tip; `None` without links.
+    pub(crate) tip_link: Option<usize>,
 }
 
 impl<S: Constant> LinkFrame<S> {
-    /// The link of `rows[index]`.
-    pub(crate) fn new(convention: Convention, rows: &[Row<S>], index: usize) -> Self {
+    /// The link of `table.rows[index]`.
+    pub(crate) fn new(table: Table<'_, S>, index: usize) -> Self {
+        let Table { convention, rows, .. } = table;
         let Row { kind, dh, link } = rows[index];
-        let mount = Mount::of_joint(convention, rows, index);
+        let mount = Mount::of_joint(table, index);
         let com = turned_com(convention, &rows[index]);
         let written_inertia = Matrix3::from(link.inertia.rows()).transpose();
         let (offset, inertia) = match convention {
@@ -68,7 +109,7 @@ impl<S: Constant> LinkFrame<S> {
             }
             Convention::Modified => (Vector3::new(S::zero(), S::zero(), dh.d), written_inertia),
         };
-        let (parent, d) = (parent(index), offset + com);
+        let (parent, d) = (table.parent(index), offset + com);
         let has_moment = link.first_moment.iter().any(|h| *h != S::zero());
         let first_moment = has_moment.then(|| turned(convention, &rows[index], link.first_moment));
         Self { kind, parent, mount, theta: dh.theta, offset, com, d, inertia, mass: link.mass, first_moment }
@@ -159,9 +200,18 @@ impl<'a, S: Constant> Chain<'a, S> {
         self.links.iter().map(|link| link.to())
     }
 
-    /// Returns the mount on a link that carries one joint or the tip.
+    /// The mount of what a link carries: of its first joint, or of the tip where it carries no joint.
     pub(crate) fn mount_behind<T: Scalar>(self, link: usize) -> Mount<T> {
         self.links.iter().find(|other| other.parent == Some(link)).map_or(self.tip, |child| &child.mount).to()
+    }
+
+    /// The mount of what a link carries on the way to a frame on `end`: of the joint there; `None` on `end` itself.
+    pub(crate) fn mount_towards<T: Scalar>(self, end: usize, link: usize) -> Option<Mount<T>> {
+        let mut joint = (end != link).then_some(end)?;
+        while self.links[joint].parent != Some(link) {
+            joint = self.links[joint].parent?;
+        }
+        Some(self.links[joint].mount.to())
     }
 }
 

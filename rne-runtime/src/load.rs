@@ -13,7 +13,7 @@ impl<const DOF: usize> Arm<DOF> {
     /// # Errors
     /// Everything that is wrong with the text, or that it describes another number of joints than `DOF`.
     pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
-        Ok(Self::from_robot(&Robot::from_yaml(text)?)?)
+        Ok(Self::from_robot(&of_text(text)?)?)
     }
 
     /// The robot of a robot file. A relative `path` starts at the working directory.
@@ -30,7 +30,8 @@ impl<const DOF: usize> Arm<DOF> {
     /// When the robot does not have `DOF` joints.
     pub fn from_robot(robot: &Robot) -> Result<Self, WrongJointCount> {
         let model = robot.model().ok_or(WrongJointCount { expected: DOF, found: robot.dof() })?;
-        let arm = Self::new(model).with_motors(array::from_fn(|joint| robot.joints[joint].motor));
+        let arm = Self::prepared(model, array::from_fn(|joint| robot.joints[joint].branch), robot.tip_on)
+            .with_motors(array::from_fn(|joint| robot.joints[joint].motor));
         Ok(if robot.rotors { arm.with_rotors() } else { arm })
     }
 }
@@ -41,7 +42,7 @@ impl DynArm {
     /// # Errors
     /// Everything that is wrong with the text.
     pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
-        Ok(Self::from_robot(&Robot::from_yaml(text)?))
+        Ok(Self::from_robot(&of_text(text)?))
     }
 
     /// The robot of a robot file. A relative `path` starts at the working directory.
@@ -56,5 +57,9 @@ impl DynArm {
 fn read(path: &Path) -> Result<Robot, LoadError> {
     let bytes = read_file(path);
     let bytes = bytes.map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
-    Ok(Reader::new(&path.display().to_string()).read(&bytes)?.robot)
+    Ok(Reader::new(&path.display().to_string()).trees().read(&bytes)?.robot)
+}
+
+fn of_text(text: &str) -> Result<Robot, LoadError> {
+    Ok(Reader::new("<yaml>").trees().read(text)?.robot)
 }

@@ -2,10 +2,10 @@
 //! on.
 
 use nalgebra::Vector3;
-use rne_model::{Convention, FixedFrame, Motor, Row, Transform};
+use rne_model::{FixedFrame, Motor, Transform};
 
 use crate::at_tip::AtTip;
-use crate::link_frame::Chain;
+use crate::link_frame::{Chain, Table};
 use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
@@ -16,14 +16,12 @@ use crate::{BaseMotion, Constant, Scalar};
 pub(crate) struct Mechanism<'a, J, S> {
     pub(crate) per_joint: J,
     pub(crate) chain: Chain<'a, S>,
-    pub(crate) convention: Convention,
-    pub(crate) rows: &'a [Row<S>],
+    pub(crate) table: Table<'a, S>,
     pub(crate) motors: &'a [Option<Motor<S>>],
     /// Whether rotors belong to the arm.
     pub(crate) rotors: bool,
     pub(crate) gravity: &'a [S; 3],
     pub(crate) base: &'a Transform<S>,
-    pub(crate) tool: &'a Transform<S>,
     /// The frame that kinematic functions are taken at instead of the tip.
     pub(crate) at: Option<&'a FixedFrame<S>>,
 }

@@ -128,11 +128,10 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let still = (LinkMotion::of_base(&base), Vector3::zeros());
         let e = Vector3::new(T::zero(), T::zero(), T::one());
         let mut carried = self.per_joint.all(&None);
-        let last = carried.as_mut().last_mut().zip(motions.last()).zip(velocities.last());
-        if let (Some(((of_last, motion), velocity)), Some(payload)) = (last, payload) {
+        if let (Some(link), Some(payload)) = (self.chain.tip_link, payload) {
             let tip = self.chain.tip.to::<T>();
-            let body = Body::of_payload(payload, motion, velocity, &tip);
-            *of_last = Some(carry(None, body.turned(&tip.rotation), &tip.r));
+            let body = Body::of_payload(payload, &motions[link], &velocities[link], &tip);
+            carried.as_mut()[link] = Some(carry(None, body.turned(&tip.rotation), &tip.r));
         }
         let [mut momentum, mut rate] = [self.zeros::<T>(), self.zeros::<T>()];
         for (i, link) in self.chain.links::<T>().enumerate().rev() {

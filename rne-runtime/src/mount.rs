@@ -8,13 +8,20 @@
 //! modified    Rx(α_i)           (a_i, 0, 0)         l_i - c̄_p                   R_t              p_t
 //! ```
 //!
-//! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On
-//! the base the rotation of a standard table is 1, and c̄_p = 0. R_t and p_t are the tool's.
+//! p is the parent link, n the link of the tip; row i of a modified table carries the twist and the length before joint
+//! i. On the base the rotation of a standard table is 1, and c̄_p = 0. R_t and p_t are the tool's.
+//!
+//! In a tree a row may begin at a placement R_b, p_b in the link frame of its parent. It then stands before the row:
+//!
+//! ```text
+//! standard    Rx(α_p) R_b       Rx(α_p) p_b
+//! modified    R_b Rx(α_i)       R_b (a_i, 0, 0) + p_b
+//! ```
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Convention, FixedFrame, Row, Transform, parent};
+use rne_model::{Convention, FixedFrame, Row};
 
-use crate::link_frame::{rotation_of, rotation_x, turned_com};
+use crate::link_frame::{Table, rotation_of, rotation_x, turned_com};
 use crate::{Constant, Scalar};
 
 /// Where a joint, or the tip frame, is mounted on its parent link.
@@ -30,22 +37,31 @@ pub(crate) struct Mount<S> {
 }
 
 impl<S: Constant> Mount<S> {
-    /// Returns the mount of the joint of `rows[joint]`.
-    pub(crate) fn of_joint(convention: Convention, rows: &[Row<S>], joint: usize) -> Self {
-        let (row, carrier) = (&rows[joint], parent(joint).map(|parent| &rows[parent]));
-        let (rotation, lever) = match convention {
-            Convention::Standard => {
-                let rotation = carrier.map_or_else(Matrix3::identity, |carrier| rotation_x(&carrier.dh.alpha));
-                (rotation, Vector3::zeros())
+    /// Returns the mount of the joint of `table.rows[joint]`.
+    pub(crate) fn of_joint(table: Table<'_, S>, joint: usize) -> Self {
+        let Table { convention, rows, .. } = table;
+        let (dh, carrier) = (&rows[joint].dh, table.parent(joint).map(|parent| &rows[parent]));
+        let length = Vector3::new(dh.a, S::zero(), S::zero());
+        let (rotation, lever) = match (table.placement(joint).map(|it| (rotation_of(it), it.xyz)), convention, carrier)
+        {
+            (None, Convention::Standard, None) => (Matrix3::identity(), Vector3::zeros()),
+            (None, Convention::Standard, Some(carrier)) => (rotation_x(&carrier.dh.alpha), Vector3::zeros()),
+            (None, Convention::Modified, _) => (rotation_x(&dh.alpha), length),
+            (Some((turn, xyz)), Convention::Standard, None) => (turn, xyz.into()),
+            (Some((turn, xyz)), Convention::Standard, Some(carrier)) => {
+                let twist = rotation_x(&carrier.dh.alpha);
+                (twist * turn, twist * Vector3::from(xyz))
             }
-            Convention::Modified => (rotation_x(&row.dh.alpha), Vector3::new(row.dh.a, S::zero(), S::zero())),
+            (Some((turn, xyz)), Convention::Modified, _) => {
+                (turn * rotation_x(&dh.alpha), turn * length + Vector3::from(xyz))
+            }
         };
         Self { rotation, lever, r: from_com(convention, carrier, lever) }
     }
 
-    /// Returns the mount of the tip frame, on the last link.
-    pub(crate) fn of_tip(convention: Convention, rows: &[Row<S>], tool: &Transform<S>) -> Self {
-        Self::of_frame(convention, rows, &FixedFrame { on: rows.len().checked_sub(1), placement: *tool })
+    /// Returns the mount of the tip frame.
+    pub(crate) fn of_tip(table: Table<'_, S>) -> Self {
+        Self::of_frame(table.convention, table.rows, &table.tip())
     }
 
     /// Returns the mount of a frame that is fixed to a link.

@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, Link, PER_LINK, Row};
 
 use crate::joint::JointLaws;
-use crate::link_frame::{Chain, LinkFrame, rotation_x};
+use crate::link_frame::{Chain, LinkFrame, Table, rotation_x};
 use crate::link_state::{ForceMoment, JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
@@ -33,11 +33,11 @@ const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2,
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn regressor<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> Square<J, [T; PER_LINK]> {
-        let rows = self.per_joint.of(|i| empty(&self.rows[i]));
-        let links = self.per_joint.of(|i| LinkFrame::new(self.convention, rows.as_ref(), i));
-        let tip = Mount::of_tip(self.convention, rows.as_ref(), self.tool);
-        let chain = Chain { links: links.as_ref(), tip: &tip };
-        let bare = Mechanism { chain, rows: rows.as_ref(), ..self };
+        let rows = self.per_joint.of(|i| empty(&self.table.rows[i]));
+        let table = Table { rows: rows.as_ref(), ..self.table };
+        let links = self.per_joint.of(|i| LinkFrame::new(table, i));
+        let chain = Chain { links: links.as_ref(), tip: &Mount::of_tip(table), ..self.chain };
+        let bare = Mechanism { chain, table, ..self };
         let motions = bare.motions(JointMotions::new(q, qd, qdd), &self.fixed_base());
         let motions = motions.as_ref();
 
@@ -50,7 +50,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             while let Some(i) = joint {
                 for (parameter, wrench) in wrenches.iter_mut().enumerate() {
                     wrench.moment += lever.cross(&wrench.force);
-                    matrix.as_mut()[i].as_mut()[j][parameter] = self.rows[i].kind.actuator(wrench);
+                    matrix.as_mut()[i].as_mut()[j][parameter] = self.table.rows[i].kind.actuator(wrench);
                     // In the axes of the parent.
                     let rotation = motions[i].rotation;
                     *wrench = ForceMoment { force: rotation * wrench.force, moment: rotation * wrench.moment };
@@ -68,8 +68,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
     /// Turns components in the axes of link frame `index` into those of form P.
     fn link_axes<T: Scalar>(self, index: usize) -> Matrix3<T> {
-        match self.convention {
-            Convention::Standard => rotation_x(&self.rows[index].dh.alpha).map(S::to),
+        match self.table.convention {
+            Convention::Standard => rotation_x(&self.table.rows[index].dh.alpha).map(S::to),
             Convention::Modified => Matrix3::identity(),
         }
     }

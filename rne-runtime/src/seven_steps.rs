@@ -174,18 +174,19 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
     }
 }
 
-/// The backward pass, steps 6 and 7, from the tip to the base: each link hands its wrench on to its parent. `tip` is
-/// what the last link exerts there.
+/// The backward pass, steps 6 and 7, from the ends to the base: each link hands its wrench on to its parent. `tip` is
+/// what the link of the tip exerts there.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     motions: &[LinkMotion<T>],
     tip: AtTip<'_, T>,
     loads: &mut [LinkLoad<T>],
 ) {
-    if let Some(last) = loads.last_mut() {
+    let at_tip = chain.tip_link.and_then(|link| Some((loads.get_mut(link)?, motions.get(link))));
+    if let Some((load, motion)) = at_tip {
         let mount = chain.tip.to();
-        let tip = tip.wrench(motions.last(), &mount);
-        last.carry(&mount.rotation, &mount.r, &tip);
+        let tip = tip.wrench(motion, &mount);
+        load.carry(&mount.rotation, &mount.r, &tip);
     }
     for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
         let inertia = inertia_wrench(&link, this);
@@ -203,6 +204,7 @@ mod tests {
     use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Row, Transform};
 
     use super::*;
+    use crate::link_frame::Table;
     use crate::mount::Mount;
 
     fn row(kind: JointKind, [a, d, alpha, mass]: [f64; 4]) -> Row {
@@ -213,7 +215,7 @@ mod tests {
 
     /// Torques of links by their parents, all moved by the same numbers.
     fn torques(links: &[LinkFrame<f64>], tip: &Mount<f64>) -> Vec<f64> {
-        let chain = Chain { links, tip };
+        let chain = Chain { links, tip, tip_link: links.len().checked_sub(1) };
         let all = |value: f64| vec![value; links.len()];
         let (q, qd, qdd) = (all(0.4), all(-1.3), all(2.1));
         let base = BaseMotion { omega: [0.1, -0.4, 0.2], ..BaseMotion::fixed([0.3, 1.0, -9.81]) };
@@ -231,8 +233,9 @@ mod tests {
         for convention in [Convention::Standard, Convention::Modified] {
             for kind in [JointKind::Revolute, JointKind::Prismatic] {
                 let rows = [row(JointKind::Revolute, [0.5, 0.2, 0.7, 3.0]), row(kind, [0.3, 0.1, -1.1, 2.0])];
-                let tip = Mount::of_tip(convention, &rows, &Transform::IDENTITY);
-                let [first, second] = [0, 1].map(|index| LinkFrame::new(convention, &rows, index));
+                let table = Table { convention, rows: &rows, branches: &[], tool: &Transform::IDENTITY, tip_on: None };
+                let tip = Mount::of_tip(table);
+                let [first, second] = [0, 1].map(|index| LinkFrame::new(table, index));
                 let (alone, chain) = (torques(&[first], &tip), torques(&[first, second], &tip));
                 // the third link is the second once more, on the same parent
                 let tree = torques(&[first, second, second], &tip);

@@ -13,16 +13,19 @@ use crate::{Constant, Scalar};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LinkTrace<T> {
+    /// The link that carries joint i, counted from 0; `None` for the base.
+    pub parent: Option<usize>,
     /// sin θ_i.
     pub sin: T,
     /// cos θ_i.
     pub cos: T,
-    /// Rows of R_i, which turns components in the axes of this entry into components in the axes of the entry before
-    /// (for the first: of frame 0).
+    /// Rows of R_i, which turns components in the axes of this entry into components in the axes of its parent (without
+    /// one: of frame 0).
     pub rotation: [[T; 3]; 3],
     /// d_i, from the joint's reference point J_i to the centre of mass, m.
     pub d: [T; 3],
-    /// r_i, from the centre of mass to J_{i+1} (for the last link: to the origin of the tip frame), m.
+    /// r_i, from the centre of mass to J_{i+1} (for the last link: to the origin of the tip frame), m. Of a link that
+    /// carries several joints, to the first of them.
     pub r: [T; 3],
     /// m_i, kg.
     pub mass: T,
@@ -45,7 +48,7 @@ pub struct LinkTrace<T> {
     /// Step 6: n_i = I_i ω̇_i + ω_i × I_i ω_i, about the centre of mass, N m.
     pub inertia_moment: [T; 3],
     /// Step 6: f_{i,i+1}, exerted by link i on link i+1 (by the last link at the tip), turned into the axes of this
-    /// entry, N.
+    /// entry, N. Of a link that carries several joints, this force and the next moment are sums.
     pub next_force: [T; 3],
     /// Step 6: n_{i,i+1}, exerted by link i on link i+1, about J_{i+1} (by the last link, about the origin of the tip
     /// frame), turned into the axes of this entry, N m.
@@ -96,6 +99,7 @@ impl<T: Scalar> LinkTrace<T> {
     pub(crate) fn empty() -> Self {
         let zero = [T::zero(); 3];
         Self {
+            parent: None,
             sin: T::zero(),
             cos: T::one(),
             rotation: rows(&Matrix3::identity()),
@@ -129,6 +133,7 @@ impl<T: Scalar> LinkTrace<T> {
     fn turned(&self, turn: &Matrix3<T>, rotation: &Matrix3<T>) -> Self {
         let turned = |x: [T; 3]| (turn * Vector3::from(x)).into();
         Self {
+            parent: self.parent,
             sin: self.sin,
             cos: self.cos,
             rotation: rows(rotation),
@@ -167,6 +172,7 @@ pub(crate) fn record<S: Constant, T: Scalar>(
         let angle = link.sin_cos(q);
         let next = load.carried.map_or_else(ForceMoment::zero, |carried| carried.wrench);
         *trace = LinkTrace {
+            parent: link.parent,
             sin: angle.0,
             cos: angle.1,
             rotation: rows(&motion.rotation),
@@ -193,21 +199,24 @@ pub(crate) fn record<S: Constant, T: Scalar>(
 
 /// Form P → the lecture's axes, link by link.
 pub(crate) fn turn_to_lecture<T: Scalar>(links: &mut [LinkTrace<T>]) {
-    let mut prev_turn = Matrix3::identity();
-    for link in links {
-        let turn = rotation_z((link.sin, link.cos));
-        let rotation = prev_turn * link.rotation_matrix() * turn.transpose();
-        *link = link.turned(&turn, &rotation);
-        prev_turn = turn;
+    let about_z = |link: &LinkTrace<T>| rotation_z((link.sin, link.cos));
+    for index in 0..links.len() {
+        let (link, turn) = (links[index], about_z(&links[index]));
+        let turn_of_parent = link.parent.map_or_else(Matrix3::identity, |parent| about_z(&links[parent]));
+        let rotation = turn_of_parent * link.rotation_matrix() * turn.transpose();
+        links[index] = link.turned(&turn, &rotation);
     }
 }
 
 /// Form P → the axes of frame 0.
 pub(crate) fn turn_to_base<T: Scalar>(links: &mut [LinkTrace<T>]) {
-    let mut turn = Matrix3::identity();
+    // a parent stands above what it carries, so its rotation is that from the base already
+    for index in 0..links.len() {
+        let of_parent = links[index].parent.map_or_else(Matrix3::identity, |parent| links[parent].rotation_matrix());
+        links[index].rotation = rows(&(of_parent * links[index].rotation_matrix()));
+    }
     for link in links {
-        turn *= link.rotation_matrix();
-        *link = link.turned(&turn, &Matrix3::identity());
+        *link = link.turned(&link.rotation_matrix(), &Matrix3::identity());
     }
 }
 

@@ -141,7 +141,7 @@ pub(crate) fn error(
 }
 
 /// Compares all functions of an arm at random states.
-fn compare_at_states(arm: &Arm, maker: Maker, worst: &mut Worst) {
+pub(crate) fn compare_at_states(arm: &Arm, maker: Maker, worst: &mut Worst) {
     let mut rng = Rng::with_seed(19);
     let states = if shipped::is_exhaustive() { 8 } else { 5 };
     for _ in 0..states {

@@ -32,4 +32,6 @@ mod rotors;
 mod single_precision;
 #[path = "../c_code/states.rs"]
 mod states;
+mod tree_oracle;
+mod trees;
 mod wrenches;

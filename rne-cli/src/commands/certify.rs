@@ -23,7 +23,7 @@ use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::{self, Compiler};
-use crate::files::robot_file::{self, Frames};
+use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
@@ -259,7 +259,7 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
 
 /// The certificate, and a remark where the robot file has warnings.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Chain)?;
     let robot = arguments.rotors.of(checked.robot);
     let program = Compiler::new(&arguments.file, &robot).compile(arguments.program(), arguments.form)?;
     let call = call(arguments, &robot, &program)?;

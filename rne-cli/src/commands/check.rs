@@ -9,7 +9,7 @@ use rne_model::{Checked, Robot, golden_of, misnamed_golden_of, plan_of, robot_of
 
 use crate::files::plan_file;
 use crate::files::plan_file::Compiler;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome, rendered};
 use crate::palette::{GOOD, QUIET, WARNING};
 use crate::render::heading::about;
@@ -105,7 +105,7 @@ struct Good {
 
 /// A robot file, and its plan with it, unless that is among the files to be checked itself.
 fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
-    let Checked { robot, lints, .. } = robot_file::read(path)?;
+    let Checked { robot, lints, .. } = robot_file::read(path, Shape::Tree)?;
     if !arguments.files.contains(&plan_of(path))
         && let Some(read) = plan_file::read(path, &robot)?
     {
@@ -155,7 +155,7 @@ fn misnamed_golden(path: &Path) -> Option<String> {
 
 /// Whether a plan belongs to its robot and gives what the seven steps give; what it costs.
 fn plan(robot_file: &Path) -> Result<Good, Failure> {
-    let robot = robot_file::robot(robot_file)?;
+    let robot = robot_file::robot(robot_file, Shape::Tree)?;
     let Some(read) = plan_file::read(robot_file, &robot)? else {
         return Err(Failure::input(format_args!("there is no plan {}", plan_of(robot_file).display())));
     };

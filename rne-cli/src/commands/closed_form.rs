@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use rne_model::Robot;
 use rne_symbolic::{ClosedForm, LatexStyle};
 
-use crate::files::robot_file::{self, Frames};
+use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{TITLE, TYPED};
 use crate::render::letters::Letters;
@@ -65,7 +65,7 @@ impl Wanted {
         letters: Letters,
         of: impl FnOnce(Robot) -> Robot,
     ) -> Result<Outcome, Failure> {
-        let (checked, bytes) = robot_file::read_with_run_time(file, &[], Frames::Dropped)?;
+        let (checked, bytes) = robot_file::read_with_run_time(file, &[], Frames::Dropped, Shape::Chain)?;
         let joints = match self.first {
             Some(joint) if joint == 0 || joint > checked.robot.dof() => {
                 let (name, dof) = (&checked.robot.name, checked.robot.dof());

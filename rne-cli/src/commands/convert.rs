@@ -9,7 +9,7 @@ use rne_model::Convention;
 
 use crate::files::file_name::Format;
 use crate::files::output_file::Output;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::QUIET;
 use crate::render::heading::rounding;
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
     let Converted { text, rounding: difference, remarks, .. } =
         rne_convert::convert(&robot, arguments.convention).map_err(|report| Failure::from(&report))?;
     let mut remark = String::new();

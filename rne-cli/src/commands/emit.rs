@@ -14,7 +14,7 @@ use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::Compiler;
-use crate::files::robot_file::{self, Frames};
+use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
@@ -175,7 +175,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
     let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf, Shape::Tree)?;
     let robot = arguments.rotors.of(checked.robot);
     let mut outcome = emitted(arguments, &robot, &bytes, out, header)?;
     outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);

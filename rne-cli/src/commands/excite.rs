@@ -20,7 +20,7 @@ use crate::files::interruption;
 use crate::files::output_file::{
     self, Replacement, check_new, check_picture, is_standard_output, unwritable, will_be_same,
 };
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, WARNING};
 use crate::remedy;
@@ -104,7 +104,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.carried.of(robot_file::robot(&arguments.file)?)?;
+    let robot = arguments.carried.of(robot_file::robot(&arguments.file, Shape::Chain)?)?;
     if arguments.seconds * arguments.rate > MOST {
         return Err(Failure::usage(format_args!(
             "{} s at {} Hz are more than {MOST} samples; use a lower --rate",

@@ -11,7 +11,7 @@ use rne_inspection::Inspection;
 use rne_model::did_you_mean;
 
 use crate::files::plan_file;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::TYPED;
 use crate::render::equations;
@@ -101,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// Explains a name in the code of a robot.
 fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> {
     let (name, function, form) = (&arguments.topic, arguments.function, arguments.form);
-    let robot = robot_file::robot(path).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
+    let robot = robot_file::robot(path, Shape::Tree).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
     let program = match form {
         Form::SevenSteps => Compiler::new(&robot)
             .with_equations()

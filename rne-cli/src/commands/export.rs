@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::files::file_name::Format;
 use crate::files::output_file::Output;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 
 /// Convert a robot file to a URDF, for other programs
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
     let exported = rne_convert::export(&robot)
         .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
     let mut remark = String::new();

@@ -14,7 +14,7 @@ use rne_model::{Robot, plan_of};
 use crate::files::output_file::unwritable;
 use crate::files::output_folder;
 use crate::files::plan_file::{self, Compiler};
-use crate::files::robot_file::{self, Frames};
+use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 
@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     output_folder::is_free(&folder, "a firmware")?;
     let dependency = dependency(arguments.rne_path.as_deref())?;
     let robot_file = robot_of(arguments);
-    let (checked, bytes) = robot_file::read_with_run_time(&robot_file, &[], Frames::Dropped)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&robot_file, &[], Frames::Dropped, Shape::Chain)?;
     let robot = checked.robot;
     let yaml = String::from_utf8(bytes).map_err(|error| Failure::input(error.utf8_error()))?;
     let plan = plan_file::read(&robot_file, &robot)?.map(|read| read.text);

@@ -17,7 +17,7 @@ use crate::files::motion_log::MotionLog;
 use crate::files::output_file::{
     self, check_file, check_new_place, check_picture, check_place, is_standard_output, will_be_same,
 };
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{TITLE, TYPED, WARNING};
 use crate::render::identification_reply::{Extent, Reply};
@@ -93,7 +93,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
     // a file is judged by all that the log has
     let purpose = if arguments.judge { Purpose::Judge } else { Purpose::Fit };
     let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading, purpose)?;

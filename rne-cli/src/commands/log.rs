@@ -15,7 +15,7 @@ use crate::files::motion_file::{self, Manner, Stopped, Written};
 use crate::files::motion_log;
 use crate::files::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::files::reading;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, TYPED};
 use crate::render::layout::{PAGE, wrap};
@@ -67,7 +67,7 @@ impl Arguments {
     /// Opens and surveys the log, by the joints of the robot where there is one.
     fn describe(&self, mut options: Options, is_result_shown: bool) -> Result<Described, Failure> {
         let mut matched = None;
-        let robot = self.robot.as_deref().map(robot_file::robot).transpose()?;
+        let robot = self.robot.as_deref().map(|path| robot_file::robot(path, Shape::Chain)).transpose()?;
         if let Some(robot) = &robot {
             (options, matched) =
                 joint_options(&self.files, robot, options).map_err(|error| motion_log::failure(&error))?;

@@ -13,7 +13,7 @@ use crate::commands::eval::DIGITS_BY_HAND;
 use crate::commands::worksheet::numbers_of;
 use crate::files::class_states::{Chosen, ClassStates};
 use crate::files::input_file::is_standard_input;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::files::worksheet_file::{self, Filled};
 use crate::outcome::{Failure, Outcome};
 use crate::render::marks::{self, Mark, Marked};
@@ -74,7 +74,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
     let states = arguments.states.read(&robot)?;
     let is_key = |path: &&PathBuf| arguments.states.states.as_deref().is_some_and(|key| key == path.as_path());
     let paths: Vec<&PathBuf> = arguments.worksheets.iter().filter(|path| !is_key(path)).collect();

@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::files::chosen_arm::Rotors;
 use crate::files::plan_file;
 use crate::files::plan_file::Compiler;
+use crate::files::robot_file::Shape;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE};
 use crate::render::layout::{Align, columns, width, wrap};
@@ -85,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut savings = String::new();
     let mut failures: Vec<Failure> = Vec::new();
     for path in plan_file::robots(&arguments.files) {
-        let outcome = arguments.rotors.robot(path).and_then(|robot| {
+        let outcome = arguments.rotors.robot(path, Shape::Tree).and_then(|robot| {
             let compiler = Compiler::new(path, &robot).without(&arguments.without);
             if arguments.tricks {
                 savings.push_str(&tricks(&robot, compiler.plans()?, terminal::room()));

@@ -9,6 +9,7 @@ use crate::files::chosen_arm::{Carried, Rotors};
 use crate::files::file_name::Format;
 use crate::files::output_file::Output;
 use crate::files::plan_file::Compiler;
+use crate::files::robot_file::Shape;
 use crate::outcome::{Failure, Outcome};
 
 /// Write an HTML page with an arm, its equations and its torques
@@ -40,7 +41,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.carried.of(arguments.rotors.robot(&arguments.file)?)?;
+    let robot = arguments.carried.of(arguments.rotors.robot(&arguments.file, Shape::Chain)?)?;
     let compiler = match arguments.carried.payload {
         Some(_) => Compiler::without_file(&arguments.file, &robot),
         None => Compiler::new(&arguments.file, &robot),

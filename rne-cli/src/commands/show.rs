@@ -13,6 +13,7 @@ use rne_model::Robot;
 use crate::commands::closed_form::Wanted;
 use crate::files::chosen_arm::Rotors;
 use crate::files::plan_file::Compiler;
+use crate::files::robot_file::Shape;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TYPED, WARNING};
 use crate::render::base_parameters;
@@ -89,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return arguments.closed_form.run(&arguments.file, letters, |robot| arguments.rotors.of(robot));
     }
     let file = arguments.file.display().to_string();
-    let robot = arguments.rotors.robot(&arguments.file)?;
+    let robot = arguments.rotors.robot(&arguments.file, Shape::Tree)?;
     if arguments.base_parameters {
         let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
         return Ok(Outcome::text(letters.page(&text, PAGE)));

@@ -14,7 +14,7 @@ use crate::files::file_name::Format;
 use crate::files::motion_log::{MotionLog, watch_failure};
 use crate::files::output_file;
 use crate::files::reading;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED, WARNING};
 use crate::render::layout::{PAGE, wrap};
@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let inputs = arguments.logs.iter().chain(&arguments.quiet).chain(&arguments.baseline).chain([&arguments.file]);
     let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
     let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
     let mut remark = String::new();
     let known = known_baseline(arguments, &robot, &settings, &sources, &mut remark)?;

@@ -12,7 +12,7 @@ use crate::files::csv_table::quoted;
 use crate::files::input_file;
 use crate::files::output_file::unwritable;
 use crate::files::output_folder;
-use crate::files::robot_file;
+use crate::files::robot_file::{self, Shape};
 use crate::files::worksheet_text;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::GOOD;
@@ -71,7 +71,7 @@ pub(crate) fn numbers_of(steps: &[Step]) -> Vec<u8> {
 const LONGEST: usize = 1 << 20;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
     let states = arguments.states.read(&robot)?;
     let students = students(arguments, states.students())?;
     output_folder::is_free(&arguments.out, "a set of worksheets")?;

@@ -8,7 +8,7 @@ use rne::Payload;
 use rne_codegen::Function;
 use rne_model::Robot;
 
-use crate::files::robot_file::{self, Frames};
+use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 use crate::values::numbers::List;
@@ -24,8 +24,8 @@ pub(crate) struct Rotors {
 
 impl Rotors {
     /// The robot of a file.
-    pub(crate) fn robot(self, path: &Path) -> Result<Robot, Failure> {
-        Ok(self.of(robot_file::robot(path)?))
+    pub(crate) fn robot(self, path: &Path, shape: Shape) -> Result<Robot, Failure> {
+        Ok(self.of(robot_file::robot(path, shape)?))
     }
 
     /// A robot that has been read.
@@ -141,15 +141,15 @@ impl ChosenArm {
 
     /// The robot without the payload.
     pub(crate) fn robot(&self) -> Result<Robot, Failure> {
-        self.read(Frames::Dropped)
+        self.read(Frames::Dropped, Shape::Chain)
     }
 
     /// The robot without the payload, seen from a frame.
     pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<Robot, Failure> {
-        at.of(self.read(if at.frame.is_some() { Frames::Kept } else { Frames::Dropped })?)
+        at.of(self.read(if at.frame.is_some() { Frames::Kept } else { Frames::Dropped }, Shape::Tree)?)
     }
 
-    fn read(&self, frames: Frames) -> Result<Robot, Failure> {
+    fn read(&self, frames: Frames, shape: Shape) -> Result<Robot, Failure> {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
@@ -157,17 +157,17 @@ impl ChosenArm {
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
-        Ok(self.rotors.of(with_settings(&self.file, &self.set, frames)?))
+        Ok(self.rotors.of(with_settings(&self.file, &self.set, frames, shape)?))
     }
 }
 
 /// The robot of a file with other values of its parameters.
-fn with_settings(path: &Path, settings: &[Setting], frames: Frames) -> Result<Robot, Failure> {
+fn with_settings(path: &Path, settings: &[Setting], frames: Frames, shape: Shape) -> Result<Robot, Failure> {
     for (index, Setting { name, .. }) in settings.iter().enumerate() {
         if settings[..index].iter().any(|other| other.name == *name) {
             return Err(Failure::usage(format_args!("--set gives {name} twice")));
         }
     }
     let settings: Vec<(&str, f64)> = settings.iter().map(|Setting { name, value }| (name.as_str(), *value)).collect();
-    Ok(robot_file::read_with(path, &settings, frames)?.robot)
+    Ok(robot_file::read_with(path, &settings, frames, shape)?.robot)
 }

@@ -10,9 +10,18 @@ use crate::outcome::Failure;
 use crate::palette::{TITLE, TYPED};
 use crate::terminal::remark;
 
+/// The robots that a command takes.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Shape {
+    /// Serial arms. A tree is refused at its line.
+    Chain,
+    /// Serial arms and trees.
+    Tree,
+}
+
 /// A valid robot with its lints. The path `-` is standard input.
-pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
-    read_with(path, &[], Frames::Dropped)
+pub(crate) fn read(path: &Path, shape: Shape) -> Result<Checked, Failure> {
+    read_with(path, &[], Frames::Dropped, shape)
 }
 
 /// The links of a URDF as named frames. A robot file has the frames of its list in any case.
@@ -24,26 +33,39 @@ pub(crate) enum Frames {
 }
 
 /// Reads a robot file with other values of its parameters.
-pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)], frames: Frames) -> Result<Checked, Failure> {
-    Ok(read_by(path, settings, &[], frames)?.0)
+pub(crate) fn read_with(
+    path: &Path,
+    settings: &[(&str, f64)],
+    frames: Frames,
+    shape: Shape,
+) -> Result<Checked, Failure> {
+    Ok(read_by(path, (settings, &[]), frames, shape)?.0)
 }
 
 /// A valid robot some of whose parameters stay free until run time, and the bytes of its file.
-pub(crate) fn read_with_run_time(path: &Path, names: &[&str], frames: Frames) -> Result<(Checked, Vec<u8>), Failure> {
-    read_by(path, &[], names, frames)
+pub(crate) fn read_with_run_time(
+    path: &Path,
+    names: &[&str],
+    frames: Frames,
+    shape: Shape,
+) -> Result<(Checked, Vec<u8>), Failure> {
+    read_by(path, (&[], names), frames, shape)
 }
+
+/// Other values of parameters, and the parameters that stay free until run time.
+type Parameters<'a> = (&'a [(&'a str, f64)], &'a [&'a str]);
 
 fn read_by(
     path: &Path,
-    settings: &[(&str, f64)],
-    run_time: &[&str],
+    parameters: Parameters<'_>,
     frames: Frames,
+    shape: Shape,
 ) -> Result<(Checked, Vec<u8>), Failure> {
     let (name, bytes) = match open(path)? {
         Opened::RobotFile(name, bytes) => (name, bytes),
         Opened::Urdf(name, text) => (format!("{name} (imported)"), imported(&name, &text, frames)?.into_bytes()),
     };
-    let checked = checked(&name, &bytes, settings, run_time)?;
+    let checked = checked(&name, &bytes, parameters, shape)?;
     Ok((checked, bytes))
 }
 
@@ -91,13 +113,14 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
     Ok(imported.text.clone())
 }
 
-fn checked(name: &str, bytes: &[u8], settings: &[(&str, f64)], run_time: &[&str]) -> Result<Checked, Failure> {
-    let reader = Reader::new(name).run_time(run_time);
+fn checked(name: &str, bytes: &[u8], (settings, run_time): Parameters<'_>, shape: Shape) -> Result<Checked, Failure> {
+    let plain = || if shape == Shape::Tree { Reader::new(name).trees() } else { Reader::new(name) };
+    let reader = plain().run_time(run_time);
     let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));
     reader.read(bytes).map_err(|report| {
         // the file is at fault, unless it is in order by itself and has no such parameter
         let names: Vec<&str> = settings.iter().map(|(parameter, _)| *parameter).chain(run_time.to_vec()).collect();
-        let alone = if names.is_empty() { None } else { Reader::new(name).read(bytes).ok() };
+        let alone = if names.is_empty() { None } else { plain().read(bytes).ok() };
         let has = |alone: &Checked, name: &str| alone.robot.parameters.iter().any(|(known, _)| known == name);
         match alone {
             Some(alone) if !names.iter().all(|name| has(&alone, name)) => Failure::unknown_name(&report),
@@ -135,8 +158,8 @@ pub(crate) fn lint_remark(lints: &Report, path: &Path) -> String {
 }
 
 /// A valid robot. `rne check` prints its lints; `rne emit` and `rne certify` count its warnings; others say nothing.
-pub(crate) fn robot(path: &Path) -> Result<Robot, Failure> {
-    Ok(read(path)?.robot)
+pub(crate) fn robot(path: &Path, shape: Shape) -> Result<Robot, Failure> {
+    Ok(read(path, shape)?.robot)
 }
 
 /// A valid robot of a robot file, for commands that write a file beside it. A URDF is refused with the command that
@@ -146,7 +169,7 @@ pub(crate) fn robot_in_yaml(path: &Path) -> Result<Robot, Failure> {
         Opened::RobotFile(name, bytes) => (name, bytes),
         Opened::Urdf(name, text) => (name, text.into_bytes()),
     };
-    Ok(checked(&name, &bytes, &[], &[])?.robot)
+    Ok(checked(&name, &bytes, (&[], &[]), Shape::Tree)?.robot)
 }
 
 /// A path as a shell reads it back.

@@ -306,3 +306,21 @@ fn base_parameters_that_no_double_can_see_are_marked() {
     let text = fine(&["show", "puma560", "--base-parameters"]);
     assert!(!text.contains("double precision") && !text.lines().any(|line| line.starts_with('?')), "{text}");
 }
+
+/// The table names the link that carries each joint, and formulas name all that a link carries.
+#[test]
+fn a_tree_is_shown_by_its_branches() {
+    insta::assert_snapshot!("a_tree", fine(&["show", "docs/tree.yaml", "--joint", "1", "--step", "6"]));
+    let reduced = fine(&["show", "docs/tree.yaml", "--form", "reduced", "--joint", "5"]);
+    assert!(reduced.contains("// ω5 = R5ᵀ ω1 + q̇5 z") && !reduced.contains("ω4"), "{reduced}");
+    let explained = fine(&["explain", "f0_1_x", "docs/tree.yaml"]);
+    assert!(explained.contains("fc1_x_5 + fc1_x"), "{explained}");
+}
+
+#[test]
+fn commands_that_take_serial_arms_refuse_a_tree_at_its_line() {
+    for command in [&["plot"][..], &["identify", "motion.csv"], &["export", "--urdf"], &["certify"]] {
+        let arguments = [&command[..1], &["docs/tree.yaml"], &command[1..]].concat();
+        fails(1, &arguments, &["docs/tree.yaml:14:13", "the robot is a tree", "docs/robot-file.md"]);
+    }
+}

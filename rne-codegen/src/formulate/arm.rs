@@ -9,10 +9,19 @@
 //! modified    Rx(α_i)    (a_i, 0, 0)    l_i - c̄_p            R_t                    p_t
 //! ```
 //!
-//! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On
-//! the base the rotation of a standard table is 1. R_t and p_t are the tool's.
+//! p is the parent link, n the link of the tip; row i of a modified table carries the twist and the length before joint
+//! i. On the base the rotation of a standard table is 1. R_t and p_t are the tool's.
+//!
+//! In a tree a row may begin at a placement R_b, p_b in the link frame of its parent. It then stands before the row:
+//!
+//! ```text
+//! standard    Rx(α_p) R_b       Rx(α_p) p_b
+//! modified    R_b Rx(α_i)       R_b (a_i, 0, 0) + p_b
+//! ```
 
-use rne_model::{Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, Robot, Transform};
+use rne_model::{
+    Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, QuarterTurns, Robot, Transform,
+};
 
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
@@ -25,6 +34,8 @@ pub(crate) struct Mount<'s> {
     pub(crate) r: Vector<'s>,
     /// To the same point from the end of the parent's offset, where the link frame of the table stands.
     pub(crate) lever: Vector<'s>,
+    /// Tells it from the other things that the parent carries; 0 for the first of them.
+    pub(crate) label: usize,
 }
 
 /// The constants of one link and of the joint that moves it.
@@ -72,10 +83,8 @@ impl<'s> Arm<'s> {
         let zero = || builder.constant(0.0, Cause::Arithmetic);
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
         let frame = builder.function.frame(robot);
-        let FixedFrame { on: tip_link, placement } = frame.map_or_else(
-            || FixedFrame { on: dof.checked_sub(1), placement: robot.tool },
-            |frame| robot.fixed_frame(frame),
-        );
+        let FixedFrame { on: tip_link, placement } =
+            frame.map_or_else(|| robot.tip(), |frame| robot.fixed_frame(frame));
         let tool = Placement::new(builder, robot, &placement, |axis| match frame {
             Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
             // the placement of a link frame is no entry, and zero
@@ -86,14 +95,23 @@ impl<'s> Arm<'s> {
         let mut links: Vec<Link<'s>> = Vec::with_capacity(dof);
         for (index, row) in robot.rows().enumerate() {
             let (joint, parent) = (index + 1, robot.parent(index));
-            let (rotation, lever) = match (robot.convention, parent) {
-                (Convention::Standard, None) => (identity(builder), builder.zeros(Cause::FirstFrame)),
-                (Convention::Standard, Some(parent)) => (twists[parent], builder.zeros(Cause::Arithmetic)),
-                (Convention::Modified, _) => {
-                    (twists[index], Vector([number(Entry::A(index), row.dh.a), zero(), zero()]))
+            let length = || Vector([number(Entry::A(index), row.dh.a), zero(), zero()]);
+            let (rotation, lever) = match (beginning(builder, robot, index), robot.convention, parent) {
+                (None, Convention::Standard, None) => (identity(builder), builder.zeros(Cause::FirstFrame)),
+                (None, Convention::Standard, Some(parent)) => (twists[parent], builder.zeros(Cause::Arithmetic)),
+                (None, Convention::Modified, _) => (twists[index], length()),
+                (Some(it), Convention::Standard, None) => (it.rotation, it.translation),
+                (Some(it), Convention::Standard, Some(parent)) => {
+                    (twists[parent] * it.rotation, twists[parent] * it.translation)
+                }
+                (Some(it), Convention::Modified, _) => {
+                    (it.rotation * twists[index], it.rotation * length() + it.translation)
                 }
             };
-            let mount = Mount { rotation, r: from_com(builder, &links, parent, lever), lever };
+            let is_first = links.iter().all(|link| link.parent != parent);
+            let label = if is_first { 0 } else { joint };
+            let r = from_com(builder, &links, parent, (label, lever));
+            let mount = Mount { rotation, r, lever, label };
             let com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
             let inertia = inertia(builder, robot, index);
             // in a standard table, the twist after joint i is in row i
@@ -129,16 +147,18 @@ impl<'s> Arm<'s> {
             (Convention::Standard, Some(&twist)) => (twist * tool.rotation, twist * tool.translation),
             _ => (tool.rotation, tool.translation),
         };
+        let is_first = links.iter().all(|link| link.parent != tip_link);
+        let label = if is_first { 0 } else { dof + 1 };
         // a frame carries no load, and its link has a lever to the next joint already
         let r = match frame {
             Some(_) => builder.zeros(Cause::FreeTip),
-            None => from_com(builder, &links, tip_link, lever),
+            None => from_com(builder, &links, tip_link, (label, lever)),
         };
         let rotation = builder.name_matrix(Quantity::TipRotation, dof + 1, rotation);
         Self {
             builder,
             links,
-            tip: Mount { rotation, r, lever },
+            tip: Mount { rotation, r, lever, label },
             tip_link,
             gravity: gravity(builder, robot),
             base: Placement::new(builder, robot, &robot.base, Entry::BaseXyz),
@@ -147,8 +167,17 @@ impl<'s> Arm<'s> {
 
     /// The mount of what a link carries on the way to the tip: the next joint, or the tip.
     pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
-        let next = self.links.iter().find(|link| link.parent == Some(index) && self.tip_link != Some(index));
-        next.map_or(&self.tip, |link| &link.mount)
+        self.carried_joints(index).find(|(joint, _)| self.moves_tip(*joint)).map_or(&self.tip, |(_, link)| &link.mount)
+    }
+
+    /// The joints that a link carries, counted from 0.
+    pub(crate) fn carried_joints(&self, index: usize) -> impl Iterator<Item = (usize, &Link<'s>)> {
+        self.links.iter().enumerate().filter(move |(_, link)| link.parent == Some(index))
+    }
+
+    /// The element that belongs to the link of the tip.
+    pub(crate) fn at_tip<'a, T>(&self, of_links: &'a [T]) -> Option<&'a T> {
+        of_links.get(self.tip_link?)
     }
 
     /// Whether a joint moves the tip frame: it is the joint of its link, or of a link that carries this one.
@@ -164,10 +193,26 @@ impl<'s> Arm<'s> {
     }
 }
 
+/// Where a row of a tree begins in the link frame of its parent, if not there. Run-time parameters do not change it.
+fn beginning<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Placement<'s>> {
+    let placement = robot.joints.get(index)?.branch?.placement;
+    let is_zero = |angle: &Angle| angle.right == Some(QuarterTurns::Zero);
+    let is_nothing = placement.xyz == [0.0; 3] && placement.rpy.iter().all(is_zero);
+    (!is_nothing).then(|| Placement::constant(builder, &placement))
+}
+
 /// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever.
-fn from_com<'s>(builder: &'s Builder, links: &[Link<'s>], parent: Option<usize>, lever: Vector<'s>) -> Vector<'s> {
+fn from_com<'s>(
+    builder: &'s Builder,
+    links: &[Link<'s>],
+    parent: Option<usize>,
+    (label, lever): (usize, Vector<'s>),
+) -> Vector<'s> {
     match parent {
-        Some(parent) => builder.name_vector(Quantity::R, parent + 1, lever - links[parent].com),
+        Some(parent) => {
+            let line = builder.joint(parent + 1).carrying(label);
+            line.name_vector(Quantity::R, lever - links[parent].com)
+        }
         None if builder.function.takes(Argument::Base) => lever,
         None => builder.zeros(Cause::FixedBase),
     }
@@ -193,6 +238,12 @@ impl<'s> Placement<'s> {
     /// R = (Rz(yaw) Ry(pitch)) Rx(roll); `xyz` are the entries of the translation.
     fn new(builder: &'s Builder, robot: &Robot, transform: &Transform, xyz: impl Fn(usize) -> Entry) -> Self {
         let translation = [0, 1, 2].map(|axis| number(builder, robot, xyz(axis), transform.xyz[axis]));
+        Self { translation: Vector(translation), ..Self::constant(builder, transform) }
+    }
+
+    /// With a constant translation.
+    fn constant(builder: &'s Builder, transform: &Transform) -> Self {
+        let translation = transform.xyz.map(|x| builder.constant(x, Cause::Arithmetic));
         let [roll, pitch, yaw] = transform.rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
         let turn = |axis, turn| turned(builder, axis, turn, Cause::Arithmetic);
         let rotation = (turn(Axis::Z, yaw) * turn(Axis::Y, pitch)) * turn(Axis::X, roll);

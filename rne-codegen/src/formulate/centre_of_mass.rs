@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! c = Σ μ_i c_i                                     c_i from the base, in world axes; then from the world's origin
-//! column j of J     z_j × Σ_{i≥j} μ_i (c_i - p_j)   revolute: z_j × (s_j - w_j p_j)
-//!                   z_j Σ_{i≥j} μ_i                 prismatic: w_j z_j
-//! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j    from the tip to the base
+//! column j of J     z_j × Σ μ_i (c_i - p_j)         revolute: z_j × (s_j - w_j p_j); i: link j and all that it carries
+//!                   z_j Σ μ_i                       prismatic: w_j z_j
+//! s_j = Σ s_k + μ_j c_j,   w_j = Σ w_k + μ_j        from the ends to the base; k: joints that link j carries
 //! ```
 //!
 //! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
@@ -43,15 +43,21 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
         Err(infinite) => return vec![Vector([infinite; 3]); arm.links.len()],
     };
     let links = links(builder, frames, centres);
-    let mut moment = builder.zeros(Cause::Arithmetic);
-    let mut part = builder.constant(0.0, Cause::Arithmetic);
+    // of what each link carries
+    let nothing = (builder.zeros(Cause::Arithmetic), builder.constant(0.0, Cause::Arithmetic));
+    let mut carried = vec![None; links.len()];
     let mut columns = Vec::with_capacity(links.len());
     for (index, link) in arm.links.iter().enumerate().rev() {
         let (line, frame) = (builder.joint(index + 1), &frames.joints[index]);
         let axis = frame.axis();
         let column = line.within(Quantity::JacobianLinear, || {
-            moment = moment + with_first_moment(arm, frames, index, links[index] * parts[index], inverse);
-            part = part + parts[index];
+            let (moment, part) = carried[index].unwrap_or(nothing);
+            let moment = moment + with_first_moment(arm, frames, index, links[index] * parts[index], inverse);
+            let part = part + parts[index];
+            if let Some(parent) = link.parent {
+                let with_others = |(others, parts)| (others + moment, parts + part);
+                carried[parent] = Some(carried[parent].map_or((moment, part), with_others));
+            }
             match link.kind {
                 Revolute => axis.cross(moment - frame.origin * part),
                 Prismatic => axis * part,

@@ -112,16 +112,16 @@ pub(crate) fn tip_acceleration<'s>(arm: &Arm<'s>, states: &[JointState<'s>], bas
             let rigid = rotation.transpose() * point + omega_dot.cross(span) + omega.cross(omega.cross(span));
             joint.unaccelerated(rigid, omega)
         };
-        point = if arm.tip_link == Some(joint.index) {
-            line.within(Quantity::TipAcceleration, next)
-        } else {
-            line.named(joint.index + 2).vector(Quantity::JointPointAcceleration, next)
+        let mut carried = arm.carried_joints(joint.index).map(|(index, _)| index);
+        point = match carried.find(|index| arm.moves_tip(*index)) {
+            None => line.within(Quantity::TipAcceleration, next),
+            Some(carried) => line.named(carried + 1).vector(Quantity::JointPointAcceleration, next),
         };
-        rotations.push(rotation);
+        rotations.push((line, rotation));
     }
     let [linear, angular] = [point, turning.omega_dot].map(|mut vector| {
-        for (index, rotation) in rotations.iter().enumerate().rev() {
-            vector = builder.joint(index + 1).within(Quantity::TipAcceleration, || *rotation * vector);
+        for (line, rotation) in rotations.iter().rev() {
+            vector = line.within(Quantity::TipAcceleration, || *rotation * vector);
         }
         builder.joint(1).within(Quantity::TipAcceleration, || arm.base.rotation * vector)
     });

@@ -41,7 +41,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::MassMatrix | Function::MassMatrixWithPayload => mass_matrix(&derivation.upper_half()),
         Function::CoriolisMatrix => derivation.coriolis_matrix(),
         Function::ForwardDynamics | Function::ForwardDynamicsWithPayload => {
-            forward_dynamics(builder, &derivation.upper_half(), derivation.tau())
+            forward_dynamics(builder, &derivation.parents(), &derivation.upper_half(), derivation.tau())
         }
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
@@ -59,7 +59,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
-        Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.upper_half()),
+        Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.parents(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
@@ -143,6 +143,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     fn torques(&self) -> Outputs<'s> {
         by_joint(Quantity::Torque, self.tau())
+    }
+
+    /// The links that carry the joints.
+    fn parents(&self) -> Vec<Option<usize>> {
+        self.arm.links.iter().map(|link| link.parent).collect()
     }
 
     /// The upper half of M.
@@ -258,6 +263,7 @@ pub(crate) fn coriolis_matrix<'s>(builder: &'s Builder, torques: &[Symbol<'s>], 
 /// M⁻¹ (τ - bias)
 pub(crate) fn forward_dynamics<'s>(
     builder: &'s Builder,
+    parents: &[Option<usize>],
     upper: &[Vec<Symbol<'s>>],
     bias: Vec<Symbol<'s>>,
 ) -> Outputs<'s> {
@@ -266,7 +272,7 @@ pub(crate) fn forward_dynamics<'s>(
         builder.joint(index + 1).within(Quantity::Reduced, || applied - torque)
     };
     let rest: Vec<_> = bias.into_iter().enumerate().map(rest).collect();
-    by_joint(Quantity::RateDot, ldlt::solved(builder, upper, &rest))
+    by_joint(Quantity::RateDot, ldlt::solved(builder, parents, upper, &rest))
 }
 
 /// ∂τ/∂q, then ∂τ/∂q̇
@@ -283,21 +289,26 @@ pub(crate) fn torque_by(row: usize, by: WithRespectTo) -> Name {
     Name { by: Some(by), ..Name::scalar(Quantity::Torque, row + 1) }
 }
 
-/// M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹: column j is solved from row j on, and the rest is its mirror. Row i of `upper` holds the elements
-/// (i, i) to (i, n) of M.
-pub(crate) fn inverse_mass_matrix<'s>(builder: &'s Builder, upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
-    let factors = ldlt::Factors::of(builder, upper);
+/// M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹: column j is solved from joint j on in the order of elimination, and the rest is its mirror. Row i
+/// of `upper` holds the elements (i, i) to (i, n) of M.
+pub(crate) fn inverse_mass_matrix<'s>(
+    builder: &'s Builder,
+    parents: &[Option<usize>],
+    upper: &[Vec<Symbol<'s>>],
+) -> Outputs<'s> {
+    let factors = ldlt::Factors::of(builder, parents, upper);
     let (zero, one) = (builder.constant(0.0, Cause::Arithmetic), builder.constant(1.0, Cause::Arithmetic));
     let name = |quantity, row: usize, column: usize| Name::indexed(quantity, row + 1, column + 1);
-    let columns: Vec<Vec<Symbol<'s>>> = (0..upper.len())
+    let columns: Vec<Vec<Option<Symbol<'s>>>> = (0..upper.len())
         .map(|column| {
             let unit: Vec<_> = (0..upper.len()).map(|row| if row == column { one } else { zero }).collect();
-            factors.solved(column, &unit, |quantity, row| name(quantity, row, column))
+            factors.solved(factors.place(column), &unit, |quantity, row| name(quantity, row, column))
         })
         .collect();
     square(upper.len(), |row, column| {
-        let (row, column) = (row.max(column), row.min(column));
-        (name(Quantity::RateDot, row, column), columns[column][row - column])
+        let is_mirror = factors.place(row) < factors.place(column);
+        let (row, column) = if is_mirror { (column, row) } else { (row, column) };
+        (name(Quantity::RateDot, row, column), columns[column][row].unwrap_or(zero))
     })
 }
 

@@ -24,6 +24,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::formulate::seven_steps::with;
 use crate::formulate::{Arm, AtTip, Joint, JointState, Motion, Payload};
 use crate::ir::{Name, Quantity, Symbol, Vector};
 
@@ -48,8 +49,8 @@ pub(crate) fn momentum_and_rate<'s>(
     tip: &AtTip<'s>,
 ) -> [Vec<Symbol<'s>>; 2] {
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
-    if let (AtTip::Payload(payload), Some(last), Some(of_last)) = (tip, motions.last(), carried.last_mut()) {
-        of_last.push(of_payload(arm, payload, last));
+    if let (AtTip::Payload(payload), Some(link), Some(motion)) = (tip, arm.tip_link, arm.at_tip(motions)) {
+        carried[link].push(of_payload(arm, payload, link, motion));
     }
     let (mut momenta, mut rates) = (Vec::with_capacity(motions.len()), Vec::with_capacity(motions.len()));
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
@@ -71,7 +72,7 @@ pub(crate) fn momentum_and_rate<'s>(
         momenta.push(momentum);
         rates.push(rate);
         if let Some(parent) = link.parent {
-            let (line, rotation) = (line.named(parent + 1), motion.turning.rotation);
+            let (line, rotation) = (line.named(parent + 1).carrying(link.mount.label), motion.turning.rotation);
             let turned = |quantity, vector| line.vector(quantity, || rotation * vector);
             carried[parent].push(Carried {
                 first_moment: turned(Quantity::TurnedMomentBehind, body.first_moment),
@@ -86,12 +87,12 @@ pub(crate) fn momentum_and_rate<'s>(
     [momenta, rates]
 }
 
-/// The payload as a body that the last link carries.
-fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, last: &Motion<'s>) -> Carried<'s> {
+/// The payload as a body that the link of the tip carries.
+fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Motion<'s>) -> Carried<'s> {
     let (dof, rotation) = (arm.links.len(), arm.tip.rotation);
-    let [linear, angular] = payload.momenta(arm, last);
+    let [linear, angular] = payload.momenta(arm, motion);
     let moment = arm.builder.joint(dof + 1).vector(Quantity::MomentBehind, || payload.com * payload.mass);
-    let line = arm.builder.joint(dof);
+    let line = arm.builder.joint(link + 1).carrying(arm.tip.label);
     let turned = |quantity, vector| line.vector(quantity, || rotation * vector);
     Carried {
         mass: payload.mass,
@@ -107,22 +108,24 @@ fn body<'s>(joint: &Joint<'_, 's>, motion: &Motion<'s>, carries: &[Carried<'s>])
     let Joint { lines: line, link, .. } = *joint;
     let Motion { d, c_dot, .. } = *motion;
     let omega = motion.turning.omega;
-    let mass = line.within(Quantity::MomentBehind, || carries.iter().fold(link.mass, |sum, k| sum + k.mass));
+    let mass = line.within(Quantity::MomentBehind, || {
+        carries.iter().map(|k| k.mass).reduce(|sum, mass| sum + mass).map_or(link.mass, |sum| link.mass + sum)
+    });
+    let sum = |of: fn(&Carried<'s>) -> Vector<'s>| carries.iter().map(of).reduce(|sum, vector| sum + vector);
     let first_moment = line.vector(Quantity::MomentBehind, || {
         let own = d * mass;
         let own = link.first_moment.map_or(own, |h| own + h);
-        carries.iter().fold(own, |sum, k| (sum + k.r * k.mass) + k.first_moment)
+        with(with(own, sum(|k| k.r * k.mass)), sum(|k| k.first_moment))
     });
     let linear = line.vector(Quantity::LinearMomentum, || {
         let own = c_dot * link.mass;
         let own = link.first_moment.map_or(own, |h| own + omega.cross(h));
-        carries.iter().fold(own, |sum, k| sum + k.linear)
+        with(own, sum(|k| k.linear))
     });
     let angular = line.vector(Quantity::AngularMomentumBehind, || {
         let own = link.inertia * omega;
         let own = link.first_moment.map_or(own, |h| own + h.cross(c_dot));
-        let momenta = carries.iter().fold(own, |sum, k| sum + k.angular);
-        carries.iter().fold(momenta + d.cross(linear), |sum, k| sum + k.r.cross(k.linear))
+        with(with(own, sum(|k| k.angular)) + d.cross(linear), sum(|k| k.r.cross(k.linear)))
     });
     Carried { mass, first_moment, linear, angular, r: link.mount.r }
 }

@@ -41,13 +41,15 @@ impl<'s> Payload<'s> {
         let Self { mass, com, inertia } = *self;
         let dof = arm.links.len();
         let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
+        let link = arm.tip_link.map_or(0, |link| link + 1);
 
         // 1, 2
         let omega = line.vector(Quantity::Omega, || back * last.turning.omega);
         let omega_dot = line.vector(Quantity::OmegaDot, || back * last.turning.omega_dot);
 
         // 4
-        let omega_cross_r = line.named(dof).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
+        let omega_cross_r =
+            line.named(link).carrying(arm.tip.label).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
         let tip = line.vector(Quantity::JointPointAcceleration, || {
             last.c_ddot + last.turning.omega_dot.cross(r) + last.turning.omega.cross(omega_cross_r)
         });
@@ -74,8 +76,10 @@ impl<'s> Payload<'s> {
         let Self { mass, com, inertia } = *self;
         let dof = arm.links.len();
         let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
+        let link = arm.tip_link.map_or(0, |link| link + 1);
         let omega = line.vector(Quantity::Omega, || back * last.turning.omega);
-        let omega_cross_r = line.named(dof).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
+        let omega_cross_r =
+            line.named(link).carrying(arm.tip.label).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
         let tip = line.vector(Quantity::JointPointVelocity, || last.c_dot + omega_cross_r);
         let velocity = line.vector(Quantity::Velocity, || back * tip + omega.cross(com));
         let linear = line.vector(Quantity::LinearMomentum, || velocity * mass);

@@ -13,7 +13,7 @@ use rne_model::PER_LINK;
 use crate::formulate::{Arm, JointState, Motion, Turning};
 use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
 
-/// Y by torque, link and parameter; zero where a link is nearer to the base than the joint.
+/// Y by torque, link and parameter; zero where the joint does not move the link.
 pub(crate) fn regressor<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -22,39 +22,51 @@ pub(crate) fn regressor<'s>(
     let (builder, dof) = (arm.builder, states.len());
     let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PER_LINK]; dof]; dof];
     let zeros = builder.zeros(Cause::JointAxis);
-    // acceleration of the joint's point less gravity, in the axes of its parent
-    let mut point = -arm.gravity;
-    // (u, v) at the joint's point of every joint so far, in the axes of its parent
-    let mut twists: Vec<[Vector<'s>; 2]> = Vec::with_capacity(dof);
+    // of every joint, in the axes of its parent, at the joint's point: its acceleration less gravity, and (u, v) of the
+    // joints that move the parent; behind them those of what stands at an end, which nothing takes
+    let mut points = vec![-arm.gravity; dof + 1];
+    let mut carriers: Vec<Vec<(usize, [Vector<'s>; 2])>> = vec![Vec::new(); dof + 1];
     for (joint, motion) in arm.joints(states).zip(motions) {
-        let (line, link, lever) = (joint.lines, joint.link, arm.carried_by(joint.index).lever);
+        let (line, link) = (joint.lines, joint.link);
         let Turning { rotation, omega, omega_dot } = motion.turning;
         let back = rotation.transpose();
         let reach = line.within(Quantity::Partial, || joint.offset(link.offset));
         let gradient = line.within(Quantity::Gradient, || gradient(omega, omega_dot));
-        let origin =
-            line.within(Quantity::OriginAcceleration, || joint.acceleration(back * point, omega) + gradient * reach);
-        point = line.within(Quantity::JointPointAcceleration, || origin + gradient * lever);
-        for twist in &mut twists {
+        let origin = line.within(Quantity::OriginAcceleration, || {
+            joint.acceleration(back * points[joint.index], omega) + gradient * reach
+        });
+        let mut mounted: Vec<(usize, Vector<'s>)> =
+            arm.carried_joints(joint.index).map(|(index, link)| (index, link.mount.lever)).collect();
+        if mounted.is_empty() {
+            mounted.push((dof, arm.tip.lever));
+        }
+        for (index, lever) in &mounted {
+            points[*index] = line.within(Quantity::JointPointAcceleration, || origin + gradient * *lever);
+        }
+        let mut twists = std::mem::take(&mut carriers[joint.index]);
+        for (_, twist) in &mut twists {
             *twist = line.within(Quantity::Partial, || twist.map(|part| back * part));
         }
         twists.push(match link.kind {
-            Revolute => [joint.e, zeros],
-            Prismatic => [zeros, joint.e],
+            Revolute => (joint.index, [joint.e, zeros]),
+            Prismatic => (joint.index, [zeros, joint.e]),
         });
         // in the axes of the link frame
         let into = link.table_axes.transpose();
         let in_frame = line.within(Quantity::Partial, || [omega, omega_dot, origin].map(|v| into * v));
         let gradient_in_frame = line.within(Quantity::Gradient, || self::gradient(in_frame[0], in_frame[1]));
-        for (row, [u, v]) in twists.iter_mut().enumerate() {
-            let at_origin = line.within(Quantity::Partial, || *v + u.cross(reach));
-            let in_axes = line.within(Quantity::Partial, || [*u, at_origin].map(|v| into * v));
+        for (row, [u, v]) in twists {
+            let at_origin = line.within(Quantity::Partial, || v + u.cross(reach));
+            let in_axes = line.within(Quantity::Partial, || [u, at_origin].map(|v| into * v));
             let elements = line.within(Quantity::Partial, || columns(in_frame, gradient_in_frame, in_axes));
             for (parameter, element) in elements.into_iter().enumerate() {
                 let name = element_name(row, joint.index, parameter);
                 rows[row][joint.index][parameter] = builder.name(name, element);
             }
-            *v = line.within(Quantity::Partial, || at_origin + u.cross(lever));
+            for (index, lever) in &mounted {
+                let at_joint = line.within(Quantity::Partial, || at_origin + u.cross(*lever));
+                carriers[*index].push((row, [u, at_joint]));
+            }
         }
     }
     rows

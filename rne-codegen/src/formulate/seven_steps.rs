@@ -73,6 +73,7 @@ impl<'s> Wrench<'s> {
 
     /// The wrench in the axes of the link of `line`, on which it acts where `mount` is.
     fn carried(&self, line: JointLines<'s>, rotation: Matrix<'s>, mount: &Mount<'s>) -> Carried<'s> {
+        let line = line.carrying(mount.label);
         let force = line.vector(Quantity::ChildForce, || rotation * self.force);
         let moment = line.vector(Quantity::ChildMoment, || rotation * self.moment);
         Carried { wrench: Wrench { force, moment }, r: mount.r }
@@ -87,7 +88,7 @@ pub(crate) fn inverse_dynamics<'s>(
     tip: &AtTip<'s>,
 ) -> Vec<Load<'s>> {
     let motions = forward(arm, states, base);
-    backward(arm, states, &motions, &tip.wrench(arm, motions.last()))
+    backward(arm, states, &motions, &tip.wrench(arm, arm.at_tip(&motions)))
 }
 
 /// Steps 1 and 2: how link i turns.
@@ -117,7 +118,8 @@ pub(crate) fn forward<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: &Motio
         let d = joint.centre_of_mass();
 
         // 3   ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i (+ q̇_i e: prismatic)
-        let omega_cross_r = joint.lines_of_parent().vector(Quantity::OmegaCrossR, || parent.turning.omega.cross(r));
+        let of_parent = joint.lines_of_parent().carrying(joint.link.mount.label);
+        let omega_cross_r = of_parent.vector(Quantity::OmegaCrossR, || parent.turning.omega.cross(r));
         let omega_cross_d = line.vector(Quantity::OmegaCrossD, || omega.cross(d));
         let joint_point = line.vector(Quantity::JointPointVelocity, || parent.c_dot + omega_cross_r);
         let c_dot = line.vector(Quantity::Velocity, || joint.velocity(back * joint_point + omega_cross_d));
@@ -147,8 +149,8 @@ pub(crate) fn backward<'s>(
     tip: &Wrench<'s>,
 ) -> Vec<Load<'s>> {
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
-    if let Some(of_last) = carried.last_mut() {
-        of_last.push(tip.carried(arm.builder.joint(motions.len()), arm.tip.rotation, &arm.tip));
+    if let Some(link) = arm.tip_link {
+        carried[link].push(tip.carried(arm.builder.joint(link + 1), arm.tip.rotation, &arm.tip));
     }
     let mut loads = Vec::with_capacity(motions.len());
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
@@ -170,11 +172,13 @@ pub(crate) fn backward<'s>(
         });
         let force = line.vector(Quantity::JointForce, || {
             let own = with((c_ddot - gravity) * link.mass, of_moment);
-            carries.iter().fold(own, |sum, k| sum + k.wrench.force)
+            with(own, carries.iter().map(|k| k.wrench.force).reduce(|sum, force| sum + force))
         });
         let moment = line.vector(Quantity::JointMoment, || {
-            let moments = carries.iter().fold(inertia_moment, |sum, k| sum + k.wrench.moment);
-            let moment = carries.iter().fold(moments + d.cross(force), |sum, k| sum + k.r.cross(k.wrench.force));
+            let of_joints = carries.iter().map(|k| k.wrench.moment).reduce(|sum, moment| sum + moment);
+            let moments = with(inertia_moment, of_joints) + d.cross(force);
+            let of_levers = carries.iter().map(|k| k.r.cross(k.wrench.force)).reduce(|sum, moment| sum + moment);
+            let moment = with(moments, of_levers);
             link.first_moment.map_or(moment, |h| moment - h.cross(gravity))
         });
         let wrench = Wrench { force, moment };
@@ -200,7 +204,7 @@ fn turning_force<'s>(line: JointLines<'s>, turning: &Turning<'s>, h: Vector<'s>)
     line.vector(Quantity::MasslessForce, || turning.omega_dot.cross(h) + turning.omega.cross(omega_cross_h))
 }
 
-/// The vector, and what a first moment adds to it.
-fn with<'s>(vector: Vector<'s>, of_first_moment: Option<Vector<'s>>) -> Vector<'s> {
-    of_first_moment.map_or(vector, |more| vector + more)
+/// The vector, and what is added to it if anything is.
+pub(crate) fn with<'s>(vector: Vector<'s>, more: Option<Vector<'s>>) -> Vector<'s> {
+    more.map_or(vector, |more| vector + more)
 }

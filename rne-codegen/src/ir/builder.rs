@@ -192,7 +192,16 @@ impl Builder {
 
     /// Names the components of a vector.
     pub(crate) fn name_vector<'s>(&'s self, quantity: Quantity, joint: usize, v: Vector<'s>) -> Vector<'s> {
-        if self.is_traced() { v.map(|axis, x| self.name(Name::vector(quantity, joint, axis), x)) } else { v }
+        self.name_carried(quantity, [joint, 0], v)
+    }
+
+    /// Names the components of a vector of one of the things that the link of a joint carries; the second number tells
+    /// them apart, and is 0 for the first.
+    fn name_carried<'s>(&'s self, quantity: Quantity, [joint, carried]: [usize; 2], v: Vector<'s>) -> Vector<'s> {
+        if !self.is_traced() {
+            return v;
+        }
+        v.map(|axis, x| self.name(Name { indices: [carried, 0], ..Name::vector(quantity, joint, axis) }, x))
     }
 
     /// Names the elements of a matrix.
@@ -205,7 +214,7 @@ impl Builder {
 
     /// The lines of one joint.
     pub(crate) fn joint(&self, joint: usize) -> JointLines<'_> {
-        JointLines { builder: self, joint, named: joint }
+        JointLines { builder: self, joint, named: joint, carried: 0 }
     }
 
     pub(crate) fn sine_and_cosine<'s>(&'s self, angle: Symbol<'s>) -> (Symbol<'s>, Symbol<'s>) {
@@ -350,12 +359,20 @@ pub(crate) struct JointLines<'s> {
     joint: usize,
     /// The joint whose number is in the names of the quantities.
     named: usize,
+    /// The place of the joint or tip that they belong to, among those that the link carries; 0 for the first.
+    carried: usize,
 }
 
 impl<'s> JointLines<'s> {
     /// The same lines, for quantities with the number of another joint in their names.
     pub(crate) fn named(self, joint: usize) -> Self {
         Self { named: joint, ..self }
+    }
+
+    /// The same lines, for quantities of what a link carries, where it carries several: the number that tells them
+    /// apart.
+    pub(crate) fn carrying(self, carried: usize) -> Self {
+        Self { carried, ..self }
     }
 
     /// A number of the table.
@@ -370,7 +387,7 @@ impl<'s> JointLines<'s> {
 
     /// Names the components of a vector.
     pub(crate) fn name_vector(&self, quantity: Quantity, vector: Vector<'s>) -> Vector<'s> {
-        self.builder.name_vector(quantity, self.named, vector)
+        self.builder.name_carried(quantity, [self.named, self.carried], vector)
     }
 
     /// A quantity that is one number.

@@ -67,9 +67,7 @@ impl PlanSet {
     /// without the choices that it makes joint by joint for the recursion.
     #[must_use]
     pub fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Algorithm) {
-        let mut algorithms = Algorithm::of_so_many(function, robot.dof());
-        // articulated bodies are those of links alone
-        algorithms.retain(|algorithm| !(robot.has_rotors() && matches!(algorithm, Algorithm::Aba(_))));
+        let algorithms = Algorithm::of_robot(function, robot);
         let first = (self.plan.clone(), algorithms.first().copied().unwrap_or(Algorithm::Rnea));
         if algorithms.len() < 2 {
             return first;

@@ -17,7 +17,9 @@ use crate::ir::{ExactAngle, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
 use crate::reduced::inward::full;
 use crate::reduced::rnea_derivatives::{matter, stations};
-use crate::reduced::{Arm, Composite, Gradient, Inward, JointMotion, Outward, Symmetric, Turned, Wrench};
+use crate::reduced::{
+    Arm, Composite, Gradient, Inward, JointMotion, Outward, SymbolicTurn, Symmetric, Turned, Twist, Wrench,
+};
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 
@@ -64,6 +66,11 @@ impl<'s> Articulated<'s> {
             linear: std::array::from_fn(|k| self.linear[k] + other.linear[k]),
             bias: self.bias.plus(other.bias),
         }
+    }
+
+    /// With those of some links that it carries, all in the same axes.
+    fn with(self, others: impl Iterator<Item = Self>) -> Self {
+        others.fold(self, Self::plus)
     }
 
     fn turned(self, turn: Turned<'s>) -> Self {
@@ -162,33 +169,31 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
     let stations = stations(arm, Number::ONE);
     let grouped = |index: usize| arm.is_grouped(index);
     let mut pivots = Vec::with_capacity(dof);
-    // in the axes of link i or, behind a parallel axis, in N of its group
-    let mut behind: Option<Articulated<'s>> = None;
+    // on a link: in its axes or, behind a parallel axis, in N of its group
+    let mut behind: Vec<(usize, Articulated<'s>)> = Vec::with_capacity(dof);
     for index in (0..dof).rev() {
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let (offset, twist) = (builder.vector(offset), Turned::AboutX(builder.fixed_turn(row.alpha)));
+        let (offset, twist) = (builder.vector(offset), Twist::new(builder, row));
         let turn = Turned::AboutZ(station.turn);
-        let own = rigid(arm, index, station);
-        let is_unturned = index + 1 < dof && grouped(index + 1);
-        let here = match (row.kind, behind) {
-            (Revolute, Some(behind)) if is_unturned => own.turned(turn).plus(behind),
-            (Revolute, behind) => behind.map_or(own, |behind| own.plus(behind)).turned(turn),
-            (Prismatic, behind) => behind.map_or(own, |behind| own.plus(behind)),
+        let carried = |unturned: bool| {
+            let behind =
+                behind.iter().filter(move |(of, _)| rows[*of].parent == Some(index) && grouped(*of) == unturned);
+            behind.map(|(_, body)| *body)
         };
+        let own = rigid(arm, index, station).with(carried(false));
+        let here = if row.kind == Revolute { own.turned(turn).with(carried(true)) } else { own };
         let (given, pivot) = here.released(arm, index, station);
         pivots.push(pivot);
-        // the point of link i-1 at this joint's origin moves on to the origin of link i-1
+        // the point of the parent at this joint's origin moves on to the origin of the parent's frame
         let omega = station.before.omega;
-        behind = Some(match row.kind {
-            _ if index == 0 => break,
-            Revolute if grouped(index) => {
-                let before = stations[index - 1].turn;
-                given.moved(before.about_z(offset) + builder.along_z(d), omega)
-            }
+        let Some(parent) = row.parent.map(|parent| &stations[parent]) else { continue };
+        let moved = match row.kind {
+            Revolute if grouped(index) => given.moved(parent.turn.about_z(offset) + builder.along_z(d), omega),
             Revolute => {
-                given.moved(builder.along_z(d), omega).turned(twist).moved(offset, stations[index - 1].own.omega)
+                let given = twist.turns().fold(given.moved(builder.along_z(d), omega), Articulated::turned);
+                given.moved(offset, parent.own.omega)
             }
             Prismatic => {
                 let q = arm.position(index) + builder.number(d);
@@ -196,11 +201,13 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
                 let given = if row.carried {
                     given
                 } else {
-                    given.turned(Turned::AboutZ(builder.fixed_turn(row.theta))).turned(twist)
+                    let given = given.turned(Turned::AboutZ(builder.fixed_turn(row.theta)));
+                    twist.turns().fold(given, Articulated::turned)
                 };
-                given.moved(offset, stations[index - 1].own.omega)
+                given.moved(offset, parent.own.omega)
             }
-        });
+        };
+        behind.push((index, moved));
     }
     pivots.reverse();
     outward(arm, &stations, &pivots)
@@ -214,6 +221,9 @@ struct Accelerated<'s> {
     acceleration: Vector<'s>,
 }
 
+/// How a link accelerates: in its axes and in frame N, with the turn between.
+type Link<'s> = (Accelerated<'s>, Accelerated<'s>, SymbolicTurn<'s>);
+
 impl<'s> Outward<'s> for Accelerated<'s> {
     fn turned_back(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
         Self { omega: f(self.omega), omega_dot: f(self.omega_dot), acceleration: f(self.acceleration) }
@@ -225,38 +235,44 @@ impl<'s> Outward<'s> for Accelerated<'s> {
     }
 }
 
-/// The way out: each joint's acceleration from that of the link before it.
+/// The way out: each joint's acceleration from that of its parent.
 fn outward<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>], pivots: &[Pivot<'s>]) -> Vec<Symbol<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
-    let gravity = builder.vector(arm.joint_frames.gravity.map(|g| -g));
-    let mut last = Accelerated { omega: builder.no_vector(), omega_dot: builder.no_vector(), acceleration: gravity };
-    // in frame N of the joint before, and the turn from there
-    let (mut unturned, mut turn) = (last, builder.fixed_turn(ExactAngle::NONE));
+    let zeros = builder.no_vector();
+    let mut links: Vec<Link<'s>> = Vec::with_capacity(rows.len());
     let mut accelerations = Vec::with_capacity(rows.len());
     for (index, (row, (station, pivot))) in rows.iter().zip(stations.iter().zip(pivots)).enumerate() {
         builder.at(Quantity::OmegaDot, index + 1);
-        let before = arm.outward(index, last, unturned, turn);
+        let (last, last_unturned, last_turn) = if let Some(parent) = row.parent {
+            links[parent]
+        } else {
+            let gravity = builder.vector(arm.joint_frames.gravity[index].map(|g| -g));
+            let base = Accelerated { omega: zeros, omega_dot: zeros, acceleration: gravity };
+            (base, base, builder.fixed_turn(ExactAngle::NONE))
+        };
+        let before = arm.outward(index, last, last_unturned, last_turn);
         let (angular, linear) = (before.omega_dot + pivot.drift[0], before.acceleration + pivot.drift[1]);
         // U · (ω̇' + drift, a' + drift): what the drift does to n° and f° has been added for the links before only
         let resisted = pivot.resistance[0].dot(angular) + pivot.resistance[1].dot(linear);
         let own = (pivot.rest - resisted) * pivot.inverse;
         accelerations.push(if row.reversed { -own } else { own });
-        turn = station.turn;
+        let turn = station.turn;
         let omega = station.own.omega;
-        match row.kind {
+        links.push(match row.kind {
             Revolute => {
-                unturned = Accelerated {
+                let unturned = Accelerated {
                     omega: before.omega.plus_z(arm.rate(index)),
                     omega_dot: angular.plus_z(own),
                     acceleration: linear,
                 };
-                last = Accelerated { omega, ..unturned.turned_back(|v| turn.back_about_z(v)) };
+                (Accelerated { omega, ..unturned.turned_back(|v| turn.back_about_z(v)) }, unturned, turn)
             }
             Prismatic => {
-                last = Accelerated { omega, omega_dot: angular, acceleration: linear + builder.vector(row.axis) * own };
-                unturned = last;
+                let acceleration = linear + builder.vector(row.axis) * own;
+                let link = Accelerated { omega, omega_dot: angular, acceleration };
+                (link, link, turn)
             }
-        }
+        });
     }
     accelerations
 }

@@ -1,5 +1,7 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
+use rne_model::Robot;
+
 use crate::formulate::{self, Outputs, by_joint, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
@@ -7,7 +9,7 @@ use crate::reduced::backward::torques;
 use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
-use crate::reduced::{Arm, JointFrames, aba, crba, momentum};
+use crate::reduced::{Arm, aba, crba, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,16 +102,19 @@ impl Algorithm {
         }
     }
 
-    /// The ways of a function that are worth counting for an arm of `joints` joints. Those that write the recursion
-    /// anew for every joint grow faster than composite bodies, and lose long before `MANY`.
-    pub(crate) fn of_so_many(function: Function, joints: usize) -> Vec<Self> {
+    /// The ways of a function that are worth counting for a robot. Those that write the recursion anew for every joint
+    /// grow faster than composite bodies, and lose long before `MANY`. Articulated bodies are those of links alone.
+    pub(crate) fn of_robot(function: Function, robot: &Robot) -> Vec<Self> {
         const MANY: usize = 10;
-        let is_of_columns = |algorithm: Self| {
-            algorithm == Algorithm::UnitColumns
-                || algorithm == Algorithm::Rnea
-                    && matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives)
+        let is_worth = |algorithm: Self| match algorithm {
+            Self::UnitColumns => robot.dof() < MANY,
+            Self::Rnea if matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives) => {
+                robot.dof() < MANY
+            }
+            Self::Rnea | Self::UnturnedPayload | Self::Crba(_) => true,
+            Self::Aba(_) => !robot.has_rotors(),
         };
-        Self::of(function).iter().copied().filter(|algorithm| joints < MANY || !is_of_columns(*algorithm)).collect()
+        Self::of(function).iter().copied().filter(|&algorithm| is_worth(algorithm)).collect()
     }
 
     /// The frames of its composite or articulated bodies.
@@ -140,6 +145,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
     let builder = arm.builder;
     let dof = arm.rows().len();
     let upper_half = || mass_matrix(arm, algorithm);
+    let parents: Vec<_> = arm.rows().iter().map(|row| row.parent).collect();
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function, algorithm) {
         (Function::GravityTorques | Function::GravityTorquesWithPayload, Algorithm::Crba(_)) => {
@@ -150,12 +156,12 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
         (Function::MassMatrix | Function::MassMatrixWithPayload, _) => formulate::mass_matrix(&upper_half()),
-        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &upper_half()),
+        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &parents, &upper_half()),
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
             by_joint(Quantity::RateDot, aba::forward_dynamics(arm))
         }
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, _) => {
-            formulate::forward_dynamics(builder, &upper_half(), recursion(arm, algorithm))
+            formulate::forward_dynamics(builder, &parents, &upper_half(), recursion(arm, algorithm))
         }
         (
             Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload,
@@ -204,7 +210,7 @@ fn mass_matrix<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s
     if algorithm != Algorithm::UnitColumns {
         return crba::mass_matrix(arm);
     }
-    let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
+    let joint_frames = arm.joint_frames.without_gravity();
     let still = Arm { joint_frames: &joint_frames, ..*arm };
     let dof = arm.rows().len();
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];

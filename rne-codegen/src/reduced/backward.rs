@@ -9,7 +9,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Axis, Builder, Name, Number, Quantity, Symbol, Vector};
-use crate::reduced::forward::{along_axis, plus};
+use crate::reduced::forward::plus;
 use crate::reduced::inward::full;
 use crate::reduced::regrouping::is_parallel;
 use crate::reduced::{
@@ -17,9 +17,11 @@ use crate::reduced::{
     Wrench,
 };
 
-/// The wrench that the next link exerts, about the origin of its frame.
+/// The wrench that a link exerts on its parent, about the origin of its frame.
 #[derive(Clone, Copy)]
 struct Child<'s> {
+    /// The link that exerts it.
+    of: usize,
     wrench: Wrench<'s>,
     /// In frame N of a group of parallel axes; otherwise in the axes of the link at hand.
     unturned: bool,
@@ -45,19 +47,22 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
     let (builder, rows) = (arm.builder, arm.rows());
     let tip = tip_wrench(arm);
     let mut found = Vec::with_capacity(rows.len());
-    let mut child: Option<Child<'s>> = None;
+    let mut children: Vec<Child<'s>> = Vec::new();
     for index in (0..rows.len()).rev() {
         let link = &moved[index];
         builder.at(Quantity::ReducedForce, index + 1);
-        let tip = tip.filter(|_| index + 1 == rows.len());
+        let carries_tip = index == arm.joint_frames.tip.on;
+        let tip = tip.filter(|_| carries_tip);
         let nothing = Wrench::zero(builder);
         let ((torque, next), own, unturned) = if arm.is_spin(index) {
             (spin(arm, index, link, tip), nothing, nothing)
         } else {
-            let payload = payload.filter(|_| index + 1 == rows.len());
+            let payload = payload.filter(|_| carries_tip);
             let (own, unturned) = own_wrench(arm, index, link, payload);
             let own = tip.map_or(own, |tip| own.plus(tip));
-            let (own, unturned) = with_child(arm, index, link, child, own, unturned);
+            let carried = children.iter().filter(|child| rows[child.of].parent == Some(index));
+            let (own, unturned) = carried
+                .fold((own, unturned), |(own, unturned), child| with_child(arm, index, link, *child, own, unturned));
             match rows[index].kind {
                 Prismatic => {
                     let own = own.plus(unturned);
@@ -71,7 +76,7 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
         let torque = if rows[index].reversed { -torque } else { torque };
         builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
         found.push(Carried { torque, own, unturned });
-        child = next;
+        children.extend(next);
     }
     found.reverse();
     found
@@ -83,7 +88,7 @@ fn tip_wrench<'s>(arm: &Arm<'_, 's>) -> Option<Wrench<'s>> {
     let (force, moment) = arm.wrench()?;
     let tip = &arm.joint_frames.tip;
     let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
-    let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
+    let origin_shift = arm.parameters.origin_shifts[tip.on];
     let [x, y, z] = tip.translation;
     let wrench =
         Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - origin_shift]));
@@ -105,15 +110,15 @@ fn spin<'s>(
     let (offset, d) = arm.lengths(index, length_inward(arm));
     let spin = Wrench {
         force: builder.no_vector(),
-        moment: link.twist.about_x(Vector([wy * momentum, -(wx * momentum), rate_dot])),
+        moment: link.twist.of(Vector([wy * momentum, -(wx * momentum), rate_dot])),
     };
     let Some(tip) = tip else {
-        return (torque, Some(Child { wrench: spin, unturned: false, arm: [Number::ZERO; 3] }));
+        return (torque, Some(Child { of: index, wrench: spin, unturned: false, arm: [Number::ZERO; 3] }));
     };
     let torque = torque + tip.moment.0[2];
-    let back = tip.map(|v| link.twist.about_x(link.turn.about_z(v)));
-    let arm = plus(offset, along_axis(&rows[index], d));
-    (torque, Some(Child { wrench: back.plus(spin), unturned: false, arm }))
+    let back = tip.map(|v| link.twist.of(link.turn.about_z(v)));
+    let arm = plus(offset, rows[index].along_axis(d));
+    (torque, Some(Child { of: index, wrench: back.plus(spin), unturned: false, arm }))
 }
 
 /// 1/μ: lengths of the way back.
@@ -224,16 +229,15 @@ fn turned_second_moment<'s>(
     full([u + number(yy), number(xx) - u, number(zz), turned_xy, turned_xz, turned_yz])
 }
 
-/// Adds what the link behind exerts.
+/// Adds what a link behind exerts.
 fn with_child<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
     link: &Moved<'s>,
-    child: Option<Child<'s>>,
+    child: Child<'s>,
     own: Wrench<'s>,
     unturned: Wrench<'s>,
 ) -> (Wrench<'s>, Wrench<'s>) {
-    let Some(child) = child else { return (own, unturned) };
     let p = arm.builder.vector(child.arm);
     let Wrench { force, moment } = child.wrench;
     let to_unturned = arm.plan.joints[index].switches.wrench_unturned && arm.rows()[index].kind != Prismatic;
@@ -269,14 +273,14 @@ fn turn<'s>(
     builder.name_vector(Quantity::ReducedForce, joint, own.force);
     builder.name_vector(Quantity::ReducedMoment, joint, own.moment);
     let torque = own.moment.0[2] + unturned.moment.0[2];
-    if index == 0 {
+    if row.parent.is_none() {
         return (torque, None);
     }
     let in_unturned = !unturned.is_zero() || (parallel && on.group_wrench);
     let mut wrench = if in_unturned { own.map(|v| link.group_turn.about_z(v)).plus(unturned) } else { own };
     let mut p = offset;
     if inward_offset == Side::Parent {
-        p = plus(p, along_axis(row, d));
+        p = plus(p, row.along_axis(d));
     } else {
         // d z × f; z is the axis in the link's frame and in N alike
         let [fx, fy, _] = wrench.force.0;
@@ -286,15 +290,14 @@ fn turn<'s>(
     let (wrench, unturned) = if in_unturned && parallel {
         (wrench, true)
     } else if in_unturned {
-        (wrench.map(|v| link.twist.about_x(v)), false)
+        (wrench.map(|v| link.twist.of(v)), false)
     } else if parallel {
         (wrench.map(|v| link.turn.about_z(v)), false)
     } else {
         (wrench.map(|v| rotated_inward(row, link, on.scaled_twist_inward, v)), false)
     };
-    builder.name_vector(Quantity::TurnedForce, joint - 1, wrench.force);
-    builder.name_vector(Quantity::TurnedMoment, joint - 1, wrench.moment);
-    (torque, Some(Child { wrench, unturned, arm: p }))
+    name_turned(arm, index, wrench);
+    (torque, Some(Child { of: index, wrench, unturned, arm: p }))
 }
 
 /// A prismatic joint.
@@ -316,28 +319,37 @@ fn origin_shift<'s>(
     let torque = u.dot(wrench.force).times(per_force);
     if row.carried {
         let wrench = wrench.about(builder.vector(offset) + u * q);
-        return (torque, Some(Child { wrench, unturned: false, arm: [Number::ZERO; 3] }));
+        return (torque, Some(Child { of: index, wrench, unturned: false, arm: [Number::ZERO; 3] }));
     }
-    let back = wrench.about(u * q).map(|v| link.twist.about_x(link.turn.about_z(v)));
-    builder.name_vector(Quantity::TurnedForce, joint - 1, back.force);
-    builder.name_vector(Quantity::TurnedMoment, joint - 1, back.moment);
-    (torque, Some(Child { wrench: back, unturned: false, arm: offset }))
+    let back = wrench.about(u * q).map(|v| link.twist.of(link.turn.about_z(v)));
+    name_turned(arm, index, back);
+    (torque, Some(Child { of: index, wrench: back, unturned: false, arm: offset }))
 }
 
-/// Rx(α) Rz(θ) v; for a twist that is no right angle seven products are enough (section 5.1).
+/// Names what a link exerts, in the axes of its parent. The first joint on the parent needs no number there.
+fn name_turned<'s>(arm: &Arm<'_, 's>, index: usize, wrench: Wrench<'s>) {
+    let rows = arm.rows();
+    let parent = rows[index].parent;
+    let is_first = rows[..index].iter().all(|row| row.parent != parent);
+    let line = arm.builder.joint(parent.map_or(0, |parent| parent + 1)).carrying(if is_first { 0 } else { index + 1 });
+    line.name_vector(Quantity::TurnedForce, wrench.force);
+    line.name_vector(Quantity::TurnedMoment, wrench.moment);
+}
+
+/// Rz(γ) Rx(α) Rz(θ) v; for a twist that is no right angle seven products are enough (section 5.1).
 fn rotated_inward<'s>(row: &JointFrame, link: &Moved<'s>, scaled: bool, v: Vector<'s>) -> Vector<'s> {
     let SymbolicTurn { s, c } = link.turn;
     let (true, Some(ScaledTwist { ratio, larger, on_sine })) = (scaled, ScaledTwist::new(row)) else {
-        return link.twist.about_x(link.turn.about_z(v));
+        return link.twist.of(link.turn.about_z(v));
     };
     let [x, y, z] = v.0;
     let u = s.times(larger) * x + c.times(larger) * y;
-    let (sine, cosine) = (z * link.twist.s, z * link.twist.c);
-    if on_sine {
+    let (sine, cosine) = (z * link.twist.alpha.s, z * link.twist.alpha.c);
+    link.twist.about_parent(if on_sine {
         Vector([c * x - s * y, u.times(ratio) - sine, u + cosine])
     } else {
         Vector([c * x - s * y, u - sine, u.times(ratio) + cosine])
-    }
+    })
 }
 
 fn name_matter(builder: &Builder, joint: usize, matter: &PseudoInertia) {

@@ -14,8 +14,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::torque_by;
-use crate::reduced::inward::Carried;
-use crate::reduced::{Arm, FirstMoment, Inward, PseudoInertia, Symmetric, Turned, Wrench};
+use crate::reduced::inward::{Carried, Loads};
+use crate::reduced::{Arm, Body, FirstMoment, Inward, PseudoInertia, Symmetric, Turned, Twist, Wrench};
 
 pub(crate) use crate::reduced::inward::ExpressedIn;
 
@@ -39,15 +39,6 @@ impl<'s> Composite<'s> {
         let s = matter.second_moments().map(|x| builder.number(x));
         let own = Self { mass: builder.number(matter.mass), h: builder.vector(matter.h), s, around: None };
         arm.payload_on(index).map_or(own, |payload| own.plus(payload.matter(arm)))
-    }
-
-    pub(crate) fn plus(self, other: Self) -> Self {
-        Self {
-            mass: self.mass + other.mass,
-            h: self.h + other.h,
-            s: std::array::from_fn(|k| self.s[k] + other.s[k]),
-            around: (self.around.is_some() || other.around.is_some()).then(|| self.around() + other.around()),
-        }
     }
 
     /// Names what is there, in frame N of a joint.
@@ -85,6 +76,17 @@ impl<'s> Composite<'s> {
     /// The wrench that accelerates it along u with 1 m/s².
     pub(crate) fn sliding(&self, u: Vector<'s>) -> Wrench<'s> {
         Wrench { force: u * self.mass, moment: self.h.cross(u) }
+    }
+}
+
+impl<'s> Body<'s> for Composite<'s> {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            h: self.h + other.h,
+            s: std::array::from_fn(|k| self.s[k] + other.s[k]),
+            around: (self.around.is_some() || other.around.is_some()).then(|| self.around() + other.around()),
+        }
     }
 }
 
@@ -151,16 +153,19 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
     let mut matrix: Vec<Vec<Symbol<'s>>> = vec![vec![builder.zero(); dof]; dof];
-    let mut carried: Carried<Composite<'s>, Column<'s>> = Carried::NOTHING;
+    let mut loads: Loads<Composite<'s>, Column<'s>> = Loads::new();
     for index in (0..dof).rev() {
         let row = &rows[index];
         builder.at(Quantity::ReducedForce, index + 1);
-        let twist = builder.fixed_turn(row.alpha);
+        let twist = Twist::new(builder, row);
         if arm.is_spin(index) {
             let c = builder.number(arm.parameters.sphere.unwrap_or_default());
             matrix[index][index] = c;
-            let moment = twist.about_x(Vector([builder.zero(), builder.zero(), c]));
-            carried.columns.push((index, Wrench { force: builder.no_vector(), moment }));
+            let moment = twist.of(Vector([builder.zero(), builder.zero(), c]));
+            let column = (index, Wrench { force: builder.no_vector(), moment });
+            if let Some(parent) = row.parent {
+                loads.put(parent, false, Carried { behind: None, columns: vec![column] });
+            }
             continue;
         }
         let own = Composite::of_link(arm, index, &arm.parameters.links[index]);
@@ -170,33 +175,26 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
             Revolute => wrench.moment.0[2],
             Prismatic => u.dot(wrench.force),
         };
-        for (column, wrench) in &carried.columns {
+        let mut load = loads.take(index);
+        for (column, wrench) in load.own.columns.iter().chain(&load.unturned.columns) {
             matrix[index][*column] = along(wrench);
         }
-        let Carried { behind, columns, unturned } = carried;
-        let with = |body: Composite<'s>| behind.map_or(body, |behind| body.plus(behind));
-        let turn = || Turned::AboutZ(arm.turn_of_group(index));
-        let (whole, mut columns) = match row.kind {
-            Prismatic => (with(own), columns),
-            Revolute if unturned => (with(own.turned(turn())), columns),
-            Revolute => {
-                let (turn, whole) = (turn(), with(own));
-                let columns = columns.into_iter().map(|column| column.turned(turn)).collect();
-                (whole.turned(turn), columns)
-            }
-        };
+        let turn = (row.kind == Revolute).then(|| arm.turn_of_group(index));
+        let in_axes = load.with_link(own);
+        let mut columns = load.columns(turn);
+        let whole = load.whole(in_axes, turn);
         let column = match row.kind {
             Revolute => whole.turning(builder),
             Prismatic => whole.sliding(u),
         };
         matrix[index][index] = along(&column);
         columns.push((index, column));
-        carried = Carried { behind: Some(whole), columns, unturned: arm.is_grouped(index) };
+        let carried = Carried { behind: Some(whole), columns };
         if row.kind == Revolute {
             name(builder, index + 1, &carried);
         }
-        if index > 0 {
-            carried = arm.inward(index, carried);
+        if let Some(parent) = row.parent {
+            loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
     }
     let element = |row: usize, column: usize| {
@@ -212,26 +210,26 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
 pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
-    // acceleration of the base in the frame N of each joint, or of its group
-    let mut fields: Vec<Vector<'s>> = Vec::with_capacity(dof);
-    let mut own = builder.vector(arm.joint_frames.gravity.map(|g| -g));
+    // acceleration of the base in the frame N of each joint, or of its group, and in the axes of its link
+    let mut fields: Vec<[Vector<'s>; 2]> = Vec::with_capacity(dof);
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::OriginAcceleration, index + 1);
-        let field = match fields.last() {
-            Some(field) if arm.is_grouped(index) => *field,
-            _ => builder.fixed_turn(row.alpha).back_about_x(own),
+        let of_parent = row.parent.map(|parent| fields[parent]);
+        let before =
+            of_parent.map_or_else(|| builder.vector(arm.joint_frames.gravity[index].map(|g| -g)), |[_, own]| own);
+        let field = match of_parent {
+            Some([field, _]) if arm.is_grouped(index) => field,
+            _ => Twist::new(builder, row).back(before),
         };
-        own = match row.kind {
+        let own = match row.kind {
             Revolute => arm.turn_of_group(index).back_about_z(field),
-            Prismatic if row.carried => own,
+            Prismatic if row.carried => before,
             Prismatic => builder.fixed_turn(row.theta).back_about_z(field),
         };
-        fields.push(if row.kind == Revolute { field } else { own });
+        fields.push([if row.kind == Revolute { field } else { own }, own]);
     }
     let mut torques = vec![builder.zero(); dof];
-    // what is behind, in the axes of link i or in its frame N
-    let mut behind = FirstMoment { mass: builder.zero(), h: builder.no_vector() };
-    let mut unturned = false;
+    let mut loads: Loads<FirstMoment<'s>, Column<'s>> = Loads::new();
     for (index, (row, matter)) in rows.iter().zip(&arm.parameters.links).enumerate().rev() {
         builder.at(Quantity::ReducedMoment, index + 1);
         if arm.is_spin(index) {
@@ -239,22 +237,28 @@ pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
         }
         let own = FirstMoment { mass: builder.number(matter.mass), h: builder.vector(matter.h) };
         let own = arm.payload_on(index).map_or(own, |payload| own.plus(payload.first_moment(arm)));
-        let (h, field) = (behind.h, fields[index]);
-        behind.mass = behind.mass + own.mass;
-        let torque = match row.kind {
-            Revolute => {
-                let turn = arm.turn_of_group(index);
-                behind.h = if unturned { h + turn.about_z(own.h) } else { turn.about_z(h + own.h) };
-                let ([hx, hy, _], [ax, ay, _]) = (behind.h.0, field.0);
-                hx * ay - hy * ax
-            }
-            Prismatic => {
-                behind.h = h + own.h;
-                builder.vector(row.axis).dot(field) * behind.mass
-            }
+        let ([field, _], load) = (fields[index], loads.take(index));
+        let [carried, unturned] = [load.own.behind, load.unturned.behind];
+        // what is behind is written first
+        let behind = [carried, unturned].into_iter().flatten().reduce(Body::plus);
+        let mass = behind.map_or(builder.zero(), |behind| behind.mass) + own.mass;
+        let h = match (carried, unturned) {
+            (None, Some(_)) => own.h,
+            (carried, _) => carried.map_or(builder.no_vector(), |carried| carried.h) + own.h,
         };
-        behind = arm.inward(index, behind);
-        unturned = arm.is_grouped(index);
+        let (h, torque) = match row.kind {
+            Revolute => {
+                let turned = arm.turn_of_group(index).about_z(h);
+                let h = unturned.map_or(turned, |unturned| unturned.h + turned);
+                let ([hx, hy, _], [ax, ay, _]) = (h.0, field.0);
+                (h, hx * ay - hy * ax)
+            }
+            Prismatic => (h, builder.vector(row.axis).dot(field) * mass),
+        };
+        if let Some(parent) = row.parent {
+            let carried = Carried { behind: Some(FirstMoment { mass, h }), columns: Vec::new() };
+            loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
+        }
         torques[index] = torque.signed(row.reversed);
         builder.name(Name::scalar(Quantity::Torque, index + 1), torques[index]);
     }

@@ -10,10 +10,10 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::ir::{Builder, Matrix, Number, Quantity, Symbol, Vector};
+use crate::ir::{Builder, ExactAngle, Matrix, Number, Quantity, Symbol, Vector};
 use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
-use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn};
+use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn, Turned};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
 #[derive(Clone, Copy)]
@@ -75,11 +75,52 @@ pub(crate) struct Moved<'s> {
     pub(crate) own: Motion<'s>,
     /// In frame N on its axis.
     pub(crate) unturned: Motion<'s>,
-    pub(crate) twist: SymbolicTurn<'s>,
+    pub(crate) twist: Twist<'s>,
     /// Transform from frame N of the group to the frame of the link.
     pub(crate) group_turn: SymbolicTurn<'s>,
     /// From the frame of the link before, about z.
     pub(crate) turn: SymbolicTurn<'s>,
+    /// The motion of its group of parallel axes up to this joint; `None` for a prismatic joint.
+    group: Option<Group<'s>>,
+}
+
+/// Rz(γ) Rx(α): from frame N of a joint to the axes of its parent.
+#[derive(Clone, Copy)]
+pub(crate) struct Twist<'s> {
+    gamma: Option<SymbolicTurn<'s>>,
+    pub(crate) alpha: SymbolicTurn<'s>,
+}
+
+impl<'s> Twist<'s> {
+    pub(crate) fn new(builder: &'s Builder, row: &JointFrame) -> Self {
+        let gamma = (row.gamma != ExactAngle::NONE).then(|| builder.fixed_turn(row.gamma));
+        Self { gamma, alpha: builder.fixed_turn(row.alpha) }
+    }
+
+    /// Rz(γ) v
+    pub(crate) fn about_parent(self, v: Vector<'s>) -> Vector<'s> {
+        self.gamma.map_or(v, |turn| turn.about_z(v))
+    }
+
+    /// Rz(γ)ᵀ v
+    fn back_about_parent(self, v: Vector<'s>) -> Vector<'s> {
+        self.gamma.map_or(v, |turn| turn.back_about_z(v))
+    }
+
+    /// Rz(γ) Rx(α) v
+    pub(crate) fn of(self, v: Vector<'s>) -> Vector<'s> {
+        self.about_parent(self.alpha.about_x(v))
+    }
+
+    /// Both turns, one after the other.
+    pub(crate) fn turns(self) -> impl Iterator<Item = Turned<'s>> {
+        [Some(Turned::AboutX(self.alpha)), self.gamma.map(Turned::AboutZ)].into_iter().flatten()
+    }
+
+    /// (Rz(γ) Rx(α))ᵀ v
+    pub(crate) fn back(self, v: Vector<'s>) -> Vector<'s> {
+        self.alpha.back_about_x(self.back_about_parent(v))
+    }
 }
 
 /// One group of parallel axes: what its frame N takes over from the link before the group.
@@ -109,13 +150,14 @@ impl<'a> Arm<'a, '_> {
         &self.joint_frames.rows
     }
 
-    /// O_{i-1} to axis i in axes of link i-1, with the slide of frame i-1, and d with that of frame i; times `scale`.
+    /// From the parent's frame to axis i, in axes of the parent and with the slide of its frame, and d with that of
+    /// frame i; times `scale`.
     pub(crate) fn lengths(&self, index: usize, scale: Number) -> ([Number; 3], Number) {
         let row = &self.rows()[index];
         let [x, y, z] = row.offset;
         let origin_shifts = &self.parameters.origin_shifts;
-        let before = index.checked_sub(1).map_or(Number::ZERO, |before| origin_shifts[before]);
-        let d = if index == 0 { Number::ZERO } else { row.d + origin_shifts[index] };
+        let before = row.parent.map_or(Number::ZERO, |parent| origin_shifts[parent]);
+        let d = if row.parent.is_none() { Number::ZERO } else { row.d + origin_shifts[index] };
         ([x, y, z - before].map(|length| length * scale), d * scale)
     }
 
@@ -123,11 +165,6 @@ impl<'a> Arm<'a, '_> {
     pub(crate) fn is_spin(&self, index: usize) -> bool {
         self.parameters.sphere.is_some() && index + 1 == self.rows().len()
     }
-}
-
-/// d along the axis, in axes of the link before.
-pub(crate) fn along_axis(row: &JointFrame, d: Number) -> [Number; 3] {
-    [Number::ZERO, -(d * row.alpha.sin), d * row.alpha.cos]
 }
 
 pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
@@ -138,22 +175,21 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
 pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
     let lambda = arm.parameters.lambda;
     let zeros = arm.builder.no_vector();
-    let at_rest = Motion {
-        omega: zeros,
-        omega_dot: zeros,
-        acceleration: arm.builder.vector(arm.joint_frames.gravity.map(|g| -(g * lambda))),
-        gradient: Gradient::new(zeros, zeros),
-    };
-    let mut before = at_rest;
     let mut moved: Vec<Moved<'s>> = Vec::with_capacity(arm.rows().len());
-    let mut group = None;
-    for index in 0..arm.rows().len() {
-        let link = match arm.rows()[index].kind {
-            Revolute => revolute(arm, index, before, &moved, &mut group),
-            Prismatic => prismatic(arm, index, before, &moved),
+    for (index, row) in arm.rows().iter().enumerate() {
+        let before = match row.parent {
+            Some(parent) => moved[parent].own,
+            None => Motion {
+                omega: zeros,
+                omega_dot: zeros,
+                acceleration: arm.builder.vector(arm.joint_frames.gravity[index].map(|g| -(g * lambda))),
+                gradient: Gradient::new(zeros, zeros),
+            },
         };
-        before = link.own;
-        moved.push(link);
+        moved.push(match row.kind {
+            Revolute => revolute(arm, index, before, &moved),
+            Prismatic => prismatic(arm, index, before, &moved),
+        });
     }
     moved
 }
@@ -168,8 +204,11 @@ fn joint_point<'s>(
     moved: &[Moved<'s>],
     p: [Number; 3],
 ) -> (Vector<'s>, Vector<'s>, bool) {
-    let Some(link) = moved.last() else { return (before.acceleration, arm.builder.no_vector(), false) };
-    let unturned = arm.plan.joints[index - 1].switches.origin_unturned && arm.rows()[index - 1].kind == Revolute;
+    let Some(parent) = arm.rows()[index].parent else {
+        return (before.acceleration, arm.builder.no_vector(), false);
+    };
+    let link = &moved[parent];
+    let unturned = arm.plan.joints[parent].switches.origin_unturned && arm.rows()[parent].kind == Revolute;
     let p = arm.builder.vector(p);
     if unturned {
         let part = link.unturned.gradient.of(link.group_turn.about_z(p));
@@ -189,22 +228,17 @@ struct Revolving<'s, 'a> {
     plan: &'a JointPlan,
     /// Whether its axis is parallel to the one before, so that both share N.
     parallel: bool,
-    twist: SymbolicTurn<'s>,
+    twist: Twist<'s>,
     turn: SymbolicTurn<'s>,
     group_turn: SymbolicTurn<'s>,
     rate: Symbol<'s>,
     rate_dot: Symbol<'s>,
 }
 
-fn revolute<'s>(
-    arm: &Arm<'_, 's>,
-    index: usize,
-    before: Motion<'s>,
-    moved: &[Moved<'s>],
-    group: &mut Option<Group<'s>>,
-) -> Moved<'s> {
+fn revolute<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[Moved<'s>]) -> Moved<'s> {
     let (builder, rows) = (arm.builder, arm.rows());
     let parallel = is_parallel(rows, index);
+    let last = rows[index].parent.map(|parent| &moved[parent]);
     let turn = arm.turn(index, index);
     let link = Revolving {
         builder,
@@ -212,7 +246,7 @@ fn revolute<'s>(
         joint: index + 1,
         plan: &arm.plan.joints[index],
         parallel,
-        twist: builder.fixed_turn(rows[index].alpha),
+        twist: Twist::new(builder, &rows[index]),
         turn,
         group_turn: if parallel { arm.turn(group_start(rows, index), index) } else { turn },
         rate: arm.rate(index),
@@ -223,68 +257,63 @@ fn revolute<'s>(
     }
     let (offset, d) = arm.lengths(index, arm.parameters.lambda);
     let to_parent = link.plan.outward_offset == Side::Parent;
-    let p = if to_parent { plus(offset, along_axis(link.row, d)) } else { offset };
+    let p = if to_parent { plus(offset, link.row.along_axis(d)) } else { offset };
 
     builder.at(Quantity::OriginAcceleration, link.joint);
     let (point, part, part_unturned) = joint_point(arm, index, before, moved, p);
-    let point_unturned = match moved.last() {
+    let point_unturned = match last {
         Some(last) if parallel => {
             last.unturned.acceleration + if part_unturned { part } else { last.group_turn.about_z(part) }
         }
-        _ => link.twist.back_about_x(point),
+        _ => link.twist.back(point),
     };
-    let shared = link.share(before, group);
+    let shared = link.share(before, last.and_then(|last| last.group));
     let [mut own, mut unturned] = link.rates(before, &shared);
     let d = if to_parent { Number::ZERO } else { d };
     (own.acceleration, unturned.acceleration) =
         link.acceleration(point, point_unturned, d, &own.gradient, &unturned.gradient);
-    Moved { own, unturned, twist: link.twist, group_turn: link.group_turn, turn }
+    Moved { own, unturned, twist: link.twist, group_turn: link.group_turn, turn, group: Some(shared) }
 }
 
 impl<'s> Revolving<'s, '_> {
     /// A last link that is only a spin: what it needs is ω and ω̇ of the link before, in N.
     fn spin(&self, before: Motion<'s>) -> Moved<'s> {
-        let motion = Motion {
-            omega: self.twist.back_about_x(before.omega),
-            omega_dot: self.twist.back_about_x(before.omega_dot),
-            ..before
-        };
-        Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn }
+        let motion =
+            Motion { omega: self.twist.back(before.omega), omega_dot: self.twist.back(before.omega_dot), ..before };
+        Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn, group: None }
     }
 
     /// The motion that frame N takes over from before the group, and the rates of the group so far.
-    fn share(&self, before: Motion<'s>, group: &mut Option<Group<'s>>) -> Group<'s> {
+    fn share(&self, before: Motion<'s>, group: Option<Group<'s>>) -> Group<'s> {
         self.builder.at(Quantity::OmegaUnturned, self.joint);
-        let shared = match *group {
+        match group {
             Some(shared) if self.parallel => {
                 Group { rate: shared.rate + self.rate, rate_dot: shared.rate_dot + self.rate_dot, ..shared }
             }
             _ => {
-                let axis = self.builder.vector(along_axis(self.row, Number::ONE));
+                let axis = self.builder.vector(self.row.along_axis(Number::ONE));
                 Group {
-                    omega: self.twist.back_about_x(before.omega),
-                    omega_dot: self.twist.back_about_x(before.omega_dot),
-                    column: self.twist.back_about_x(before.gradient.of(axis)),
+                    omega: self.twist.back(before.omega),
+                    omega_dot: self.twist.back(before.omega_dot),
+                    column: self.twist.back(before.gradient.of(axis)),
                     rate: self.rate,
                     rate_dot: self.rate_dot,
                 }
             }
-        };
-        *group = Some(shared);
-        shared
+        }
     }
 
-    /// Rz(θ)ᵀ Rx(α)ᵀ v; for a twist that is no right angle seven products are enough (section 5.1).
+    /// Rz(θ)ᵀ (Rz(γ) Rx(α))ᵀ v; for a twist that is no right angle seven products are enough (section 5.1).
     fn outward(&self, v: Vector<'s>) -> Vector<'s> {
         let Self { twist, turn, .. } = *self;
         let (true, Some(scaled)) = (self.plan.switches.scaled_twist_outward, ScaledTwist::new(self.row)) else {
-            return turn.back_about_z(twist.back_about_x(v));
+            return turn.back_about_z(twist.back(v));
         };
         let ScaledTwist { ratio, larger, on_sine } = scaled;
-        let [x, y, z] = v.0;
+        let [x, y, z] = twist.back_about_parent(v).0;
         let (s, c) = (turn.s.times(larger), turn.c.times(larger));
         let u = if on_sine { z + y.times(ratio) } else { y + z.times(ratio) };
-        Vector([turn.c * x + s * u, c * u - turn.s * x, twist.c * z - twist.s * y])
+        Vector([turn.c * x + s * u, c * u - turn.s * x, twist.alpha.c * z - twist.alpha.s * y])
     }
 
     /// ω, ω̇ and U in the link's frame and in N; accelerations are left as they were.
@@ -382,7 +411,7 @@ fn prismatic<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[M
     let row = &rows[index];
     let lambda = arm.parameters.lambda;
     let (offset, d) = arm.lengths(index, lambda);
-    let (twist, turn) = (builder.fixed_turn(row.alpha), builder.fixed_turn(row.theta));
+    let (twist, turn) = (Twist::new(builder, row), builder.fixed_turn(row.theta));
     let (qd, qdd) = (arm.rate(index).times(lambda), arm.rate_dot(index).times(lambda));
     let twice_rate = qd.times(Number::integer(2));
     let q = arm.position(index).times(lambda) + builder.number(d);
@@ -396,7 +425,7 @@ fn prismatic<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[M
         Motion { acceleration, ..before }
     } else {
         let (point, ..) = joint_point(arm, index, before, moved, offset);
-        let outward = |v: Vector<'s>| turn.back_about_z(twist.back_about_x(v));
+        let outward = |v: Vector<'s>| turn.back_about_z(twist.back(v));
         builder.at(Quantity::Omega, joint);
         let omega = builder.name_vector(Quantity::Omega, joint, outward(before.omega));
         builder.at(Quantity::OmegaDot, joint);
@@ -411,7 +440,7 @@ fn prismatic<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[M
         Motion { omega, omega_dot, acceleration, gradient }
     };
     builder.name_vector(Quantity::OriginAcceleration, joint, own.acceleration);
-    Moved { own, unturned: own, twist, group_turn: turn, turn }
+    Moved { own, unturned: own, twist, group_turn: turn, turn, group: None }
 }
 
 /// The smaller of sin α and cos α as a multiple of the larger.

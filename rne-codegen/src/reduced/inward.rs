@@ -4,7 +4,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Number, Symbol, Vector};
 use crate::reduced::regrouping::{group_start, is_parallel};
-use crate::reduced::{Arm, SymbolicTurn, Wrench};
+use crate::reduced::{Arm, SymbolicTurn, Twist, Wrench};
 
 /// The frames in which composite and articulated bodies are expressed, and gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +66,11 @@ pub(crate) trait Inward<'s>: Sized {
     fn moved(self, t: Vector<'s>) -> Self;
 }
 
+/// A body that is gathered on the way to the base.
+pub(crate) trait Body<'s>: Inward<'s> + Copy {
+    fn plus(self, other: Self) -> Self;
+}
+
 /// Matter without its second moments.
 #[derive(Clone, Copy)]
 pub(crate) struct FirstMoment<'s> {
@@ -73,8 +78,8 @@ pub(crate) struct FirstMoment<'s> {
     pub(crate) h: Vector<'s>,
 }
 
-impl FirstMoment<'_> {
-    pub(crate) fn plus(self, other: Self) -> Self {
+impl<'s> Body<'s> for FirstMoment<'s> {
+    fn plus(self, other: Self) -> Self {
         Self { mass: self.mass + other.mass, h: self.h + other.h }
     }
 }
@@ -97,21 +102,89 @@ pub(crate) trait Outward<'s>: Copy {
     fn at(self, p: Vector<'s>) -> Self;
 }
 
-/// The load of a link: the bodies from there on and the columns of their joints, about the origin of its frame, in its
-/// axes or in the frame N of its group.
+/// A load of a link: the bodies that its joints move and the columns of these joints, about the origin of its frame, in
+/// its axes or in the frame N of its group.
 pub(crate) struct Carried<B, C> {
     pub(crate) behind: Option<B>,
     pub(crate) columns: Vec<C>,
-    pub(crate) unturned: bool,
 }
 
 impl<B, C> Carried<B, C> {
-    /// The load of the last link.
-    pub(crate) const NOTHING: Self = Self { behind: None, columns: Vec::new(), unturned: false };
+    const NOTHING: Self = Self { behind: None, columns: Vec::new() };
 
     fn map(self, behind: impl Fn(B) -> B, column: impl Fn(C) -> C) -> Self {
-        let behind = self.behind.map(behind);
-        Self { behind, columns: self.columns.into_iter().map(column).collect(), ..self }
+        Self { behind: self.behind.map(behind), columns: self.columns.into_iter().map(column).collect() }
+    }
+}
+
+/// The loads of the links whose joints have been passed on the way to the base.
+pub(crate) struct Loads<B, C>(Vec<Load<B, C>>);
+
+struct Load<B, C> {
+    on: usize,
+    /// In the frame N of the group of link `on`, not in its axes.
+    unturned: bool,
+    carried: Carried<B, C>,
+}
+
+/// All that a link carries.
+pub(crate) struct LoadOfLink<B, C> {
+    /// In the axes of the link.
+    pub(crate) own: Carried<B, C>,
+    /// In the frame N of its group.
+    pub(crate) unturned: Carried<B, C>,
+}
+
+impl<'s, B: Body<'s>, C> Loads<B, C> {
+    pub(crate) const fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    /// Puts a load on a link.
+    pub(crate) fn put(&mut self, on: usize, unturned: bool, carried: Carried<B, C>) {
+        self.0.push(Load { on, unturned, carried });
+    }
+
+    /// Takes all loads off a link.
+    pub(crate) fn take(&mut self, on: usize) -> LoadOfLink<B, C> {
+        let (mut own, mut unturned) = (Carried::NOTHING, Carried::NOTHING);
+        for load in self.0.extract_if(.., |load| load.on == on) {
+            let sum = if load.unturned { &mut unturned } else { &mut own };
+            sum.behind = plus(sum.behind, load.carried.behind);
+            sum.columns.extend(load.carried.columns);
+        }
+        LoadOfLink { own, unturned }
+    }
+}
+
+impl<'s, B: Body<'s>, C: Inward<'s>> LoadOfLink<B, C> {
+    /// The link itself with the bodies that are given in its axes.
+    pub(crate) fn with_link(&self, link: B) -> B {
+        self.own.behind.map_or(link, |behind| link.plus(behind))
+    }
+
+    /// Everything in one frame: frame N of a revolute joint with this turn, or the axes of a sliding link. `in_axes` is
+    /// given in the axes of the link.
+    pub(crate) fn whole(&self, in_axes: B, turn: Option<SymbolicTurn<'s>>) -> B {
+        let own = turn.map_or(in_axes, |turn| in_axes.turned(Turned::AboutZ(turn)));
+        self.unturned.behind.map_or(own, |behind| own.plus(behind))
+    }
+
+    /// All columns, in the same frame.
+    pub(crate) fn columns(&mut self, turn: Option<SymbolicTurn<'s>>) -> Vec<C> {
+        let turned = |column: C| match turn {
+            Some(turn) => column.turned(Turned::AboutZ(turn)),
+            None => column,
+        };
+        let [own, unturned] = [&mut self.own, &mut self.unturned].map(|load| std::mem::take(&mut load.columns));
+        own.into_iter().map(turned).chain(unturned).collect()
+    }
+}
+
+fn plus<'s, B: Body<'s>>(a: Option<B>, b: Option<B>) -> Option<B> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.plus(b)),
+        (a, b) => a.or(b),
     }
 }
 
@@ -146,43 +219,43 @@ impl<'s> Arm<'_, 's> {
         self.turn(if self.is_grouped(index) { group_start(self.rows(), index) } else { index }, index)
     }
 
-    /// From the link before to the origin of a joint, in frame N (prismatic: in the axes of the sliding link). In the
-    /// frame N of a group `unturned` of the joint before goes on, whose turn is `turn`.
+    /// From the parent to the origin of a joint, in frame N (prismatic: in the axes of the sliding link). In the frame
+    /// N of a group `unturned` of the joint before goes on, whose turn is `turn`.
     pub(crate) fn outward<T: Outward<'s>>(&self, index: usize, last: T, unturned: T, turn: SymbolicTurn<'s>) -> T {
         let (builder, row) = (self.builder, &self.rows()[index]);
         let (offset, d) = self.lengths(index, Number::ONE);
-        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
+        let (offset, twist) = (builder.vector(offset), Twist::new(builder, row));
         match row.kind {
             Revolute if self.is_grouped(index) => unturned.at(turn.about_z(offset) + builder.along_z(d)),
-            // frame 0 is at joint 1
-            Revolute if index == 0 => last.turned_back(|v| twist.back_about_x(v)),
-            Revolute => last.at(offset).turned_back(|v| twist.back_about_x(v)).at(builder.along_z(d)),
+            // the base is at the joint
+            Revolute if row.parent.is_none() => last.turned_back(|v| twist.back(v)),
+            Revolute => last.at(offset).turned_back(|v| twist.back(v)).at(builder.along_z(d)),
             Prismatic => {
                 let theta = builder.fixed_turn(row.theta);
                 let last = last.at(offset);
-                let last =
-                    if row.carried { last } else { last.turned_back(|v| theta.back_about_z(twist.back_about_x(v))) };
+                let last = if row.carried { last } else { last.turned_back(|v| theta.back_about_z(twist.back(v))) };
                 last.at(builder.vector(row.axis) * (self.position(index) + builder.number(d)))
             }
         }
     }
 
-    /// From frame N of a joint, or the axes of a sliding link, to the axes of the link before and about its origin. The
+    /// From frame N of a joint, or the axes of a sliding link, to the axes of its parent and about its origin. The
     /// frame N of a group goes on, but for its origin.
     pub(crate) fn inward<T: Inward<'s>>(&self, index: usize, carried: T) -> T {
         let (builder, row) = (self.builder, &self.rows()[index]);
         let (offset, d) = self.lengths(index, Number::ONE);
-        let twist = Turned::AboutX(builder.fixed_turn(row.alpha));
+        let twist = Twist::new(builder, row);
         match row.kind {
             Revolute if self.is_grouped(index) => {
                 let before = self.turn(group_start(self.rows(), index), index - 1);
                 carried.moved(before.about_z(builder.vector(offset)) + builder.along_z(d))
             }
-            Revolute => carried.moved(builder.along_z(d)).turned(twist).moved(builder.vector(offset)),
+            Revolute => twist.turns().fold(carried.moved(builder.along_z(d)), T::turned).moved(builder.vector(offset)),
             Prismatic => {
                 let carried = carried.moved(builder.vector(row.axis) * (self.position(index) + builder.number(d)));
                 let theta = || Turned::AboutZ(builder.fixed_turn(row.theta));
-                let carried = if row.carried { carried } else { carried.turned(theta()).turned(twist) };
+                let carried =
+                    if row.carried { carried } else { twist.turns().fold(carried.turned(theta()), T::turned) };
                 carried.moved(builder.vector(offset))
             }
         }

@@ -1,11 +1,13 @@
 //! From the robot file to rows of joint-frame, link-origin parameters: frame i on joint axis i, fixed to link i.
 //!
-//! Whatever the table's convention, row i leads from frame i-1 to frame i as a modified one does, Rx(α) Tx(a) Rz(θ)
-//! Tz(d), and the matter of link i is about the origin of frame i in its axes (the reduced form, section 2). What costs
-//! nothing is put right here: the base is turned into the first joint's frame, the last joint's constant angle into its
-//! link, anti-parallel axes are made parallel.
+//! Whatever the table's convention, row i leads from the frame of its parent to frame i as a modified one does, Rx(α)
+//! Tx(a) Rz(θ) Tz(d), and the matter of link i is about the origin of frame i in its axes (the reduced form, section
+//! 2). What costs nothing is put right here: the base is turned into the frame of each joint on it, the constant angle
+//! of the last joint of a branch into its link, anti-parallel axes are made parallel. Where a link carries several
+//! joints, its frame is turned about its axis so that the first of them needs no other row; those of the others begin
+//! with one more constant turn Rz(γ) (section 15).
 
-use rne_model::{Convention, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Transform};
+use rne_model::{Convention, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Row, Transform};
 
 use crate::ir::{Embedding, ExactAngle, Number};
 use crate::reduced::link_parameters::{about_x, about_z, apply, compose, transpose};
@@ -14,12 +16,16 @@ use crate::reduced::{IDENTITY, PseudoInertia, Square, Triple};
 /// One joint and the link that it moves.
 #[derive(Clone, Debug)]
 pub(crate) struct JointFrame {
+    /// The link that carries the joint, counted from 0; `None` for the base.
+    pub(crate) parent: Option<usize>,
     pub(crate) kind: JointKind,
     /// Whether q, q̇, q̈ and τ count the other way round.
     pub(crate) reversed: bool,
+    /// Rz(γ), about the axis of the parent.
+    pub(crate) gamma: ExactAngle,
     /// Rx(α), the twist between the axes.
     pub(crate) alpha: ExactAngle,
-    /// O_{i-1} to axis i, in axes of link i-1.
+    /// The origin of the parent's frame to axis i, in the axes of the parent.
     pub(crate) offset: Triple,
     /// The constant part of the joint angle.
     pub(crate) theta: ExactAngle,
@@ -32,9 +38,11 @@ pub(crate) struct JointFrame {
     pub(crate) matter: PseudoInertia,
 }
 
-/// The tip frame in frame n: rotation and translation.
+/// The tip frame in the frame of the link that carries it: rotation and translation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tip {
+    /// The link that carries it, counted from 0.
+    pub(crate) on: usize,
     pub(crate) rotation: Square,
     pub(crate) translation: Triple,
 }
@@ -43,8 +51,8 @@ pub(crate) struct Tip {
 #[derive(Clone, Debug)]
 pub(crate) struct JointFrames {
     pub(crate) rows: Vec<JointFrame>,
-    /// Acceleration of gravity in the axes of the base, which are those of joint 1 at rest.
-    pub(crate) gravity: Triple,
+    /// Acceleration of gravity in the frame of each joint on the base, at rest; zero for the other joints.
+    pub(crate) gravity: Vec<Triple>,
     pub(crate) tip: Tip,
     /// G² Jm of the rotors that belong to the arm; zero for the others.
     pub(crate) rotors: Vec<Number>,
@@ -57,16 +65,54 @@ pub(crate) struct JointFrames {
 /// Choices that change the rows themselves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) struct FrameChoice {
-    /// The last frame is turned about its axis so that h_y of the last link vanishes (section 5.8).
+    /// The last frame of each branch is turned about its axis so that h_y of its link vanishes (section 5.8).
     pub(crate) turned_last: bool,
     /// Prismatic links keep the axes of the last revolute link (section 5.9).
     pub(crate) carried: bool,
 }
 
 impl JointFrame {
-    /// Rx(α) Rz(θ)
+    /// Rz(γ) Rx(α), from the axes of the joint at rest to those of its parent.
+    pub(crate) fn twist(&self) -> Square {
+        let twist = about_x(self.alpha);
+        if self.gamma == ExactAngle::NONE { twist } else { compose(&about_z(self.gamma), &twist) }
+    }
+
+    /// d along the axis, in the axes of the parent.
+    pub(crate) fn along_axis(&self, d: Number) -> Triple {
+        let along = [Number::ZERO, -(d * self.alpha.sin), d * self.alpha.cos];
+        if self.gamma == ExactAngle::NONE { along } else { apply(&about_z(self.gamma), along) }
+    }
+
+    /// Rz(γ) Rx(α) Rz(θ)
     pub(crate) fn rotation(&self) -> Square {
-        compose(&about_x(self.alpha), &about_z(self.theta))
+        compose(&self.twist(), &about_z(self.theta))
+    }
+}
+
+impl JointFrame {
+    /// The row when it does not begin at the link frame of its parent, but at a placement there. `None` where there is
+    /// no root for the axes of the placement.
+    fn beginning_at(self, placement: &Transform, convention: Convention, embedding: Embedding) -> Option<Self> {
+        let (rotation, translation) = pose(placement, embedding);
+        let twist = about_x(self.alpha);
+        let along_x = |x: Number| [x, Number::ZERO, Number::ZERO];
+        let plus = |a: Triple, b: Triple| [0, 1, 2].map(|i| a[i] + b[i]);
+        let [a, ..] = self.offset;
+        let is_about_z = placement.rpy[..2].iter().all(|angle| embedding.turn(angle) == ExactAngle::NONE);
+        let about_axis = embedding.turn(&placement.rpy[2]);
+        let turns = placement.rpy.iter().map(|angle| embedding.turn(angle)).chain([self.alpha]);
+        let known: Vec<_> = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
+        let (offset, all) = match convention {
+            Convention::Modified => (plus(translation, apply(&rotation, along_x(a))), compose(&rotation, &twist)),
+            Convention::Standard => (plus(along_x(a), apply(&twist, translation)), compose(&twist, &rotation)),
+        };
+        let [gamma, alpha, before] = match (is_about_z, convention) {
+            (true, Convention::Modified) => [about_axis, self.alpha, ExactAngle::NONE],
+            (true, Convention::Standard) => [ExactAngle::NONE, self.alpha, about_axis],
+            (false, _) => decomposed(&all, embedding, &known)?,
+        };
+        Some(Self { gamma, alpha, offset, theta: before.then(self.theta), ..self })
     }
 }
 
@@ -75,8 +121,10 @@ impl JointFrames {
     /// each must have a root for every one that is wanted, and value and image of every number must agree about what is
     /// zero.
     pub(crate) fn new(robot: &Robot, frames: FrameChoice) -> Option<Self> {
-        if frames == FrameChoice::default() {
-            return Self::read(robot, frames, Embedding::default());
+        if frames == FrameChoice::default()
+            && let Some(joint_frames) = Self::read(robot, frames, Embedding::default())
+        {
+            return Some(joint_frames);
         }
         // what no reading can mend is not read a hundred times
         let kinds: Vec<_> = robot.rows().map(|row| row.kind).collect();
@@ -95,6 +143,11 @@ impl JointFrames {
             .find_map(|embedding| Self::read(robot, frames, embedding).filter(Self::agrees))
     }
 
+    /// The same rows where nothing weighs.
+    pub(crate) fn without_gravity(&self) -> Self {
+        Self { gravity: vec![Triple::default(); self.rows.len()], ..self.clone() }
+    }
+
     /// Whether nothing is zero in value alone.
     fn agrees(&self) -> bool {
         let length = |row: &JointFrame| row.offset.map(|x| x.to_f64().abs()).iter().sum::<f64>() + row.d.to_f64().abs();
@@ -105,7 +158,7 @@ impl JointFrames {
                 |numbers: &[Number], least: f64| numbers.iter().map(|x| x.to_f64().abs()).fold(least, f64::max);
             let first = largest(&h, mass.to_f64().abs() * reach);
             let second = largest(s.as_flattened(), mass.to_f64().abs() * reach * reach);
-            let turns = [row.alpha, row.theta].map(|turn| [turn.sin, turn.cos]);
+            let turns = [row.gamma, row.alpha, row.theta].map(|turn| [turn.sin, turn.cos]);
             let is_clear = |numbers: &[Number], scale: f64| !numbers.iter().any(|x| x.is_dust(scale));
             is_clear(&row.offset, reach)
                 && is_clear(&[row.d], reach)
@@ -117,8 +170,9 @@ impl JointFrames {
     }
 
     fn read(robot: &Robot, frames: FrameChoice, embedding: Embedding) -> Option<Self> {
-        let mut joint_frames = Self::as_written(robot, embedding);
+        let mut joint_frames = Self::as_written(robot, embedding)?;
         joint_frames.straighten();
+        joint_frames.turn_carriers();
         joint_frames.normalise_first();
         if frames.carried && !joint_frames.carry_prismatics() {
             return None;
@@ -131,16 +185,21 @@ impl JointFrames {
         Some(joint_frames)
     }
 
-    fn as_written(robot: &Robot, embedding: Embedding) -> Self {
+    /// `None` where the reading has no root for the axes of a branch.
+    fn as_written(robot: &Robot, embedding: Embedding) -> Option<Self> {
         let decimal = |x: f64| embedding.decimal(x);
         let half = decimal(0.5);
-        let mut tip = pose(&robot.tool, embedding);
+        let none = (ExactAngle::NONE, Number::ZERO);
+        let written = |row: &Row| (embedding.turn(&row.dh.alpha), decimal(row.dh.a));
+        // a standard table: twist and length of the parent's row stand before the joint
+        let before = |index: usize| match robot.convention {
+            Convention::Modified => written(&robot.joints[index].row),
+            Convention::Standard => robot.parent(index).map_or(none, |parent| written(&robot.joints[parent].row)),
+        };
         let mut rows = Vec::with_capacity(robot.dof());
-        // a standard table: twist and length of row i-1 stand before joint i
-        let (mut alpha, mut a) = (ExactAngle::NONE, Number::ZERO);
-        for joint in &robot.joints {
+        for (index, joint) in robot.joints.iter().enumerate() {
             let row = &joint.row;
-            let (own_alpha, own_a) = (embedding.turn(&row.dh.alpha), decimal(row.dh.a));
+            let (alpha, a) = before(index);
             let com = row.link.com.map(decimal);
             let body = PseudoInertia::of_body(decimal(row.link.mass), com, embedding.inertia(joint), half);
             let body = if row.link.has_first_moment() {
@@ -149,15 +208,17 @@ impl JointFrames {
                 body
             };
             let matter = match robot.convention {
-                Convention::Modified => {
-                    (alpha, a) = (own_alpha, own_a);
-                    body
+                Convention::Modified => body,
+                Convention::Standard => {
+                    let (own_alpha, own_a) = written(row);
+                    body.turned(&about_x(own_alpha)).moved([own_a, Number::ZERO, Number::ZERO])
                 }
-                Convention::Standard => body.turned(&about_x(own_alpha)).moved([own_a, Number::ZERO, Number::ZERO]),
             };
-            rows.push(JointFrame {
+            let row = JointFrame {
+                parent: robot.parent(index),
                 kind: row.kind,
                 reversed: false,
+                gamma: ExactAngle::NONE,
                 alpha,
                 offset: [a, Number::ZERO, Number::ZERO],
                 theta: embedding.turn(&row.dh.theta),
@@ -165,62 +226,122 @@ impl JointFrames {
                 axis: IDENTITY[2],
                 carried: false,
                 matter,
+            };
+            rows.push(match joint.branch {
+                Some(branch) => row.beginning_at(&branch.placement, robot.convention, embedding)?,
+                None => row,
             });
-            if robot.convention == Convention::Standard {
-                (alpha, a) = (own_alpha, own_a);
-            }
         }
+        let (rotation, translation) = pose(&robot.tool, embedding);
+        let mut tip = Tip { on: robot.tip().on?, rotation, translation };
         if robot.convention == Convention::Standard {
-            // the last row's twist and length lead from frame n on its joint to the link frame
+            // twist and length of the row lead from the frame on its joint to the link frame
+            let (alpha, a) = written(&robot.joints[tip.on].row);
             let turn = about_x(alpha);
             let [x, y, z] = apply(&turn, tip.translation);
-            tip = Tip { rotation: compose(&turn, &tip.rotation), translation: [x + a, y, z] };
+            tip = Tip { rotation: compose(&turn, &tip.rotation), translation: [x + a, y, z], ..tip };
         }
-        let turns = rows.iter().flat_map(|row| [row.alpha, row.theta]).chain([alpha]);
+        let of_tip = written(&robot.joints[tip.on].row).0;
+        let turns = rows.iter().flat_map(|row: &JointFrame| [row.alpha, row.theta]).chain([of_tip]);
         let known = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
         let rotor = |motor: Motor| decimal(motor.gear_ratio) * decimal(motor.gear_ratio) * decimal(motor.inertia);
         let of_arm = |joint: &Joint| joint.motor.filter(|_| robot.rotors).map(rotor).unwrap_or_default();
         let rotors = robot.joints.iter().map(of_arm).collect();
-        Self { rows, gravity: robot.gravity.map(decimal), tip, rotors, embedding, known }
+        let gravity = robot.gravity.map(decimal);
+        let of_base = |row: &JointFrame| if row.parent.is_none() { gravity } else { Triple::default() };
+        let gravity = rows.iter().map(of_base).collect();
+        Some(Self { rows, gravity, tip, rotors, embedding, known })
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
     fn straighten(&mut self) {
         let flip = about_x(ExactAngle { sin: Number::ZERO, cos: -Number::ONE });
-        let mut reversed = false;
-        for (index, row) in self.rows.iter_mut().enumerate() {
-            if index > 0 && row.alpha.quarters() == Some(QuarterTurns::Two) {
-                row.alpha = ExactAngle::NONE;
-                reversed = !reversed;
+        for index in 0..self.rows.len() {
+            let parent = self.rows[index].parent.map(|parent| self.rows[parent].reversed);
+            let row = &mut self.rows[index];
+            row.reversed = parent == Some(true);
+            if row.reversed {
+                row.offset = apply(&flip, row.offset);
+                row.gamma = row.gamma.back();
             }
-            if reversed {
-                row.reversed = true;
+            if parent.is_some() && row.alpha.quarters() == Some(QuarterTurns::Two) {
+                row.alpha = ExactAngle::NONE;
+                row.reversed = !row.reversed;
+            }
+            if row.reversed {
                 row.theta = row.theta.back();
                 row.d = -row.d;
                 row.matter = row.matter.turned(&flip);
             }
+            if row.alpha == ExactAngle::NONE && row.gamma != ExactAngle::NONE {
+                // both turns are about one axis
+                row.theta = row.gamma.then(row.theta);
+                row.gamma = ExactAngle::NONE;
+            }
         }
-        if reversed {
+        if self.rows[self.tip.on].reversed {
             self.turn_tip(&flip);
         }
     }
 
-    /// The base is turned into the frame of joint 1 at q = 0. Where it stands is no matter.
-    fn normalise_first(&mut self) {
-        let Some(first) = self.rows.first_mut() else { return };
-        self.gravity = apply(&transpose(&first.rotation()), self.gravity);
-        (first.alpha, first.theta) = (ExactAngle::NONE, ExactAngle::NONE);
-        (first.offset, first.d) = ([Number::ZERO; 3], Number::ZERO);
+    /// Turns the frame of each link about its axis, so that the first row on it begins without a turn.
+    fn turn_carriers(&mut self) {
+        for index in 0..self.rows.len() {
+            let Some(first) = self.rows.iter().position(|row| row.parent == Some(index)) else { continue };
+            let gamma = self.rows[first].gamma;
+            if gamma == ExactAngle::NONE {
+                continue;
+            }
+            let back = about_z(gamma.back());
+            let row = &mut self.rows[index];
+            row.theta = row.theta.then(gamma);
+            row.matter = row.matter.turned(&back);
+            for carried in self.rows.iter_mut().filter(|row| row.parent == Some(index)) {
+                carried.offset = apply(&back, carried.offset);
+                if carried.alpha == ExactAngle::NONE {
+                    carried.theta = gamma.back().then(carried.theta);
+                } else {
+                    carried.gamma = gamma.back().then(carried.gamma);
+                }
+            }
+            self.rows[first].gamma = ExactAngle::NONE;
+            if self.tip.on == index {
+                self.turn_tip(&back);
+            }
+        }
     }
 
-    /// The constant angle of a last revolute joint goes into its link.
+    /// The base is turned into the frame of each joint on it at q = 0. Where it stands is no matter.
+    fn normalise_first(&mut self) {
+        for (row, gravity) in self.rows.iter_mut().zip(&mut self.gravity).filter(|(row, _)| row.parent.is_none()) {
+            *gravity = apply(&transpose(&row.rotation()), *gravity);
+            (row.gamma, row.alpha, row.theta) = (ExactAngle::NONE, ExactAngle::NONE, ExactAngle::NONE);
+            (row.offset, row.d) = ([Number::ZERO; 3], Number::ZERO);
+        }
+    }
+
+    /// The links that carry no joint, counted from 0.
+    fn ends(&self) -> Vec<usize> {
+        let carries = |index: usize| self.rows.iter().any(|row| row.parent == Some(index));
+        (0..self.rows.len()).filter(|&index| !carries(index)).collect()
+    }
+
+    /// The constant angle of the last joint of each branch, if that is revolute, goes into its link.
     fn normalise_last(&mut self) {
-        let Some(last) = self.rows.last_mut() else { return };
+        for end in self.ends() {
+            self.normalise_end(end);
+        }
+    }
+
+    fn normalise_end(&mut self, end: usize) {
+        let last = &mut self.rows[end];
         if last.kind == JointKind::Revolute && last.theta.quarters() != Some(QuarterTurns::Zero) {
             let rotation = about_z(last.theta);
             last.theta = ExactAngle::NONE;
             last.matter = last.matter.turned(&rotation);
-            self.turn_tip(&rotation);
+            if self.tip.on == end {
+                self.turn_tip(&rotation);
+            }
         }
     }
 
@@ -229,30 +350,50 @@ impl JointFrames {
         self.tip.translation = apply(rotation, self.tip.translation);
     }
 
-    /// Turns the last frame by φ = atan2(h_y, h_x); false when there is nothing to gain or no root.
+    /// Turns the last frame of each branch by φ = atan2(h_y, h_x), where that gains something; false when it does
+    /// nowhere, or a root is missing.
     fn turn_last(&mut self) -> bool {
+        let mut gains = false;
+        for end in self.ends() {
+            match self.turn_end(end) {
+                Some(true) => gains = true,
+                Some(false) => self.normalise_end(end),
+                None => return false,
+            }
+        }
+        gains
+    }
+
+    /// Whether there is something to gain; `None` when there is no root.
+    fn turn_end(&mut self, end: usize) -> Option<bool> {
         let embedding = self.embedding;
-        let Some(last) = self.rows.last_mut() else { return false };
+        let last = &mut self.rows[end];
         let [x, y, _] = last.matter.h;
         if last.kind != JointKind::Revolute {
-            return false;
+            return Some(false);
         }
         if y.is_zero() {
             // the angle of the file serves
-            return last.theta.quarters() != Some(QuarterTurns::Zero);
+            return Some(last.theta.quarters() != Some(QuarterTurns::Zero));
         }
-        let Some(phi) = direction(y, x, embedding) else { return false };
+        let phi = direction(y, x, embedding)?;
         let back = about_z(phi.back());
         last.theta = last.theta.then(phi);
         last.matter = last.matter.turned(&back);
-        self.turn_tip(&back);
-        true
+        if self.tip.on == end {
+            self.turn_tip(&back);
+        }
+        Some(true)
     }
 
     /// Puts prismatic links behind a revolute one into its axes. One constant rotation Rz(φ1) Rx(α') Rz(φ2) is left at
     /// the next revolute joint: φ2 joins its angle, φ1 that of the revolute joint before, whose link it turns. So a
     /// prismatic joint costs no rotation at all. False when there is no such link, or no root.
     fn carry_prismatics(&mut self) -> bool {
+        // what stands behind a link is not one run of rows where it branches
+        if self.rows.iter().enumerate().any(|(index, row)| row.parent != index.checked_sub(1)) {
+            return false;
+        }
         let kinds: Vec<_> = self.rows.iter().map(|row| row.kind).collect();
         let origin_shifts = |at: usize| kinds.get(at) == Some(&JointKind::Prismatic);
         let mut carriers = (0..kinds.len()).filter(|&at| !origin_shifts(at) && origin_shifts(at + 1)).peekable();
@@ -350,12 +491,10 @@ fn root(square: Number, embedding: Embedding) -> Option<Number> {
 }
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll)
-fn pose(transform: &Transform, embedding: Embedding) -> Tip {
+fn pose(transform: &Transform, embedding: Embedding) -> (Square, Triple) {
     let [roll, pitch, yaw] = transform.rpy.map(|angle| embedding.turn(&angle));
     let (zero, one) = (Number::ZERO, Number::ONE);
     let about_y = [[pitch.cos, zero, pitch.sin], [zero, one, zero], [-pitch.sin, zero, pitch.cos]];
-    Tip {
-        rotation: compose(&compose(&about_z(yaw), &about_y), &about_x(roll)),
-        translation: transform.xyz.map(|x| embedding.decimal(x)),
-    }
+    let rotation = compose(&compose(&about_z(yaw), &about_y), &about_x(roll));
+    (rotation, transform.xyz.map(|x| embedding.decimal(x)))
 }

@@ -15,13 +15,13 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::ir::{Moving, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::backward::{Carried, inward};
 use crate::reduced::forward::motions;
-use crate::reduced::{Arm, JointFrames, Motion, Moved, Wrench, crba};
+use crate::reduced::{Arm, Motion, Moved, Wrench, crba};
 
 /// p and its rate without external torques, base to tip.
 pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
     let builder = arm.builder;
     let gravity = crba::gravity_torques(arm);
-    let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
+    let joint_frames = arm.joint_frames.without_gravity();
     let weightless = Arm { joint_frames: &joint_frames, ..*arm };
     let (moved, carried) = builder.moving(Moving::RatesForAccelerations, || {
         let moved = motions(&weightless);

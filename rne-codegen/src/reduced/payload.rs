@@ -1,4 +1,4 @@
-//! A payload on the last link (the reduced form, section 13).
+//! A payload on the link of the tip (the reduced form, section 13).
 //!
 //! ```text
 //! r = R c + t        F = m (a + U r)        N = moment of (R I Rᵀ + J_n) + r × F
@@ -21,15 +21,14 @@ pub(crate) struct Load<'s> {
 }
 
 impl<'s> Arm<'_, 's> {
-    /// The payload of the function that is being written, on the last link.
+    /// The payload of the function that is being written, on the link of the tip.
     pub(crate) fn payload_on(&self, index: usize) -> Option<Payload<'s>> {
-        let dof = self.rows().len();
-        (index + 1 == dof).then(|| Payload::argument(self.builder, dof)).flatten()
+        (index == self.joint_frames.tip.on).then(|| Payload::argument(self.builder, self.rows().len())).flatten()
     }
 
     /// The payload as the recursion takes it.
     pub(crate) fn load(&self, unturned: bool) -> Option<Load<'s>> {
-        let payload = self.payload_on(self.rows().len().checked_sub(1)?)?;
+        let payload = self.payload_on(self.joint_frames.tip.on)?;
         Some(Load { payload, unturned })
     }
 }
@@ -40,7 +39,7 @@ impl<'s> Payload<'s> {
         let builder = arm.builder;
         let tip = &arm.joint_frames.tip;
         let rotation = Matrix(tip.rotation.map(|row| builder.vector(row)));
-        let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
+        let origin_shift = arm.parameters.origin_shifts[tip.on];
         let [x, y, z] = tip.translation;
         (rotation, rotation * self.com + builder.vector([x, y, z - origin_shift]))
     }

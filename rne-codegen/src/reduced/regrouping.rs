@@ -3,7 +3,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::ir::Number;
+use crate::ir::{ExactAngle, Number};
 use crate::reduced::{
     Entry, IDENTITY, JointFrame, JointFrames, OriginShift, Plan, PseudoInertia, RegroupingTarget, Scale, Square, Triple,
 };
@@ -44,9 +44,11 @@ pub(crate) struct Offers {
     rods: [f64; 3],
 }
 
-/// Whether a row's axis is parallel to the one before, both revolute.
+/// Whether a row's axis is parallel to that of its parent, both revolute, and the parent is the row before. A group of
+/// parallel axes is a run of rows.
 pub(crate) fn is_parallel(rows: &[JointFrame], index: usize) -> bool {
     index > 0
+        && rows[index].parent == Some(index - 1)
         && rows[index].kind == Revolute
         && rows[index - 1].kind == Revolute
         && rows[index].alpha.sin.is_zero()
@@ -125,15 +127,13 @@ fn regrouped(
     let mut sphere = None;
     let mut end = rows.len();
     if plan.gyrostat {
-        if !offers.gyrostat {
-            return None;
-        }
         // a massless sphere c·1 is left, which the link before absorbs but for its spin
         end -= 1;
+        let parent = rows[end].parent.filter(|_| offers.gyrostat)?;
         let link = links[end];
         let c = link.s[0][0];
         let (p, u) = line(rows, origin_shifts, end);
-        links[end - 1] = links[end - 1]
+        links[parent] = links[parent]
             + PseudoInertia::rod([link.mass, link.h[2], link.s[2][2] - c], p, u)
             + PseudoInertia { s: IDENTITY.map(|row| row.map(|x| x * c)), ..PseudoInertia::default() };
         links[end] = PseudoInertia::default();
@@ -147,17 +147,16 @@ fn regrouped(
             Prismatic => {
                 // a sliding link turns as the one before: all second moments belong to that
                 let s = std::mem::take(&mut links[index].s);
-                if index > 0 {
+                if let Some(parent) = rows[index].parent {
                     let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[index].rotation());
-                    links[index - 1] = links[index - 1] + moved;
+                    links[parent] = links[parent] + moved;
                 }
             }
             Revolute => share_rods(rows, origin_shifts, plan, offers, &mut links, index)?,
         }
     }
-    if rows.first().is_some_and(|row| row.kind == Revolute) {
+    for (_, first) in rows.iter().zip(&mut links).filter(|(row, _)| row.parent.is_none() && row.kind == Revolute) {
         // only the inertia about its axis acts
-        let first = &mut links[0];
         let about_axis = first.s[0][0] + first.s[1][1];
         first.s = Square::default();
         first.s[0][0] = about_axis;
@@ -165,7 +164,7 @@ fn regrouped(
     Some((links, sphere))
 }
 
-/// Neighbourhood three rods of matter from revolute link `index` to the link before, so that the three targets vanish.
+/// Moves three rods of matter from revolute link `index` to its parent, so that the three targets vanish.
 fn share_rods(
     rows: &[JointFrame],
     origin_shifts: &[Number],
@@ -176,14 +175,15 @@ fn share_rods(
 ) -> Option<()> {
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
     let (p, u) = line(rows, origin_shifts, index);
-    let targets = if index == 0 { [RegroupingTarget::Own; 3] } else { plan.joints[index].targets };
+    let parent = rows[index].parent;
+    let targets = if parent.is_none() { [RegroupingTarget::Own; 3] } else { plan.joints[index].targets };
     // three equations: the target vanishes
     let equation = |k: usize| {
-        let ([x, y, z], constant) = match targets[k].entry() {
-            None => (IDENTITY[k], links[index].get(OWN[k])),
-            Some(entry) => {
-                (IDENTITY.map(|unit| -PseudoInertia::rod(unit, p, u).get(entry)), links[index - 1].get(entry))
+        let ([x, y, z], constant) = match (targets[k].entry(), parent) {
+            (Some(entry), Some(parent)) => {
+                (IDENTITY.map(|unit| -PseudoInertia::rod(unit, p, u).get(entry)), links[parent].get(entry))
             }
+            _ => (IDENTITY[k], links[index].get(OWN[k])),
         };
         [x, y, z, constant]
     };
@@ -197,8 +197,8 @@ fn share_rods(
     link.mass = link.mass - rods[0];
     link.h[2] = link.h[2] - rods[1];
     link.s[2][2] = link.s[2][2] - rods[2];
-    if index > 0 {
-        links[index - 1] = links[index - 1] + PseudoInertia::rod(rods, p, u);
+    if let Some(parent) = parent {
+        links[parent] = links[parent] + PseudoInertia::rod(rods, p, u);
     }
     Some(())
 }
@@ -227,19 +227,19 @@ fn solved(mut rows: [[Number; 4]; 3]) -> Option<Triple> {
     Some(rows.map(|row| row[3]))
 }
 
-/// The axis of a row in axes of the link before: the origin of its frame, and its direction.
+/// The axis of a row in axes of its parent: the origin of its frame, and its direction.
 fn line(rows: &[JointFrame], origin_shifts: &[Number], index: usize) -> (Triple, Triple) {
     let row = &rows[index];
-    let u = [Number::ZERO, -row.alpha.sin, row.alpha.cos];
-    let before = index.checked_sub(1).map_or(Number::ZERO, |before| origin_shifts[before]);
-    let d = if index == 0 { Number::ZERO } else { row.d + origin_shifts[index] };
+    let u = row.along_axis(Number::ONE);
+    let before = row.parent.map_or(Number::ZERO, |parent| origin_shifts[parent]);
+    let d = if row.parent.is_none() { Number::ZERO } else { row.d + origin_shifts[index] };
     let [x, y, z] = row.offset;
-    ([x, y + d * u[1], z - before + d * u[2]], u)
+    ([x + d * u[0], y + d * u[1], z - before + d * u[2]], u)
 }
 
 /// Whether the last link is axisymmetric about a revolute joint.
 fn has_sphere(joint_frames: &JointFrames) -> bool {
-    let (Some(row), true) = (joint_frames.rows.last(), joint_frames.rows.len() > 1) else { return false };
+    let Some(row) = joint_frames.rows.last().filter(|row| row.parent.is_some()) else { return false };
     let PseudoInertia { h, s, .. } = row.matter;
     let vanish = [s[0][0] - s[1][1], s[0][1], s[0][2], s[1][2], h[0], h[1]];
     row.kind == Revolute && vanish.iter().all(|x| x.is_zero())
@@ -251,7 +251,7 @@ fn origin_shift(rows: &[JointFrame], links: &[PseudoInertia], index: usize, rule
     if rule == OriginShift::None {
         return Some(Number::ZERO);
     }
-    if row.carried || index == 0 && row.kind == Prismatic {
+    if row.carried || row.parent.is_none() && row.kind == Prismatic {
         return None;
     }
     let ratio = |a: Number, b: Number| Some(a * b.inverse()?);
@@ -268,13 +268,13 @@ fn origin_shift(rows: &[JointFrame], links: &[PseudoInertia], index: usize, rule
         OriginShift::NextOffset if is_group => rows[index + 1].d,
         OriginShift::NextLessOwn if is_group => rows[index + 1].d - row.d,
         OriginShift::GroupOutward if is_parallel(rows, index) || is_group => -sum(group_start(rows, index)..=index),
-        OriginShift::AnnulParentH if index > 0 => {
-            let [x, y, _] = links[index - 1].h;
+        OriginShift::AnnulParentH if row.gamma == ExactAngle::NONE => {
+            let [x, y, _] = links.get(row.parent?)?.h;
             ratio(-(y * row.offset[0]), x * row.alpha.sin)? - row.d
         }
         _ => return None,
     };
-    (index > 0 || rule != OriginShift::MinusD).then_some(origin_shift)
+    (row.parent.is_some() || rule != OriginShift::MinusD).then_some(origin_shift)
 }
 
 fn length(v: Triple) -> f64 {

@@ -28,8 +28,8 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::inward::{Carried, full};
-use crate::reduced::{Arm, Composite, Gradient, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench};
+use crate::reduced::inward::{Carried, Loads, full};
+use crate::reduced::{Arm, Body, Composite, Gradient, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench};
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
 pub(crate) struct Sensitivity<'s> {
@@ -49,8 +49,10 @@ pub(crate) struct Motion<'s> {
 
 /// Motion of a link and of the link before it, where the joint between them is.
 pub(crate) struct JointMotion<'s> {
-    /// Motion of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
+    /// Motion of the parent, at this joint's origin, in frame N (prismatic: in the axes of the link).
     pub(crate) before: Motion<'s>,
+    /// Motion of the link in frame N.
+    unturned: Motion<'s>,
     /// Motion of the link, in its axes.
     pub(crate) own: Motion<'s>,
     /// From the axes of the link to N.
@@ -84,7 +86,7 @@ struct Column<'s> {
     by_rate: Wrench<'s>,
 }
 
-impl<'s> Behind<'s> {
+impl<'s> Body<'s> for Behind<'s> {
     fn plus(self, other: Self) -> Self {
         let moment = square(|i, j| self.moment[i][j] + other.moment[i][j]);
         Self {
@@ -95,7 +97,9 @@ impl<'s> Behind<'s> {
             wrench: self.wrench.plus(other.wrench),
         }
     }
+}
 
+impl<'s> Behind<'s> {
     fn around(&self) -> Symbol<'s> {
         self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
     }
@@ -187,29 +191,23 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     let rows = arm.rows();
     let zero = builder.zero();
     let mut found = Sensitivity { by_position: vec![vec![zero; dof]; dof], by_rate: vec![vec![zero; dof]; dof] };
-    let mut carried: Carried<Behind<'s>, Column<'s>> = Carried::NOTHING;
+    let mut loads: Loads<Behind<'s>, Column<'s>> = Loads::new();
     for index in (0..dof).rev() {
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
         let own = own(Composite::of_link(arm, index, &matter(arm, index)), &station.own);
-        let turn = Turned::AboutZ(station.turn);
         // everything in frame N of this joint
-        let here = if carried.unturned {
-            let own = own.turned(turn);
-            Carried { behind: Some(carried.behind.map_or(own, |behind| own.plus(behind))), ..carried }
-        } else {
-            let whole = Carried { behind: Some(carried.behind.map_or(own, |behind| own.plus(behind))), ..carried };
-            if row.kind == Revolute { whole.turned(turn) } else { whole }
-        };
-        let Carried { behind: Some(behind), mut columns, .. } = here else { break };
+        let (mut load, turn) = (loads.take(index), (row.kind == Revolute).then_some(station.turn));
+        let behind = load.whole(load.with_link(own), turn);
+        let mut columns = load.columns(turn);
         behind.body.name(builder, index + 1);
         columns.push(column(arm, index, station, &behind));
         for column in &columns {
             meet(arm, index, station, column, &mut found);
         }
-        carried = Carried { behind: Some(behind), columns, unturned: arm.is_grouped(index) };
-        if index > 0 {
-            carried = arm.inward(index, carried);
+        if let Some(parent) = row.parent {
+            let carried = Carried { behind: Some(behind), columns };
+            loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
     }
     for matrix in [&mut found.by_position, &mut found.by_rate] {
@@ -228,11 +226,11 @@ pub(crate) fn matter(arm: &Arm<'_, '_>, index: usize) -> PseudoInertia {
     let mut matter = arm.parameters.links[index];
     let Some(c) = arm.parameters.sphere else { return matter };
     let half = c * Number::integer(2).inverse().unwrap_or_default();
-    let dof = arm.rows().len();
-    if index + 1 == dof {
+    let rows = arm.rows();
+    if arm.is_spin(index) {
         matter = PseudoInertia::default();
         (0..3).for_each(|k| matter.s[k][k] = half);
-    } else if index + 2 == dof {
+    } else if rows.last().is_some_and(|last| last.parent == Some(index)) {
         (0..3).for_each(|k| matter.s[k][k] = matter.s[k][k] - half);
     }
     matter
@@ -242,45 +240,49 @@ pub(crate) fn matter(arm: &Arm<'_, '_>, index: usize) -> PseudoInertia {
 pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let (zeros, zero) = (builder.no_vector(), builder.zero());
-    let mut last = Motion {
-        omega: zeros,
-        omega_dot: zeros,
-        acceleration: builder.vector(arm.joint_frames.gravity.map(|g| -g)),
-        twice_omega: zeros,
-        twice_velocity: zeros,
-    };
-    // in frame N of the joint before, and the turn from there
     let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
-    let (mut unturned, mut turn) = (last, still);
     let mut stations: Vec<JointMotion<'s>> = Vec::with_capacity(rows.len());
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::Omega, index + 1);
         let (rate, rate_dot) = (arm.rate(index), arm.rate_dot(index));
-        let before = arm.outward(index, last, unturned, turn);
-        match row.kind {
+        let (last, last_unturned, last_turn) = if let Some(parent) = row.parent {
+            let parent = &stations[parent];
+            (parent.own, parent.unturned, parent.turn)
+        } else {
+            let base = Motion {
+                omega: zeros,
+                omega_dot: zeros,
+                acceleration: builder.vector(arm.joint_frames.gravity[index].map(|g| -g)),
+                twice_omega: zeros,
+                twice_velocity: zeros,
+            };
+            (base, base, still)
+        };
+        let before = arm.outward(index, last, last_unturned, last_turn);
+        let (own, unturned, turn) = match row.kind {
             Revolute => {
-                turn = if arm.is_spin(index) { still } else { arm.turn_of_group(index) };
+                let turn = if arm.is_spin(index) { still } else { arm.turn_of_group(index) };
                 let ([wx, wy, _], [dx, dy, dz]) = (before.omega.0, before.omega_dot.0);
                 let omega = before.omega.plus_z(rate);
-                unturned = Motion {
+                let unturned = Motion {
                     omega,
                     omega_dot: Vector([dx + rate * wy, dy - rate * wx, dz + rate_dot]),
                     twice_omega: omega.times(factor),
                     ..before
                 };
-                last = unturned.turned_back(|v| turn.back_about_z(v));
+                (unturned.turned_back(|v| turn.back_about_z(v)), unturned, turn)
             }
             Prismatic => {
                 let (u, twice_rate) = (builder.vector(row.axis), rate.times(Number::integer(2)));
-                last = Motion {
+                let own = Motion {
                     acceleration: before.acceleration + before.omega.cross(u * twice_rate) + u * rate_dot,
                     twice_velocity: before.twice_velocity + u * rate.times(factor),
                     ..before
                 };
-                (unturned, turn) = (last, still);
+                (own, own, still)
             }
-        }
-        stations.push(JointMotion { before, own: last, turn });
+        };
+        stations.push(JointMotion { before, unturned, own, turn });
     }
     stations
 }
