@@ -21,12 +21,21 @@ use crate::ldlt::{factor, inverse_of, solve};
 /// dependent) Λ does not exist: the elements are then not finite, or so large that they contain only rounding errors.
 /// The function never panics. Near such a pose, give fewer rows.
 ///
+/// A frame that only k joints move has at most k independent rows, at every pose: the compiler does not know k, so all
+/// six rows of a frame on joint 4 compile, and Λ is never right. Give at most k rows, and test that the result is finite.
+///
 /// ```
 /// use rne_runtime::operational_space_inertia;
 ///
 /// // a point mass of 2 kg on a slide along x and a slide along y
 /// let (mass, jacobian) = ([[2.0, 0.0], [0.0, 2.0]], [[1.0, 0.0], [0.0, 1.0]]);
 /// assert_eq!(operational_space_inertia(&mass, &jacobian), [[2.0, 0.0], [0.0, 2.0]]);
+///
+/// // three slides; only the first two move the frame: three rows are dependent, two are not
+/// let mass = [[1.0_f64, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let [x, y, z] = [[1.0_f64, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+/// assert!(!operational_space_inertia(&mass, &[x, y, z]).as_flattened().iter().all(|x| x.is_finite()));
+/// assert_eq!(operational_space_inertia(&mass, &[x, y]), [[1.0, 0.0], [0.0, 1.0]]);
 /// ```
 #[must_use]
 pub fn operational_space_inertia<const DOF: usize, const ROWS: usize, T: Scalar>(
@@ -44,12 +53,20 @@ pub fn operational_space_inertia<const DOF: usize, const ROWS: usize, T: Scalar>
 /// J J̄ = 1. Torques (1 - Jᵀ J̄ᵀ) τ do not accelerate the task for any τ: they move only the null space. The arguments,
 /// the compile error and the results at singular poses are those of [`operational_space_inertia`].
 ///
+/// For inverse kinematics, a step of the joints is J̄ times the error of the pose,
+/// [`Pose::error_to`](crate::Pose::error_to), in the same rows. It has no damping, so limit the step near singular poses.
+///
 /// ```
 /// use rne_runtime::dynamically_consistent_inverse;
 ///
 /// // a slide of 1 kg on a slide of 3 kg along the same line: only the lighter one moves
 /// let (mass, jacobian) = ([[4.0, 1.0], [1.0, 1.0]], [[1.0, 1.0]]);
-/// assert_eq!(dynamically_consistent_inverse(&mass, &jacobian), [[0.0], [1.0]]);
+/// let inverse = dynamically_consistent_inverse(&mass, &jacobian);
+/// assert_eq!(inverse, [[0.0], [1.0]]);
+///
+/// // inverse kinematics: the step of the joints that moves the tip by 0.2 m along the line
+/// let error = [0.2];
+/// assert_eq!(inverse.map(|joint| joint[0] * error[0]), [0.0, 0.2]);
 /// ```
 #[must_use]
 pub fn dynamically_consistent_inverse<const DOF: usize, const ROWS: usize, T: Scalar>(
