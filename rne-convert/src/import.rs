@@ -86,7 +86,7 @@ pub struct Account {
     pub rounding: Difference,
     /// Remarks, in sentences.
     pub remarks: Vec<String>,
-    /// Those of the remarks that are probably mistakes of the URDF: limits that the import ignores, numbers in other
+    /// The remarks that are probably on mistakes of the URDF: limits that the import ignores, numbers in other
     /// units.
     pub suspicious: Vec<String>,
     /// The lints of the robot file.

@@ -71,7 +71,7 @@ pub(crate) struct FrozenPositions {
 }
 
 impl FrozenPositions {
-    /// Of no joints where the log has no velocities.
+    /// `joints` is 0 for a log without velocities.
     pub(crate) fn new(joints: usize) -> Self {
         Self { run: 0, windows: vec![None; joints], longest: vec![None; joints], changes: vec![false; joints] }
     }
@@ -109,13 +109,13 @@ impl FrozenPositions {
 
     pub(crate) fn end(mut self) -> Vec<FrozenPosition> {
         (0..self.windows.len()).for_each(|joint| self.keep(joint));
-        let found = self.longest.iter().zip(&self.changes).enumerate();
-        let position = |(joint, (longest, changes)): (usize, (&Option<(u64, Window)>, &bool))| {
+        let joints = self.longest.iter().enumerate();
+        let position = |(joint, longest): (usize, &Option<(u64, Window)>)| {
             let (run, window) = (*longest)?;
             let times = [window.start, window.end];
-            Some(FrozenPosition { joint, value: window.value, run, times, is_whole: !changes })
+            Some(FrozenPosition { joint, value: window.value, run, times, is_whole: !self.changes[joint] })
         };
-        found.filter_map(position).collect()
+        joints.filter_map(position).collect()
     }
 }
 

@@ -103,8 +103,8 @@ impl fmt::Display for Remark {
             Self::IgnoredJoints(names) => write!(f, "joints of the log that are not read: {}", names.join(", ")),
             Self::VelocitiesDisagree { joint, share } if share.is_infinite() => write!(
                 f,
-                "the positions of {joint} do not change, and its measured velocity is not zero: its velocities may have \
-                 a constant error"
+                "the positions of {joint} do not change, and its measured velocity is not zero: its velocities may \
+                 have a constant error"
             ),
             Self::VelocitiesDisagree { joint, share } => write!(
                 f,
