@@ -61,8 +61,8 @@ pub struct Event {
     pub joint: Option<usize>,
     /// The parameter: `coulomb`, `viscous`, `offset`, `gain`, `delay`, `mass`, `external` (the largest torque of the
     /// environment), `residual` (the root mean square of what the model leaves), `frozen` (the value that an effort
-    /// repeats), `frozen_position` (the value that a position repeats) or `exchanged` (the efforts of `joint` and of the
-    /// joint in `others`; it has no value).
+    /// repeats), `frozen_position` (the value that a position repeats) or `exchanged` (the efforts of `joint` and of
+    /// the joint in `others`; it has no value).
     pub parameter: &'static str,
     /// The value in the log, in `unit`.
     pub value: f64,
