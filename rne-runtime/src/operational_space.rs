@@ -22,7 +22,8 @@ use crate::ldlt::{factor, inverse_of, solve};
 /// The function never panics. Near such a pose, give fewer rows.
 ///
 /// A frame that only k joints move has at most k independent rows, at every pose: the compiler does not know k, so all
-/// six rows of a frame on joint 4 compile, and Λ is never right. Give at most k rows, and test that the result is finite.
+/// six rows of a frame on joint 4 compile, and Λ is never right. Give at most k rows, and test that the result is
+/// finite.
 ///
 /// ```
 /// use rne_runtime::operational_space_inertia;
@@ -54,7 +55,8 @@ pub fn operational_space_inertia<const DOF: usize, const ROWS: usize, T: Scalar>
 /// the compile error and the results at singular poses are those of [`operational_space_inertia`].
 ///
 /// For inverse kinematics, a step of the joints is J̄ times the error of the pose,
-/// [`Pose::error_to`](crate::Pose::error_to), in the same rows. It has no damping, so limit the step near singular poses.
+/// [`Pose::error_to`](crate::Pose::error_to), in the same rows. It has no damping, so limit the step near singular
+/// poses.
 ///
 /// ```
 /// use rne_runtime::dynamically_consistent_inverse;

@@ -133,8 +133,8 @@ fn agree(name: &str, shape: &[usize], samples: Option<usize>, steps: usize, dof:
     match (shape, samples) {
         (&[states, joints], Some(samples)) if joints == dof && states > 1 && states != samples => {
             Err(PyValueError::new_err(format!(
-                "`tau` has the shape ({samples}, {steps}, {dof}), but `{name}` has the shape ({states}, {dof}): the axes \
-                 of `tau` are samples, steps, joints, (N, T, {dof}), and N is {states} here"
+                "`tau` has the shape ({samples}, {steps}, {dof}), but `{name}` has the shape ({states}, {dof}): the \
+                 axes of `tau` are samples, steps, joints, (N, T, {dof}), and N is {states} here"
             )))
         }
         _ => Ok(()),
