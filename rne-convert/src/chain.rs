@@ -78,7 +78,7 @@ pub(crate) struct Extracted {
     pub(crate) joints: BTreeSet<usize>,
     /// Notes for the reader of the robot file, in sentences.
     pub(crate) remarks: Vec<String>,
-    /// The notes, of `remarks`, that say which limits are ignored.
+    /// The notes among `remarks` that say which limits are ignored.
     pub(crate) ignored_limits: Vec<String>,
 }
 

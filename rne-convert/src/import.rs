@@ -86,8 +86,8 @@ pub struct Account {
     pub rounding: Difference,
     /// Remarks, in sentences.
     pub remarks: Vec<String>,
-    /// The remarks that are probably on mistakes of the URDF: limits that the import ignores, numbers in other
-    /// units.
+    /// The remarks on probable mistakes of the URDF: limits that the import ignores, numbers in other units. They are
+    /// among `remarks`, too.
     pub suspicious: Vec<String>,
     /// The lints of the robot file.
     pub lints: Report,

@@ -64,8 +64,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// Warns
 /// -----
 /// RobotFileWarning
-///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias; in
-///     a URDF also for limits that the import ignores, and angles of more than a turn in an `rpy`.
+///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
+///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`.
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=true,
     keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
