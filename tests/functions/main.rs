@@ -26,6 +26,7 @@ mod payload;
 mod peers;
 mod published;
 mod random_arms;
+mod real_trees;
 #[path = "../random/robots.rs"]
 mod robots;
 mod rotors;
