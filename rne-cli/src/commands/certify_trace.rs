@@ -1,6 +1,5 @@
 //! The trace that the independent checker reads: the table of the arm, and the exact expressions of the constants.
 
-use std::fs;
 use std::path::Path;
 
 use rne_codegen::{Derivation, ExactConstant, ExactStep, Function, Program};
@@ -12,6 +11,7 @@ use crate::commands::certify::{Arguments, Language};
 use crate::commands::certify_code::stem;
 use crate::commands::emit::Real;
 use crate::files::output_file::{self, Existing};
+use crate::files::output_folder;
 use crate::files::plan_file::Compiler;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
@@ -54,8 +54,7 @@ pub(super) fn write(
         "table": table(robot),
     });
     let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
-    fs::create_dir_all(evidence)
-        .map_err(|error| Failure::input(format_args!("{} cannot be made: {error}", evidence.display())))?;
+    output_folder::make(evidence)?;
     let (code, stem) = (arguments.c_code(robot, programs, bytes, precision)?, stem(arguments, robot));
     let header = format!("{stem}.h");
     let files = [

@@ -82,6 +82,27 @@ fn what_has_no_friction_has_no_certificate_of_it() {
 }
 
 #[test]
+fn a_folder_of_evidence_that_cannot_be_made_is_named_plainly() {
+    if !has_tools() {
+        return;
+    }
+    let folder = folder("certify_evidence");
+    let file = folder.join("file");
+    fs::write(&file, "mine").expect("written");
+    for path in [file.clone(), file.join("evidence")] {
+        let path = path.to_str().expect("UTF-8");
+        fails(2, &["certify", ARM, "--evidence", path], &["file is not a folder and is not changed"]);
+    }
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
+    if cfg!(target_os = "linux") {
+        let called = rne(&["certify", ARM, "--evidence", "/proc/foo"]);
+        assert_eq!(called.status, 1);
+        assert!(called.err.contains("/proc/foo cannot be written: the system does not allow a new file"), "{called:?}");
+        assert!(!called.err.contains("os error"), "{called:?}");
+    }
+}
+
+#[test]
 fn the_checker_takes_a_file_with_several_functions() {
     let has_python = std::process::Command::new("python3").arg("--version").output().is_ok();
     if !has_python || !has_tools() {
