@@ -8,36 +8,33 @@ The script shares no code with rne and needs only Python's standard library. It 
    that of the robot file, but for the roundings of an expression in doubles (1e-14 of the number, 1e-14 rad).
 2. Each constant: the trace gives its expression in the numbers of the table. The script evaluates the expression
    with 60 digits; the literal in the source must be the nearest float (or double) of it.
-3. The function (inverse_dynamics, bias_torques or gravity_torques): the script evaluates the source modulo a random
+3. Each function of the trace (inverse_dynamics, bias_torques, gravity_torques): the script evaluates the source modulo a random
    prime at random points, with the expressions of the constants. It computes the torques modulo the prime by its own
    recursive Newton-Euler algorithm, in the axes of frame 0. Both must be equal. The sine and cosine of an angle are a
    random point (s, c) with s^2 + c^2 = 1.
-4. Sine and cosine: their source must be one of two texts whose SHA-256 stands below. A test of rne compares the
-   functions with high precision at 100,000 angles; this script does not.
+4. Sine and cosine: their source must be one of two texts whose SHA-256 stands in c_source.py. A test of rne compares
+   the functions with high precision at 100,000 angles; this script does not.
+
+A source may have more functions, such as friction_torques: the script names them as not checked. c_source.py, beside
+this script, reads the source; it refuses anything else that stands there.
 
 The primes have 127 bits. A wrong term survives one point with a probability below 1e-33; there are 8 points.
-Not checked: the compiler and the processor; without a robot file, that the table in the trace is that of the arm.
+Not checked: the header, the compiler and the processor; without a robot file, that the table in the trace is that of the arm.
 Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read.
 """
-import hashlib
 import json
 import math
 import random
-import re
 import struct
 import sys
 from decimal import Decimal
 
 sys.dont_write_bytecode = True  # no folder __pycache__ beside this script
 import robot_table
+from c_source import File, Source
 from robot_table import PI, Wrong, cosine, sine
 
 POINTS = 8
-KERNELS = {  # of the sine, by the type, with the comments removed and the prefix replaced by PREFIX
-    "float": "075ef40048349db137365e9a3658e49b884b4617431a61b682e6f95359e0b870",
-    "double": "832cb059c93293dbe679defff4e5a128e7221d57220703aa1a890c25590203ef",
-}
-
 FUNCTIONS = {  # with the arrays that they take; what they do not take is zero
     "inverse_dynamics": ["q", "qd", "qdd"],
     "bias_torques": ["q", "qd"],
@@ -151,150 +148,7 @@ def field_values(steps, field):
     return evaluate(steps, leaf, lambda a, b: (a + b) % field.p, lambda a, b: a * b % field.p, lambda a: -a % field.p,
                     field.inverse, field.root)
 
-# --- the C source -------------------------------------------------------------------------------------------------
-
-TOKEN = re.compile(r"\s*([A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fu]?|[-+*/()\[\]{},;=&])")
-
-def tokens_of(text):
-    tokens, at = [], 0
-    text = text.rstrip()
-    while at < len(text):
-        match = TOKEN.match(text, at)
-        if not match:
-            raise Wrong(f"the source has an unknown symbol: {text[at:at + 20]!r}")
-        tokens.append(match.group(1))
-        at = match.end()
-    return tokens
-
-class Source:
-    def __init__(self, text, trace):
-        self.kind, self.name, prefix = trace["real"], trace["function"], trace["prefix"]
-        text = re.sub(r"//[^\n]*", "", re.sub(r"/\*.*?\*/", "", text, flags=re.S))
-        head = f"void {self.name}("
-        if text.count(head) != 1:
-            raise Wrong(f"the source must define {self.name} once")
-        before, after = text.split(head)
-        body, rest = after.split("\n}\n", 1) if "\n}\n" in after else (after, "?")
-        if rest.strip():
-            raise Wrong("the source has code after the function")
-        before = re.sub(r'#include (<float.h>|<stdint.h>|"[^"]*")\n', "", before)
-        kernel = " ".join(before.replace(prefix, "PREFIX").split())
-        if kernel and hashlib.sha256(kernel.encode()).hexdigest() != KERNELS[self.kind]:
-            raise Wrong("the sine and cosine are not those of rne: " + hashlib.sha256(kernel.encode()).hexdigest())
-        self.tokens, self.at, self.prefix = tokens_of(body), 0, prefix
-        self.parameters = self.header()
-    def next(self, *expected):
-        token = self.tokens[self.at] if self.at < len(self.tokens) else "the end"
-        if expected and token not in expected:
-            raise Wrong(f"the source has {token!r} where {' or '.join(expected)} is expected")
-        self.at += 1
-        return token
-    def peek(self):
-        return self.tokens[self.at] if self.at < len(self.tokens) else ""
-    def header(self):
-        parameters = []
-        while True:
-            is_const = self.peek() == "const"
-            if is_const:
-                self.next()
-            self.next(self.kind)
-            name = self.next()
-            self.next("[")
-            length = int(self.next())
-            self.next("]")
-            parameters.append((name, length, is_const))
-            if self.next(",", ")") == ")":
-                self.next("{")
-                return parameters
-    def run(self, machine):
-        """Executes the statements. `machine` gives numbers their meaning."""
-        start, names = self.at, {}
-        self.machine, self.names = machine, names
-        while self.peek():
-            token = self.next()
-            if token == "(":  # (void)qd;
-                for expected in ("void", ")"):
-                    self.next(expected)
-                self.next()
-                self.next(";")
-            elif token in ("const", self.kind):
-                is_const = token == "const"
-                if is_const:
-                    self.next(self.kind)
-                name = self.next()
-                if name in names or name in dict((p[0], 1) for p in self.parameters):
-                    raise Wrong(f"{name} is declared twice")
-                if is_const:
-                    self.next("=")
-                    literal = self.literal()
-                    names[name] = machine.constant(name, literal) if literal is not None else self.sum()
-                else:
-                    names[name] = None
-                self.next(";")
-            elif token == f"{self.prefix}_sin_cos":
-                self.next("(")
-                angle = self.sum()
-                turn = machine.sin_cos(angle)
-                for value in turn:
-                    self.next(",")
-                    self.next("&")
-                    name = self.next()
-                    if name not in names or (names[name] is not None and name != "unused"):
-                        raise Wrong(f"{name} is written where it may not be")
-                    names[name] = value
-                self.next(")")
-                self.next(";")
-            elif token == self.parameters[-1][0]:
-                self.next("[")
-                index = int(self.next())
-                self.next("]")
-                self.next("=")
-                machine.output(index, self.sum())
-                self.next(";")
-            else:
-                raise Wrong(f"the source has an unknown statement: {token}")
-        self.at = start
-    def literal(self):
-        """A constant alone on the right side: its text, and whether it is negative."""
-        end = self.at + (self.peek() == "-")
-        if self.tokens[end + 1:end + 2] == [";"] and self.tokens[end][0].isdigit():
-            text = "".join(self.tokens[self.at:end + 1])
-            self.at = end + 1
-            return text
-        return None
-    def sum(self):
-        value = self.product()
-        while self.peek() in ("+", "-"):
-            operator, other = self.next(), self.product()
-            value = self.machine.add(value, other if operator == "+" else self.machine.negative(other))
-        return value
-    def product(self):
-        value = self.atom()
-        while self.peek() in ("*", "/"):
-            operator, other = self.next(), self.atom()
-            value = (self.machine.multiply if operator == "*" else self.machine.divide)(value, other)
-        return value
-    def atom(self):
-        token = self.next()
-        if token == "-":
-            return self.machine.negative(self.atom())
-        if token == "(":
-            value = self.sum()
-            self.next(")")
-            return value
-        if self.peek() == "[":
-            self.next()
-            index = int(self.next())
-            self.next("]")
-            lengths = {name: length for name, length, is_const in self.parameters if is_const}
-            if index >= lengths.get(token, 0):
-                raise Wrong(f"{token}[{index}] does not exist")
-            return self.machine.argument(token, index)
-        if token[0].isdigit():
-            return self.machine.number(token)
-        if self.names.get(token) is None:
-            raise Wrong(f"{token} is used before it has a value")
-        return self.names[token]
+# --- the numbers of the source ---------------------------------------------------------------------------------------
 
 class Machine:
     """Arithmetic of a field. A value is (number, turn); a turn is the (sine, cosine) of the value as an angle."""
@@ -427,18 +281,22 @@ def torques(field, table, machine):
 
 # --- all of it ----------------------------------------------------------------------------------------------------
 
-def check(text, trace):
-    table, steps, kind = trace["table"], trace["steps"], trace["real"]
-    source = Source(text, trace)
+def check(file, traced, trace):
+    """Checks a function of the trace; says what was checked."""
+    table, kind, prefix = trace["table"], trace["real"], trace["prefix"]
+    function, steps, constants_of = traced["function"], traced["steps"], traced["constants"]
+    if function not in file.functions:
+        raise Wrong(f"the source must define {function} once")
+    source = Source(function, *file.functions[function], prefix, kind)
     joints = len(table["joints"])
-    arrays = FUNCTIONS.get(source.name.removeprefix(source.prefix + "_"))
+    arrays = FUNCTIONS.get(function.removeprefix(prefix + "_"))
     if arrays is None:
-        raise Wrong(f"this script does not know the function {source.name}")
-    if source.parameters != [(name, joints, True) for name in arrays] + [("tau", joints, False)]:
-        raise Wrong(f"the function must take {', '.join(arrays)} and write tau, with one element per joint")
+        raise Wrong(f"this script does not know the function {function}")
+    if source.parameters != [(array, joints, True) for array in arrays] + [("tau", joints, False)]:
+        raise Wrong(f"{function} must take {', '.join(arrays)} and write tau, with one element per joint")
     exact = exact_values(steps)
     literals = {}
-    for name, of in trace["constants"].items():
+    for name, of in constants_of.items():
         value = exact[of] if isinstance(of, int) else angle_of(exact[of["sin"]], exact[of["cos"]])
         literals[name] = as_float(value, kind)
     points = 0
@@ -447,7 +305,7 @@ def check(text, trace):
         try:
             values = field_values(steps, field)
             constants = {}
-            for name, of in trace["constants"].items():
+            for name, of in constants_of.items():
                 is_number = isinstance(of, int)
                 constants[name] = (values[of], None) if is_number else (random.randrange(field.p),
                                                                        (values[of["sin"]], values[of["cos"]]))
@@ -457,12 +315,12 @@ def check(text, trace):
             continue
         expected = torques(field, table, machine)
         if sorted(machine.outputs) != list(range(joints)):
-            raise Wrong("the function does not write every torque")
+            raise Wrong(f"{function} does not write every torque")
         for index, value in enumerate(expected):
             if machine.outputs[index] != value:
-                raise Wrong(f"torque {index + 1} is another function than recursive Newton-Euler")
+                raise Wrong(f"{function}: torque {index + 1} is another function than recursive Newton-Euler")
         points += 1
-    return f"{source.name}: {joints} torques are those of the table at {POINTS} points; {len(literals)} constants are right"
+    return f"{function}: {joints} torques are those of the table at {POINTS} points; {len(literals)} constants are right"
 
 def main():
     if len(sys.argv) not in (3, 4):
@@ -481,7 +339,15 @@ def main():
         if robot is not None:
             count = robot_table.compare(trace["table"], robot)
             print(f"{sys.argv[3]}: {count} numbers of the table in the trace are those of the robot file")
-        print(check(text, trace))
+        file = File(text, trace["prefix"], trace["real"])
+        for traced in trace["functions"]:
+            print(check(file, traced, trace))
+        checked = [traced["function"] for traced in trace["functions"]]
+        others = [name for name in file.functions if name not in checked]
+        if not checked:
+            raise Wrong("the trace names no function")
+        if others:
+            print(f"not checked, because the trace does not name them: {', '.join(others)}")
     except Wrong as error:
         print(f"wrong: {error}")
         return 1

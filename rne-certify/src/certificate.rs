@@ -1,4 +1,4 @@
-//! The certificate of one function of one arm: its data, and the page.
+//! The certificate of functions of one arm: its data, and the page.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -16,8 +16,6 @@ pub struct Certificate {
     pub command: String,
     /// The name of the arm.
     pub robot: String,
-    /// The function, by its name in the code.
-    pub function: String,
     /// The language of the code: `c` or `rust`.
     pub language: &'static str,
     /// The form of the code.
@@ -32,6 +30,24 @@ pub struct Certificate {
     pub emit: String,
     /// SHA-256, by what it is of.
     pub hashes: BTreeMap<String, String>,
+    /// The function that is certified, the first one where there are several.
+    #[serde(flatten)]
+    pub first: Certified,
+    /// The other functions.
+    pub more: Vec<Certified>,
+    /// Whether the file of the code also contains tests, behind `RNE_TEST`.
+    pub tests: bool,
+    /// Rules of MISRA C:2012 and how often the code violates them; absent where cppcheck is not installed.
+    pub misra: Option<BTreeMap<String, usize>>,
+    /// The lines of the code and where they come from.
+    pub trace: Vec<Traced>,
+}
+
+/// A function and what is known of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Certified {
+    /// The function, by its name in the code without the prefix.
+    pub function: String,
     /// The cost of a call.
     pub cost: Cost,
     /// The measurement in QEMU; absent where it is not installed.
@@ -40,10 +56,6 @@ pub struct Certificate {
     pub accuracy: Accuracy,
     /// How the code was compared with the recursive Newton-Euler algorithm, a sentence each.
     pub proof: Vec<String>,
-    /// Rules of MISRA C:2012 and how often the code violates them; absent where cppcheck is not installed.
-    pub misra: Option<BTreeMap<String, usize>>,
-    /// The lines of the code and where they come from.
-    pub trace: Vec<Traced>,
 }
 
 /// The cost of a call.
@@ -170,17 +182,25 @@ impl Certificate {
     /// The page in Markdown.
     #[must_use]
     pub fn page(&self) -> String {
+        let functions: Vec<String> = self.functions().map(|of| format!("`{}`", of.function)).collect();
         let mut text = format!(
-            "# Certificate of `{}` of {} on {}\n\nThis command writes the page:\n\n```sh\n{}\n```\n\n",
-            self.function, self.robot, self.core, self.command
+            "# Certificate of {} of {} on {}\n\nThis command writes the page:\n\n```sh\n{}\n```\n\n",
+            functions.join(", "),
+            self.robot,
+            self.core,
+            self.command
         );
         self.tools_and_files(&mut text);
-        self.costs(&mut text);
-        self.emulated(&mut text);
-        self.errors(&mut text);
-        text.push_str("\n## Comparison with the recursive Newton-Euler algorithm\n\n");
-        for line in &self.proof {
-            let _ = writeln!(text, "- {line}");
+        for certified in self.functions() {
+            // a page about one function names it in the title alone
+            let of = if self.more.is_empty() { String::new() } else { format!(" of `{}`", certified.function) };
+            certified.costs(&mut text, &self.form, &of);
+            certified.emulated(&mut text, &of);
+            certified.errors(&mut text, &of);
+            let _ = writeln!(text, "\n## Comparison with the recursive Newton-Euler algorithm{of}\n");
+            for line in &certified.proof {
+                let _ = writeln!(text, "- {line}");
+            }
         }
         self.rules(&mut text);
         text.push_str("\n## Trace\n\nEach line of the code with the step that it belongs to.\n\n");
@@ -189,6 +209,10 @@ impl Certificate {
             let _ = writeln!(text, "| {line} | `{name}` | {step} | {} |", equations.replace('|', "\\|"));
         }
         text
+    }
+
+    fn functions(&self) -> impl Iterator<Item = &Certified> {
+        std::iter::once(&self.first).chain(&self.more)
     }
 
     fn tools_and_files(&self, text: &mut String) {
@@ -209,26 +233,47 @@ impl Certificate {
         }
     }
 
-    fn costs(&self, text: &mut String) {
+    fn rules(&self, text: &mut String) {
+        text.push_str("\n## MISRA C:2012\n\n");
+        let Some(violations) = &self.misra else {
+            text.push_str(if self.language == "c" {
+                "Not checked: cppcheck is not installed (Debian: `apt-get install cppcheck`).\n"
+            } else {
+                "Not checked: the rules are for C.\n"
+            });
+            return;
+        };
+        text.push_str("The addon `misra` of cppcheck reports these rules; the texts of the rules are not free.\n\n");
+        text.push_str("| rule | reports | deviation |\n|---|---:|---|\n");
+        for (rule, count) in violations {
+            let why = misra::deviation(rule).unwrap_or("NO DEVIATION IS RECORDED");
+            let _ = writeln!(text, "| {rule} | {count} | {why} |");
+        }
+        if self.tests {
+            text.push_str(
+                "\nThe tests at the end of the file, behind `RNE_TEST`, are test code: cppcheck reads the file without \
+                 them.\n",
+            );
+        }
+        let undecided = misra::NOT_DECIDED.join(", ");
+        let _ = writeln!(text, "\nThe addon of cppcheck 2.10 contains no check for these rules: {undecided}.");
+    }
+}
+
+impl Certified {
+    fn costs(&self, text: &mut String, form: &str, of: &str) {
         let cost = &self.cost;
         let calls: Vec<String> = cost.calls.iter().map(|(name, count)| format!("`{name}` {count}×")).collect();
         let calls = if calls.is_empty() { "none".to_owned() } else { calls.join(", ") };
         let _ = write!(
             text,
-            "\n## Cost of a call\n\n| property | value |\n|---|---|\n\
-             | form | {} |\n| instructions, each of which a call executes once | {} |\n\
+            "\n## Cost of a call{of}\n\n| property | value |\n|---|---|\n\
+             | form | {form} |\n| instructions, each of which a call executes once | {} |\n\
              | cycles, {} | {} |\n| bytes of instructions | {} |\n\
              | bytes of constants | {} |\n| bytes of stack, with the functions that are called | {} |\n\
              | bytes of stack that the instructions show | {} |\n| calls | {calls} |\n\
              | branches, except over constants | none |\n| double precision | none |\n\n",
-            self.form,
-            cost.instructions,
-            cost.bound,
-            cost.cycles,
-            cost.code,
-            cost.constants,
-            cost.stack,
-            cost.stack_of_listing
+            cost.instructions, cost.bound, cost.cycles, cost.code, cost.constants, cost.stack, cost.stack_of_listing
         );
         text.push_str(
             "The code has one path, so the number of instructions is the same for every input, also for NaN and \
@@ -248,8 +293,8 @@ impl Certificate {
         }
     }
 
-    fn emulated(&self, text: &mut String) {
-        text.push_str("\n## Emulation\n\n");
+    fn emulated(&self, text: &mut String, of: &str) {
+        let _ = writeln!(text, "\n## Emulation{of}\n");
         let _ = match &self.emulation {
             Some(Emulation { machine, instructions, states }) => writeln!(
                 text,
@@ -261,11 +306,11 @@ impl Certificate {
         };
     }
 
-    fn errors(&self, text: &mut String) {
+    fn errors(&self, text: &mut String, of: &str) {
         let Accuracy { how, ranges, results, .. } = &self.accuracy;
         let _ = write!(
             text,
-            "\n## Error in single precision\n\n{how} At each \
+            "\n## Error in single precision{of}\n\n{how} At each \
              state, interval arithmetic in `f64`, rounded outwards, encloses the exact result for the numbers of the \
              robot file. The bound is the distance of the `f32` result from the farthest end of this interval, so it \
              holds at each of these states. It says nothing about other states.\n\nRanges of the states:\n\n"
@@ -279,26 +324,6 @@ impl Certificate {
         for NamedError { name, error: Error { largest, bound, state } } in results {
             let _ = writeln!(text, "| {name} | {largest:.4} | {bound:.2e} | {state} |");
         }
-    }
-
-    fn rules(&self, text: &mut String) {
-        text.push_str("\n## MISRA C:2012\n\n");
-        let Some(violations) = &self.misra else {
-            text.push_str(if self.language == "c" {
-                "Not checked: cppcheck is not installed (Debian: `apt-get install cppcheck`).\n"
-            } else {
-                "Not checked: the rules are for C.\n"
-            });
-            return;
-        };
-        text.push_str("The addon `misra` of cppcheck reports these rules; the texts of the rules are not free.\n\n");
-        text.push_str("| rule | reports | deviation |\n|---|---:|---|\n");
-        for (rule, count) in violations {
-            let why = misra::deviation(rule).unwrap_or("NO DEVIATION IS RECORDED");
-            let _ = writeln!(text, "| {rule} | {count} | {why} |");
-        }
-        let undecided = misra::NOT_DECIDED.join(", ");
-        let _ = writeln!(text, "\nThe addon of cppcheck 2.10 contains no check for these rules: {undecided}.");
     }
 }
 

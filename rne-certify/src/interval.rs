@@ -46,10 +46,27 @@ impl Interval {
         (around(libm::sin(middle)), around(libm::cos(middle)))
     }
 
+    /// 1/√x of all numbers x of the interval, which are above 0. The root of an `f64` is rounded to the nearest.
+    #[must_use]
+    pub fn inverse_root(self) -> Self {
+        Self {
+            low: (1.0 / self.high.sqrt().next_up()).next_down(),
+            high: (1.0 / self.low.sqrt().next_down()).next_up(),
+        }
+    }
+
+    /// All numbers of the interval, kept between -limit and limit.
+    #[must_use]
+    pub fn limited(self, limit: f64) -> Self {
+        Self { low: self.low.clamp(-limit, limit), high: self.high.clamp(-limit, limit) }
+    }
+
     /// The largest distance of a number from one of the interval.
     #[must_use]
     pub fn farthest(self, x: f64) -> f64 {
-        (x - self.low).abs().max((self.high - x).abs()).next_up()
+        let distance = (x - self.low).abs().max((self.high - x).abs());
+        // the difference of two numbers is zero only if they are the same
+        if distance == 0.0 { 0.0 } else { distance.next_up() }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Certificates of generated code on microcontrollers.
 //!
 //! The parts are: the instructions of a function as `objdump` lists them ([`listing`], [`image`]), their cycles on a
-//! processor ([`cycles`]), and the error of its numbers in single precision ([`accuracy`], [`observer`]).
-//! [`certificate`] puts them on one page. Nothing here starts a program or opens a file: callers run compilers and pass
+//! processor ([`cycles`]), and the error of its numbers in single precision ([`accuracy`], [`observer`],
+//! [`joint_functions`]). [`certificate`] puts them on one page. Nothing here starts a program or opens a file: callers run compilers and pass
 //! what these print.
 #![forbid(unsafe_code)]
 
@@ -12,6 +12,7 @@ pub mod certificate;
 pub mod cycles;
 pub mod image;
 pub mod interval;
+pub mod joint_functions;
 pub mod listing;
 pub mod misra;
 pub mod observer;

@@ -16,7 +16,8 @@ pub const DEVIATIONS: [(&str, &str); 4] = [
     ("8.7", "advisory; momentum_and_rate, which the observer calls, is also for the caller"),
     (
         "19.2",
-        "advisory; the sine reads the bits of a float through a union, which C99 defines, and which needs no library",
+        "advisory; the sine, the friction and the limits read the bits of a float through a union, which C99 defines, \
+         and which needs no library",
     ),
     (
         "20.9",

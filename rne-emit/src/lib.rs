@@ -36,7 +36,7 @@ pub use formula::Formula;
 pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
 pub use listing::{Folds, Line, Listing, Section, Selection, listing, reason};
-pub use own_tests::{Golden, c_tests, rust_tests};
+pub use own_tests::{Golden, c_tests, rust_tests, without_c_tests};
 pub use steps::steps;
 pub use syntax::Precision;
 pub use table::{angle, operations_table};

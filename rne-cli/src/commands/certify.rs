@@ -5,19 +5,22 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_certify::accuracy::{self, Sample};
-use rne_certify::board::{self, Call};
-use rne_certify::certificate::{Accuracy, Certificate, Cost, NamedError, trace};
+use rne_certify::accuracy::Sample;
+use rne_certify::board::Call;
+use rne_certify::certificate::{Certificate, Certified, Cost, trace};
 use rne_certify::cycles::{self, Core, Counter};
 use rne_certify::image::Image;
-use rne_certify::observer::{self, LowPass};
+use rne_certify::joint_functions::JointFunction;
+use rne_certify::observer::LowPass;
 use rne_certify::{misra, sha256};
-use rne_codegen::{Argument, Form, Function, Layout, Program};
-use rne_emit::Prefix;
-use rne_model::{JointKind, Robot};
+use rne_codegen::{Form, Function, Program};
+use rne_emit::{CCode, Precision, Prefix};
+use rne_model::Robot;
 
-use crate::commands::certify_code::{Code, build, emulate};
+use crate::commands::certify_code::{build, emulate};
+use crate::commands::certify_subject::Subject;
 use crate::commands::emit::Real;
+use crate::commands::emit_c::{self, Request};
 use crate::commands::{certify_trace, toolchain};
 use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
@@ -36,6 +39,7 @@ Examples:
   rne certify docs/desk_arm.yaml --cpu cortex-m7 --json
   rne certify docs/desk_arm.yaml --cpu cortex-m4 --check desk_arm.cert.md
   rne certify docs/desk_arm.yaml --observer --gain 20 --period 0.001
+  rne certify docs/desk_arm_identified.yaml --friction --limits
   rne certify docs/desk_arm.yaml --evidence evidence
 
 The command compiles the code that `rne emit --lang c` writes. It reads the
@@ -46,8 +50,10 @@ computes in double precision or calls a function of others.
 Needed: arm-none-eabi-gcc and its objdump. Used if they are installed:
 qemu-system-arm and cppcheck (MISRA C:2012). On Debian and Ubuntu:
   apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck
-The certificate is of one function. It has no joint friction and no limits of
-`rne emit --friction --limits`. docs/assurance.md says what each number means.")]
+The options --function, --prefix, --rotors, --friction, --limits, --tests and
+--ascii are those of `rne emit`: repeat them, and the certificate is of this
+file. docs/assurance.md says what each number means.")]
+#[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
@@ -63,12 +69,12 @@ pub(crate) struct Arguments {
     /// cortex-m4 or cortex-m7, with FPU
     #[arg(long, value_name = "CORE", default_value = "cortex-m4", value_parser = core)]
     pub(super) cpu: Core,
-    /// Function to certify; see `rne explain functions`
-    #[arg(long, value_name = "F", value_parser = choice::function(), default_value = "inverse_dynamics",
-        hide_possible_values = true)]
-    pub(super) function: Function,
+    /// Functions to certify, F,F,…; see `rne explain functions`
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function(),
+        default_value = "inverse_dynamics", hide_possible_values = true)]
+    functions: Vec<Function>,
     /// Certify an update of the momentum observer instead
-    #[arg(long, conflicts_with = "function")]
+    #[arg(long, conflicts_with = "functions")]
     pub(super) observer: bool,
     /// Gain of the observer's low-pass, Hz
     #[arg(long, value_name = "HZ", default_value_t = 20.0, requires = "observer")]
@@ -83,6 +89,18 @@ pub(crate) struct Arguments {
     /// Prefix of names in C [default: the robot's name]
     #[arg(long, value_name = "P")]
     pub(super) prefix: Option<Prefix>,
+    /// Certify friction_torques, too
+    #[arg(long)]
+    friction: bool,
+    /// Certify limit_torques, too
+    #[arg(long)]
+    limits: bool,
+    /// The code also has the tests of `rne emit --tests`
+    #[arg(long)]
+    tests: bool,
+    /// The comments of the code are ASCII
+    #[arg(long)]
+    ascii: bool,
     /// Number of random states
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     pub(super) states: usize,
@@ -133,19 +151,50 @@ impl Language {
 }
 
 impl Arguments {
-    /// The function whose program is compiled.
-    pub(super) fn program(&self) -> Function {
-        if self.observer { Function::MomentumAndRate } else { self.function }
+    /// The functions whose programs are compiled, each once, in the order of `rne emit`.
+    fn programs(&self) -> Vec<Function> {
+        let is_asked = |function: &Function| {
+            if self.observer { *function == Function::MomentumAndRate } else { self.functions.contains(function) }
+        };
+        Function::ALL.into_iter().filter(is_asked).collect()
     }
 
-    /// The name of the function in C, without its prefix.
-    pub(super) fn name(&self) -> &str {
-        if self.observer { "observer_update" } else { self.function.name() }
+    /// The functions to certify: programs, or the observer; then friction and limits.
+    fn subjects<'a>(&self, robot: &Robot, programs: &'a [Program]) -> Result<Vec<Subject<'a>>, Failure> {
+        let low_pass = LowPass { gain: self.gain, period: self.period };
+        let subject = |program| {
+            if self.observer { Subject::Observer(program, low_pass) } else { Subject::Program(program) }
+        };
+        let mut subjects: Vec<Subject> = programs.iter().map(subject).collect();
+        if self.friction {
+            let friction = JointFunction::Friction(emit_c::friction(&self.file, robot)?);
+            subjects.push(Subject::Joints(friction));
+        }
+        if self.limits {
+            subjects.push(Subject::Joints(JointFunction::limits(robot)));
+        }
+        Ok(subjects)
     }
 
-    /// The low-pass of the observer that is certified.
-    pub(super) fn low_pass(&self) -> Option<LowPass> {
-        self.observer.then_some(LowPass { gain: self.gain, period: self.period })
+    /// The code in C as `rne emit` writes it.
+    pub(super) fn c_code(
+        &self,
+        robot: &Robot,
+        programs: &[Program],
+        bytes: &[u8],
+        precision: Precision,
+    ) -> Result<CCode, Failure> {
+        let request = Request {
+            file: &self.file,
+            bytes,
+            prefix: self.prefix.as_ref(),
+            precision,
+            friction: self.friction,
+            limits: self.limits,
+            tests: self.tests,
+            ascii: self.ascii,
+        };
+        emit_c::c_code(&request, robot, programs)
     }
 }
 
@@ -154,7 +203,7 @@ fn core(text: &str) -> Result<Core, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    is_observer_of_c(arguments)?;
+    fits_together(arguments)?;
     let (certificate, lints) = certificate(arguments)?;
     let mut outcome = written(arguments, &certificate)?;
     outcome.remark += &lints;
@@ -189,8 +238,17 @@ fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, 
     }
 }
 
-/// The code of an observer is C; its gain and its period are above zero.
-fn is_observer_of_c(arguments: &Arguments) -> Result<(), Failure> {
+/// Whether the options fit together, and the gain and the period of an observer are above zero.
+fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
+    let of_c = [
+        ("--friction", arguments.friction),
+        ("--limits", arguments.limits),
+        ("--tests", arguments.tests),
+        ("--ascii", arguments.ascii),
+    ];
+    if let Some((option, _)) = of_c.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
+        return Err(Failure::usage(format_args!("{TYPED}{option}{TYPED:#} is for {TYPED}--lang c{TYPED:#}")));
+    }
     if !arguments.observer {
         return Ok(());
     }
@@ -261,8 +319,13 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Chain)?;
     let robot = arguments.rotors.of(checked.robot);
-    let program = Compiler::new(&arguments.file, &robot).compile(arguments.program(), arguments.form)?;
-    let call = call(arguments, &robot, &program)?;
+    let compiled = Compiler::new(&arguments.file, &robot);
+    let programs = arguments.programs().into_iter().map(|function| compiled.compile(function, arguments.form));
+    let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
+    let subjects = arguments.subjects(&robot, &programs)?;
+    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(&robot));
+    let call = |subject: &Subject| subject.call(prefix.as_str(), robot.dof());
+    let calls: Vec<Call> = subjects.iter().map(call).collect::<Result<_, _>>()?;
     let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
     let version = toolchain::version(&compiler)?;
     if arguments.lang == Language::C && !toolchain::is_gcc(&compiler) {
@@ -282,24 +345,36 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     ]);
     let folder = tempfile::tempdir().map_err(Failure::input)?;
     let folder = folder.path();
-    let code = build(arguments, &robot, &program, &compiler, &call, &bytes, folder)?;
-    let image = toolchain::image(&objdump, folder, &code.elf)?;
-    let cost = cost(arguments.cpu, &image, &code)?;
     if let Some(evidence) = &arguments.evidence {
-        certify_trace::write(arguments, evidence, &robot, &program, &bytes)?;
+        certify_trace::write(arguments, evidence, &robot, &programs, &bytes)?;
     }
-    let emulation = match toolchain::version_of("qemu-system-arm") {
-        None => None,
-        Some(version) => {
-            tools.insert("qemu-system-arm".to_owned(), version);
-            Some(emulate(arguments, &robot, &program, &code, cost.instructions, folder)?)
-        }
+    let code = build(arguments, &robot, &programs, &compiler, &calls, &bytes, folder)?;
+    let qemu = toolchain::version_of("qemu-system-arm");
+    tools.extend(qemu.iter().map(|version| ("qemu-system-arm".to_owned(), version.clone())));
+    let sample = Sample { states: arguments.states, seed: arguments.seed };
+    let certified = |((subject, call), elf): ((&Subject, &Call), &String)| {
+        let callees: Vec<String> = subject.callees().iter().map(|callee| format!("{prefix}_{callee}")).collect();
+        let cost = cost(arguments.cpu, &toolchain::image(&objdump, folder, elf)?, &call.function, &callees)?;
+        let emulation = match qemu {
+            None => None,
+            Some(_) => Some(emulate(arguments.cpu, &robot, subject, elf, cost.instructions, folder)?),
+        };
+        Ok(Certified {
+            function: subject.name().to_owned(),
+            cost,
+            emulation,
+            accuracy: subject.accuracy(&robot, sample)?,
+            proof: subject.proof(),
+        })
     };
+    let certified = subjects.iter().zip(&calls).zip(&code.images).map(certified);
+    let mut certified = certified.collect::<Result<Vec<Certified>, Failure>>()?.into_iter();
+    let first = certified.next().ok_or_else(|| Failure::usage("no function is named"))?;
     let misra = match toolchain::version_of("cppcheck").filter(|_| arguments.lang == Language::C) {
         None => None,
         Some(version) => {
             tools.insert("cppcheck".to_owned(), version);
-            let found = misra::violations(&toolchain::misra(folder, &code.source)?);
+            let found = misra::violations(&toolchain::misra(folder, rne_emit::without_c_tests(&code.text))?);
             if let Some((rule, _)) = found.iter().find(|(rule, _)| misra::deviation(rule).is_none()) {
                 return Err(Failure::input(format_args!(
                     "cppcheck reports rule {rule} of MISRA C:2012, for which no deviation is recorded"
@@ -317,47 +392,47 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     if let Some(hash) = toolchain::hash(&compiler) {
         hashes.insert(format!("compiler {compiler}"), hash);
     }
-    let proof = program.proof.as_ref().map_or_else(
-        || {
-            vec![
-                "The code is the seven steps of recursive Newton-Euler, so there is no other form to compare."
-                    .to_owned(),
-            ]
-        },
-        |proof| rne_emit::evidence(&program, proof),
-    );
+    let heads = subjects.iter().zip(&calls).flat_map(|(subject, call)| match (arguments.lang, subject) {
+        (Language::Rust, _) => vec![format!("fn {}<", subject.name())],
+        // the lines of its program come first
+        (Language::C, Subject::Observer(program, _)) => {
+            vec![format!("{prefix}_{}(", program.function), format!("{}(", call.function)]
+        }
+        (Language::C, _) => vec![format!("{}(", call.function)],
+    });
+    let trace = heads.flat_map(|head| trace(&code.text, &head)).collect();
     let certificate = Certificate {
         command: command(arguments),
         emit: emit(arguments, &code.source),
         robot: robot.name.clone(),
-        function: arguments.name().to_owned(),
         language: arguments.lang.name(),
         form: arguments.form.to_string(),
         core: arguments.cpu.name().to_owned(),
         tools,
         options: code.options,
         hashes,
-        cost,
-        emulation,
-        accuracy: accuracy(arguments, &robot, &program)?,
-        proof,
+        first,
+        more: certified.collect(),
+        tests: arguments.tests,
         misra,
-        trace: code.heads.iter().flat_map(|head| trace(&code.text, head)).collect(),
+        trace,
     };
     Ok((certificate, robot_file::lint_remark(&checked.lints, &arguments.file)))
 }
 
 /// The cost of a call: of the function and of those that it calls.
-fn cost(core: Core, image: &Image, code: &Code) -> Result<Cost, Failure> {
-    let may_be_called = |name: &str| name.contains("sin_cos") || code.functions.iter().any(|own| own == name);
-    let figures = image.straight_but_for(&code.symbol, may_be_called).map_err(Failure::input)?;
-    let executed = image.executed(&code.symbol, &may_be_called).map_err(Failure::input)?;
+fn cost(core: Core, image: &Image, symbol: &str, callees: &[String]) -> Result<Cost, Failure> {
+    // the compiler makes copies of static functions, with a point in their names
+    let is_of = |name: &str, own: &String| name.strip_prefix(own).is_some_and(|s| s.is_empty() || s.starts_with('.'));
+    let may_be_called = |name: &str| name.contains("sin_cos") || callees.iter().any(|own| is_of(name, own));
+    let figures = image.straight_but_for(symbol, may_be_called).map_err(Failure::input)?;
+    let executed = image.executed(symbol, &may_be_called).map_err(Failure::input)?;
     let mut counter = Counter::default();
     for name in &executed {
         counter.add(core, &image.function(name).map_err(Failure::input)?.lines);
     }
     let frame = |function: &rne_certify::image::Function| cycles::stack(&function.lines);
-    let stack = image.deepest(&code.symbol, &may_be_called, &frame).map_err(Failure::input)?;
+    let stack = image.deepest(symbol, &may_be_called, &frame).map_err(Failure::input)?;
     let worst = counter.cycles();
     let mut called = BTreeMap::new();
     for callee in executed.into_iter().skip(1) {
@@ -383,126 +458,49 @@ pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// The call of the function on the board; an error where it takes other arguments than arrays of joints, or returns
-/// no plain array.
-fn call(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<Call, Failure> {
-    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    let Some(low_pass) = arguments.low_pass() else {
-        let symbol = format!("{prefix}_{}", arguments.name());
-        return Ok(Call::of_arrays(&symbol, &arrays(program)?, program.outputs.len()));
-    };
-    has_few_joints(program)?;
-    Ok(low_pass.call(prefix.as_str(), program.dof))
-}
-
-fn has_few_joints(program: &Program) -> Result<(), Failure> {
-    if program.dof <= board::MOST_JOINTS {
-        return Ok(());
+/// The options that `rne emit` takes, too.
+fn of_emit(arguments: &Arguments) -> String {
+    let mut options = String::new();
+    if let Some(prefix) = &arguments.prefix {
+        let _ = write!(options, " --prefix {prefix}");
     }
-    Err(Failure::usage(format_args!(
-        "rne certify takes arms with at most {} joints; this arm has {}",
-        board::MOST_JOINTS,
-        program.dof
-    )))
-}
-
-/// The arrays that the function takes, as members of a state of the board.
-fn arrays(program: &Program) -> Result<Vec<&'static str>, Failure> {
-    has_few_joints(program)?;
-    let function = program.function;
-    let array = |argument: &Argument| match argument {
-        Argument::Positions => Some("q"),
-        Argument::Rates => Some("qd"),
-        Argument::Accelerations | Argument::Torques => Some("qdd"),
-        _ => None,
-    };
-    let arrays: Option<Vec<&str>> = function.arguments().iter().map(array).collect();
-    let is_array = matches!(function.layout(program.dof), Layout::Array(_, of) if matches!(*of, Layout::Number));
-    match arrays {
-        Some(arrays) if is_array => Ok(arrays),
-        _ => Err(Failure::usage(format_args!(
-            "rne certify cannot call {function}: it takes functions of positions, velocities, accelerations and \
-             torques that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
-             forward_dynamics. {TYPED}--observer{TYPED:#} certifies the momentum observer"
-        ))),
+    for (option, is_given) in [
+        (" --rotors", arguments.rotors.rotors),
+        (" --friction", arguments.friction),
+        (" --limits", arguments.limits),
+        (" --tests", arguments.tests),
+        (" --ascii", arguments.ascii),
+    ] {
+        options.push_str(if is_given { option } else { "" });
     }
+    options
 }
 
-fn accuracy(arguments: &Arguments, robot: &Robot, program: &Program) -> Result<Accuracy, Failure> {
-    let sample = Sample { states: arguments.states, seed: arguments.seed };
-    let (how, errors) = match arguments.low_pass() {
-        None => (
-            format!("The function runs at {} random states (seed {}).", sample.states, sample.seed),
-            accuracy::errors(robot, program, sample, rne_emit::sin_cos_f32),
-        ),
-        Some(low_pass) => (
-            format!(
-                "The observer has a low-pass with a gain of {} Hz and a period of {} s. It runs through {} updates \
-                 (seed {}) in motions of {} updates. In a motion, each joint follows a sine within the ranges below, \
-                 and each torque is a random number at each update. The exact result is that of all updates since the \
-                 beginning of the motion, with the weight and the frequency that the observer stores in `float`.",
-                low_pass.gain,
-                low_pass.period,
-                sample.states,
-                sample.seed,
-                observer::UPDATES
-            ),
-            low_pass.errors(robot, program, sample, rne_emit::sin_cos_f32),
-        ),
-    };
-    let errors = errors.ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
-    let takes_torques = program.function.takes(Argument::Torques);
-    let ranges = accuracy::ranges(robot);
-    let ranges = ranges.iter().zip(&robot.joints).enumerate().map(|(index, (range, joint))| {
-        let unit = match joint.row.kind {
-            JointKind::Revolute => "rad",
-            JointKind::Prismatic => "m",
-        };
-        let limits = joint.limits;
-        let source = |is_given: bool| if is_given { "limits of the robot file" } else { "no limit in the robot file" };
-        let accuracy::Range { position: (low, high), velocity, acceleration, torque } = *range;
-        let last = match (takes_torques, joint.row.kind) {
-            (false, _) => format!("acceleration up to {acceleration} {unit}/s²"),
-            (true, JointKind::Revolute) => format!("torque up to {torque} N m ({})", source(limits.effort.is_some())),
-            (true, JointKind::Prismatic) => format!("force up to {torque} N ({})", source(limits.effort.is_some())),
-        };
-        format!(
-            "joint {}: position {low:.4} to {high:.4} {unit} ({}), speed up to {velocity:.4} {unit}/s ({}), {last}",
-            index + 1,
-            source(limits.position.is_some()),
-            source(limits.velocity.is_some())
-        )
-    });
-    let names: Vec<String> = if arguments.observer {
-        (0..robot.dof()).map(|joint| format!("`external[{joint}]`")).collect()
-    } else {
-        program.outputs.iter().map(|output| output.name.to_string()).collect()
-    };
-    let results = errors.into_iter().zip(names).map(|(error, name)| NamedError { name, error });
-    let (ranges, results) = (ranges.collect(), results.collect());
-    Ok(Accuracy { how, states: sample.states, seed: sample.seed, ranges, results })
+/// The functions as a list for an option.
+fn list(functions: &[Function]) -> String {
+    functions.iter().map(|function| function.name()).collect::<Vec<_>>().join(",")
 }
 
-/// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
 /// The command that writes the code that is certified.
 fn emit(arguments: &Arguments, source: &str) -> String {
     let file = robot_file::shell(Path::new(&file_name(&arguments.file)));
     let sine = if arguments.lang == Language::Rust { " --with-sin-cos" } else { "" };
-    let prefix = arguments.prefix.as_ref().map_or_else(String::new, |prefix| format!(" --prefix {prefix}"));
-    let rotors = if arguments.rotors.rotors { " --rotors" } else { "" };
     format!(
-        "rne emit {file} --lang {} --function {} --form {}{sine}{prefix}{rotors} -o {source}",
+        "rne emit {file} --lang {} --function {} --form {}{sine}{} -o {source}",
         arguments.lang.name(),
-        arguments.program(),
-        arguments.form
+        list(&arguments.programs()),
+        arguments.form,
+        of_emit(arguments)
     )
 }
 
+/// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
 fn command(arguments: &Arguments) -> String {
     let lang = arguments.lang.name();
-    let function = match arguments.low_pass() {
-        None => format!("--function {}", arguments.function),
-        Some(LowPass { gain, period }) => format!("--observer --gain {gain} --period {period}"),
+    let function = if arguments.observer {
+        format!("--observer --gain {} --period {}", arguments.gain, arguments.period)
+    } else {
+        format!("--function {}", list(&arguments.programs()))
     };
     let mut command = format!(
         "rne certify {} --lang {lang} --cpu {} {function} --form {} --states {} --seed {}",
@@ -515,12 +513,7 @@ fn command(arguments: &Arguments) -> String {
     if let Some(compiler) = arguments.cc.as_ref().filter(|compiler| *compiler != arguments.lang.compiler()) {
         let _ = write!(command, " --cc {}", robot_file::shell(Path::new(compiler)));
     }
-    if let Some(prefix) = &arguments.prefix {
-        let _ = write!(command, " --prefix {prefix}");
-    }
-    if arguments.rotors.rotors {
-        command.push_str(" --rotors");
-    }
+    command.push_str(&of_emit(arguments));
     if arguments.json {
         command.push_str(" --json");
     }

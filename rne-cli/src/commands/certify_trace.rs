@@ -1,6 +1,5 @@
 //! The trace that the independent checker reads: the table of the arm, and the exact expressions of the constants.
 
-use std::fs;
 use std::path::Path;
 
 use rne_codegen::{Derivation, ExactConstant, ExactStep, Function, Program};
@@ -9,9 +8,10 @@ use rne_model::{Angle, InertiaReference, QuarterTurns, Robot};
 use serde_json::{Value, json};
 
 use crate::commands::certify::{Arguments, Language};
-use crate::commands::certify_code::{c_code, stem};
+use crate::commands::certify_code::stem;
 use crate::commands::emit::Real;
 use crate::files::output_file::{self, Existing};
+use crate::files::output_folder;
 use crate::files::plan_file::Compiler;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
@@ -24,10 +24,10 @@ pub(super) fn write(
     arguments: &Arguments,
     evidence: &Path,
     robot: &Robot,
-    program: &Program,
+    programs: &[Program],
     bytes: &[u8],
 ) -> Result<(), Failure> {
-    let is_known = CHECKED.contains(&arguments.function);
+    let is_known = programs.iter().all(|program| CHECKED.contains(&program.function));
     if arguments.lang != Language::C || !is_known || robot.has_rotors() {
         return Err(Failure::usage(format_args!(
             "{TYPED}--evidence{TYPED:#} is for {} in C without rotors: the checker computes these functions",
@@ -35,19 +35,27 @@ pub(super) fn write(
         )));
     }
     let compiler = Compiler::new(&arguments.file, robot);
-    let Some(derivation) = compiler.derivation(program)? else {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are rounded \
-             one operation after another, so they have no exact expressions"
-        )));
-    };
     let precision = arguments.real.map_or(Precision::Single, Real::precision);
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    let trace = trace(robot, program, &derivation, &prefix, precision);
+    let mut functions = Vec::new();
+    for program in programs {
+        let Some(derivation) = compiler.derivation(program)? else {
+            return Err(Failure::usage(format_args!(
+                "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are \
+                 rounded one operation after another, so they have no exact expressions"
+            )));
+        };
+        functions.push(function(program, &derivation, &prefix));
+    }
+    let trace = json!({
+        "prefix": prefix.to_string(),
+        "real": precision.c_type(),
+        "functions": functions,
+        "table": table(robot),
+    });
     let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
-    fs::create_dir_all(evidence)
-        .map_err(|error| Failure::input(format_args!("{} cannot be made: {error}", evidence.display())))?;
-    let (code, stem) = (c_code(arguments, robot, program, bytes, precision)?, stem(arguments, robot));
+    output_folder::make(evidence)?;
+    let (code, stem) = (arguments.c_code(robot, programs, bytes, precision)?, stem(arguments, robot));
     let header = format!("{stem}.h");
     let files = [
         (evidence.join(format!("{stem}.c")), code.source(&header)),
@@ -72,8 +80,8 @@ pub(super) fn write(
     output_file::replace_all(&files).map(drop)
 }
 
-/// The trace of a function in C as JSON.
-fn trace(robot: &Robot, program: &Program, derivation: &Derivation, prefix: &Prefix, precision: Precision) -> Value {
+/// The constants of a function with their expressions.
+fn function(program: &Program, derivation: &Derivation, prefix: &Prefix) -> Value {
     let steps: Vec<Value> = derivation.steps.iter().map(step).collect();
     let constants: serde_json::Map<String, Value> = derivation
         .constants
@@ -86,14 +94,7 @@ fn trace(robot: &Robot, program: &Program, derivation: &Derivation, prefix: &Pre
             (name.to_string(), exact)
         })
         .collect();
-    json!({
-        "prefix": prefix.to_string(),
-        "function": format!("{prefix}_{}", program.function),
-        "real": precision.c_type(),
-        "steps": steps,
-        "constants": constants,
-        "table": table(robot),
-    })
+    json!({"function": format!("{prefix}_{}", program.function), "steps": steps, "constants": constants})
 }
 
 /// A step: its operator, and the places of its operands. Numbers are texts, which keep their digits.

@@ -8,7 +8,7 @@ use rne_codegen::{Form, Function, Program};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
-use crate::commands::emit_c::{Header, c_code, header_beside};
+use crate::commands::emit_c::{Header, Request, c_code, header_beside};
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
@@ -41,7 +41,7 @@ program that runs the tests.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
-    pub(super) file: PathBuf,
+    file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
     /// Programming language of the code
@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     pub(super) real: Option<Real>,
     /// Prefix of names in C code [default: the robot's name]
     #[arg(long, value_name = "P")]
-    pub(super) prefix: Option<Prefix>,
+    prefix: Option<Prefix>,
     /// Functions to write, F,F,… or `all`; see `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
@@ -69,16 +69,16 @@ pub(crate) struct Arguments {
     run_time: Vec<String>,
     /// Add friction of the joints to C code: friction_torques
     #[arg(long)]
-    pub(super) friction: bool,
+    friction: bool,
     /// Add effort limits to C code: limit_torques
     #[arg(long)]
-    pub(super) limits: bool,
+    limits: bool,
     /// Add functions for sine and cosine to Rust code; C code always contains them
     #[arg(long)]
     with_sin_cos: bool,
     /// Add tests that compare results of the code with `rne::Arm` and check laws of mechanics
     #[arg(long)]
-    pub(super) tests: bool,
+    tests: bool,
     /// Write comments in ASCII: dw for ω̇, ^T for ᵀ
     #[arg(long)]
     ascii: bool,
@@ -191,20 +191,30 @@ fn emitted(
     header: Option<Header>,
 ) -> Result<Outcome, Failure> {
     let programs = programs(arguments, robot)?;
-    let c_code = || c_code(arguments, robot, &programs, bytes);
+    let request = Request {
+        file: &arguments.file,
+        bytes,
+        prefix: arguments.prefix.as_ref(),
+        precision: arguments.real.map_or_else(Precision::default, Real::precision),
+        friction: arguments.friction,
+        limits: arguments.limits,
+        tests: arguments.tests,
+        ascii: arguments.ascii,
+    };
+    let c_code = || c_code(&request, robot, &programs);
     let rust_file = if arguments.with_sin_cos { rne_emit::rust_file_with_sin_cos } else { rne_emit::rust_file };
     let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &rust_tests(arguments, robot, &programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
-    let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
+    let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
     let files = match (arguments.lang, out, header) {
         (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
-        (Language::Rust, Some(out), _) => vec![generated(out, rust()?)],
+        (Language::Rust, Some(out), _) => vec![generated(out, shown(rust()?))],
         (Language::C, Some(out), Some(header)) => {
             let code = c_code()?;
             let source = code.source(&header.name);
             vec![generated(&header.path, code.header().to_owned()), generated(out, source)]
         }
-        (Language::C, ..) => return Ok(Outcome::text(shown(c_code()?.one_file()))),
+        (Language::C, ..) => return Ok(Outcome::text(c_code()?.one_file())),
     };
     match &arguments.check {
         Some(out) => check(arguments, out, &files),

@@ -6,7 +6,6 @@ use rne_codegen::Program;
 use rne_emit::{Additions, CCode, JointFriction, NoFriction, Origin, Precision, Prefix};
 use rne_model::Robot;
 
-use crate::commands::emit::{Arguments, Real};
 use crate::commands::golden;
 use crate::files::input_file::is_stream;
 use crate::outcome::Failure;
@@ -41,43 +40,53 @@ pub(super) fn header_beside(source: &Path) -> Result<Header, Failure> {
     }
 }
 
+/// The contents of a file of C beside the programs, and the robot file that it names.
+#[allow(clippy::struct_excessive_bools)] // options of commands
+pub(super) struct Request<'a> {
+    pub(super) file: &'a Path,
+    pub(super) bytes: &'a [u8],
+    pub(super) prefix: Option<&'a Prefix>,
+    pub(super) precision: Precision,
+    pub(super) friction: bool,
+    pub(super) limits: bool,
+    pub(super) tests: bool,
+    pub(super) ascii: bool,
+}
+
 /// The code, with the tests that are asked for.
-pub(super) fn c_code(
-    arguments: &Arguments,
-    robot: &Robot,
-    programs: &[Program],
-    bytes: &[u8],
-) -> Result<CCode, Failure> {
-    let precision = arguments.real.map_or_else(Precision::default, Real::precision);
-    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
+    let &Request { file, precision, limits, .. } = request;
+    let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     // without its folder: the same file gives the same bytes wherever it is
-    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
-    let name = if is_stream(&arguments.file) { "on standard input" } else { &*name };
-    let origin = Origin::new(name, &rne_certify::sha256(bytes));
-    let friction = if arguments.friction { Some(friction(arguments, robot)?) } else { None };
-    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits: arguments.limits };
-    if arguments.limits && robot.joints.iter().all(|joint| joint.limits.effort.is_none()) {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let name = if is_stream(file) { "on standard input" } else { &*name };
+    let origin = Origin::new(name, &rne_certify::sha256(request.bytes));
+    let friction = if request.friction { Some(friction(file, robot)?) } else { None };
+    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits };
+    if limits && robot.joints.iter().all(|joint| joint.limits.effort.is_none()) {
         return Err(Failure::input(format_args!(
             "{}: no joint has an effort limit; write it in `limits` of the joint, for example `limits: {{effort: 40}}` \
              (N m or N)",
-            arguments.file.display()
+            file.display()
         )));
     }
     let code = rne_emit::c_code_with(robot, programs, precision, &prefix, &additions).map_err(|error| {
-        let file = arguments.file.display();
-        Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} can store this number"))
+        let file = file.display();
+        Failure::input(format_args!("{file}: {error}. {TYPED}rne emit --real double{TYPED:#} can store this number"))
     })?;
-    if !arguments.tests {
-        return Ok(code);
-    }
-    let golden = golden::of_programs(robot, programs, precision)?;
-    Ok(code.with_tests(&rne_emit::c_tests(robot, programs, precision, &prefix, &golden, &additions)))
+    let code = if request.tests {
+        let golden = golden::of_programs(robot, programs, precision)?;
+        code.with_tests(&rne_emit::c_tests(robot, programs, precision, &prefix, &golden, &additions))
+    } else {
+        code
+    };
+    Ok(if request.ascii { code.in_ascii() } else { code })
 }
 
 /// The friction of the joints; an error says where to write what is missing.
-fn friction(arguments: &Arguments, robot: &Robot) -> Result<Vec<JointFriction>, Failure> {
+pub(super) fn friction(file: &Path, robot: &Robot) -> Result<Vec<JointFriction>, Failure> {
     JointFriction::of(robot).map_err(|why| {
-        let file = arguments.file.display();
+        let file = file.display();
         match why {
             NoFriction::RunTime(_) => Failure::usage(format_args!(
                 "{file}: {why}. Leave this parameter out of {TYPED}--run-time{TYPED:#}, or leave out \

@@ -5,6 +5,7 @@
 
 mod certify;
 mod certify_code;
+mod certify_subject;
 mod certify_trace;
 mod check;
 mod closed_form;

@@ -142,13 +142,15 @@ pub(crate) fn emulated(core: Core, folder: &Path, elf: &str) -> Result<String, F
 
 /// The text that the addon `misra` of cppcheck prints about a source.
 pub(crate) fn misra(folder: &Path, source: &str) -> Result<String, Failure> {
+    const FILE: &str = "misra.c";
+    fs::write(folder.join(FILE), source).map_err(Failure::input)?;
     let output = output(Command::new("cppcheck").current_dir(folder).args([
         "--addon=misra",
         "--std=c99",
         "--enable=style",
         "--quiet",
         "--template={id}",
-        source,
+        FILE,
     ]))?;
     Ok([output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat())
 }

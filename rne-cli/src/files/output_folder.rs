@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
 use crate::files::interruption::{self, Registered};
-use crate::files::output_file::{is_standard_output, unreadable};
+use crate::files::output_file::{is_standard_output, unreadable, unwritable};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
@@ -29,6 +29,22 @@ pub(crate) fn is_free(folder: &Path, what: &str) -> Result<(), Failure> {
         ))),
         Err(error) => Err(unreadable(folder, &error)),
     }
+}
+
+/// Makes a folder and the folders above it; a folder that exists is not changed.
+pub(crate) fn make(folder: &Path) -> Result<(), Failure> {
+    let shown = folder.display();
+    fs::create_dir_all(folder).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            let file = folder.ancestors().find(|part| part.exists()).unwrap_or(folder);
+            Failure::usage(format_args!("{} is not a folder and is not changed; name another folder", file.display()))
+        }
+        // all folders above are made, but this one refuses new entries, as /proc does
+        ErrorKind::NotFound => Failure::input(format_args!(
+            "{shown} cannot be written: the system does not allow a new file in this folder"
+        )),
+        _ => unwritable(folder, &error),
+    })
 }
 
 /// A path that could not be written, and the reason.

@@ -9,7 +9,7 @@ use crate::call::{ROOT, fails, fine, folder, rne, rne_reading};
 const ROBOT: &str = "docs/desk_arm.yaml";
 
 /// Whether all tools are there; a line says that the test is skipped.
-fn has_tools() -> bool {
+pub(crate) fn has_tools() -> bool {
     let missing: Vec<&str> = ["arm-none-eabi-gcc", "arm-none-eabi-objdump", "qemu-system-arm", "cppcheck"]
         .into_iter()
         .filter(|tool| Command::new(tool).arg("--version").output().is_err())
@@ -93,16 +93,20 @@ fn the_code_of_a_certificate_is_what_its_command_writes() {
         return;
     }
     let folder = folder("certify_emit");
-    for more in
-        [&[][..], &["--observer"], &["--function", "gravity_torques", "--form", "seven_steps", "--prefix", "my"]]
+    let other = ["--function", "gravity_torques", "--form", "seven_steps", "--prefix", "my"];
+    let whole = ["--function", "bias_torques,inverse_dynamics", "--friction", "--limits", "--tests", "--ascii"];
+    for (robot, more) in
+        [(ROBOT, &[][..]), (ROBOT, &["--observer"]), (ROBOT, &other), ("docs/desk_arm_identified.yaml", &whole)]
     {
-        let certify = [&["certify", ROBOT, "--states", "5", "--json"], more].concat();
+        let certify = [&["certify", robot, "--states", "5", "--json"], more].concat();
         let json: serde_json::Value = serde_json::from_str(&fine(&certify)).expect("JSON");
         let command = json["emit"].as_str().expect("a command");
         let (command, name) = command.rsplit_once(" -o ").expect("a file");
         let source = folder.join(name);
-        let words = command.strip_prefix("rne ").expect("rne").replace("desk_arm.yaml", ROBOT);
-        let words = words.split(' ').chain(["-o", source.to_str().expect("UTF-8"), "--force"]).collect::<Vec<_>>();
+        let words = command.strip_prefix("rne emit ").expect("rne emit");
+        let words = words.split_once(' ').expect("a file").1;
+        let words = ["emit", robot].into_iter().chain(words.split(' '));
+        let words = words.chain(["-o", source.to_str().expect("UTF-8"), "--force"]).collect::<Vec<_>>();
         assert_eq!(rne(&words).status, 0, "{words:?}");
         let text = fs::read(&source).expect("it was written");
         assert_eq!(json["hashes"][name], rne_certify::sha256(&text), "{more:?}");
@@ -203,7 +207,7 @@ fn options_of_the_observer_are_checked() {
 }
 
 /// Whether the checker accepts a source with a trace of a robot file, and what it says.
-fn checked(source: &Path, trace: &Path, robot: &Path) -> (bool, String) {
+pub(crate) fn checked(source: &Path, trace: &Path, robot: &Path) -> (bool, String) {
     let checker = concat!(env!("CARGO_MANIFEST_DIR"), "/../rne-certify/checker/check_c.py");
     let files = [Path::new(checker), source, trace, robot];
     let output = Command::new("python3").args(files).output().expect("python3 starts");

@@ -3,6 +3,7 @@
 mod ascii;
 mod call;
 mod certify;
+mod certify_joints;
 mod check;
 mod closed_form;
 mod diagnose;

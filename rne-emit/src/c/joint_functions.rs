@@ -3,7 +3,7 @@
 
 use std::fmt::{self, Write};
 
-use rne_codegen::{Function, Name, Quantity};
+use rne_codegen::{Function, Name, Quantity, Real};
 use rne_model::{Entry, Joint, Robot};
 
 use super::signature::wrapped;
@@ -61,8 +61,22 @@ impl JointFriction {
     /// The friction at a speed, N m or N.
     #[must_use]
     pub fn torque(&self, qd: f64) -> f64 {
-        let s = qd / (qd * qd + self.width * self.width).sqrt();
-        self.viscous * qd + self.odd * s + self.even * s * s
+        self.torque_in(qd, |number| number, |x| 1.0 / x.sqrt())
+    }
+
+    /// The friction at a speed in another type of numbers, with the operations of the emitted code in their order.
+    /// `number` makes numbers of this type, and `inverse_root` is 1/√x.
+    pub fn torque_in<T: Real>(&self, qd: T, number: impl Fn(f64) -> T, inverse_root: impl Fn(T) -> T) -> T {
+        let viscous = (self.viscous != 0.0).then(|| number(self.viscous) * qd);
+        let coulomb = (self.odd != 0.0).then(|| {
+            let s = qd * inverse_root(qd * qd + number(self.width * self.width));
+            let odd = number(self.odd) * s;
+            if self.even == 0.0 { odd } else { odd + number(self.even) * (s * s) }
+        });
+        match (viscous, coulomb) {
+            (Some(viscous), Some(coulomb)) => viscous + coulomb,
+            (one, other) => one.or(other).unwrap_or_else(|| number(0.0)),
+        }
     }
 
     fn of_joint(robot: &Robot, index: usize, joint: &Joint) -> Result<Self, NoFriction> {
@@ -296,7 +310,7 @@ fn limits(file: &File) -> String {
          is_above = 0u - ((most.bits - magnitude) >> {shift}u);\n    \
          is_number = (({infinity} - magnitude) >> {shift}u) - 1u;\n    \
          within.bits = sign | (magnitude ^ ((magnitude ^ most.bits) & is_above & is_number));\n    \
-         return within.number;\n}}\n\n{}\n{{\n{arguments}\n{results}}}\n",
+         return within.number;\n}}\n\n{}\n{{\n{arguments}\n    // within the limits\n{results}}}\n",
         limits_head(file)
     )
 }

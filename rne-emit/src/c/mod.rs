@@ -12,6 +12,7 @@ use std::fmt;
 use rne_codegen::{Function, Name, Program, Quantity};
 use rne_model::Robot;
 
+use super::ascii::ascii;
 use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
@@ -35,6 +36,13 @@ impl CCode {
     #[must_use]
     pub fn with_tests(self, tests: &str) -> Self {
         Self { body: self.body + tests, ..self }
+    }
+
+    /// The code with comments in ASCII.
+    #[must_use]
+    pub fn in_ascii(self) -> Self {
+        let [title, header, body] = [self.title, self.header, self.body].map(|text| ascii(&text));
+        Self { title, header, body }
     }
 
     /// The header.

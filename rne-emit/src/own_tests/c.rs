@@ -11,6 +11,15 @@ use crate::c::{Additions, JointFriction, Prefix, array_name, element_type, eleme
 use crate::parameters::{self};
 use crate::wrap::{WIDTH, fill};
 
+/// The line above the tests.
+const GUARD: &str = "\n#ifdef RNE_TEST\n";
+
+/// A source of C without its tests.
+#[must_use]
+pub fn without_c_tests(source: &str) -> &str {
+    source.split_once(GUARD).map_or(source, |(code, _)| code)
+}
+
 /// A function `main` for the end of a source of [`c_code`](crate::c_code), behind `#ifdef RNE_TEST`: it compares
 /// what the programs return at the given states, and tries laws of mechanics. It prints what is wrong, and returns 0
 /// where nothing is. The states are numbers of the number type.
@@ -43,7 +52,7 @@ pub fn c_tests(
         String::new()
     };
     format!(
-        "\n#ifdef RNE_TEST\n\n\
+        "{GUARD}\n\
          // A program that tests this code: with -DRNE_TEST it compiles alone, and returns 0 where all is well.\n\
          // Values are those of rne's runtime, which knows nothing of this code; laws are those of mechanics.\n\n\
          #include <stdio.h>\n\n{states}{zeros}\nstatic unsigned test_failures = 0u;\n\n\

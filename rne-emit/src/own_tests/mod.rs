@@ -7,7 +7,7 @@ mod rust;
 
 use rne_codegen::{Function, Program};
 
-pub use c::c_tests;
+pub use c::{c_tests, without_c_tests};
 pub use rust::rust_tests;
 
 /// A state at which emitted code is tested.

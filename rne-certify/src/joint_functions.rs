@@ -1,0 +1,182 @@
+//! Friction of the joints and limits of their torques, which emitted C has on request: their numbers in single
+//! precision, as the code computes them, and exactly.
+
+use rne_emit::JointFriction;
+use rne_model::Robot;
+
+use crate::accuracy::{self, Error, Sample, largest_errors, single};
+use crate::board::{self, Call};
+use crate::interval::Interval;
+
+/// A function beside the programs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum JointFunction {
+    /// `friction_torques`, of the speeds.
+    Friction(Vec<JointFriction>),
+    /// `limit_torques`, of torques; the effort limits of the joints, N m or N.
+    Limits(Vec<Option<f64>>),
+}
+
+/// The torques that are tried, as a multiple of the effort limit.
+pub const BEYOND: f64 = 2.0;
+
+impl JointFunction {
+    /// The limits of an arm.
+    #[must_use]
+    pub fn limits(robot: &Robot) -> Self {
+        Self::Limits(robot.joints.iter().map(|joint| joint.limits.effort).collect())
+    }
+
+    /// Its name in the code, without the prefix.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Friction(_) => "friction_torques",
+            Self::Limits(_) => "limit_torques",
+        }
+    }
+
+    /// The name of its result in the code.
+    #[must_use]
+    pub const fn result(&self) -> &'static str {
+        match self {
+            Self::Friction(_) => "friction",
+            Self::Limits(_) => "limited",
+        }
+    }
+
+    /// The static function of the file that it may call, without the prefix.
+    #[must_use]
+    pub const fn helper(&self) -> &'static str {
+        match self {
+            Self::Friction(_) => "inverse_root",
+            Self::Limits(_) => "limited",
+        }
+    }
+
+    /// The call at a state of the board: friction at its speeds; limits at its accelerations, times the limits.
+    #[must_use]
+    pub fn call(&self, prefix: &str, dof: usize) -> Call {
+        let function = format!("{prefix}_{}", self.name());
+        let Self::Limits(limits) = self else { return Call::of_arrays(&function, &["qd"], dof) };
+        let torques = limits.iter().enumerate().map(|(joint, limit)| match limit {
+            Some(limit) => format!("s->qdd[{joint}] * {:?}f", single(*limit)),
+            None => format!("s->qdd[{joint}]"),
+        });
+        let before = vec![format!("const float tau[{dof}] = {{{}}};", torques.collect::<Vec<_>>().join(", "))];
+        let arguments = vec![("const float *".to_owned(), "tau".to_owned())];
+        Call { function, arguments, length: dof, before }
+    }
+
+    /// The numbers that [`call`](Self::call) writes at a state.
+    #[must_use]
+    pub fn result_at(&self, number: u32, dof: usize) -> Vec<f32> {
+        let [_, qd, qdd] = board::state(number, dof);
+        match self {
+            Self::Friction(_) => self.in_single_precision(&qd),
+            Self::Limits(limits) => {
+                let torques = qdd.iter().zip(limits).map(|(x, limit)| limit.map_or(*x, |limit| x * single(limit)));
+                self.in_single_precision(&torques.collect::<Vec<_>>())
+            }
+        }
+    }
+
+    /// The errors at random speeds within the limits, or at random torques up to [`BEYOND`] times the limits.
+    #[must_use]
+    pub fn errors(&self, robot: &Robot, sample: Sample) -> Option<Vec<Error>> {
+        let ranges = accuracy::ranges(robot);
+        largest_errors(sample, robot.dof(), |_, rng| {
+            let largest = ranges.iter().map(|range| match self {
+                Self::Friction(_) => range.velocity,
+                Self::Limits(_) => BEYOND * range.torque,
+            });
+            let arguments: Vec<f32> = largest.map(|largest| single((2.0 * rng.f64() - 1.0) * largest)).collect();
+            Some((self.in_single_precision(&arguments), self.exactly(&arguments)))
+        })
+    }
+
+    fn in_single_precision(&self, arguments: &[f32]) -> Vec<f32> {
+        match self {
+            Self::Friction(frictions) => {
+                let torque = |(law, qd): (&JointFriction, &f32)| law.torque_in(*qd, single, inverse_root);
+                frictions.iter().zip(arguments).map(torque).collect()
+            }
+            Self::Limits(limits) => {
+                // a limit that is infinite in single precision limits nothing
+                let limited = |(limit, tau): (&Option<f64>, &f32)| {
+                    limit.map_or(*tau, |limit| tau.clamp(-single(limit), single(limit)))
+                };
+                limits.iter().zip(arguments).map(limited).collect()
+            }
+        }
+    }
+
+    fn exactly(&self, arguments: &[f32]) -> Vec<Interval> {
+        let arguments = arguments.iter().map(|&x| Interval::exactly(f64::from(x)));
+        match self {
+            Self::Friction(frictions) => {
+                let torque = |(law, qd): (&JointFriction, Interval)| {
+                    law.torque_in(qd, Interval::exactly, Interval::inverse_root)
+                };
+                frictions.iter().zip(arguments).map(torque).collect()
+            }
+            Self::Limits(limits) => {
+                limits.iter().zip(arguments).map(|(limit, tau)| limit.map_or(tau, |limit| tau.limited(limit))).collect()
+            }
+        }
+    }
+}
+
+/// 1/√x with the operations of the code in single precision.
+fn inverse_root(x: f32) -> f32 {
+    let h = 0.5 * x;
+    let mut y = f32::from_bits(0x5f37_5a86_u32.wrapping_sub(x.to_bits() >> 1));
+    for _ in 0..3 {
+        y *= 1.5 - (h * y) * y;
+    }
+    y
+}
+
+#[cfg(test)]
+mod tests {
+    use rne_model::Robot;
+
+    use super::{JointFriction, JointFunction};
+    use crate::accuracy::Sample;
+
+    /// A slider whose friction is 0.5 N per m/s, 3 N forward and 2 N backward, and which can give 7.3 N.
+    const SLIDER: &str = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, 0, 0], joints: [
+        {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1}, limits: {effort: 7.3, velocity: 4},
+         motor: {viscous: 0.5, coulomb: [3, -2], coulomb_width: 0.01}}]}";
+    const SAMPLE: Sample = Sample { states: 2000, seed: 1 };
+    const ROUNDING: f64 = 1.0 / 16_777_216.0;
+
+    #[test]
+    fn friction_is_that_of_the_law_and_its_bound_that_of_single_precision() {
+        let robot = Robot::from_yaml(SLIDER).expect("a robot");
+        let friction = JointFunction::Friction(JointFriction::of(&robot).expect("friction"));
+        // by hand, far from rest: 0.5 4 + 3 forward, and -0.5 4 - 2 backward
+        for (qd, expected) in [(4.0, 5.0), (-4.0, -4.0), (0.0, 0.0)] {
+            let found = f64::from(friction.in_single_precision(&[qd])[0]);
+            assert!((found - expected).abs() < 3e-5, "{found} at {qd}");
+            let exact = friction.exactly(&[qd])[0];
+            assert!(exact.farthest(expected) < 3e-5 && exact.high - exact.low < 1e-14, "{exact:?} at {qd}");
+        }
+        let error = friction.errors(&robot, SAMPLE).expect("errors")[0];
+        assert!(error.largest > 4.9 && error.largest < 5.0, "{error:?}");
+        // some roundings of the largest friction, and no fewer than half of one
+        assert!(error.bound > 2.0 * ROUNDING && error.bound < 8.0 * 5.0 * ROUNDING, "{error:?}");
+    }
+
+    #[test]
+    fn limits_cut_and_err_by_the_rounding_of_the_limit() {
+        let robot = Robot::from_yaml(SLIDER).expect("a robot");
+        let limits = JointFunction::limits(&robot);
+        let found: Vec<f32> = [9.0, -8.0, 7.25].map(|tau| limits.in_single_precision(&[tau])[0]).to_vec();
+        assert_eq!(found, [7.3, -7.3, 7.25]);
+        let error = limits.errors(&robot, SAMPLE).expect("errors")[0];
+        // the float nearest to 7.3 is 7.300000190734863
+        assert!((error.bound - 1.907_348_63e-7).abs() < 1e-14, "{error:?}");
+        assert!((error.largest - 7.3).abs() < 1e-6, "{error:?}");
+    }
+}

@@ -1,0 +1,197 @@
+//! Functions that `rne certify` certifies: a program, an update of the observer, friction or limits of the joints.
+
+use rne_certify::accuracy::{self, Error, Sample};
+use rne_certify::board::{self, Call};
+use rne_certify::certificate::{Accuracy, NamedError};
+use rne_certify::joint_functions::{BEYOND, JointFunction};
+use rne_certify::observer::{self, LowPass};
+use rne_codegen::{Argument, Interpreter, Layout, Program};
+use rne_model::{JointKind, Robot};
+
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+
+/// A function of the code.
+pub(super) enum Subject<'a> {
+    Program(&'a Program),
+    /// An update of the observer, which calls the program.
+    Observer(&'a Program, LowPass),
+    /// Friction or limits, which belong to the joints alone.
+    Joints(JointFunction),
+}
+
+impl Subject<'_> {
+    /// Its name in the code, without the prefix.
+    pub(super) fn name(&self) -> &str {
+        match self {
+            Self::Program(program) => program.function.name(),
+            Self::Observer(..) => "observer_update",
+            Self::Joints(function) => function.name(),
+        }
+    }
+
+    /// The other functions that it may call beside the sine, without their prefix.
+    pub(super) fn callees(&self) -> Vec<&str> {
+        match self {
+            Self::Program(_) => Vec::new(),
+            Self::Observer(program, _) => vec![program.function.name()],
+            Self::Joints(function) => vec![function.helper()],
+        }
+    }
+
+    /// The call on the board; an error where a program takes other arguments than arrays of joints, or returns no
+    /// plain array.
+    pub(super) fn call(&self, prefix: &str, dof: usize) -> Result<Call, Failure> {
+        if dof > board::MOST_JOINTS {
+            return Err(Failure::usage(format_args!(
+                "rne certify takes arms with at most {} joints; this arm has {dof}",
+                board::MOST_JOINTS
+            )));
+        }
+        Ok(match self {
+            Self::Program(program) => {
+                Call::of_arrays(&format!("{prefix}_{}", self.name()), &arrays(program)?, program.outputs.len())
+            }
+            Self::Observer(_, low_pass) => low_pass.call(prefix, dof),
+            Self::Joints(function) => function.call(prefix, dof),
+        })
+    }
+
+    /// The numbers that the call writes at a state of the board, with the operations of the code.
+    pub(super) fn expected(&self, robot: &Robot, number: u32) -> Option<Vec<f32>> {
+        let sin_cos = rne_emit::sin_cos_f32;
+        match self {
+            Self::Program(program) => {
+                let [q, qd, qdd] = board::state(number, robot.dof());
+                accuracy::single_precision(robot, &Interpreter::new(program), [&q, &qd, &qdd], sin_cos)
+            }
+            Self::Observer(program, low_pass) => low_pass.result(robot, &Interpreter::new(program), number, sin_cos),
+            Self::Joints(function) => Some(function.result_at(number, robot.dof())),
+        }
+    }
+
+    /// How the function was compared with the recursive Newton-Euler algorithm.
+    pub(super) fn proof(&self) -> Vec<String> {
+        match self {
+            Self::Program(program) | Self::Observer(program, _) => program.proof.as_ref().map_or_else(
+                || {
+                    vec![
+                        "The code is the seven steps of recursive Newton-Euler, so there is no other form to compare."
+                            .to_owned(),
+                    ]
+                },
+                |proof| rne_emit::evidence(program, proof),
+            ),
+            Self::Joints(function) => {
+                let other = match function {
+                    JointFunction::Friction(_) => "`actuator_torques_smooth` of its runtime library",
+                    JointFunction::Limits(_) => "the smaller of torque and limit",
+                };
+                vec![format!(
+                    "The comparison does not cover `{}`: it belongs to no step of the algorithm; tests of rne compare \
+                     it with {other} for other arms, in `float` and in `double`.",
+                    function.name()
+                )]
+            }
+        }
+    }
+
+    /// The error over a sample.
+    pub(super) fn accuracy(&self, robot: &Robot, sample: Sample) -> Result<Accuracy, Failure> {
+        let errors = self.errors(robot, sample);
+        let errors = errors.ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
+        let names: Vec<String> = match self {
+            Self::Program(program) => program.outputs.iter().map(|output| output.name.to_string()).collect(),
+            Self::Observer(..) => (0..robot.dof()).map(|joint| format!("`external[{joint}]`")).collect(),
+            Self::Joints(function) => {
+                (0..robot.dof()).map(|joint| format!("`{}[{joint}]`", function.result())).collect()
+            }
+        };
+        let results = errors.into_iter().zip(names).map(|(error, name)| NamedError { name, error }).collect();
+        let Sample { states, seed } = sample;
+        Ok(Accuracy { how: self.how(sample), states, seed, ranges: self.ranges(robot), results })
+    }
+
+    fn errors(&self, robot: &Robot, sample: Sample) -> Option<Vec<Error>> {
+        let sin_cos = rne_emit::sin_cos_f32;
+        match self {
+            Self::Program(program) => accuracy::errors(robot, program, sample, sin_cos),
+            Self::Observer(program, low_pass) => low_pass.errors(robot, program, sample, sin_cos),
+            Self::Joints(function) => function.errors(robot, sample),
+        }
+    }
+
+    /// How the states are chosen.
+    fn how(&self, Sample { states, seed }: Sample) -> String {
+        let random = format!("The function runs at {states} random states (seed {seed}).");
+        match self {
+            Self::Program(_) => random,
+            Self::Observer(_, low_pass) => format!(
+                "The observer has a low-pass with a gain of {} Hz and a period of {} s. It runs through {states} \
+                 updates (seed {seed}) in motions of {} updates. In a motion, each joint follows a sine within the \
+                 ranges below, and each torque is a random number at each update. The exact result is that of all \
+                 updates since the beginning of the motion, with the weight and the frequency that the observer \
+                 stores in `float`.",
+                low_pass.gain,
+                low_pass.period,
+                observer::UPDATES
+            ),
+            Self::Joints(JointFunction::Friction(_)) => format!(
+                "{random} The exact result is that of the law in the header for G² B, |G| (Tc⁺ - Tc⁻)/2, |G| (Tc⁺ + \
+                 Tc⁻)/2 and the square of `coulomb_width`, which rne computes in `double`."
+            ),
+            Self::Joints(JointFunction::Limits(_)) => {
+                format!("{random} The torques reach {BEYOND} times the limit, so that the function cuts some of them.")
+            }
+        }
+    }
+
+    /// The ranges of the states, a line per joint.
+    fn ranges(&self, robot: &Robot) -> Vec<String> {
+        let range = |(index, (range, joint)): (usize, (accuracy::Range, &rne_model::Joint))| {
+            let (unit, torque_is, torque_unit) = match joint.row.kind {
+                JointKind::Revolute => ("rad", "torque", "N m"),
+                JointKind::Prismatic => ("m", "force", "N"),
+            };
+            let limits = joint.limits;
+            let of = |is_given: bool| if is_given { "limits of the robot file" } else { "no limit in the robot file" };
+            let accuracy::Range { position: (low, high), velocity, acceleration, torque } = range;
+            let position = format!("position {low:.4} to {high:.4} {unit} ({})", of(limits.position.is_some()));
+            let speed = format!("speed up to {velocity:.4} {unit}/s ({})", of(limits.velocity.is_some()));
+            let effort =
+                |torque: f64| format!("{torque_is} up to {torque} {torque_unit} ({})", of(limits.effort.is_some()));
+            let parts = match self {
+                Self::Joints(JointFunction::Friction(_)) => vec![speed],
+                Self::Joints(JointFunction::Limits(_)) => vec![effort(BEYOND * torque)],
+                Self::Program(program) | Self::Observer(program, _) => {
+                    let takes_torques = program.function.takes(Argument::Torques);
+                    let acceleration = format!("acceleration up to {acceleration} {unit}/s²");
+                    vec![position, speed, if takes_torques { effort(torque) } else { acceleration }]
+                }
+            };
+            format!("joint {}: {}", index + 1, parts.join(", "))
+        };
+        accuracy::ranges(robot).into_iter().zip(&robot.joints).enumerate().map(range).collect()
+    }
+}
+
+/// The arrays that a function takes, as members of a state of the board.
+fn arrays(program: &Program) -> Result<Vec<&'static str>, Failure> {
+    let function = program.function;
+    let array = |argument: &Argument| match argument {
+        Argument::Positions => Some("q"),
+        Argument::Rates => Some("qd"),
+        Argument::Accelerations | Argument::Torques => Some("qdd"),
+        _ => None,
+    };
+    let arrays: Option<Vec<&str>> = function.arguments().iter().map(array).collect();
+    let is_array = matches!(function.layout(program.dof), Layout::Array(_, of) if matches!(*of, Layout::Number));
+    match arrays {
+        Some(arrays) if is_array => Ok(arrays),
+        _ => Err(Failure::usage(format_args!(
+            "rne certify cannot call {function}: it takes functions of positions, velocities, accelerations and \
+             torques that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
+             forward_dynamics. {TYPED}--observer{TYPED:#} certifies the momentum observer"
+        ))),
+    }
+}
