@@ -275,7 +275,8 @@ def address(driver, page):
     angle = driver.execute_script("return rne.view().state.q[1]")
     check(abs(angle + math.pi / 8) < 1e-15, f"address: -22,5 degrees are {angle} rad")
     field = driver.find_element(By.CSS_SELECTOR, '[data-field="q"][data-name="q1"]')
-    for typed, value in (("pi/4", math.pi / 4), ("-2pi/3", -2 * math.pi / 3), ("30deg", math.pi / 6), ("pie", math.pi / 6)):
+    for typed, value in (("pi/4", math.pi / 4), ("-2pi/3", -2 * math.pi / 3), ("30deg", math.pi / 6), ("pie", math.pi / 6),
+                         ("-deg(22.5)", -math.pi / 8), ("45 °", math.pi / 4)):
         field.clear()
         field.send_keys(typed, Keys.ENTER)
         angle = driver.execute_script("return rne.view().state.q[0]")
@@ -297,8 +298,88 @@ def address(driver, page):
     for part in ("q has 3 numbers, and 2 are needed", "qd has something that is no number", "there is no cell 7.1"):
         check(part in said, f"address: {part!r} is not said: {said!r}")
     check(state["qdd"] == [0.5, 0.25], f"address: q̈ is {state['qdd']}")
+    # what a part of a state leaves open is said, until it changes
+    note = "const of = document.getElementById('state-note'); return of.hidden ? '' : of.textContent"
+    for fragment, parts in (("#cell=2.4", []), ("#q=0.6,1.3&qd=1,0&qdd=0,0", []),
+                            ("#q=0.6,1.3&qd=1,-0.5", ["does not give qdd, so", "q̈ = (1, −1.5)", "add qdd=0,0 to"]),
+                            ("#q=0.6,1.3", ["qd and qdd", "q̇ = (0.5, 0.8) and q̈ = (1, −1.5)", "qd=0,0&qdd=0,0"])):
+        at(fragment)
+        said = driver.execute_script(note)
+        check(bool(said) == bool(parts) and all(part in said for part in parts), f"address: {fragment}: the state says {said!r}")
+    driver.execute_script("document.getElementById('rest').click()")
+    check(driver.execute_script(note) == "", "address: the note on q̈ stays when q̈ has changed")
     quiet(driver, "address")
     print("  an address opens the exact view")
+
+
+# the torques of the bars, and those of the curve at the cursor; whether the cursor is shown
+CURSOR = """
+  const ends = (of) => document.querySelector(of).getAttribute("d").match(/-?[0-9.]+/g).map(Number);
+  const hand = document.querySelector("#plot .hand"), curve = ends("#plot .curve.total");
+  const [x] = ends("#plot .hand");
+  const at = curve.findIndex((value, index) => index % 2 === 0 && value >= x - 0.02);
+  const marks = [...document.querySelectorAll("#plot .plot-axes text.end")].filter(of => of.textContent !== "time, s");
+  const [low, high] = [marks[0], marks.at(-1)].map(of => [Number(of.textContent.replace("−", "-")), Number(of.getAttribute("y")) - 4]);
+  const read = low[0] + (curve[at + 1] - low[1]) * (high[0] - low[0]) / (high[1] - low[1]);
+  return { shown: !hand.hasAttribute("hidden"), read, span: high[0] - low[0], words: document.getElementById("plot-words").textContent,
+           bar: rne.total()[Number(document.querySelector("#joints [aria-pressed=true]").dataset.plot) - 1] };
+"""
+
+
+def cursor(driver, page):
+    """Where the cursor of the plot is shown, its curve has the torque of the bar, also with a force at the tip."""
+    opened(driver, page)
+    where = page.stem
+
+    def moved(of, value):
+        driver.execute_script("const of = document.querySelector(arguments[0]); of.value = arguments[1];"
+                              "of.dispatchEvent(new Event('input', { bubbles: true }))", of, value)
+
+    def agrees(shown, what):
+        found = driver.execute_script(CURSOR)
+        check(found["shown"] == shown, f"{where}: the cursor is {'not ' if shown else ''}shown {what}")
+        check(("not on this motion" in found["words"]) != shown, f"{where}: {what} the plot says {found['words']!r}")
+        if shown:
+            check(abs(found["read"] - found["bar"]) <= 0.01 * found["span"], f"{where}: {what} the curve has {found['read']} and the bar {found['bar']}")
+
+    agrees(False, "at first, where the arm moves at the start")
+    for time in (0.3, 0.7):
+        moved("#time", time)
+        agrees(True, f"at {time} of the motion")
+    moved("#duration", -0.3)
+    agrees(True, "with another duration")
+    moved('[data-tip="fy"]', 7)
+    agrees(True, "with a force at the tip")
+    moved('input[data-of="qd"][data-joint="1"]', 0.9)
+    agrees(False, "with another velocity")
+    moved("#time", 1)
+    agrees(True, "at the end")
+    driver.execute_script("document.getElementById('home').click()")
+    agrees(False, "after a reset")
+    quiet(driver, where)
+    print("  the cursor of the plot stands where the bars are")
+
+
+def headings(driver, page, inspection):
+    """No heading of a cell says what the title, the formula or the letter before it has said."""
+    opened(driver, page)
+    plain = lambda text: re.sub(r"[ ()\xa0]", "", text)
+    seen = 0
+    for cell in inspection["cells"]:
+        heads = driver.execute_script(
+            "document.querySelector(`[data-cell=\"${arguments[0]}\"]`).click();"
+            "return [...document.querySelectorAll('#cell h4')].map(of => "
+            "  [of.firstChild.textContent, of.querySelector('.group-meaning').textContent])",
+            f"{cell['joint']}-{cell['step']}")
+        for sign, words in heads:
+            seen += bool(words)
+            isFormula = "=" in sign
+            told = words.split(";")[0]
+            check(told != cell["title"] and not (isFormula and re.match(r"^[fn] = ", told))
+                  and not (plain(told) and (plain(told) == plain(sign) or told.startswith(f"{plain(sign)} "))),
+                  f"{page.stem}: step {cell['step']} says {words!r} twice, behind {sign!r}")
+    check(seen > 0, f"{page.stem}: no heading says what its quantity is")
+    print("  headings say nothing twice")
 
 
 def teaching(driver, rne, page, folder):
@@ -764,6 +845,8 @@ def main():
             narrow(driver, f"{robot}, desk")
             quiet(driver, robot)
             views(driver, page)
+            cursor(driver, page)
+            headings(driver, page, inspection)
             if robot == "planar2":
                 address(driver, page)
                 teaching(driver, rne, page, folder)

@@ -76,32 +76,39 @@ pub fn errors(
 ) -> Option<Vec<Error>> {
     let interpreter = Interpreter::new(program);
     let ranges = ranges(robot);
-    let mut rng = fastrand::Rng::with_seed(sample.seed);
     let takes_torques = program.function.takes(Argument::Torques);
-    let mut errors = vec![Error::default(); program.outputs.len()];
-    for state in 0..sample.states {
+    largest_errors(sample, program.outputs.len(), |_, rng| {
         let mut between = |(low, high): (f64, f64)| single(low + (high - low) * rng.f64());
         let q: Vec<f32> = ranges.iter().map(|range| between(range.position)).collect();
         let qd: Vec<f32> = ranges.iter().map(|range| between((-range.velocity, range.velocity))).collect();
         let last = |range: &Range| if takes_torques { range.torque } else { range.acceleration };
         let last: Vec<f32> = ranges.iter().map(|range| between((-last(range), last(range)))).collect();
         let found = single_precision(robot, &interpreter, [&q, &qd, &last], &sin_cos)?;
-        let exact = enclosed(robot, &interpreter, [&q, &qd, &last])?;
-        compare(&mut errors, state, &found, &exact);
-    }
-    Some(errors)
+        Some((found, enclosed(robot, &interpreter, [&q, &qd, &last])?))
+    })
 }
 
-/// Takes the results of a state, found and exact, into the errors.
-pub(crate) fn compare(errors: &mut [Error], state: usize, found: &[f32], exact: &[Interval]) {
-    for ((error, found), exact) in errors.iter_mut().zip(found).zip(exact) {
-        let found = f64::from(*found);
-        error.largest = error.largest.max(found.abs());
-        let bound = exact.farthest(found);
-        if bound > error.bound || bound.is_nan() {
-            (error.bound, error.state) = (bound, state);
+/// The largest errors of `length` numbers over the states of a sample. `at` gives the numbers of a state in single
+/// precision, and intervals that enclose the exact ones; the states come in their order.
+pub(crate) fn largest_errors(
+    sample: Sample,
+    length: usize,
+    mut at: impl FnMut(usize, &mut fastrand::Rng) -> Option<(Vec<f32>, Vec<Interval>)>,
+) -> Option<Vec<Error>> {
+    let mut rng = fastrand::Rng::with_seed(sample.seed);
+    let mut errors = vec![Error::default(); length];
+    for state in 0..sample.states {
+        let (found, exact) = at(state, &mut rng)?;
+        for ((error, found), exact) in errors.iter_mut().zip(found).zip(exact) {
+            let found = f64::from(found);
+            error.largest = error.largest.max(found.abs());
+            let bound = exact.farthest(found);
+            if bound > error.bound || bound.is_nan() {
+                (error.bound, error.state) = (bound, state);
+            }
         }
     }
+    Some(errors)
 }
 
 /// Intervals that enclose the exact numbers that a program returns; the last array are accelerations or torques.

@@ -3,7 +3,7 @@
 use rne_codegen::{Interpreter, Program};
 use rne_model::Robot;
 
-use crate::accuracy::{self, Error, Range, Sample, compare, enclosed, single, single_precision};
+use crate::accuracy::{self, Error, Range, Sample, enclosed, largest_errors, single, single_precision};
 use crate::board::{self, Call};
 use crate::interval::Interval;
 
@@ -84,25 +84,24 @@ impl LowPass {
     ) -> Option<Vec<Error>> {
         let interpreter = Interpreter::new(program);
         let ranges = accuracy::ranges(robot);
-        let mut rng = fastrand::Rng::with_seed(sample.seed);
-        let mut errors = vec![Error::default(); robot.dof()];
-        for first in (0..sample.states).step_by(UPDATES) {
-            let waves: Vec<Wave> = ranges.iter().map(|range| Wave::random(range, &mut rng)).collect();
-            let mut found = Observer::new(robot.dof(), self);
-            let mut exact = Enclosure::new(robot.dof(), self);
-            for state in first..sample.states.min(first + UPDATES) {
-                #[allow(clippy::cast_precision_loss)] // at most 100
-                let time = (state - first) as f64 * self.period;
-                let [q, qd] = [Wave::position, Wave::velocity]
-                    .map(|signal| -> Vec<f32> { waves.iter().map(|wave| single(signal(wave, time))).collect() });
-                let tau = ranges.iter().map(|range| single((2.0 * rng.f64() - 1.0) * range.torque));
-                let tau: Vec<f32> = tau.collect();
-                found.update(&single_precision(robot, &interpreter, [&q, &qd, &tau], &sin_cos)?);
-                exact.update(&enclosed(robot, &interpreter, [&q, &qd, &tau])?);
-                compare(&mut errors, state, &found.external, &exact.external);
+        let mut motion = None;
+        largest_errors(sample, robot.dof(), |state, rng| {
+            let update = state % UPDATES;
+            if update == 0 {
+                let waves: Vec<Wave> = ranges.iter().map(|range| Wave::random(range, rng)).collect();
+                motion = Some((waves, Observer::new(robot.dof(), self), Enclosure::new(robot.dof(), self)));
             }
-        }
-        Some(errors)
+            let (waves, found, exact) = motion.as_mut()?;
+            #[allow(clippy::cast_precision_loss)] // at most 100
+            let time = update as f64 * self.period;
+            let [q, qd] = [Wave::position, Wave::velocity]
+                .map(|signal| -> Vec<f32> { waves.iter().map(|wave| single(signal(wave, time))).collect() });
+            let tau = ranges.iter().map(|range| single((2.0 * rng.f64() - 1.0) * range.torque));
+            let tau: Vec<f32> = tau.collect();
+            found.update(&single_precision(robot, &interpreter, [&q, &qd, &tau], &sin_cos)?);
+            exact.update(&enclosed(robot, &interpreter, [&q, &qd, &tau])?);
+            Some((found.external.clone(), exact.external.clone()))
+        })
     }
 }
 

@@ -78,6 +78,8 @@ pub(crate) struct Extracted {
     pub(crate) joints: BTreeSet<usize>,
     /// Notes for the reader of the robot file, in sentences.
     pub(crate) remarks: Vec<String>,
+    /// Those of the notes that say which limits are ignored.
+    pub(crate) ignored_limits: Vec<String>,
 }
 
 /// Takes the chain out of the tree. `gravity` is in the axes of the root link.
@@ -336,18 +338,20 @@ impl Walk<'_> {
         self.told.joints.insert(index);
         let joint = &self.urdf.joints[index];
         let name = one_line(&joint.name);
+        let before = self.told.ignored_limits.len();
         if !joint.has_axis {
             self.told.remarks.push(format!("the joint {name} has no element `axis`, so its axis is 1 0 0"));
         }
         if let Some((lower, upper)) = joint.crossed {
-            self.told.remarks.push(format!(
+            self.told.ignored_limits.push(format!(
                 "the joint {name} has a lower limit, {lower}, above its upper limit, {upper}; rne ignores both limits"
             ));
         }
         for (limit, value) in &joint.negative {
             let what = format!("the joint {name} has a negative limit of {limit}, {value}; rne ignores it");
-            self.told.remarks.push(what);
+            self.told.ignored_limits.push(what);
         }
+        self.told.remarks.extend_from_slice(&self.told.ignored_limits[before..]);
     }
 
     /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use rne_model::{Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot, Row, RunTime};
+use rne_model::{
+    Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot, Row, RunTime, Transform,
+};
 
 use crate::chain::{Chain, Extracted, extract};
 use crate::comparison::Difference;
@@ -84,6 +86,9 @@ pub struct Account {
     pub rounding: Difference,
     /// Remarks, in sentences.
     pub remarks: Vec<String>,
+    /// Those of the remarks that are probably mistakes of the URDF: limits that the import ignores, numbers in other
+    /// units.
+    pub suspicious: Vec<String>,
     /// The lints of the robot file.
     pub lints: Report,
 }
@@ -114,7 +119,7 @@ impl Urdf {
     /// An error with its place in the URDF: a name that is not there, a tip that must be named, movable
     /// joints off the chain that nobody holds, joints that no row of a table can say, bodies that are none.
     pub fn import(&self, options: &Options) -> Result<Imported, Report> {
-        let (chain, told) = extract(self, &options.selection, options.gravity, options.snap)?;
+        let (chain, mut told) = extract(self, &options.selection, options.gravity, options.snap)?;
         let table = table(&chain, options.convention);
         let mut robot = robot(&chain, &table, options.convention);
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
@@ -124,6 +129,7 @@ impl Urdf {
         let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
         if options.frames {
             robot.frames = named_frames(&chain, &table);
+            told.remarks.extend(base_remark(&told.base, &frames, transform(table.start)));
         }
         robot.source = format!(
             "{}, from {} to {}; imported by rne {}",
@@ -147,8 +153,10 @@ impl Urdf {
         let checked = Reader::new(&format!("{}, imported", self.source.file)).read(&text)?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
+        let (ignored, numbers) = (self.ignored(&told), self.suspicious_numbers());
         let account = Account {
-            remarks: [self.ignored(&told), told.remarks, self.suspicious_numbers(), remarks(&robot, &table)].concat(),
+            suspicious: [told.ignored_limits, numbers.clone()].concat(),
+            remarks: [ignored, told.remarks, numbers, remarks(&robot, &table)].concat(),
             lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
             base: told.base,
             tip: told.tip,
@@ -299,6 +307,28 @@ impl Urdf {
         }
         remarks
     }
+}
+
+/// Says which frame of the robot file is the base link, `link`, where it is not frame 0 by name and place. `start` is
+/// frame 0 in the axes of this link; `frames` has the links and their names as frames.
+fn base_remark(link: &str, frames: &[(String, String)], start: Transform) -> Option<String> {
+    let (_, name) = frames.iter().find(|(known, _)| known == link)?;
+    let is_frame_0 = start == Transform::IDENTITY;
+    if is_frame_0 && name == link {
+        return None;
+    }
+    let place = if is_frame_0 {
+        "which is at the same place".to_owned()
+    } else {
+        let [x, y, z] = start.xyz.map(|x| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned());
+        let turned = if start.rpy == Transform::IDENTITY.rpy { "" } else { " and is turned against it" };
+        format!("which is at [{x}, {y}, {z}] m in the axes of this link{turned}")
+    };
+    Some(format!(
+        "the base link {} of the URDF is the frame {}; `base` in a robot file is frame 0 of the table, {place}",
+        quoted(link),
+        quoted(name)
+    ))
 }
 
 /// Remarks on a table.

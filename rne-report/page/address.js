@@ -8,7 +8,7 @@ const KEYS = ["q", "qd", "qdd", "f", "n", "cell", "look"];
 
 /** What an address asks for: lists by their names, and words. */
 function readAddress(fragment) {
-  const asked = { lists: {}, words: new Set(), cell: null, look: null, wrong: [], unknown: [] };
+  const asked = { lists: {}, given: new Set(), words: new Set(), cell: null, look: null, wrong: [], unknown: [] };
   for (const part of fragment.replace(/^#/, "").split("&").filter(Boolean)) {
     const [key, value] = part.includes("=") ? [part.slice(0, part.indexOf("=")), part.slice(part.indexOf("=") + 1)] : [part, null];
     if (value === null) {
@@ -17,6 +17,7 @@ function readAddress(fragment) {
       else if (key !== "steps") asked.unknown.push(key);
       continue;
     }
+    asked.given.add(key);
     const numbers = decodeURIComponent(value).split(",").map(numberOf);
     if (key === "look" && VIEWS.includes(value)) asked.look = value;
     else if (key === "cell" && /^\d+\.\d$/.test(value)) asked.cell = value.split(".").map(Number);
@@ -101,16 +102,29 @@ class Address {
   }
 
   show(fragment) {
-    const { words, unknown, cell } = readAddress(fragment);
+    const { words, unknown, cell, given } = readAddress(fragment);
     const wrong = words.size || unknown.length || fragment.includes("=") ? showAddress(this.page, fragment) : [];
-    // where everything stands below each other, the cell that is asked for is far below
-    if (cell && matchMedia("(max-width: 900px)").matches) byId("cell").scrollIntoView();
+    this.note(OF.some((of) => given.has(of)) ? ["qd", "qdd"].filter((of) => !given.has(of)) : []);
     byId("address-notice").hidden = wrong.length === 0;
     byId("address-notice").textContent = wrong.length ? `The address is not shown as it stands: ${wrong.join("; ")}.` : "";
+    // where everything stands below each other, the cell that is asked for is far below
+    if (cell && matchMedia("(max-width: 900px)").matches) byId("cell").scrollIntoView();
+  }
+
+  /** Says what an address with a part of a state does not give: `rne eval` takes 0 there. */
+  note(missing) {
+    const values = missing.map((of) => `${LETTERS[of]} = (${this.page.state[of].map(typedText).join(", ")})`);
+    const zeros = missing.map((of) => `${of}=${this.page.state[of].map(() => 0).join(",")}`);
+    byId("state-note").hidden = missing.length === 0;
+    byId("state-note").textContent =
+      `The address does not give ${missing.join(" and ")}, so the page takes ${values.join(" and ")} of its first view. ` +
+      `“rne eval” takes 0; for 0 here, add ${zeros.join("&")} to the address.`;
+    this.noted = JSON.stringify(this.page.state);
   }
 
   /** Soon: a slider that moves would write it a hundred times. */
   later() {
+    if (JSON.stringify(this.page.state) !== this.noted) byId("state-note").hidden = true;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.write(), 250);
   }

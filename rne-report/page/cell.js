@@ -30,6 +30,7 @@ class Cards {
       const of = this.page.inspection.quantities[quantity];
       const formula = formulas.get(quantity);
       const cards = groups.get(quantity).map((component) => this.card(component));
+      const isAxisNamed = / e($| )/.test(formula || "");
       const heading = element(
         "h4",
         {},
@@ -37,8 +38,7 @@ class Cards {
         element(
           "span",
           { class: "group-meaning" },
-          this.page.inspection.words({ of, joint: cell.joint }),
-          / e($| )/.test(formula || "") ? "; e = (0, 0, 1), the joint axis" : "",
+          [this.meaning(of, cell, formula), isAxisNamed ? "e = (0, 0, 1), the joint axis" : ""].filter(Boolean).join("; "),
         ),
       );
       const before = !formula && !isOnTheWay ? [element("p", { class: "on-the-way" }, "On the way")] : [];
@@ -49,6 +49,14 @@ class Cards {
       return [...before, element("section", { class: "group" }, heading, ...cards)];
     });
     return [head, ...sections];
+  }
+
+  /** What a quantity is, in words: nothing that the title of the cell, the formula or the letter before the words has said. */
+  meaning(of, { title, joint }, formula) {
+    const words = this.page.inspection.words({ of, joint });
+    if (formula) return words === title || words.includes(" = ") ? "" : words;
+    const bare = (text) => text.replace(/[ ()]/g, "");
+    return bare(words) === bare(of.letter) ? "" : words.replace(`${of.letter} `, "");
   }
 
   /** In whose axes the values of a cell stand, where these are not those of its equations. */

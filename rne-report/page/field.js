@@ -1,12 +1,12 @@
 // Numbers that are typed: a field beside a slider.
 
-/** The number of a text, with a decimal point or comma; `pi/4`, `2pi/3`, `30deg` and `30°` in radians; NaN where it is none. */
+/** The number of a text, with a decimal point or comma; `pi/4`, `2pi/3`, `deg(30)`, `30deg` and `30°` in radians; NaN for other words. */
 function numberOf(text) {
   const plain = text.trim().replace(",", ".").replace(/^[−–]/, "-").replace("π", "pi");
   const parts = plain.match(/^([+-]?)([\d.]*) *\*? *pi *(?:\/ *([\d.]+))?$/);
   if (parts) return (Number(`${parts[1]}${parts[2] || 1}`) * Math.PI) / Number(parts[3] ?? 1);
-  const degrees = plain.match(/^(.*[\d.]) *(?:deg|°)$/);
-  if (degrees) return (Number(degrees[1]) * Math.PI) / 180;
+  const degrees = plain.match(/^([+-]?)deg\( *([+-]?[\d.]+) *\)$/) || plain.match(/^()(.*[\d.]) *(?:deg|°)$/);
+  if (degrees) return ((degrees[1] === "-" ? -1 : 1) * Number(degrees[2]) * Math.PI) / 180;
   return plain === "" ? Number.NaN : Number(plain);
 }
 

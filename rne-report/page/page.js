@@ -50,7 +50,10 @@ class Page {
       this.stop();
       this.update();
     });
-    this.tip = new WrenchSliders(byId("tip"), inspection, this.wrench, () => this.update());
+    this.tip = new WrenchSliders(byId("tip"), inspection, this.wrench, () => {
+      this.update();
+      this.retime();
+    });
     this.bars = new Bars(byId("bars"), inspection);
     this.plot = new Plot(byId("plot"), inspection, this.torques);
     this.describe();
@@ -120,6 +123,7 @@ class Page {
     if (this.reduced) this.reduced.run(this.given);
     this.arm.draw(this.state.q);
     this.bars.update(this.split, (joint) => this.hides(`tau${joint}`));
+    this.paintHand();
     for (const paint of this.live) paint();
     this.reading.readout();
     this.exercise.begin(JSON.stringify([this.state, this.axes.kind]));
@@ -311,6 +315,7 @@ class Page {
     byId("faster").addEventListener("click", () => this.setState({ qd: this.state.qd.map((rate) => 2 * rate) }));
     byId("home").addEventListener("click", () => {
       this.tip.show({ f: [0, 0, 0], n: [0, 0, 0] });
+      this.retime();
       this.setState(this.initial);
     });
   }
@@ -323,7 +328,11 @@ class Page {
       this.stop();
       this.goTo(Number(byId("time").value) * this.trajectory.seconds);
     });
-    byId("duration").addEventListener("input", () => this.retime());
+    byId("duration").addEventListener("input", () => {
+      const isOnMotion = this.plot.has(this.state);
+      this.retime();
+      if (isOnMotion) this.goTo(Number(byId("time").value) * this.trajectory.seconds);
+    });
     byId("from").addEventListener("click", () => {
       this.from = [...this.state.q];
       this.retime();
@@ -348,7 +357,15 @@ class Page {
     for (const button of byId("joints").children)
       button.setAttribute("aria-pressed", String(Number(button.dataset.plot) === joint));
     this.plot.draw();
-    byId("plot-words").textContent = this.plot.words();
+    this.paintHand();
+  }
+
+  /** The cursor of the plot: only where the bars show the state of the motion. */
+  paintHand() {
+    const isOnMotion = this.plot.has(this.state);
+    this.plot.hand.toggleAttribute("hidden", !isOnMotion);
+    const told = isOnMotion ? "" : " The bars show the state of the sliders, which is not on this motion; “time” sets it.";
+    byId("plot-words").textContent = this.plot.words() + told;
   }
 
   retime() {
@@ -356,8 +373,8 @@ class Page {
     byId("seconds").textContent = `${seconds.toFixed(2)} s`;
     byId("duration").setAttribute("aria-valuetext", `${seconds} s`);
     this.trajectory = new Trajectory(this.from, this.to, seconds);
-    this.plot.set(this.trajectory);
-    byId("plot-words").textContent = this.plot.words();
+    this.plot.set(this.trajectory, this.wrench);
+    this.paintHand();
     // the intermediates of the code belong to the state again
     this.folded.run(this.given);
   }

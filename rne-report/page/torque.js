@@ -110,7 +110,7 @@ class Plot {
     this.curves = {};
     this.axes = svg("g", { class: "plot-axes" });
     root.append(this.axes);
-    for (const part of ["gravity", "velocity", "inertia", "total"]) {
+    for (const part of [...PARTS.map(([part]) => part), "total"]) {
       this.curves[part] = svg("path", { class: `curve ${part}` });
       root.append(this.curves[part]);
     }
@@ -119,13 +119,13 @@ class Plot {
     root.append(this.peak, this.hand);
   }
 
-  /** Another motion: all of it is computed. */
-  set(trajectory) {
+  /** Another motion, under the wrench at the tip: all of it is computed. */
+  set(trajectory, wrench) {
     const count = 160;
     this.trajectory = trajectory;
     this.samples = Array.from({ length: count + 1 }, (_, at) => {
       const time = (trajectory.seconds * at) / count;
-      return { time, ...this.torques.split(trajectory.at(time)) };
+      return { time, ...this.torques.split(trajectory.at(time), wrench) };
     });
     this.draw();
   }
@@ -152,7 +152,7 @@ class Plot {
     const box = { left: 52, right: width - 14, top: 30, bottom: height - 34 };
     const at = this.joint - 1;
     const all = this.samples.flatMap((sample) =>
-      ["gravity", "velocity", "inertia", "total"].map((part) => sample[part][at]),
+      Object.keys(this.curves).map((part) => sample[part][at]),
     );
     const [least, most] = [Math.min(0, ...all), Math.max(0, ...all)];
     const step = niceAbove((most - least || 1) / 4);
@@ -177,6 +177,7 @@ class Plot {
     marks.push(svg("text", { x: box.right, y: box.bottom + 30, class: "end" }, "time, s"));
     marks.push(svg("text", { x: 4, y: 14 }, `τ${this.joint}, ${unitOf}`));
     this.axes.replaceChildren(...marks);
+    this.curves.tip.toggleAttribute("hidden", this.samples.every((sample) => sample.tip[at] === 0));
     for (const [part, curve] of Object.entries(this.curves)) {
       curve.setAttribute(
         "d",
@@ -196,6 +197,12 @@ class Plot {
     text.textContent = `peak ${short(peak.value)} ${unitOf}`;
     this.span = box;
     this.point(this.time);
+  }
+
+  /** Whether a state, whose torques the bars show, is that of the motion at the time of the cursor. */
+  has(state) {
+    const there = this.trajectory.at(this.time);
+    return OF.every((of) => there[of].every((value, joint) => Math.abs(value - state[of][joint]) <= 1e-9));
   }
 
   /** Where the motion is, s. */

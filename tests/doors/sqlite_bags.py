@@ -335,7 +335,7 @@ def folder_of_bags(trial):
 
 def empty_folder(trial):
     (trial.folder / "bags").mkdir()
-    trial.rne("log", trial.folder / "bags", expected="bad", says=["no bags"])
+    trial.rne("log", trial.folder / "bags", expected="bad", says=["no rosbag2 bag"])
 
 
 def pipe_in_a_folder(trial):

@@ -227,6 +227,22 @@ impl Arm {
         py.import("numpy")?.call_method1("array", (limits,))
     }
 
+    /// Largest speeds of the joints, rad/s or m/s: shape (n,); infinite where the file has none.
+    #[getter]
+    fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let limits: Vec<f64> =
+            self.robot().joints.iter().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY)).collect();
+        py.import("numpy")?.call_method1("array", (limits,))
+    }
+
+    /// Largest torques or forces of the joints, N m or N: shape (n,); infinite where the file has none.
+    #[getter]
+    fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let limits: Vec<f64> =
+            self.robot().joints.iter().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY)).collect();
+        py.import("numpy")?.call_method1("array", (limits,))
+    }
+
     /// The text of the robot file; of a URDF, that which was made of it.
     #[getter]
     fn yaml(&self) -> &str {

@@ -64,7 +64,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// Warns
 /// -----
 /// RobotFileWarning
-///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
+///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias; and of
+///     a URDF for limits that the import ignores, and angles of more than a turn in an `rpy`.
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=true,
     keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
@@ -130,6 +131,7 @@ pub(crate) fn load(
     // nobody has written the lines of this robot file, and `snap` has decided on its angles
     let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");
     warn_of(py, &imported.account.lints, |lint| (!is_rounded(lint)).then(|| name.clone()))?;
+    warn(py, &name, imported.account.suspicious.iter().map(|text| format!("{name}: {text}")).collect())?;
     Ok(arm)
 }
 
@@ -143,11 +145,15 @@ fn warn_of(py: Python<'_>, lints: &Report, place: impl Fn(&Diagnostic) -> Option
         let help = lint.help.as_ref().map(|help| format!("\n{help}")).unwrap_or_default();
         Some(format!("{}: {}{help}", place(lint)?, lint.message))
     });
-    let mut said: Vec<String> = said.collect();
+    warn(py, &lints.name, said.collect())
+}
+
+/// Gives these warnings about the file `name`, the first of them where there are many.
+fn warn(py: Python<'_>, name: &str, mut said: Vec<String>) -> PyResult<()> {
     let more = said.len().saturating_sub(WARNED);
     said.truncate(WARNED);
     if more > 0 {
-        said.push(format!("{}: and {more} more warnings; the command `rne check` prints all of them", lints.name));
+        said.push(format!("{name}: and {more} more warnings; the command `rne check` prints all of them"));
     }
     let category = py.get_type::<RobotFileWarning>();
     said.into_iter().try_for_each(|text| PyErr::warn(py, &category, &CString::new(text)?, 1))

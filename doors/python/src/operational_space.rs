@@ -43,7 +43,7 @@ impl Arm {
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         frame: Option<&str>,
-        rows: Option<Vec<usize>>,
+        rows: Option<Vec<i64>>,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
@@ -68,7 +68,7 @@ impl Arm {
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         frame: Option<&str>,
-        rows: Option<Vec<usize>>,
+        rows: Option<Vec<i64>>,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
@@ -107,25 +107,27 @@ impl Arm {
     }
 
     /// The rows of the Jacobian that are asked for.
-    fn task(&self, rows: Option<Vec<usize>>, frame: Option<&str>) -> PyResult<Vec<usize>> {
+    fn task(&self, rows: Option<Vec<i64>>, frame: Option<&str>) -> PyResult<Vec<usize>> {
         let robot = self.robot();
         let id = frame.map(|name| robot.frame(name)).transpose();
         let id = id.map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
         // the joints up to the link that carries the frame
         let moving = id.map_or(self.arm.dof(), |id| robot.fixed_frame(id).on.map_or(0, |joint| joint + 1));
-        let rows = rows.unwrap_or_else(|| (0..ROWS).collect());
+        let given = rows.unwrap_or_else(|| (0..6).collect());
+        let known = given.iter().filter_map(|&row| usize::try_from(row).ok());
+        let rows: Vec<usize> = known.filter(|&row| row < ROWS).collect();
         let is_repeated = |at: usize| rows[..at].contains(&rows[at]);
-        if rows.is_empty() || rows.iter().any(|&row| row >= ROWS) || (0..rows.len()).any(is_repeated) {
+        if rows.is_empty() || rows.len() < given.len() || (0..rows.len()).any(is_repeated) {
             return Err(PyValueError::new_err(format!(
-                "`rows` is {rows:?}: write different numbers from 0 to 5, which are the rows of `jacobian`: x, y, z of \
-                 the velocity, then x, y, z of the angular velocity"
+                "`rows` is {given:?}: write different numbers from 0 to 5, which are the rows of `jacobian`: x, y, z \
+                 of the velocity, then x, y, z of the angular velocity"
             )));
         }
         if rows.len() > moving {
             let what = frame.map_or_else(|| "the tip".to_owned(), |frame| format!("the frame `{frame}`"));
             let most = match moving {
                 0 => "choose another frame".to_owned(),
-                _ => format!("name at most {moving} of them, such as rows={:?}", (0..moving).collect::<Vec<_>>()),
+                _ => format!("name at most {moving} rows that these joints can move independently"),
             };
             return Err(PyValueError::new_err(format!(
                 "{moving} joints move {what}, so {} rows of its Jacobian cannot be controlled at once: {most}",

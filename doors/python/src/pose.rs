@@ -35,7 +35,7 @@ impl Arm {
     /// (N, 4, 4). frame: the name of a frame in the place of the tip: a frame in the list `frames` of the robot file,
     /// or a joint for its link frame.
     ///
-    /// Returns shape (6,) or (N, 6).
+    /// Returns shape (6,) or (N, 6). A target whose rotation is none is a ValueError.
     #[pyo3(signature = (q, target, *, frame=None, parameters=None))]
     fn pose_error<'py>(
         &self,
@@ -78,12 +78,31 @@ fn matrices<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, P
     let numpy = value.py().import("numpy")?;
     let array = numpy.call_method1("ascontiguousarray", (value, "float64"))?.cast_into::<PyArrayDyn<f64>>()?;
     match array.shape() {
-        [.., 4, 4] => Ok(array),
+        [.., 4, 4] => {
+            let read = array.readonly();
+            let mut poses = read.as_slice()?.chunks_exact(16).map(pose_of);
+            if let Some(at) = poses.position(|pose| !is_rotation(&pose.rotation)) {
+                return Err(PyValueError::new_err(format!(
+                    "the rotation of `{name}`, state {at}, is none: its columns must be unit vectors at right angles, \
+                     right-handed"
+                )));
+            }
+            Ok(array.clone())
+        }
         shape => Err(PyValueError::new_err(format!(
             "`{name}` has the shape {shape:?}: give homogeneous matrices, shape (4, 4) or (N, 4, 4), as \
              `forward_kinematics` returns them"
         ))),
     }
+}
+
+/// Whether a matrix is a rotation, as far as single precision can say. A matrix with a NaN passes: its results are NaN.
+fn is_rotation(rotation: &[[f64; 3]; 3]) -> bool {
+    let [x, y, z] = *rotation;
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
+    let errors = [dot(x, x) - 1.0, dot(y, y) - 1.0, dot(x, y), z[0] - cross[0], z[1] - cross[1], z[2] - cross[2]];
+    !errors.iter().any(|error| error.abs() > 1e-4)
 }
 
 /// The shape without the axes of the matrices.

@@ -1,11 +1,14 @@
 //! Rollouts of an arm over numpy's arrays.
 
+use std::ffi::CStr;
+
 use numpy::{Element, PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyTuple};
 use rne::compiled::{CompiledArm, FrictionWidth, Number, Rollout, RolloutLimits};
 use rne_codegen::Argument;
+use rne_model::{Joint, Robot};
 
 use crate::arm::Arm;
 use crate::arrays::{Given, Held, are_single, memory, refuse_masked, room, states, writable};
@@ -76,10 +79,15 @@ impl Arm {
         given.extend(self.given_parameters(py, parameters)?);
         // lists follow the arrays among the arguments
         let is_single = are_single(&given);
-        let steps = flat_torques(&mut given[2], dof)?;
+        let shapes = [shape_of(&given[0])?, shape_of(&given[1])?];
+        let (steps, samples) = flat_torques(&mut given[2], dof)?;
+        for (name, shape) in ["q", "qd"].into_iter().zip(shapes) {
+            agree(name, &shape, samples, steps, dof)?;
+        }
         let friction = friction.map(width).transpose()?.flatten();
         let limits = limits.map(which).transpose()?.unwrap_or_default();
         let rollout = Rollout { friction, limits, ..Rollout::new(steps, step) };
+        warn_of_nothing(py, self.robot(), &rollout)?;
         if is_single {
             roll_out::<f32>(py, &self.arm, &rollout, &given, out, "float32")
         } else {
@@ -88,17 +96,18 @@ impl Arm {
     }
 }
 
-/// Puts the torques of all steps of a sample side by side, and returns the number of steps.
-fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<usize> {
+/// Puts the torques of all steps of a sample side by side, and returns the number of steps, and that of samples where
+/// the array has this axis.
+fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<usize>)> {
     refuse_masked("tau", &given.value)?;
     let numpy = given.value.py().import("numpy")?;
     let array = numpy
         .call_method1("asarray", (&given.value,))
         .map_err(|_| PyTypeError::new_err("`tau` is not an array of real numbers"))?;
     let shape = array.cast::<PyUntypedArray>()?.shape().to_vec();
-    let (steps, flat) = match shape[..] {
-        [steps, joints] if joints == dof => (steps, vec![steps * dof]),
-        [samples, steps, joints] if joints == dof => (steps, vec![samples, steps * dof]),
+    let (steps, samples, flat) = match shape[..] {
+        [steps, joints] if joints == dof => (steps, None, vec![steps * dof]),
+        [samples, steps, joints] if joints == dof => (steps, Some(samples), vec![samples, steps * dof]),
         _ => {
             let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
             return Err(PyValueError::new_err(format!(
@@ -109,7 +118,48 @@ fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<usize> {
     };
     given.elements = steps * dof;
     given.value = array.call_method1("reshape", (PyTuple::new(array.py(), flat)?,))?;
-    Ok(steps)
+    Ok((steps, samples))
+}
+
+/// The shape of an argument of numpy; none of what numpy does not take, which is refused later.
+fn shape_of(given: &Given<'_>) -> PyResult<Vec<usize>> {
+    let numpy = given.value.py().import("numpy")?;
+    let Ok(array) = numpy.call_method1("asarray", (&given.value,)) else { return Ok(Vec::new()) };
+    Ok(array.cast::<PyUntypedArray>()?.shape().to_vec())
+}
+
+/// Refuses torques of another number of samples than a state has: their axes may be in another order.
+fn agree(name: &str, shape: &[usize], samples: Option<usize>, steps: usize, dof: usize) -> PyResult<()> {
+    match (shape, samples) {
+        (&[states, joints], Some(samples)) if joints == dof && states > 1 && states != samples => {
+            Err(PyValueError::new_err(format!(
+                "`tau` has the shape ({samples}, {steps}, {dof}), but `{name}` has the shape ({states}, {dof}): the axes \
+                 of `tau` are samples, steps, joints, (N, T, {dof}), and N is {states} here"
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Warns where limits or friction are asked for and no joint has any.
+fn warn_of_nothing(py: Python<'_>, robot: &Robot, rollout: &Rollout) -> PyResult<()> {
+    let RolloutLimits { effort, velocity, position } = rollout.limits;
+    let has_limit = robot.joints.iter().any(|Joint { limits, .. }| {
+        effort && limits.effort.is_some()
+            || velocity && limits.velocity.is_some()
+            || position && limits.position.is_some()
+    });
+    let is_friction = |value: &f64| value.abs() > 0.0;
+    let mut motors = robot.joints.iter().filter_map(|joint| joint.motor.as_ref());
+    let has_friction = motors.any(|motor| is_friction(&motor.viscous) || motor.coulomb.iter().any(is_friction));
+    let warn = |text: &CStr| PyErr::warn(py, &py.get_type::<PyUserWarning>(), text, 1);
+    if rollout.limits != RolloutLimits::NONE && !has_limit {
+        warn(c"no joint of the robot file has a limit that `limits` asks for: the samples are not limited")?;
+    }
+    if rollout.friction.is_some() && !has_friction {
+        warn(c"no joint of the robot file has friction in `motor`: the samples have no friction")?;
+    }
+    Ok(())
 }
 
 /// The width of Coulomb friction.

@@ -233,3 +233,12 @@ def test_payloads():
     for work in (lambda: of([-2.0] + [0.0] * 9), lambda: rne.payload(-2)):
         with pytest.raises(ValueError, match="the payload's mass is -2 kg: no body has less than 0"):
             work()
+
+
+def test_limits_of_the_file():
+    row = "  - {type: revolute, dh: {theta: 0, d: 0.1, a: 0.3, alpha: 0}, link: {mass: 1, inertia: {zz: 0.1}}"
+    head = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n"
+    arm = rne.load(f"{head}{row}, limits: {{position: [-1, 2], velocity: 3, effort: 40}}}}\n{row}}}\n")
+    assert np.array_equal(arm.limits, [[-1, 2], [-np.inf, np.inf]])
+    assert np.array_equal(arm.velocity_limits, [3, np.inf])
+    assert np.array_equal(arm.effort_limits, [40, np.inf])

@@ -79,19 +79,35 @@ def test_shapes_and_names_are_told():
     with pytest.raises(ValueError, match="shape \\(4, 4\\) or \\(N, 4, 4\\)"):
         arm.pose_error([0] * 6, [0.1, 0.2, 0.3])
     with pytest.raises(ValueError, match="one for each state, \\(2, 4, 4\\)"):
-        arm.pose_error(np.zeros((2, 6)), np.zeros((3, 4, 4)))
+        arm.pose_error(np.zeros((2, 6)), np.stack([np.eye(4)] * 3))
     with pytest.raises(ValueError, match="elbo"):
         arm.pose_error([0] * 6, np.eye(4), frame="elbo")
     with pytest.raises(ValueError, match="`pose` has the shape"):
         rne.pose_log(np.eye(3))
+    for wrong in (np.diag([1.1, 1.1, 1.1, 1]), np.diag([1, 1, -1, 1.0]), np.zeros((4, 4))):
+        with pytest.raises(ValueError, match="the rotation of `target`, state 0, is none"):
+            arm.pose_error([0] * 6, wrong)
+    assert np.isnan(arm.pose_error([np.nan] + [0] * 5, np.eye(4))).any()
 
 
 def test_rows_that_too_few_joints_move_are_refused():
     arm = rne.robots.puma560
     fourth = arm.joints[3]
-    with pytest.raises(ValueError, match=f"4 joints move the frame `{fourth}`.*at most 4.*rows=\\[0, 1, 2, 3\\]"):
+    with pytest.raises(ValueError, match=f"4 joints move the frame `{fourth}`.*at most 4 rows"):
         arm.operational_space_inertia([0.1] * 6, frame=fourth)
     assert arm.operational_space_inertia([0.1, 0.2, 0.3, 0.4, 0, 0], frame=fourth, rows=[0, 1, 2]).shape == (3, 3)
+
+
+def test_limits_and_friction_that_no_joint_has_are_told():
+    arm = rne.load(
+        "format: 1\nname: bare\nsource: own\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n"
+        "  - {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2, com: [-0.4, 0, 0], inertia: {zz: 0.1, yy: 0.1}}}\n"
+    )
+    start = [0.0], [0.0], [[1.0]] * 3, 0.001
+    with pytest.warns(UserWarning, match="the samples are not limited"):
+        arm.rollout(*start, limits=["effort"])
+    with pytest.warns(UserWarning, match="the samples have no friction"):
+        arm.rollout(*start, friction=0.05)
 
 
 URDF = """<robot name="r"><link name="base"/><link name="a"><inertial><mass value="1"/>

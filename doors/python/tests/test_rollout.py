@@ -181,7 +181,10 @@ def test_nan_stays_in_its_sample():
 @pytest.mark.parametrize("arguments, keywords, says", [
     (dict(tau=np.zeros((4, 5))), {}, r"`tau` has the shape \(4, 5\); it is \(T, 6\) for one sample or \(N, T, 6\) for many"),
     (dict(tau=np.zeros(6)), {}, r"`tau` has the shape \(6\)"),
-    (dict(tau=np.zeros((3, 4, 6))), {}, "`tau` has 3 states, but other arguments have 9"),
+    (dict(tau=np.zeros((3, 4, 6))), {}, r"`tau` has the shape \(3, 4, 6\), but `q` has the shape \(9, 6\): .* and N is 9"),
+    # the axes of steps and samples exchanged, for one step
+    (dict(tau=np.zeros((1, 9, 6))), {}, r"`tau` has the shape \(1, 9, 6\), but `q` has the shape \(9, 6\)"),
+    (dict(q=np.zeros(6), qd=np.zeros((9, 6)), tau=np.zeros((1, 9, 6))), {}, r"but `qd` has the shape \(9, 6\)"),
     (dict(tau="text"), {}, "`tau`"),
     (dict(tau=[[0.0], [0.0, 1.0]]), {}, "`tau` is not an array of real numbers"),
     (dict(step=0.0), {}, "the step of a rollout is 0 s, but it must be a finite number above 0"),

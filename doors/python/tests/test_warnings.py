@@ -71,6 +71,18 @@ def test_one_file_gives_a_few_warnings():
     assert found[0].startswith("<text>:7:") and "write `deg(90)`" in found[0]
 
 
+def test_limits_that_are_ignored_and_degrees_in_a_urdf():
+    good = urdf(lambda i: ball(8 + i))
+    [text] = warned(good.replace("lower='-1' upper='1' effort='1'", "lower='2' upper='-1' effort='1'", 1))
+    assert text == "<text>: the joint j0 has a lower limit, 2, above its upper limit, -1; rne ignores both limits"
+    [text] = warned(good.replace("effort='1'", "effort='-1'", 1))
+    assert text == "<text>: the joint j0 has a negative limit of effort, -1; rne ignores it"
+    [text] = warned(good.replace("rpy='1.5708 0 0'", "rpy='90 0 0'", 1))
+    assert text.startswith("<text>: joint j0 has the angle 90 rad in its rpy, more than a turn")
+    [text] = warned(good.replace("lower='-1' upper='1'", "lower='-170' upper='170'", 1))
+    assert text.startswith("<text>: ") and "degrees" in text
+
+
 def test_a_urdf_is_snapped_as_on_the_command_line(tmp_path):
     file = tmp_path / "chain.urdf"
     file.write_text(urdf(lambda i: ball(8 + i)))

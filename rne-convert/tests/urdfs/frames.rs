@@ -75,10 +75,49 @@ fn links_are_frames_in_their_own_axes() {
 }
 
 #[test]
+fn a_note_names_the_frame_of_the_base_link() {
+    let [ours] = remarks_on_base(&arm()).try_into().expect("one note");
+    assert!(
+        ours.starts_with(
+            "the base link `base` of the URDF is the frame `base_frame`; `base` in a robot file is frame 0 of the \
+             table, which is at ["
+        ),
+        "{ours}"
+    );
+    // the link keeps its name, and frame 0 is elsewhere, on the first axis
+    let renamed = arm().replace("\"base\"", "\"base_link\"");
+    let [ours] = remarks_on_base(&renamed).try_into().expect("one note");
+    assert!(ours.contains("`base_link` of the URDF is the frame `base_link`;"), "{ours}");
+    let one = |base: &str, xyz: &str| {
+        robot(&[
+            link("a", 1.0, "0 0 0", [0.1; 3]),
+            bare(&[base]),
+            joint("j", "continuous", (base, "a"), &format!("xyz=\"{xyz}\""), "<axis xyz=\"0 0 1\"/>"),
+        ])
+    };
+    let [ours] = remarks_on_base(&one("base_link", "0.25 -0.5 0")).try_into().expect("one note");
+    assert!(ours.ends_with("frame 0 of the table, which is at [0.25, -0.5, 0] m in the axes of this link"), "{ours}");
+    let [ours] = remarks_on_base(&one("base", "0 0 0.3")).try_into().expect("one note");
+    assert!(ours.ends_with("which is at the same place"), "{ours}");
+    assert!(remarks_on_base(&one("base_link", "0 0 0.3")).is_empty());
+}
+
+/// The notes about the base link, which the robot file has, too.
+fn remarks_on_base(text: &str) -> Vec<String> {
+    let tip = text.contains("tool0").then(|| "tool0".to_owned());
+    let selection = Selection { tip, ..Selection::default() };
+    let imported = import(text, &Options { frames: true, selection, ..Options::default() });
+    let remarks: Vec<String> =
+        imported.account.remarks.into_iter().filter(|remark| remark.starts_with("the base link")).collect();
+    assert!(remarks.iter().all(|remark| imported.robot.notes.as_ref().is_some_and(|notes| notes.contains(remark))));
+    remarks
+}
+
+#[test]
 fn without_the_option_the_file_has_no_frames_but_the_account_names_them() {
     let with = import(&arm(), &options(Convention::Standard));
     let without = import(&arm(), &Options { frames: false, ..options(Convention::Standard) });
-    assert_eq!(without.robot, Robot { frames: Vec::new(), ..with.robot.clone() });
+    assert_eq!(without.robot, Robot { frames: Vec::new(), notes: None, ..with.robot.clone() });
     assert!(!without.text.contains("frames:"), "{}", without.text);
     assert_eq!(without.account.frames, with.account.frames);
 }
