@@ -72,6 +72,8 @@ mod inertia;
 #[cfg(feature = "std")]
 mod keys;
 #[cfg(feature = "std")]
+mod link;
+#[cfg(feature = "std")]
 mod lint;
 #[cfg(feature = "std")]
 mod quantity;

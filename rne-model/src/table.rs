@@ -1,6 +1,6 @@
 //! The plain types of the table: no owned strings, no allocation, the same on a workstation and on a microcontroller.
 
-use crate::Angle;
+use crate::{Angle, QuarterTurns};
 
 /// The Denavit-Hartenberg convention of a table. It is never guessed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,6 +171,12 @@ pub struct Transform<S = f64> {
 impl Transform<f64> {
     /// No displacement.
     pub const IDENTITY: Self = Self { xyz: [0.0; 3], rpy: [Angle::ZERO; 3] };
+
+    /// Whether it displaces and turns nothing; whole turns turn nothing.
+    #[must_use]
+    pub fn is_identity(&self) -> bool {
+        self.xyz == [0.0; 3] && self.rpy.iter().all(|angle| angle.right == Some(QuarterTurns::Zero))
+    }
 }
 
 /// A frame that is fixed to a link, or to frame 0.

@@ -6,7 +6,7 @@ use crate::document::{Content, Node};
 use crate::frame::{carrier, joint_names};
 use crate::robot::parent;
 use crate::source::quoted;
-use crate::{Angle, Convention, Joint, QuarterTurns, Transform};
+use crate::{Convention, FixedFrame, Joint, Transform};
 
 /// Gives each joint the link that carries it, and returns the joint whose link carries the tip if that is not the last.
 /// `joints` have the placements of their rows already. A branch that is that of a chain goes.
@@ -49,8 +49,8 @@ pub(crate) fn branches(
             }
         };
         let placement = joint.branch.map_or(Transform::IDENTITY, |branch| branch.placement);
-        let is_of_chain = on == index.checked_sub(1) && is_nothing(&placement);
-        joint.branch = (!is_of_chain).then_some(crate::FixedFrame { on, placement });
+        let is_of_chain = on == index.checked_sub(1) && placement.is_identity();
+        joint.branch = (!is_of_chain).then_some(FixedFrame { on, placement });
     }
     if !valid {
         return None;
@@ -104,11 +104,6 @@ fn carrier_of_row(cx: &Context, node: &Node, names: &[String], index: usize) -> 
         )
     };
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("not an earlier joint").help(help))
-}
-
-fn is_nothing(placement: &Transform) -> bool {
-    let is_zero = |angle: &Angle| angle.right == Some(QuarterTurns::Zero);
-    placement.xyz == [0.0; 3] && placement.rpy.iter().all(is_zero)
 }
 
 /// The joint whose link carries the tip, if it is not the last one.

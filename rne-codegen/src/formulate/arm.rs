@@ -19,9 +19,7 @@
 //! modified    R_b Rx(α_i)       R_b (a_i, 0, 0) + p_b
 //! ```
 
-use rne_model::{
-    Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, QuarterTurns, Robot, Transform,
-};
+use rne_model::{Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, Robot, Transform};
 
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
@@ -196,9 +194,7 @@ impl<'s> Arm<'s> {
 /// Where a row of a tree begins in the link frame of its parent, if not there. Run-time parameters do not change it.
 fn beginning<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Placement<'s>> {
     let placement = robot.joints.get(index)?.branch?.placement;
-    let is_zero = |angle: &Angle| angle.right == Some(QuarterTurns::Zero);
-    let is_nothing = placement.xyz == [0.0; 3] && placement.rpy.iter().all(is_zero);
-    (!is_nothing).then(|| Placement::constant(builder, &placement))
+    (!placement.is_identity()).then(|| Placement::constant(builder, &placement))
 }
 
 /// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever.
