@@ -2,8 +2,8 @@
 //!
 //! The parts are: the instructions of a function as `objdump` lists them ([`listing`], [`image`]), their cycles on a
 //! processor ([`cycles`]), and the error of its numbers in single precision ([`accuracy`], [`observer`],
-//! [`joint_functions`]). [`certificate`] puts them on one page. Nothing here starts a program or opens a file: callers run compilers and pass
-//! what these print.
+//! [`joint_functions`]). [`certificate`] puts them on one page. Nothing here starts a program or opens a file: callers
+//! run compilers and pass what these print.
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
