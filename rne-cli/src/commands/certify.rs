@@ -36,7 +36,6 @@ use crate::values::choice;
 #[command(after_help = "\
 Examples:
   rne certify docs/desk_arm.yaml --cpu cortex-m4 -o desk_arm.cert.md
-  rne certify docs/desk_arm.yaml --cpu cortex-m7 --json
   rne certify docs/desk_arm.yaml --cpu cortex-m4 --check desk_arm.cert.md
   rne certify docs/desk_arm.yaml --observer --gain 20 --period 0.001
   rne certify docs/desk_arm_identified.yaml --friction --limits
@@ -47,12 +46,9 @@ instructions with objdump, runs the code in QEMU, compares the results with the
 results of this computer, and bounds their error. It fails if the code branches,
 computes in double precision or calls a function of others.
 
-Needed: arm-none-eabi-gcc and its objdump. Used if they are installed:
-qemu-system-arm and cppcheck (MISRA C:2012). On Debian and Ubuntu:
-  apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck
-The options --function, --prefix, --rotors, --friction, --limits, --tests and
---ascii are those of `rne emit`: repeat them, and the certificate is of this
-file. docs/assurance.md says what each number means.")]
+Needed: arm-none-eabi-gcc with objdump; used if installed: qemu-system-arm,
+cppcheck. docs/assurance.md says how to install them, and what each number
+means. For a file of `rne emit`, repeat its options.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`

@@ -343,7 +343,8 @@ fn a_dead_channel_is_not_in_order() {
         fs::write(&path, dead.collect::<String>()).expect("a file");
         let called = rne(&["watch", ARM, path.to_str().expect("UTF-8")]);
         assert_eq!(called.status, 1, "{}", called.out);
-        assert!(called.said().contains(said), "{called:?}");
+        let text = called.said() + &called.out;
+        assert!(text.contains(said), "{called:?}");
     }
 }
 
