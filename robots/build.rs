@@ -1,4 +1,4 @@
-//! Lists the files of this folder: a robot is shipped because its file is here.
+//! Lists the files of this folder and of `trees`: a robot is shipped because its file is here.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -7,8 +7,16 @@ use std::{env, fs};
 fn main() {
     let folder = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo says where"));
     println!("cargo::rerun-if-changed={}", folder.display());
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo says where"));
+    for (list, folder) in [("robots.rs", folder.clone()), ("trees.rs", folder.join("trees"))] {
+        fs::write(out.join(list), texts(&folder)).expect("a file of our own");
+    }
+}
+
+/// The list of the robot files in a folder and their plans.
+fn texts(folder: &Path) -> String {
     let mut text = String::from("&[\n");
-    for name in robots(&folder) {
+    for name in robots(folder) {
         let path = |extension: &str| folder.join(format!("{name}.{extension}"));
         let yaml = path("yaml").display().to_string();
         let plan = Some(path("plan.yaml")).filter(|plan| plan.is_file());
@@ -16,9 +24,7 @@ fn main() {
             plan.map_or("None".to_owned(), |plan| format!("Some(include_str!({:?}))", plan.display().to_string()));
         let _ = writeln!(text, "    RobotFile {{ name: {name:?}, yaml: include_str!({yaml:?}), plan: {plan} }},");
     }
-    text.push_str("]\n");
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo says where"));
-    fs::write(out.join("robots.rs"), text).expect("a file of our own");
+    text + "]\n"
 }
 
 /// The names of the robot files, sorted; `NAME.plan.yaml` is none.

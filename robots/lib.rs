@@ -21,12 +21,20 @@ pub struct RobotFile {
     pub plan: Option<&'static str>,
 }
 
-/// Every shipped robot, by the order of names.
+/// Every shipped arm: a serial chain, which needs no more than `format: 1`. By the order of names.
 // A constant would be in every crate that names it, with all its texts.
 pub static ROBOTS: &[RobotFile] = include!(concat!(env!("OUT_DIR"), "/robots.rs"));
+
+/// Every shipped robot with branches or with joints that follow others, in `format: 2`, by the order of names.
+pub static TREES: &[RobotFile] = include!(concat!(env!("OUT_DIR"), "/trees.rs"));
+
+/// All shipped robots: the arms, then the trees.
+pub fn all() -> impl Iterator<Item = &'static RobotFile> {
+    ROBOTS.iter().chain(TREES)
+}
 
 /// The shipped robot of a name; `None` when there is none.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static RobotFile> {
-    ROBOTS.binary_search_by(|robot| robot.name.cmp(name)).ok().map(|index| &ROBOTS[index])
+    all().find(|robot| robot.name == name)
 }

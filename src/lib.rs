@@ -124,17 +124,17 @@
 pub use rne_macro::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, FrameKinematics,
     InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor,
+    PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
     Actuation, AtFrame, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual,
-    Energy, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
-    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
-    Payload, PayloadDynamics, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
-    dynamically_consistent_inverse, operational_space_inertia,
+    Energy, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError,
+    JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass,
+    ObserverState, Operations, Payload, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, TorqueDerivatives,
+    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -150,7 +150,7 @@ pub use rne_runtime::{
 pub use rne_runtime::operational_space;
 // Derived code names them.
 #[doc(hidden)]
-pub use rne_runtime::{RunTimeParameter, batch, frame_index, processor, testing};
+pub use rne_runtime::{RunTimeParameter, batch, frame_index, processor, testing, unknown_frame};
 
 /// Any arm at run time, nearly as fast as a derived one: read, compiled to the code of a machine, and run over blocks
 /// of states on the widest vector unit.
@@ -176,7 +176,7 @@ pub mod compiled {
     pub use rne_machine::{
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
         EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, Rollout,
-        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress,
+        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, WrongSize,
     };
 }
 

@@ -465,11 +465,11 @@ fn what_is_wrong_is_said() {
     );
     let sharp = rod(", motor: {coulomb: [0.1, -0.1], coulomb_width: 0}");
     assert!(said(&sharp, with(FrictionWidth::OfFile), &start, 6).contains("`coulomb_width` of joint `hinge` is 0"));
-    let missing = "`tau` must have 2 × 3 × 1 numbers (samples × steps × joints), but another number of them was given";
+    let missing = "`tau` must have 6 numbers, which are 2 samples × 3 steps × 1 joints, but it has 5";
     assert_eq!(said(&arm, rollout, &start.tau(Array::Rows(&tau[1..])), 6), missing);
-    let missing = "`positions` must have 2 × 3 × 1 numbers (samples × steps × joints), but it has 5";
+    let missing = "`positions` must have 6 numbers, which are 2 samples × 3 steps × 1 joints, but it has 5";
     assert_eq!(said(&arm, rollout, &start, 5), missing);
-    let wrong = "`q` must have 1 elements for each of 2 states, but another number of elements was given";
+    let wrong = "`q` must have 1 numbers for each of 2 states, but 1 were given and 2 are needed";
     assert_eq!(said(&arm, rollout, &start.q(Array::Rows(&[0.0])), 6), wrong);
     let start_without = Arguments::new().q(Array::Same(&[0.0])).qd(Array::Same(&[0.0]));
     assert_eq!(said(&arm, rollout, &start_without, 6), "`forward_dynamics` needs the argument `tau`");

@@ -62,7 +62,9 @@ class Reference:
         q = pin.neutral(full)
         for name, value in locks.items():
             joint = full.joints[full.getJointId(name)]
-            q[joint.idx_q : joint.idx_q + joint.nq] = [value] if joint.nq == 1 else [math.cos(value), math.sin(value)]
+            if joint.nq <= 2:  # else a base that floats, which is held where it stands
+                turn = [value] if joint.nq == 1 else [math.cos(value), math.sin(value)]
+                q[joint.idx_q : joint.idx_q + joint.nq] = turn
         others = [i for i in range(1, full.njoints) if full.names[i] not in joints]
         self.model = pin.buildReducedModel(full, others, q)
         # A table has no friction; `rne` keeps it with the motors.

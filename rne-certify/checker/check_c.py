@@ -217,15 +217,22 @@ def torques(field, table, machine):
     def about_x(turn):
         s, c = turn
         return [[1, 0, 0], [0, c, -s % p], [0, s, c]]
+    def about_y(turn):
+        s, c = turn
+        return [[c, 0, s], [0, 1, 0], [-s % p, 0, c]]
     def about_z(turn):
         s, c = turn
         return [[c, -s % p, 0], [s, c, 0], [0, 0, 1]]
 
-    rotation, origin = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 0]
-    omega, alpha = [0, 0, 0], [0, 0, 0]
-    acceleration = [-field.decimal(x) % p for x in table["gravity"]]  # of the origin of the frame, less gravity
+    # of the base and each link: rotation, origin, omega, alpha, acceleration of the origin less gravity
+    zero = [0, 0, 0]
+    states = [([[1, 0, 0], [0, 1, 0], [0, 0, 1]], zero, zero, zero, times(-1, map(field.decimal, table["gravity"])))]
     links = []
     for index, joint in enumerate(table["joints"]):
+        rotation, origin, omega, alpha, acceleration = states[int(joint["parent"])]
+        start = add(origin, by(rotation, [field.decimal(x) for x in joint["xyz"]]))
+        roll, pitch, yaw = (field.turn(float(x)) for x in joint["rpy"])
+        rotation = product(product(product(rotation, about_z(yaw)), about_y(pitch)), about_x(roll))
         is_revolute = joint["type"] == "revolute"
         theta, twist = field.turn(float(joint["theta"])), field.turn(float(joint["alpha"]))
         slide, a = field.decimal(joint["d"]), field.decimal(joint["a"])
@@ -237,14 +244,14 @@ def torques(field, table, machine):
         rate, rate_dot = machine.arguments["qd"][index], machine.arguments["qdd"][index]
         if table["convention"] == "modified":
             rotation_before = product(rotation, about_x(twist))  # the axis of the joint comes after alpha and a
-            point = add(origin, by(rotation, [a, 0, 0]))
+            point = add(start, by(rotation, [a, 0, 0]))
             axis = by(rotation_before, [0, 0, 1])
             step = times(slide, axis)
             after = product(rotation_before, about_z(theta))
         else:
             axis = by(rotation, [0, 0, 1])
             turned = product(rotation, about_z(theta))
-            point = origin
+            point = start
             step = add(times(slide, axis), by(turned, [a, 0, 0]))
             after = product(turned, about_x(twist))
         # the point moves with the link before; what follows it moves with the joint
@@ -257,6 +264,7 @@ def torques(field, table, machine):
             acceleration = add(acceleration, times(rate_dot, axis), times(2, cross(omega, times(rate, axis))))
         acceleration = add(acceleration, cross(alpha, step), cross(omega, cross(omega, step)))
         origin, rotation = add(point, step), after
+        states.append((rotation, origin, omega, alpha, acceleration))
         mass = field.decimal(joint["mass"])
         com = [field.decimal(x) for x in joint["com"]]
         xx, yy, zz, xy, xz, yz = (field.decimal(x) for x in joint["inertia"])
@@ -270,13 +278,14 @@ def torques(field, table, machine):
         inertia = product(product(rotation, inertia), [list(column) for column in zip(*rotation)])
         force = times(mass, of_com)
         moment = add(by(inertia, alpha), cross(omega, by(inertia, omega)))
-        links.append((is_revolute, axis, point, add(origin, arm), force, moment))
-    result, force, moment = [], [0, 0, 0], [0, 0, 0]  # moment about the origin of frame 0
-    for is_revolute, axis, point, com, own_force, own_moment in reversed(links):
-        force = add(force, own_force)
-        moment = add(moment, own_moment, cross(com, own_force))
+        moment = add(moment, cross(add(origin, arm), force))  # about the origin of frame 0
+        links.append((int(joint["parent"]), is_revolute, axis, point, force, moment))
+    result, carried = [], [(zero, zero)] * (len(links) + 1)
+    for parent, is_revolute, axis, point, own_force, own_moment in reversed(links):
+        force, moment = (add(*pair) for pair in zip(carried.pop(), (own_force, own_moment)))
         about_axis = add(moment, times(-1, cross(point, force)))
         result.append(dot(axis, about_axis if is_revolute else force))
+        carried[parent] = tuple(add(*pair) for pair in zip(carried[parent], (force, moment)))
     return result[::-1]
 
 # --- all of it ----------------------------------------------------------------------------------------------------
@@ -336,6 +345,7 @@ def main():
         print(f"error: {error}")
         return 2
     try:
+        robot_table.complete(trace["table"])
         if robot is not None:
             count = robot_table.compare(trace["table"], robot)
             print(f"{sys.argv[3]}: {count} numbers of the table in the trace are those of the robot file")

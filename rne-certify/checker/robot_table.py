@@ -9,7 +9,8 @@ with the robot file. The script shares no code with rne and needs only Python's 
 It reads the part of YAML that robot files use: mappings and lists, in lines or in braces, texts and comments. It
 refuses anchors, tags and everything else that it does not know. Numbers are decimals and expressions with parameters,
 + - * / ^, parentheses, pi, sqrt, sin, cos, tan, deg, mm and g. They are computed with 60 digits. Base, tool, frames,
-limits and motors change no torque of the links, so the script does not read them.
+limits and motors change no torque of the links, so the script does not read them. A tree has for each joint its
+parent, and the place where its row begins in the link frame of the parent.
 """
 import decimal
 import json
@@ -273,6 +274,15 @@ def only(mapping, keys, what):
         raise Wrong(f"{what} has a key that this script does not know: {', '.join(sorted(unknown))}")
     return mapping
 
+def complete(table):
+    """Adds to the table of a serial arm what only a tree writes: each row begins where the row before it ends."""
+    for index, joint in enumerate(table["joints"]):
+        given = [key for key in ("parent", "xyz", "rpy") if key in joint]
+        if len(given) not in (0, 3) or joint.get("parent", "0") not in map(str, range(index + 1)):
+            raise Wrong(f"joint {index + 1} begins nowhere in the trace")
+        if not given:
+            joint.update(parent=str(index), xyz=["0.0"] * 3, rpy=["0.0"] * 3)
+
 def table_of(text):
     """The table of the text of a robot file, with numbers of 60 digits."""
     document = Document(text)
@@ -280,8 +290,9 @@ def table_of(text):
     if document.peek() is not None:
         raise document.wrong("this script reads no such line")
     only(robot, "format name title source notes parameters convention gravity base tool frames joints", "the file")
-    if robot.get("format") != "1" or robot.get("convention") not in ("standard", "modified"):
-        raise Wrong("the robot file needs format: 1 and a convention")
+    is_tree, is_modified = robot.get("format") == "2", robot.get("convention") == "modified"
+    if robot.get("format") not in ("1", "2") or robot.get("convention") not in ("standard", "modified"):
+        raise Wrong("the robot file needs format: 1 or format: 2, and a convention")
     names = {}
     for name, formula in robot.get("parameters", {}).items():
         names[name] = Expression(formula, names).value()
@@ -291,11 +302,17 @@ def table_of(text):
         if len(formulas) != 3:
             raise Wrong(f"three numbers are expected: {formulas}")
         return [number(formula) for formula in formulas]
-    joints = []
+    joints, names_of_links = [], ["base"]
     for index, joint in enumerate(robot["joints"]):
         what = f"joint {index + 1}"
-        only(joint, "name type dh link limits motor", what)
-        dh = only(joint["dh"], "theta d a alpha", f"dh of {what}")
+        only(joint, "name type dh link limits motor" + " parent at" * is_tree, what)
+        dh = only(joint["dh"], "theta d a alpha" + " gamma b" * (is_tree and is_modified), f"dh of {what}")
+        parent = joint.get("parent", names_of_links[-1])
+        if names_of_links.count(parent) != 1:
+            raise Wrong(f"the parent of {what} must be the name of one joint above it")
+        if "at" in joint and ("gamma" in dh or "b" in dh):
+            raise Wrong(f"{what} has both `at` and `gamma` or `b`")
+        place = only(joint.get("at", {}), "xyz rpy", f"at of {what}")
         link = only(joint.get("link", {}), "mass com first_moment inertia inertia_about physical", f"link of {what}")
         tensor = only(link.get("inertia", {}), " ".join(ELEMENTS), f"inertia of {what}")
         mass = number(link.get("mass", "0"))
@@ -307,10 +324,12 @@ def table_of(text):
         if joint["type"] not in ("revolute", "prismatic") or link.get("inertia_about", "com") not in ("com", "origin"):
             raise Wrong(f"{what} has an unknown type or inertia_about")
         joints.append({
-            "type": joint["type"], **{key: number(dh[key]) for key in ("theta", "d", "a", "alpha")}, "mass": mass,
+            "parent": str(names_of_links.index(parent)), "xyz": vector(place.get("xyz", ["0", "0", dh.get("b", "0")])),
+            "rpy": vector(place.get("rpy", ["0", "0", dh.get("gamma", "0")])), "type": joint["type"], **{key: number(dh[key]) for key in ("theta", "d", "a", "alpha")}, "mass": mass,
             "com": com, "inertia": [number(tensor.get(element, "0")) for element in ELEMENTS],
             "inertia_about": link.get("inertia_about", "com"),
         })
+        names_of_links.append(joint.get("name", f"joint{index + 1}"))
     return {"convention": robot["convention"], "gravity": vector(robot["gravity"]), "joints": joints}
 
 def is_near(found, expected, is_angle):
@@ -321,7 +340,7 @@ def is_near(found, expected, is_angle):
     return abs(difference) <= max(abs(expected), Decimal(1) if is_angle else abs(Decimal(found))) * Decimal("1e-14")
 
 def compare(found, text):
-    """Compares the table of a trace with the text of a robot file."""
+    """Compares the complete table of a trace with the text of a robot file."""
     try:
         expected = table_of(text)
     except (KeyError, TypeError, AttributeError) as error:
@@ -344,7 +363,7 @@ def compare(found, text):
                 raise Wrong(f"{key} of {what} has another length in the trace")
             for a, b in zip(*listed):
                 count += 1
-                if not is_near(a, b, key in ("theta", "alpha")):
+                if not is_near(a, b, key in ("theta", "alpha", "rpy")):
                     raise Wrong(f"{key} of {what} is {a} in the trace, {float(b)!r} in the robot file")
     return count
 

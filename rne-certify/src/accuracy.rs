@@ -62,7 +62,7 @@ pub fn ranges(robot: &Robot) -> Vec<Range> {
         acceleration: ACCELERATION,
         torque: joint.limits.effort.unwrap_or(TORQUE),
     };
-    robot.joints.iter().map(range).collect()
+    robot.independent_joints().map(range).collect()
 }
 
 /// The errors of the numbers that a program returns; `None` if the interpreter cannot run it with the arguments of

@@ -24,7 +24,7 @@ impl JointFunction {
     /// The limits of an arm.
     #[must_use]
     pub fn limits(robot: &Robot) -> Self {
-        Self::Limits(robot.joints.iter().map(|joint| joint.limits.effort).collect())
+        Self::Limits(robot.independent_joints().map(|joint| joint.limits.effort).collect())
     }
 
     /// Its name in the code, without the prefix.

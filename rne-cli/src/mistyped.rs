@@ -1,6 +1,7 @@
 //! Slips on the command line whose usual message would mislead: blanks in a list of numbers, an option without its
-//! value, a value that looks like an option.
+//! value, a value that looks like an option, an option of another command.
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
 
 use crate::commands::Arguments;
@@ -20,8 +21,8 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     let command = grammar.get_subcommands().find(|command| command.get_name() == name)?;
     let words = &words[1..];
     let text = with_blanks(command, words).or_else(|| without_value(command, words)).or_else(|| {
-        let is_stray = error.kind() == clap::error::ErrorKind::UnknownArgument;
-        is_stray.then(|| refused(command, words)).flatten()
+        let is_stray = error.kind() == ErrorKind::UnknownArgument;
+        is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
     })?;
     Some((format!("rne {name}"), Failure::usage(text)))
 }
@@ -96,6 +97,30 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
     })
 }
 
+/// Finds the commands that have an option which this command does not have: `eval --seed 1`. The parser would propose
+/// an option of this command that merely looks alike.
+fn of_others(grammar: &Command, command: &Command, error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return None };
+    let long = option.strip_prefix("--")?;
+    let has = |other: &&Command| other.get_arguments().any(|arg| arg.get_long() == Some(long) && !arg.is_hide_set());
+    let others = grammar.get_subcommands().filter(has);
+    let others: Vec<String> = others.map(|other| format!("{TYPED}rne {}{TYPED:#}", other.get_name())).collect();
+    if others.is_empty() {
+        return None;
+    }
+    let name = command.get_name();
+    let instead = match (name, long) {
+        ("eval", "seed") => {
+            format!("; {TYPED}rne eval FILE --golden 10{TYPED:#} computes the torques at 10 random states")
+        }
+        _ => String::new(),
+    };
+    Some(format!(
+        "{TYPED}rne {name}{TYPED:#} has no option {TYPED}{option}{TYPED:#}, which is an option of {}{instead}",
+        others.join(", ")
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use clap::Parser as _;
@@ -141,10 +166,20 @@ mod tests {
             "{joint}"
         );
         let set = said("eval planar2 --set -m --q 1,1").expect("refused");
+        assert!(set.contains("`-m` is not a valid value of --set <NAME=VALUE>: Set a parameter of FILE"), "{set}");
+    }
+
+    #[test]
+    fn options_of_other_commands() {
+        let seed = said("eval planar2 --seed 1").expect("refused");
+        assert!(seed.starts_with("error: rne eval has no option --seed, which is an option of rne "), "{seed}");
         assert!(
-            set.contains("`-m` is not a valid value of --set <NAME=VALUE>: Replace the value of a parameter"),
-            "{set}"
+            seed.contains("rne worksheet") && seed.ends_with("--golden 10 computes the torques at 10 random states")
         );
+        let latex = said("eval planar2 --latex").expect("refused");
+        assert_eq!(latex, "error: rne eval has no option --latex, which is an option of rne show");
+        // an option of no command
+        assert_eq!(said("eval planar2 --payloads 1,0,0,0"), None);
     }
 
     #[test]

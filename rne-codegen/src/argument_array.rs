@@ -11,6 +11,28 @@ pub struct ArgumentArray {
     pub name: &'static str,
     /// Its elements, in order.
     pub elements: Vec<Option<Name>>,
+    /// How many elements each of its rows has, if it is an array of rows.
+    pub row: Option<usize>,
+}
+
+impl ArgumentArray {
+    /// The lengths of the arrays that it is made of, the outer one first.
+    #[must_use]
+    pub fn lengths(&self) -> Vec<usize> {
+        match self.row {
+            Some(row) => vec![self.elements.len() / row, row],
+            None => vec![self.elements.len()],
+        }
+    }
+
+    /// The places of an element in these arrays.
+    #[must_use]
+    pub fn places(&self, element: usize) -> Vec<usize> {
+        match self.row {
+            Some(row) => vec![element / row, element % row],
+            None => vec![element],
+        }
+    }
 }
 
 impl Program {
@@ -38,22 +60,29 @@ impl Program {
 
 fn arguments(program: &Program) -> Vec<ArgumentArray> {
     let used = |name: Name| program.arguments().any(|used| used == name).then_some(name);
-    let tip = program.dof + 1;
+    let tip = program.joints + 1;
     let elements = |part: &ArgumentPart| match (part.length, part.argument) {
-        (Length::Joints, _) => (1..=program.dof).map(|joint| used(Name::scalar(part.quantity, joint))).collect(),
+        (Length::Joints, _) => {
+            program.coordinates.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect()
+        }
         (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
+        (_, Argument::Wrenches) => (1..=program.tips.len()).flat_map(Name::of_tip).map(used).collect(),
         (_, argument) => {
             let joint = if argument == Argument::Base { 0 } else { tip };
             Axis::ALL.map(|axis| used(Name::vector(part.quantity, joint, axis))).into()
         }
     };
     let parts = program.function.arguments().iter().flat_map(|argument| argument.parts());
-    parts.map(|part| ArgumentArray { name: part.name, elements: elements(part) }).collect()
+    let row = |part: &ArgumentPart| match part.length {
+        Length::Fixed(length) if part.argument.is_of_each_tip() => Some(length),
+        _ => None,
+    };
+    parts.map(|part| ArgumentArray { name: part.name, elements: elements(part), row: row(part) }).collect()
 }
 
 /// The array of the run-time parameters, where the robot has some.
 fn parameters(program: &Program) -> Option<ArgumentArray> {
     let names = (1..=program.parameters).map(|index| Name::scalar(Quantity::Parameter, index));
     let elements = names.map(|name| program.arguments().any(|used| used == name).then_some(name)).collect();
-    (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements })
+    (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements, row: None })
 }

@@ -50,6 +50,14 @@ pub enum CompileError {
         /// The most operations that are compiled.
         most: usize,
     },
+    /// A function with numbers of every link, of a robot some of whose joints follow others: its arrays have an element
+    /// for each coordinate.
+    OfEveryLink {
+        /// The function.
+        function: Function,
+        /// The name of a joint that follows others.
+        follower: String,
+    },
     /// A plan with a choice that the robot does not offer.
     PlanDoesNotFit {
         /// The robot's name.
@@ -267,6 +275,11 @@ impl fmt::Display for CompileError {
                 f,
                 "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler \
                  can compile in reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
+            ),
+            Self::OfEveryLink { function, follower } => write!(
+                f,
+                "`{function}` returns numbers of every link, and the joint `{follower}` follows other joints: arrays \
+                 have no element for it. Leave this function out; `rne::DynArm` computes it"
             ),
             Self::PlanDoesNotFit { robot } => {
                 write!(f, "the plan does not fit `{robot}`: one of its choices is not possible for this robot")

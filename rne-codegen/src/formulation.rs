@@ -12,8 +12,8 @@ use crate::program::Scales;
 pub struct Formulation {
     pub(crate) names: Vec<Name>,
     pub(crate) traced: Traced,
-    /// The factors of lengths and forces, if it measures them in units of the arm.
-    pub(crate) scales: Option<Scales>,
+    /// The factors of lengths and forces, where it measures them in units of the arm.
+    pub(crate) scales: Vec<Scales>,
 }
 
 impl Formulation {
@@ -29,7 +29,7 @@ impl Formulation {
 
     fn on(builder: Builder, robot: &Robot, function: Function) -> Self {
         let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
-        Self { names, traced: builder.finish(outputs), scales: None }
+        Self { names, traced: builder.finish(outputs), scales: Vec::new() }
     }
 
     /// The plain formulas with every value computed once, however often and in whatever way they compute it: the

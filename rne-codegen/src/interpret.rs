@@ -24,6 +24,8 @@ pub struct Arguments<'a, T> {
     pub payload: [T; 10],
     /// Joint torques.
     pub tau: &'a [T],
+    /// Force and moment that the robot exerts at each tip, in tip axes: fx, fy, fz, nx, ny, nz.
+    pub wrenches: &'a [[T; 6]],
     /// ω₀, ω̇₀, c̈₀ of the base and gravity, in frame 0.
     pub base: [[T; 3]; 4],
     /// Parameters that are known at run time only.
@@ -43,6 +45,7 @@ impl<'a, T: Copy> Arguments<'a, T> {
             moment: zeros,
             payload: [zero; 10],
             tau: &[],
+            wrenches: &[],
             base: [zeros; 4],
             parameters: &[],
         }
@@ -53,6 +56,8 @@ impl<'a, T: Copy> Arguments<'a, T> {
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     values: Values,
+    /// The joints, counted from 1, that the elements of joint arguments belong to.
+    coordinates: Vec<usize>,
     outputs: Vec<ValueId>,
 }
 
@@ -86,7 +91,11 @@ impl Interpreter {
     /// Takes the values of a program.
     #[must_use]
     pub fn new(program: &Program) -> Self {
-        Self { values: program.values.clone(), outputs: program.outputs.iter().map(|output| output.value).collect() }
+        Self {
+            values: program.values.clone(),
+            coordinates: program.coordinates.clone(),
+            outputs: program.outputs.iter().map(|output| output.value).collect(),
+        }
     }
 
     /// Runs the program. `constant` turns a number of the program into a `T`, `sin_cos` gives (sine, cosine).
@@ -118,7 +127,7 @@ impl Interpreter {
                 _ => turn.insert((angle, sin_cos(number(angle)))).1,
             };
             let number = match value {
-                Value::Argument => arguments.input(self.values.name(id)?, &sin_cos)?,
+                Value::Argument => arguments.input(self.values.name(id)?, &self.coordinates, &sin_cos)?,
                 Value::Constant(number) => constant(self.values.name(id), number)?,
                 Value::Sine(angle) => turned(angle).0,
                 Value::Cosine(angle) => turned(angle).1,
@@ -143,32 +152,33 @@ impl Interpreter {
 
 impl<T: Copy> Arguments<'_, T> {
     /// The argument with this name. Arguments that are sines and cosines belong to the joint positions.
-    fn input(&self, name: Name, sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
+    fn input(&self, name: Name, coordinates: &[usize], sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
+        let place = || coordinates.binary_search(&name.joint).ok();
         match name.quantity {
-            Quantity::Sine => Some(sin_cos(self.position(name.joint)?).0),
-            Quantity::Cosine => Some(sin_cos(self.position(name.joint)?).1),
-            _ => self.get(name),
+            Quantity::Sine => Some(sin_cos(*self.q.get(place()?)?).0),
+            Quantity::Cosine => Some(sin_cos(*self.q.get(place()?)?).1),
+            _ => self.get(name, place),
         }
     }
 
-    fn position(&self, joint: usize) -> Option<T> {
-        self.q.get(joint.checked_sub(1)?).copied()
-    }
-
-    fn get(&self, name: Name) -> Option<T> {
+    fn get(&self, name: Name, place: impl Fn() -> Option<usize>) -> Option<T> {
         if let Quantity::Mass | Quantity::Com | Quantity::Inertia = name.quantity {
             let index = Name::of_payload(name.joint).iter().position(|known| *known == name)?;
             return Some(self.payload[index]);
+        }
+        if let Quantity::TipForce | Quantity::TipMoment = name.quantity {
+            let index = Name::of_tip(name.joint).iter().position(|known| *known == name)?;
+            return Some(self.wrenches.get(name.joint.checked_sub(1)?)?[index]);
         }
         let Component::Vector(axis) = name.component else {
             let array = match name.quantity {
                 Quantity::Position => self.q,
                 Quantity::Rate => self.qd,
                 Quantity::AppliedTorque => self.tau,
-                Quantity::Parameter => self.parameters,
+                Quantity::Parameter => return self.parameters.get(name.joint.checked_sub(1)?).copied(),
                 _ => self.qdd,
             };
-            return array.get(name.joint.checked_sub(1)?).copied();
+            return array.get(place()?).copied();
         };
         let vector = match name.quantity {
             Quantity::JointForce => self.force,

@@ -16,6 +16,7 @@
 #![allow(clippy::large_types_passed_by_value)]
 
 mod argument_array;
+mod coordinates;
 mod equation;
 mod error;
 mod exact;
@@ -139,6 +140,11 @@ impl<'r> Compiler<'r> {
     /// cannot be proved.
     pub fn compile(&self, function: Function, form: Form) -> Result<Program, CompileError> {
         let robot = self.robot;
+        if let Some(joint) = robot.joints.iter().find(|joint| joint.coupling.is_some())
+            && function.is_of_every_link()
+        {
+            return Err(CompileError::OfEveryLink { function, follower: joint.name.clone() });
+        }
         if form == Form::SevenSteps {
             return seven_steps_within(LARGEST, robot, function, &self.intermediates, self.explains);
         }
@@ -151,10 +157,6 @@ impl<'r> Compiler<'r> {
             return Ok(Program { refusals, ..seven_steps_within(LARGEST, robot, function, &[], false)? });
         }
         let reference = Reference::of(robot, function)?;
-        if Algorithm::is_planned(function) && Algorithm::of_robot(function, robot).is_empty() {
-            let refusal = Refusal::new(Attempt::Planned(LeftOut::Nothing), Reason::Tree);
-            return Ok(self.numbered(function, reference, vec![refusal]));
-        }
         // numbers that are not known cannot be regrouped
         if !robot.run_time.is_empty() {
             return Ok(self.numbered(function, reference, Vec::new()));

@@ -1,17 +1,18 @@
 //! From the graph to named statements: what is live, what gets a name of its own, and with which sign it is written.
 
+mod cells;
 mod equations;
 mod writing;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use rne_model::Robot;
+use rne_model::{JointKind, Robot};
 use writing::Writing;
 
 use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::ir::derivation;
-use crate::ir::{ExactAngle, Exactly, Name, Number, Op, Operation, Place, Quantity, Ref, Sign, Step, Traced};
+use crate::ir::{ExactAngle, Exactly, Indices, Name, Number, Op, Operation, Place, Quantity, Ref, Sign, Step, Traced};
 use crate::program::{Constant, Program, Resolution, ResolvedAs};
 use crate::reduced::Algorithm;
 use crate::values::{Value, Values};
@@ -33,6 +34,7 @@ pub(crate) fn lower(
     names: &[Name],
 ) -> Result<(Program, Exactly), CompileError> {
     leave_names_to_arguments(&mut written);
+    leave_names_to_results(&mut written, names);
     let outputs: Vec<(Name, Ref)> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
     let uses = count_uses(&written);
     drop_unused(&mut written, &uses);
@@ -42,7 +44,14 @@ pub(crate) fn lower(
     derivation::note_program(&exactly);
     let (mut definitions, returned) = lowering.definitions(&outputs);
     definitions.sort_by_key(|definition| definition.position);
-    let is_angle = |definition: &Definition| definition.name.quantity.is_of_an_angle();
+    let slides = |name: Name| {
+        let joint = name.joint.checked_sub(1).and_then(|joint| heading.robot.joints.get(joint));
+        joint.is_some_and(|joint| joint.row.kind == JointKind::Prismatic)
+    };
+    let is_angle = |definition: &Definition| {
+        let Name { quantity, .. } = definition.name;
+        quantity.is_of_an_angle() && !(quantity == Quantity::FollowerPosition && slides(definition.name))
+    };
     let (of_angles, definitions): (Vec<_>, Vec<_>) = definitions.into_iter().partition(is_angle);
     let mut writing = Writing { lowering: &lowering, values: Values::default(), known: HashMap::new() };
     for name in lowering.arguments() {
@@ -53,13 +62,18 @@ pub(crate) fn lower(
     }
     let angles = of_angles.iter().map(|definition| writing.statement(definition)).collect();
     let sines_and_cosines = writing.sines_and_cosines();
-    let statements = definitions.iter().map(|definition| writing.statement(definition)).collect();
+    let mut statements: Vec<_> = definitions.iter().map(|definition| writing.statement(definition)).collect();
+    cells::settle(&writing.values, &mut statements, &sines_and_cosines);
     let outputs = returned.iter().map(|(name, value)| writing.output(*name, value)).collect();
+    let resolutions = lowering.resolutions(&definitions.iter().map(|definition| definition.name).collect());
     let program = Program {
         robot: heading.robot.name.clone(),
         dof: heading.robot.dof(),
+        joints: heading.robot.joints.len(),
+        coordinates: heading.robot.coordinates().map(|joint| joint + 1).collect(),
         parameters: heading.robot.run_time.names.len(),
         function: heading.function,
+        tips: heading.robot.tip_names().into_iter().map(str::to_owned).collect(),
         frame: heading.function.frame(heading.robot).map(|frame| heading.robot.frame_name(frame).to_owned()),
         name: heading.function.name_for(heading.robot),
         form: heading.form,
@@ -68,12 +82,12 @@ pub(crate) fn lower(
         sines_and_cosines,
         statements,
         outputs,
-        resolutions: lowering.resolutions(),
+        resolutions,
         equations: lowering.equations(),
         fold_report: written.trace.fold_report,
         algorithm: Algorithm::default(),
         is_rewritten: false,
-        scales: None,
+        scales: Vec::new(),
         choices: Vec::new(),
         proof: None,
         refusals: Vec::new(),
@@ -88,6 +102,14 @@ fn leave_names_to_arguments(written: &mut Traced) {
     let argument = |(at, op)| if let Op::Input(input) = op { Some((input.name(), at)) } else { None };
     let arguments: HashMap<Name, Ref> = written.graph.nodes().filter_map(argument).collect();
     let is_free = |name: &Name, at: Ref| arguments.get(name).is_none_or(|argument| *argument == at.magnitude());
+    written.trace.definitions.retain(|definition| is_free(&definition.name, definition.at));
+}
+
+/// The name of a result is that of nothing else: a torque that followers add to is another number than that of the
+/// joint alone.
+fn leave_names_to_results(written: &mut Traced, names: &[Name]) {
+    let results: HashMap<Name, Ref> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
+    let is_free = |name: &Name, at: Ref| results.get(name).is_none_or(|result| *result == at);
     written.trace.definitions.retain(|definition| is_free(&definition.name, definition.at));
 }
 
@@ -166,7 +188,8 @@ impl<'w> Lowering<'w> {
                     && old.name.quantity.step() == quantity.step()
             });
             // a torque is an alias of a component of a force or moment, a derivative may be a sine
-            let is_alias = quantity == Quantity::Torque || (is_turn && definition.name.by.is_some());
+            let is_alias = matches!(quantity, Quantity::Torque | Quantity::AxisTorque)
+                || (is_turn && definition.name.by.is_some());
             if wins && !is_alias {
                 *slot = Some(Given { name: definition.name, negative });
             }
@@ -194,6 +217,11 @@ impl<'w> Lowering<'w> {
         let given = self.names.iter().flatten().map(|given| given.name);
         let defined = self.written.trace.definitions.iter().map(|definition| definition.name);
         let mut taken: HashSet<String> = given.chain(defined).map(|name| name.to_string()).collect();
+        // the first link of each quantity between two links, which is not always the link before
+        let between = self.written.trace.definitions.iter().map(|definition| definition.name);
+        let between = between.filter(|name| name.quantity.indices() == Indices::Links);
+        let between: HashMap<(Quantity, usize), [usize; 2]> =
+            between.map(|name| ((name.quantity, name.joint), name.indices)).collect();
         let mut parts: BTreeMap<Name, usize> = BTreeMap::new();
         for (id, node) in self.written.graph.nodes() {
             let index = id.index();
@@ -206,6 +234,7 @@ impl<'w> Lowering<'w> {
                 self.written.trace.births[index].as_ref().map_or(Name::scalar(Quantity::Constant, 0), |birth| Name {
                     component: birth.component,
                     by: birth.place.by,
+                    indices: between.get(&(birth.place.quantity, birth.place.joint)).copied().unwrap_or_default(),
                     ..Name::scalar(birth.place.quantity, birth.place.joint)
                 });
             // counted among those that look alike: of some quantities a name does not tell the joint
@@ -370,7 +399,8 @@ impl<'w> Lowering<'w> {
         (found, returned)
     }
 
-    fn resolutions(&self) -> Vec<Resolution> {
+    /// The fate of each name; `stated` are those that a statement gives.
+    fn resolutions(&self, stated: &BTreeSet<Name>) -> Vec<Resolution> {
         let mut seen = BTreeSet::new();
         let definitions = self.written.trace.definitions.iter().filter(|definition| seen.insert(definition.name));
         definitions
@@ -385,6 +415,8 @@ impl<'w> Lowering<'w> {
                     _ => match self.names[node.index()] {
                         Some(given) if given.name == definition.name => ResolvedAs::Computed,
                         Some(given) => ResolvedAs::Same(given.name, sign(given.negative != negative)),
+                        // a torque is no name of a node
+                        None if stated.contains(&definition.name) => ResolvedAs::Computed,
                         None => ResolvedAs::Inside,
                     },
                 };

@@ -48,7 +48,7 @@ impl Formulation {
         target: Target,
         reference: &Reference<'_>,
     ) -> Result<Program, CompileError> {
-        let (embedding, scales) = (self.embedding(), self.scales);
+        let (embedding, scales) = (self.embedding(), self.scales.clone());
         let (program, exactly) = self.lowered(reference.robot(), function)?;
         let mut program = target.arranged(&program);
         program.scales = scales;
@@ -111,7 +111,7 @@ pub(crate) fn seven_steps_within(
         return Err(CompileError::TooLarge { function, dof: robot.dof(), most });
     }
     for definition in &traced.trace.definitions {
-        if keep.contains(&definition.name.quantity) && (1..=robot.dof()).contains(&definition.name.joint) {
+        if keep.contains(&definition.name.quantity) && (1..=robot.joints.len()).contains(&definition.name.joint) {
             names.push(definition.name);
             traced.graph.outputs.push(definition.at);
         }

@@ -9,7 +9,7 @@ use crate::equation::Equation;
 use crate::expression::Expression;
 use crate::function::{Form, Function};
 use crate::ir::{Causes, FoldReport, Name, Operator, Place, Sign};
-use crate::reduced::Algorithm;
+use crate::reduced::{Algorithm, JointFrame, Parameters};
 use crate::refusal::Refusal;
 use crate::values::{Value, ValueId, Values};
 
@@ -18,14 +18,20 @@ use crate::values::{Value, ValueId, Values};
 pub struct Program {
     /// The robot's name.
     pub robot: String,
-    /// Number of joints.
+    /// Number of coordinates: of joints that follow no other.
     pub dof: usize,
+    /// Number of joints.
+    pub joints: usize,
+    /// The joints that follow no other, counted from 1, in the order of the elements of q.
+    pub coordinates: Vec<usize>,
     /// Number of parameters that are known at run time only.
     pub parameters: usize,
     /// The function.
     pub function: Function,
     /// The frame of the function, by its name in the robot file; `None` for the tip.
     pub frame: Option<String>,
+    /// The names of the frames that carry wrenches, in the order of these.
+    pub tips: Vec<String>,
     /// The name of its code: that of the function, or at a frame `jacobian_of_camera`.
     pub name: String,
     /// How it is computed.
@@ -52,8 +58,8 @@ pub struct Program {
     pub algorithm: Algorithm,
     /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.
     pub is_rewritten: bool,
-    /// The factors of lengths and forces, if the code measures them in units of the arm.
-    pub scales: Option<Scales>,
+    /// The factors of lengths and forces, where the code measures them in units of the arm.
+    pub scales: Vec<Scales>,
     /// The choices of a program that is not the seven steps, one line each.
     pub choices: Vec<String>,
     /// Why a program that is not the seven steps gives their numbers.
@@ -84,15 +90,33 @@ pub struct Proof {
 /// is in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
+    /// The joint on the base, counted from 1, that carries the links whose values are scaled; `None` for all links.
+    pub behind: Option<usize>,
     /// Lengths, and the velocities and accelerations of points, are multiplied by it: λ.
     pub length: f64,
     /// Forces are multiplied by it: μ.
     pub force: f64,
 }
 
-impl Default for Scales {
-    fn default() -> Self {
-        Self { length: 1.0, force: 1.0 }
+impl Scales {
+    /// The factors that are not 1: one for all links, or one per joint on the base.
+    pub(crate) fn of(rows: &[JointFrame], Parameters { lambda, mu, .. }: &Parameters) -> Vec<Self> {
+        let on_base = (0..rows.len()).filter(|&index| rows[index].parent.is_none());
+        let factors = on_base.map(|index| Self {
+            behind: Some(index + 1),
+            length: lambda[index].to_f64(),
+            force: mu[index].to_f64(),
+        });
+        let mut factors: Vec<Self> = factors.collect();
+        let is_one = |of: &Self, other: &Self| (of.length, of.force) == (other.length, other.force);
+        if factors.iter().all(|of| is_one(of, &factors[0])) {
+            factors.truncate(1);
+            for all in &mut factors {
+                all.behind = None;
+            }
+        }
+        factors.retain(|of| (of.length, of.force) != (1.0, 1.0));
+        factors
     }
 }
 

@@ -9,7 +9,7 @@ use rne_model::{JointKind, Robot};
 use crate::exact::ExactFunction;
 use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
-use crate::ir::{Axis, Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, operators};
+use crate::ir::{Axis, Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, composed, operators};
 use crate::program::{Program, Proof};
 use crate::refusal::largest_rounding;
 use crate::{CompileError, Suspect};
@@ -126,30 +126,39 @@ pub fn divides_by_zero(robot: &Robot, function: Function) -> bool {
     ExactFunction::with(robot, function, embedding).divides_by_zero(&SamplePoint::new(embedding, 1))
 }
 
-/// The addition theorem.
-fn composed((s, c): (Residue, Residue), (sine, cosine): (Residue, Residue)) -> (Residue, Residue) {
-    (s * cosine + c * sine, c * cosine - s * sine)
-}
-
 /// A number of a field that may be an angle: then it has a sine and a cosine.
 #[derive(Clone, Copy)]
 struct Value {
     number: Residue,
     turn: (Residue, Residue),
+    /// If it is the position of a revolute joint: the point where it is taken, and the joint, counted from 0.
+    position: Option<(SamplePoint, usize)>,
 }
 
 impl Value {
     /// A number that is no angle: its sine would be wrong whatever it is.
     const fn number(number: Residue) -> Self {
-        Self { number, turn: (Residue::ZERO, Residue::ZERO) }
+        Self { number, turn: (Residue::ZERO, Residue::ZERO), position: None }
+    }
+
+    /// A product, which is an angle if it is that of a position and a ratio.
+    fn times(self, other: Self) -> Self {
+        let number = self.number * other.number;
+        match (self.position, other.position) {
+            (Some((point, joint)), None) => {
+                Self { turn: point.turn_times(joint, other.number), ..Self::number(number) }
+            }
+            (None, Some(_)) => other.times(self),
+            _ => Self::number(number),
+        }
     }
 }
 
 operators! { Value:
-    a + b => Self { number: a.number + b.number, turn: composed(a.turn, b.turn) };
-    -a => Self { number: -a.number, turn: (-a.turn.0, a.turn.1) };
+    a + b => Self { turn: composed(a.turn, b.turn), ..Self::number(a.number + b.number) };
+    -a => Self { turn: (-a.turn.0, a.turn.1), ..Self::number(-a.number) };
     a - b => a + -b;
-    a * b => Self::number(a.number * b.number);
+    a * b => a.times(b);
     a / b => Self::number(a.number * b.number.inverse().unwrap_or(Residue::ZERO));
 }
 
@@ -164,16 +173,17 @@ fn argument(robot: &Robot, point: &SamplePoint, name: Name) -> Value {
     let kind = || robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| joint.row.kind);
     if name.quantity == Quantity::Position && kind() == Some(JointKind::Revolute) {
         let index = name.joint - 1;
-        return Value { number: point.argument(Input::new(name)), turn: point.turn(index) };
+        let number = Value::number(point.argument(Input::new(name)));
+        return Value { turn: point.turn(index), position: Some((*point, index)), ..number };
     }
     Value::number(point.argument(Input::new(name)))
 }
 
 /// The results of a program at a point.
 fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &SamplePoint) -> Option<Vec<Residue>> {
-    let dof = robot.dof();
+    let tip = robot.joints.len() + 1;
     let joints = |quantity| -> Vec<Value> {
-        (1..=dof).map(|joint| argument(robot, point, Name::scalar(quantity, joint))).collect()
+        robot.coordinates().map(|joint| argument(robot, point, Name::scalar(quantity, joint + 1))).collect()
     };
     let vector = |quantity, joint| Axis::ALL.map(|axis| argument(robot, point, Name::vector(quantity, joint, axis)));
     let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
@@ -181,10 +191,13 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
     let parameters: Vec<_> = (1..=robot.run_time.names.len())
         .map(|index| Value::number(point.argument(Input::new(Name::scalar(Quantity::Parameter, index)))))
         .collect();
+    let wrenches: Vec<_> =
+        (1..=robot.tip_count()).map(|tip| Name::of_tip(tip).map(|name| argument(robot, point, name))).collect();
     let arguments = Arguments {
-        force: vector(Quantity::JointForce, dof + 1),
-        moment: vector(Quantity::JointMoment, dof + 1),
-        payload: Name::of_payload(dof + 1).map(|name| argument(robot, point, name)),
+        wrenches: &wrenches,
+        force: vector(Quantity::JointForce, tip),
+        moment: vector(Quantity::JointMoment, tip),
+        payload: Name::of_payload(tip).map(|name| argument(robot, point, name)),
         tau: &tau,
         base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
             .map(|quantity| vector(quantity, 0)),
@@ -195,7 +208,7 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
         let Some(name) = name else { return Some(Value::number(Residue::ZERO)) };
         let (number, turn) = constants.get(&name)?;
         let turn = turn.map_or((Residue::ZERO, Residue::ZERO), |turn| (turn.sin.residue, turn.cos.residue));
-        Some(Value { number: number.residue, turn })
+        Some(Value { turn, ..Value::number(number.residue) })
     };
     let sin_cos = |angle: Value| (Value::number(angle.turn.0), Value::number(angle.turn.1));
     let outputs = program.run_named(&arguments, constant, sin_cos)?;
@@ -260,16 +273,16 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
         // numbers of single precision, so that both precisions are given the same state
         let mut between = |low: f64, high: f64| f64::from((low + (high - low) * rng.f64()) as f32);
         let q: Vec<f64> = robot
-            .joints
-            .iter()
+            .coordinates()
             .map(|joint| {
-                let (low, high) = positions(joint.limits.position);
+                let (low, high) = positions(robot.joints[joint].limits.position);
                 between(low, high)
             })
             .collect();
         let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
         let (qd, qdd, wrench) = (random(2.0), random(4.0), [5.0, -3.0, 2.0]);
-        let arguments = state([&q, &qd, &qdd], wrench, PAYLOAD, &parameters);
+        let wrenches = at_tips(robot, wrench);
+        let arguments = state([&q, &qd, &qdd], wrench, &wrenches, PAYLOAD, &parameters);
         let [expected, found] =
             [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
         let largest = |torques: &[f64]| torques.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
@@ -288,7 +301,8 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             let (q, qd, qdd) = (round(&q), round(&qd), round(&qdd));
             let wrench = wrench.map(|x| x as f32);
             let payload = PAYLOAD.map(|x| x as f32);
-            let arguments = state([&q, &qd, &qdd], wrench, payload, &parameters_in_single);
+            let wrenches = at_tips(robot, wrench);
+            let arguments = state([&q, &qd, &qdd], wrench, &wrenches, payload, &parameters_in_single);
             let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
         };
@@ -310,10 +324,16 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
 fn state<'a, T: Copy>(
     [q, qd, qdd]: [&'a [T]; 3],
     vector: [T; 3],
+    wrenches: &'a [[T; 6]],
     payload: [T; 10],
     parameters: &'a [T],
 ) -> Arguments<'a, T> {
-    Arguments { q, qd, qdd, force: vector, moment: vector, payload, tau: qdd, base: [vector; 4], parameters }
+    Arguments { q, qd, qdd, force: vector, moment: vector, payload, tau: qdd, wrenches, base: [vector; 4], parameters }
+}
+
+/// A wrench for each tip, no two of them the same.
+fn at_tips<T: Copy>(robot: &Robot, [x, y, z]: [T; 3]) -> Vec<[T; 6]> {
+    [[x, y, z, z, x, y], [y, z, x, x, y, z], [z, x, y, y, z, x]].into_iter().cycle().take(robot.tip_count()).collect()
 }
 
 /// The larger of two; what is no number is larger than any.

@@ -232,6 +232,10 @@ quantities! {
         "second moment ∫ r rᵀ dm of regrouped matter";
 
     // Step 1.
+    FollowerPosition:           "q",         Joint,     1, false, "q", "rad|m",
+        "position of a joint that follows others";
+    FollowerRate:               "qd",        Joint,     1, false, "q̇", "rad/s|m/s", "its rate";
+    FollowerRateDot:            "qdd",       Joint,     2, false, "q̈", "rad/s²|m/s²", "its acceleration";
     Angle:                      "angle",     Joint,     1, false, "θ", "rad", "θ + q";
     Sine:                       "s",         Joint,     1, false, "s", "", "sine of the joint angle";
     Cosine:                     "c",         Joint,     1, false, "c", "", "cosine of the joint angle";
@@ -354,6 +358,22 @@ quantities! {
         "momentum of joint i, row i of M q̇";
     MomentumRate:               "rate",      Joint,     8, true,  "", "",
         "its rate without external torques, τ + ∂T/∂q - ∂V/∂q";
+
+    // Step 7 of joints that follow others, and of those that are followed.
+    AxisTorque:                 "axis_tau",  Joint,     7, false, "τ'", "N m|N",
+        "τ': what this joint needs of a torque; followers are part of the torques that move them";
+
+    // Of rotors of the list `motors`: i is the first joint with which rotor j turns.
+    SpinInertia:                "jr",        Column,    0, false, "Jr", "kg m²", "inertia of rotor j about its axis";
+    Spin:                       "spin",      Column,    6, false, "s", "rad/s",
+        "spin of rotor j relative to the link that carries it";
+    SpinDot:                    "dspin",     Column,    6, false, "ṡ", "rad/s²", "its acceleration";
+
+    // Of named tips, which are counted from 1.
+    TipForce:                   "ft",        Vector,    0, false, "f", "N",
+        "force that the robot exerts at tip i, in axes of the tip";
+    TipMoment:                  "nt",        Vector,    0, false, "n", "N m",
+        "moment that the robot exerts at tip i, about the origin of the tip";
 }
 
 impl Quantity {
@@ -377,7 +397,9 @@ impl Quantity {
     /// name then.
     pub(crate) const fn of_momentum(self) -> Option<Self> {
         Some(match self {
-            Self::Omega | Self::OmegaUnturned | Self::Gradient | Self::GradientUnturned => return None,
+            Self::Omega | Self::OmegaUnturned | Self::Gradient | Self::GradientUnturned | Self::AxisTorque => {
+                return None;
+            }
             Self::OmegaDot => Self::Omega,
             Self::OriginAcceleration => Self::OriginVelocity,
             Self::OriginAccelerationUnturned => Self::OriginVelocityUnturned,
@@ -393,7 +415,17 @@ impl Quantity {
     /// Whether it is an angle, or a sum that becomes one.
     #[must_use]
     pub const fn is_of_an_angle(self) -> bool {
-        matches!(self, Self::Angle | Self::GroupAngle | Self::GroupPosition)
+        matches!(self, Self::Angle | Self::GroupAngle | Self::GroupPosition | Self::FollowerPosition)
+    }
+
+    /// The quantity that replaces an argument of a joint at a joint that follows others.
+    pub(crate) const fn of_follower(self) -> Option<Self> {
+        Some(match self {
+            Self::Position => Self::FollowerPosition,
+            Self::Rate => Self::FollowerRate,
+            Self::RateDot => Self::FollowerRateDot,
+            _ => return None,
+        })
     }
 
     /// How its names begin.

@@ -57,8 +57,6 @@ pub enum LeftOut {
 pub enum Reason {
     /// The seven steps divide by zero in every state. No code can be proved to be identical to them.
     DividesByZero,
-    /// The robot is a tree, and the reduced recursions of this function are for serial arms.
-    Tree,
     /// The code does not compile, or the proof refuses it: it is another function, or it rounds too much.
     Error(CompileError),
     /// The code takes more operations than the seven steps.
@@ -106,9 +104,6 @@ impl fmt::Display for Reason {
             Self::DividesByZero => f.write_str(
                 "the seven steps divide by zero in every state, so no other code can be proved identical to them",
             ),
-            Self::Tree => {
-                f.write_str("the robot is a tree, and this function's reduced recursions are for serial arms")
-            }
             Self::Error(CompileError::NotIdentical { function, output, .. }) => {
                 let what = if function.returns_torques() { "the torque of joint" } else { "returned number" };
                 write!(f, "the proof fails, because {what} {output} differs from that of the seven steps")

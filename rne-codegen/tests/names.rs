@@ -2,7 +2,7 @@
 //! whoever made them.
 
 use rne_codegen::{Axis, CompileError, Compiler, Form, Function, Name, Program, Quantity};
-use rne_model::Robot;
+use rne_model::{Reader, Robot};
 
 #[test]
 fn names_are_the_interface() {
@@ -37,6 +37,30 @@ fn an_index_is_no_number_of_a_shared_term() {
     assert_eq!(Name::indexed(Quantity::GroupSine, 4, 2).to_string(), "s2_4");
     let parameter = Name { indices: [3, 10], ..Name::scalar(Quantity::RegressorElement, 2) };
     assert_eq!(parameter.to_string(), "y2_3_10");
+}
+
+#[test]
+fn shared_terms_name_the_links_of_their_joint() {
+    let mut shared = 0;
+    for (text, couplings) in
+        [(include_str!("../../docs/tree.yaml"), false), (include_str!("../../docs/gripper.yaml"), true)]
+    {
+        let reader = Reader::new("robot").trees();
+        let reader = if couplings { reader.couplings() } else { reader };
+        let robot = reader.read(text.as_bytes()).expect("a robot file").robot;
+        for form in [Form::SevenSteps, Form::Reduced] {
+            let program = Compiler::new(&robot).compile(Function::InverseDynamics, form).expect("a program");
+            let names = program.statements.iter().map(|statement| statement.name);
+            for name in names.filter(|name| matches!(name.quantity, Quantity::JointForce | Quantity::JointMoment)) {
+                let parent = robot.parent(name.joint - 1).map_or(0, |parent| parent + 1);
+                let letter = if name.quantity == Quantity::JointForce { "f" } else { "n" };
+                let start = format!("{letter}{parent}_{}_", name.joint);
+                assert!(name.to_string().starts_with(&start), "{name}, which is not {start}");
+                shared += usize::from(name.part > 0 && parent + 1 != name.joint);
+            }
+        }
+    }
+    assert!(shared > 0, "no shared term of a joint whose parent is not the joint before");
 }
 
 fn rod() -> Program {

@@ -1,12 +1,14 @@
-//! From a tree of links to the chain between a base and a tip: what is fixed to a link is lumped into it.
+//! From a tree of links to the chain between a base and a tip, or to all of it: what is fixed to a link is lumped into
+//! it.
 
 mod follower;
 
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use rne_model::{Limits, Motor, Remedy, Report, one_line};
+use rne_model::{Coupling, Limits, Motor, Remedy, Report, one_line};
 
+use self::follower::Coupled;
 use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::selection::{End, Selection, link, locks, path, refuse_value, tip};
@@ -17,7 +19,7 @@ use crate::urdf::{Joint, Link, Urdf};
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
 
-/// A serial arm: joints with bodies between them.
+/// A serial arm, or a whole tree: joints with bodies between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
     /// World → base.
@@ -25,7 +27,9 @@ pub(crate) struct Chain {
     /// The acceleration of gravity in the axes of the base, m/s².
     pub(crate) gravity: Vector,
     pub(crate) joints: Vec<ChainJoint>,
-    /// Frame of the last moved link → tip frame.
+    /// The joint that moves the link of the tip, from 0.
+    pub(crate) tip_on: usize,
+    /// Frame of the link of the tip → tip frame.
     pub(crate) tip: Pose,
     /// Other frames that are fixed to its links, or to the base.
     pub(crate) frames: Vec<ChainFrame>,
@@ -46,7 +50,9 @@ pub(crate) struct ChainFrame {
 pub(crate) struct ChainJoint {
     pub(crate) name: String,
     pub(crate) is_prismatic: bool,
-    /// Frame of the link before, at the first joint the base → frame of this one's link, at q = 0.
+    /// The joint whose link carries this joint, from 0; `None` for the base.
+    pub(crate) parent: Option<usize>,
+    /// Frame of the link that carries it, or of the base → frame of this one's link, at q = 0.
     pub(crate) place: Pose,
     /// The unit vector of the axis, in the link's axes.
     pub(crate) axis: Vector,
@@ -54,6 +60,8 @@ pub(crate) struct ChainJoint {
     pub(crate) body: Body,
     pub(crate) limits: Limits,
     pub(crate) motor: Option<Motor>,
+    /// How it follows another joint of the chain.
+    pub(crate) coupling: Option<Coupling>,
     pub(crate) coulomb_width: Option<f64>,
     pub(crate) coulomb_displacement: Option<f64>,
 }
@@ -101,11 +109,17 @@ pub(crate) fn extract(
     let mut walk = Walk {
         urdf,
         selection,
-        moving: path.iter().copied().filter(moves).collect(),
+        moving: if selection.whole {
+            (0..urdf.joints.len()).filter(moves).collect()
+        } else {
+            path.iter().copied().filter(moves).collect()
+        },
         locks,
         snapping: Snapping { is_on: snap, ..Snapping::default() },
         loose: Vec::new(),
         followers: Vec::new(),
+        coupled: Vec::new(),
+        places: HashMap::new(),
         frames: Vec::new(),
         told: Extracted {
             base: urdf.links[base].name.clone(),
@@ -117,18 +131,37 @@ pub(crate) fn extract(
         base: walk.base(base)?,
         gravity: Vector::decimal(gravity),
         joints: Vec::new(),
+        tip_on: 0,
         tip: Pose::identity(),
         frames: Vec::new(),
     };
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;
-    walk.along(base, &path, &mut chain)?;
+    if selection.whole {
+        walk.whole(base, tip, &mut chain)?;
+        walk.couple(&mut chain);
+    } else {
+        walk.along(base, &path, &mut chain)?;
+    }
+    if chain.joints.len() > MAX_JOINTS {
+        let what = if selection.whole { "robot" } else { "chain" };
+        let message =
+            format!("the {what} has {} movable joints; a robot file has at most {MAX_JOINTS}", chain.joints.len());
+        return Err(urdf.source.error(&urdf.links[base].span, message, None));
+    }
     if !walk.loose.is_empty() {
         let joints = names(walk.loose.iter().map(|&joint| &urdf.joints[joint].name));
-        let message = format!(
-            "movable joints that are not on the chain from {} to {}: {joints}",
-            quoted(&walk.told.base),
-            quoted(&walk.told.tip)
-        );
+        let is_before_base = |joint: &usize| urdf.joints[*joint].kind.has_one_freedom();
+        let message = if selection.whole && walk.loose.iter().any(is_before_base) {
+            format!("movable joints that do not come after the base {}: {joints}", quoted(&walk.told.base))
+        } else if selection.whole {
+            format!("joints with more than one freedom, which no row of a table can describe: {joints}")
+        } else {
+            format!(
+                "movable joints that are not on the chain from {} to {}: {joints}",
+                quoted(&walk.told.base),
+                quoted(&walk.told.tip)
+            )
+        };
         let span = &urdf.joints[walk.loose[0]].span;
         let help = "hold these joints still, each at a position of its own or all at zero".to_owned();
         return Err(urdf.source.error_with(span, message, help, &Remedy::LockOthers));
@@ -149,10 +182,12 @@ pub(crate) fn extract(
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
         let others = names(others.iter().map(|&link| &urdf.links[link].name));
-        walk.told.remarks.push(format!(
-            "the tip is {}; these links are also after the same joints: {others}",
-            quoted(&walk.told.tip)
-        ));
+        let tip = quoted(&walk.told.tip);
+        walk.told.remarks.push(if selection.whole {
+            format!("the tip is {tip}; these links are ends, too: {others}")
+        } else {
+            format!("the tip is {tip}; these links are also after the same joints: {others}")
+        });
     }
     Ok((chain, walk.told))
 }
@@ -174,6 +209,10 @@ struct Walk<'a> {
     loose: Vec<usize>,
     /// Joints off the chain that follow one of it, and which.
     followers: Vec<(usize, usize)>,
+    /// Joints of a whole robot that follow another one: their place in the chain, and how.
+    coupled: Vec<Coupled>,
+    /// The places in the chain of the joints that move.
+    places: HashMap<usize, usize>,
     /// The links, where they are fixed to the chain.
     frames: Vec<ChainFrame>,
     told: Extracted,
@@ -257,30 +296,7 @@ impl Walk<'_> {
             if joint.kind == crate::urdf::Kind::Fixed || self.locks.contains_key(&index) {
                 pose = pose * self.across(index)?;
             } else {
-                self.refuse(joint)?;
-                self.remark(index);
-                let place = pose * self.place(joint);
-                let axis = self.axis(joint);
-                let [viscous, friction] = joint.friction;
-                let motor = (joint.friction != [0.0; 2]).then_some(Motor {
-                    inertia: 0.0,
-                    gear_ratio: 1.0,
-                    viscous,
-                    coulomb: [friction, 0.0 - friction],
-                });
-                chain.joints.push(ChainJoint {
-                    name: joint.name.clone(),
-                    is_prismatic: joint.kind == crate::urdf::Kind::Prismatic,
-                    place,
-                    axis,
-                    body: Body::NONE,
-                    limits: joint.limits,
-                    motor,
-                    coulomb_width: None,
-                    coulomb_displacement: None,
-                });
-                self.told.spans.push(joint.span.clone());
-                self.told.lumped.push(Vec::new());
+                self.moving_joint(index, chain.joints.len().checked_sub(1), pose, chain)?;
                 pose = Pose::identity();
             }
             if chain.joints.is_empty() {
@@ -294,17 +310,106 @@ impl Walk<'_> {
             }
         }
         chain.tip = pose;
+        chain.tip_on = chain.joints.len().saturating_sub(1);
         if chain.joints.is_empty() {
             let message =
                 format!("there is no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
             return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
         }
-        if chain.joints.len() > MAX_JOINTS {
-            let message =
-                format!("the chain has {} movable joints; a robot file has at most {MAX_JOINTS}", chain.joints.len());
-            return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
+        Ok(())
+    }
+
+    /// The joint that moves a link of the robot.
+    fn moving_joint(
+        &mut self,
+        index: usize,
+        parent: Option<usize>,
+        pose: Pose,
+        chain: &mut Chain,
+    ) -> Result<(), Report> {
+        let joint = &self.urdf.joints[index];
+        self.refuse(joint)?;
+        self.remark(index);
+        self.look_at_coupling(index, chain.joints.len())?;
+        let place = pose * self.place(joint);
+        let axis = self.axis(joint);
+        let [viscous, friction] = joint.friction;
+        // a follower has no motor: what moves it is that of the joint that it follows
+        let motor = (joint.friction != [0.0; 2] && joint.mimic.is_none()).then_some(Motor {
+            inertia: 0.0,
+            gear_ratio: 1.0,
+            viscous,
+            coulomb: [friction, 0.0 - friction],
+        });
+        chain.joints.push(ChainJoint {
+            name: joint.name.clone(),
+            is_prismatic: joint.kind == crate::urdf::Kind::Prismatic,
+            parent,
+            place,
+            axis,
+            body: Body::NONE,
+            limits: joint.limits,
+            motor,
+            coupling: None,
+            coulomb_width: None,
+            coulomb_displacement: None,
+        });
+        self.told.spans.push(joint.span.clone());
+        self.told.lumped.push(Vec::new());
+        Ok(())
+    }
+
+    /// All links after the base, branch by branch.
+    fn whole(&mut self, base: usize, tip: usize, chain: &mut Chain) -> Result<(), Report> {
+        // joints to cross, with the joint that moves the link before and the place of that link in its frame
+        let mut open: Vec<(Option<usize>, Option<usize>, Pose)> = vec![(None, None, Pose::identity())];
+        while let Some((crossed, mut on, mut pose)) = open.pop() {
+            if let Some(index) = crossed {
+                if self.moving.contains(&index) {
+                    self.moving_joint(index, on, pose, chain)?;
+                    (on, pose) = (Some(chain.joints.len() - 1), Pose::identity());
+                } else {
+                    pose = pose * self.across(index)?;
+                }
+            }
+            let link = crossed.map_or(base, |index| self.urdf.joints[index].child);
+            match on {
+                Some(joint) => {
+                    let body = self.body(link, (joint, pose));
+                    chain.joints[joint].body = chain.joints[joint].body + body;
+                }
+                None => self.frames.push(ChainFrame { name: self.urdf.links[link].name.clone(), on, place: pose }),
+            }
+            if let (true, Some(joint)) = (link == tip, on) {
+                (chain.tip_on, chain.tip) = (joint, pose);
+            }
+            let joints = self.urdf.links[link].children.iter().rev();
+            open.extend(joints.map(|&joint| (Some(joint), on, pose)));
+        }
+        let error = |message: String| Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
+        if chain.joints.is_empty() {
+            return error(format!("there is no movable joint after {}", quoted(&self.told.base)));
+        }
+        let moves_tip = path(self.urdf, base, tip)?.iter().any(|joint| self.moving.contains(joint));
+        if !moves_tip {
+            return error(format!("no movable joint moves the tip {}", quoted(&self.told.tip)));
         }
         Ok(())
+    }
+
+    /// The body of a link alone, seen from the frame in which it stands at `pose`; `on` is the joint that moves it.
+    fn body(&mut self, index: usize, (on, pose): (usize, Pose)) -> Body {
+        let link = &self.urdf.links[index];
+        self.told.links.insert(index);
+        self.frames.push(ChainFrame { name: link.name.clone(), on: Some(on), place: pose });
+        if !has_mass(link) {
+            return Body::NONE;
+        }
+        let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
+        if let Some(lumped) = self.told.lumped.get_mut(on) {
+            lumped.push(link.name.clone());
+        }
+        Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia).seen_from(pose)
     }
 
     /// A joint of the chain must be one that a table has.
@@ -317,10 +422,10 @@ impl Walk<'_> {
                         is not between them";
             return error(message, help.to_owned());
         }
-        if let Some(mimic) = &joint.mimic {
+        if let Some(mimic) = joint.mimic.as_ref().filter(|_| !self.selection.whole) {
             let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
-            let help = "its torque acts on the joint that it follows, and no row of the table can describe this; end \
-                        the chain before this joint, or lock this joint"
+            let help = "its torque acts on the joint that it follows, and no row of the table can describe this; \
+                        import the whole robot, end the chain before this joint, or lock this joint"
                 .to_owned();
             return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
         }
@@ -361,17 +466,8 @@ impl Walk<'_> {
         let mut body = Body::NONE;
         let mut open = vec![(link, pose)];
         while let Some((index, pose)) = open.pop() {
+            body = body + self.body(index, (on, pose));
             let link = &self.urdf.links[index];
-            self.told.links.insert(index);
-            self.frames.push(ChainFrame { name: link.name.clone(), on: Some(on), place: pose });
-            if has_mass(link) {
-                let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
-                let own = Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia);
-                body = body + own.seen_from(pose);
-                if let Some(lumped) = self.told.lumped.last_mut() {
-                    lumped.push(link.name.clone());
-                }
-            }
             let hanging = link.children.iter().filter(|&&joint| Some(joint) != next);
             let below: Vec<(usize, Pose)> = hanging
                 .map(|&joint| Ok((self.urdf.joints[joint].child, pose * self.across(joint)?)))

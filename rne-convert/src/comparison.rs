@@ -47,7 +47,10 @@ impl Difference {
 
     /// Between a chain and the table made of it, as the runtime of rne computes that.
     pub(crate) fn of_table(chain: &Dynamics, robot: &Robot) -> Self {
-        let arm = DynArm::from_robot(robot);
+        // the chain knows no couplings: all joints move freely in both
+        let mut robot = robot.clone();
+        robot.joints.iter_mut().for_each(|joint| joint.coupling = None);
+        let arm = DynArm::from_robot(&robot);
         let at = |frame: &Frame| arm.clone().at_frame(frame.fixed);
         let frames: Vec<DynArm> = robot.frames.iter().filter_map(at).collect();
         let mut difference = Self::default();

@@ -64,11 +64,13 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
         joints.push(ChainJoint {
             name: joint.name.clone(),
             is_prismatic: row.kind == JointKind::Prismatic,
+            parent: joints.len().checked_sub(1),
             place: before * screw_z(row),
             axis: Vector::unit(2),
             body: Body::of_link(&row.link).seen_from(after),
             limits: joint.limits,
             motor: joint.motor,
+            coupling: joint.coupling.clone(),
             coulomb_width: joint.coulomb_width,
             coulomb_displacement: joint.coulomb_displacement,
         });
@@ -83,7 +85,8 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let frames = frames.collect();
     let base = placement(&robot.base);
     let tip = end * placement(&robot.tool);
-    Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip, frames }
+    let tip_on = joints.len().saturating_sub(1);
+    Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip_on, tip, frames }
 }
 
 pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {

@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use rne_model::{nearest_name, no_shipped_robot, open_file, read_limited, robot_of};
-use rne_robots::{ROBOTS, RobotFile};
+use rne_robots::RobotFile;
 
 /// The largest URDF that is read, in bytes.
 const LONGEST_URDF: u64 = 16 << 20;
@@ -162,7 +162,7 @@ pub fn shipped(name: &str) -> Result<&'static RobotFile, String> {
 }
 
 fn names() -> Vec<&'static str> {
-    ROBOTS.iter().map(|robot| robot.name).collect()
+    rne_robots::all().map(|robot| robot.name).collect()
 }
 
 /// A sentence with the file or the robot that was probably meant by a path without a file.
@@ -183,8 +183,8 @@ fn hint(path: &Path) -> Option<String> {
 /// The places at which the file may be instead: with its extension, or in `robots/`.
 fn candidates(path: &Path) -> Vec<PathBuf> {
     let Some(name) = path.file_name() else { return Vec::new() };
-    let shipped = Path::new("robots").join(name);
-    vec![path.with_extension("yaml"), shipped.with_extension("yaml")]
+    let shipped = |folder: &str| Path::new(folder).join(name).with_extension("yaml");
+    vec![path.with_extension("yaml"), shipped("robots"), shipped("robots/trees")]
 }
 
 /// The names of the robot files of a folder, sorted, without plan files.

@@ -1,4 +1,4 @@
-//! The dynamics of a chain in the frames of its links, with which a table is compared.
+//! The dynamics of a chain or a tree in the frames of its links, with which a table is compared.
 //!
 //! Newton-Euler about the origin of each link's frame. It knows no Denavit-Hartenberg frames and shares no formula with
 //! the recursion of rne.
@@ -12,17 +12,19 @@ use crate::geometry::{Pose, Vector};
 /// A rotation and a translation.
 type Place = (Matrix3<f64>, Vector3<f64>);
 
-/// A chain in numbers of single length.
+/// A chain or a tree in numbers of single length.
 pub(crate) struct Dynamics {
     base: (Matrix3<f64>, Vector3<f64>),
     gravity: Vector3<f64>,
     joints: Vec<Joint>,
-    tip: (Matrix3<f64>, Vector3<f64>),
-    /// Each named frame, and how many joints move it.
-    frames: Vec<(usize, Place)>,
+    /// The joint that moves the tip frame, and the place of that.
+    tip: (Option<usize>, Place),
+    /// Each named frame, and the joint that moves it.
+    frames: Vec<(Option<usize>, Place)>,
 }
 
 struct Joint {
+    parent: Option<usize>,
     is_prismatic: bool,
     rotation: Matrix3<f64>,
     translation: Vector3<f64>,
@@ -46,6 +48,7 @@ impl Dynamics {
         let joints = chain.joints.iter().map(|joint| {
             let (rotation, translation) = numbers(joint.place);
             Joint {
+                parent: joint.parent,
                 is_prismatic: joint.is_prismatic,
                 rotation,
                 translation,
@@ -60,12 +63,8 @@ impl Dynamics {
             base: numbers(chain.base),
             gravity: vector(chain.gravity),
             joints: joints.collect(),
-            tip: numbers(chain.tip),
-            frames: chain
-                .frames
-                .iter()
-                .map(|frame| (frame.on.map_or(0, |joint| joint + 1), numbers(frame.place)))
-                .collect(),
+            tip: (Some(chain.tip_on), numbers(chain.tip)),
+            frames: chain.frames.iter().map(|frame| (frame.on, numbers(frame.place))).collect(),
         }
     }
 
@@ -99,18 +98,19 @@ impl Dynamics {
 
     /// Rotation and translation of the tip frame in the world.
     pub(crate) fn tip(&self, q: &[f64]) -> Place {
-        self.carried(self.joints.len(), self.tip, q)
+        self.carried(self.tip, q)
     }
 
     /// The named frames in the world, as [`Self::tip`].
     pub(crate) fn frames(&self, q: &[f64]) -> Vec<Place> {
-        self.frames.iter().map(|(joints, place)| self.carried(*joints, *place, q)).collect()
+        self.frames.iter().map(|frame| self.carried(*frame, q)).collect()
     }
 
-    /// A place in the world that the first `joints` joints move.
-    fn carried(&self, joints: usize, place: Place, q: &[f64]) -> Place {
-        let joints = self.joints.iter().zip(q).take(joints);
-        let places = joints.map(|(joint, &q)| Self::place(joint, q)).chain([place]);
+    /// A place in the world that a joint moves.
+    fn carried(&self, (on, place): (Option<usize>, Place), q: &[f64]) -> Place {
+        let mut joints: Vec<usize> = std::iter::successors(on, |&joint| self.joints[joint].parent).collect();
+        joints.reverse();
+        let places = joints.into_iter().map(|joint| Self::place(&self.joints[joint], q[joint])).chain([place]);
         places.fold(self.base, |(r, p), (rotation, translation)| (r * rotation, r * translation + p))
     }
 
@@ -122,12 +122,13 @@ impl Dynamics {
     fn newton_euler(&self, q: &[f64], qd: &[f64], qdd: &[f64], gravity: Vector3<f64>) -> Vec<f64> {
         let zero = Vector3::zeros();
         // Of the origin of each link's frame, in its own axes.
-        let (mut w, mut dw, mut a) = (zero, zero, -gravity);
+        let mut motions: Vec<[Vector3<f64>; 3]> = Vec::with_capacity(self.joints.len());
         let mut wrenches = Vec::with_capacity(self.joints.len());
         for (i, joint) in self.joints.iter().enumerate() {
             let (rotation, translation) = Self::place(joint, q[i]);
             let back = rotation.transpose();
             let along = joint.axis;
+            let [mut w, mut dw, mut a] = joint.parent.map_or([zero, zero, -gravity], |parent| motions[parent]);
             a = back * (a + dw.cross(&translation) + w.cross(&w.cross(&translation)));
             w = back * w;
             dw = back * dw;
@@ -137,19 +138,23 @@ impl Dynamics {
                 dw += w.cross(&(along * qd[i])) + along * qdd[i];
                 w += along * qd[i];
             }
+            motions.push([w, dw, a]);
             let h = joint.moment;
             let force = a * joint.mass + dw.cross(&h) + w.cross(&w.cross(&h));
             let moment = joint.inertia * dw + w.cross(&(joint.inertia * w)) + h.cross(&a);
             wrenches.push((rotation, translation, force, moment));
         }
-        let (mut force, mut moment) = (zero, zero);
+        let mut carried = vec![[zero; 2]; self.joints.len()];
         let mut torques = vec![0.0; self.joints.len()];
         for (i, (rotation, translation, own_force, own_moment)) in wrenches.into_iter().enumerate().rev() {
-            force += own_force;
-            moment += own_moment;
-            torques[i] = self.joints[i].axis.dot(if self.joints[i].is_prismatic { &force } else { &moment });
-            force = rotation * force;
-            moment = rotation * moment + translation.cross(&force);
+            let joint = &self.joints[i];
+            let (force, moment) = (own_force + carried[i][0], own_moment + carried[i][1]);
+            torques[i] = joint.axis.dot(if joint.is_prismatic { &force } else { &moment });
+            let force = rotation * force;
+            if let Some(parent) = joint.parent {
+                carried[parent][0] += force;
+                carried[parent][1] += rotation * moment + translation.cross(&force);
+            }
         }
         torques
     }

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use rne_model::{
-    Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot, Row, RunTime, Transform,
+    Angle, Bodies, Convention, FixedFrame, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot,
+    Row, RunTime, Transform,
 };
 
 use crate::chain::{Chain, Extracted, extract};
@@ -14,7 +15,7 @@ use crate::robot_file;
 use crate::selection::Selection;
 use crate::snap::Snapped;
 use crate::source::{quoted, some};
-use crate::table::{FAR, NEARLY_PARALLEL, Table, table};
+use crate::table::{FAR, NEARLY_PARALLEL, Table, table, tree_table};
 use crate::urdf::Urdf;
 
 /// Options of the conversion from a URDF to a table.
@@ -120,7 +121,12 @@ impl Urdf {
     /// joints off the chain that nobody holds, joints that no row of a table can say, bodies that are none.
     pub fn import(&self, options: &Options) -> Result<Imported, Report> {
         let (chain, mut told) = extract(self, &options.selection, options.gravity, options.snap)?;
-        let table = table(&chain, options.convention);
+        if options.selection.whole && options.convention == Convention::Standard {
+            let message = "a tree is written with modified rows, which may begin at gamma and b";
+            let help = "choose the convention `modified`";
+            return Err(self.source.error(&(0..0), message.to_owned(), help.to_owned()));
+        }
+        let table = if options.selection.whole { tree_table(&chain) } else { table(&chain, options.convention) };
         let mut robot = robot(&chain, &table, options.convention);
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
         robot.title = title(&self.name);
@@ -132,10 +138,13 @@ impl Urdf {
             told.remarks.extend(base_remark(&told.base, &frames, transform(table.start)));
         }
         robot.source = format!(
-            "{}, from {} to {}; imported by rne {}",
+            "{}, {}; imported by rne {}",
             printable(self.source.file_name()),
-            printable(&told.base),
-            printable(&told.tip),
+            if options.selection.whole {
+                format!("everything after {}", printable(&told.base))
+            } else {
+                format!("from {} to {}", printable(&told.base), printable(&told.tip))
+            },
             env!("CARGO_PKG_VERSION")
         );
         if !options.keep_unphysical {
@@ -150,7 +159,7 @@ impl Urdf {
         };
         robot.notes = notes(&told, change.as_ref());
         let text = robot_file::write(&robot);
-        let checked = Reader::new(&format!("{}, imported", self.source.file)).read(&text)?;
+        let checked = Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().read(&text)?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let (ignored, numbers) = (self.ignored(&told), self.suspicious_numbers());
@@ -196,19 +205,25 @@ impl Urdf {
 pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Robot {
     let start = chain.base * table.start;
     let gravity = start.rotation.transpose() * (chain.base.rotation * chain.gravity);
-    let joints = chain.joints.iter().zip(&table.rows).zip(&table.frames).map(|((joint, dh), frame)| {
+    let parts = chain.joints.iter().zip(&table.rows).zip(table.frames.iter().zip(&table.branches)).enumerate();
+    let joints = parts.map(|(index, ((joint, dh), (frame, &[gamma, b])))| {
+        let branch = (joint.parent != index.checked_sub(1) || [gamma, b] != [0.0; 2]).then(|| {
+            let rpy = [0.0, 0.0, gamma].map(Angle::new);
+            FixedFrame { on: joint.parent, placement: Transform { xyz: [0.0, 0.0, b], rpy } }
+        });
         let link = joint.body.to_link_at(frame.inverse());
         let kind = if joint.is_prismatic { JointKind::Prismatic } else { JointKind::Revolute };
         Joint {
             name: printable(&joint.name),
             row: Row { kind, dh: *dh, link },
-            branch: None,
+            branch,
             written_inertia: (
                 link.inertia,
                 if link.has_first_moment() { InertiaReference::Origin } else { InertiaReference::Com },
             ),
             limits: joint.limits,
             motor: joint.motor,
+            coupling: joint.coupling.clone(),
             coulomb_width: joint.coulomb_width,
             coulomb_displacement: joint.coulomb_displacement,
         }
@@ -222,10 +237,13 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         gravity: gravity.rounded(10.0),
         base: transform(start),
         tool: transform(table.tool),
-        tip_on: None,
+        tip_on: Some(chain.tip_on).filter(|on| on + 1 != chain.joints.len()),
         parameters: Vec::new(),
         joints: joints.collect(),
+        drives: Vec::new(),
         frames: Vec::new(),
+        tips: Vec::new(),
+        bodies: Bodies::default(),
         at: None,
         run_time: RunTime::default(),
         rotors: false,
@@ -334,11 +352,15 @@ fn base_remark(link: &str, frames: &[(String, String)], start: Transform) -> Opt
 /// Remarks on a table.
 pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
     let mut remarks = Vec::new();
-    for (joint, tilt) in &table.levelled {
+    for ([first, second], tilt) in &table.levelled {
+        let pair = if *first > robot.dof() {
+            format!("z of the base and the axis of joint {second}")
+        } else {
+            format!("the axes of joints {first} and {second}")
+        };
         remarks.push(format!(
-            "the axes of joints {joint} and {} are {tilt:.1e} rad off parallel, and rne takes them as parallel: their \
-             common normal is too far away for a table",
-            joint + 1
+            "{pair} are {tilt:.1e} rad off parallel, and rne takes them as parallel: their common normal is too far \
+             away for a table"
         ));
     }
     for (index, row) in robot.rows().enumerate() {

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rne_model::Report;
 
 use crate::import::{Imported, Options};
+use crate::selection::Selection;
 use crate::urdf::Urdf;
 
 /// Imports, the latest last, by what they were made of.
@@ -54,10 +55,24 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>
     Ok(imported)
 }
 
+/// The arm of the bytes of a URDF, as the libraries open it: with the angles of `rne import` ([`Options::snap`]), so
+/// that every interface has the same arm, and with its links as named frames.
+///
+/// # Errors
+/// As [`import`], and when the bytes are not UTF-8.
+pub fn import_arm(file: &str, bytes: Vec<u8>, selection: Selection) -> Result<Arc<Imported>, Report> {
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(error.as_bytes());
+        let span = at..at + char::REPLACEMENT_CHARACTER.len_utf8();
+        Report::of_error(file, &text, span, "the file is not text in UTF-8".to_owned(), Some("save it as UTF-8"))
+    })?;
+    import(file, &text, &Options { selection, frames: true, ..Options::default() })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::selection::Selection;
 
     const ROD: &str = r#"<robot name="rod"><link name="base"/>
 <link name="rod"><inertial><origin xyz="0 0 -0.25"/><mass value="2"/>

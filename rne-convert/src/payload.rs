@@ -1,6 +1,6 @@
 //! A payload that stays on the arm: a part of its last link.
 
-use rne_model::{Inertia, InertiaReference, Robot};
+use rne_model::{FixedFrame, Inertia, InertiaReference, Robot, Transform};
 
 use crate::body::Body;
 use crate::geometry::Pose;
@@ -9,10 +9,17 @@ use crate::geometry::Pose;
 /// about the centre of mass in kg m², all in tip-frame axes. A robot without joints stays as it is.
 #[must_use]
 pub fn carrying(robot: &Robot, mass: f64, com: [f64; 3], inertia: Inertia) -> Robot {
-    let tool = Pose::new(robot.tool.xyz, robot.tool.rpy.map(|angle| angle.radians));
+    carrying_at(robot, &robot.tip(), mass, com, inertia)
+}
+
+/// As [`carrying`], with the payload at a frame instead of the tip. A frame on the base carries nothing.
+#[must_use]
+pub fn carrying_at(robot: &Robot, frame: &FixedFrame, mass: f64, com: [f64; 3], inertia: Inertia) -> Robot {
+    let Transform { xyz, rpy } = frame.placement;
+    let place = Pose::new(xyz, rpy.map(|angle| angle.radians));
     let mut robot = robot.clone();
-    if let Some(last) = robot.tip().on.and_then(|on| robot.joints.get_mut(on)) {
-        let payload = Body::at(mass, Pose::new(com, [0.0; 3]), inertia).seen_from(tool);
+    if let Some(last) = frame.on.and_then(|on| robot.joints.get_mut(on)) {
+        let payload = Body::at(mass, Pose::new(com, [0.0; 3]), inertia).seen_from(place);
         last.row.link = (Body::of_link(&last.row.link) + payload).to_link();
         last.written_inertia = (last.row.link.inertia, InertiaReference::Com);
     }

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_model::{
-    FixedFrame, Frame, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform, exact_digits,
+    Body, Convention, Coupling, Drive, FixedFrame, Frame, Inertia, InertiaReference, Joint, JointKind, Limits, Link,
+    Motor, Robot, Rotor, Transform, exact_digits,
 };
 
 use crate::snap::angle_text;
@@ -35,7 +36,9 @@ const WIDTH: usize = 110;
 #[must_use]
 pub fn write(robot: &Robot) -> String {
     let mut text = String::new();
-    let _ = writeln!(text, "format: 1\nname: {}", robot.name);
+    let is_old = robot.is_serial() && !robot.has_couplings() && robot.drives.is_empty() && robot.tips.is_empty();
+    let format = if is_old { 1 } else { 2 };
+    let _ = writeln!(text, "format: {format}\nname: {}", robot.name);
     if let Some(title) = &robot.title {
         let _ = writeln!(text, "title: {}", scalar(title));
     }
@@ -51,10 +54,14 @@ pub fn write(robot: &Robot) -> String {
     }
     let _ = writeln!(text, "convention: {}", robot.convention.name());
     noted(&mut text, &format!("gravity: {}", list(&robot.gravity)), "m/s²");
-    for (key, placement) in [("base", &robot.base), ("tool", &robot.tool)] {
-        if *placement != Transform::IDENTITY {
-            noted(&mut text, &format!("{key}: {}", transform(placement)), "m, rad");
-        }
+    if robot.base != Transform::IDENTITY {
+        noted(&mut text, &format!("base: {}", transform(&robot.base)), "m, rad");
+    }
+    if let (false, Some(on)) = (robot.is_serial(), robot.tip().on) {
+        let on = scalar(&robot.joints[on].name);
+        noted(&mut text, &format!("tool: {{on: {on}{}}}", place(&robot.tool)), "m, rad");
+    } else if robot.tool != Transform::IDENTITY {
+        noted(&mut text, &format!("tool: {}", transform(&robot.tool)), "m, rad");
     }
     if !robot.frames.is_empty() {
         noted(&mut text, "frames:", "m, rad");
@@ -63,12 +70,40 @@ pub fn write(robot: &Robot) -> String {
         let on = on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name));
         let _ = writeln!(text, "  - {{name: {name}, on: {on}{}}}", place(placement));
     }
+    if !robot.tips.is_empty() {
+        let _ = writeln!(text, "tips: [{}]", robot.tip_names().join(", "));
+    }
+    for Body { name, .. } in &robot.bodies.list {
+        let _ = writeln!(text, "# the body {name} is a part of its link");
+    }
     text.push_str("joints:\n");
-    for (index, joint) in robot.joints.iter().enumerate() {
+    for index in 0..robot.joints.len() {
         if index > 0 {
             text.push('\n');
         }
-        write_joint(&mut text, joint, index == 0);
+        write_joint(&mut text, robot, index);
+    }
+    let ratio =
+        |&(joint, ratio): &(usize, f64)| format!("{}: {}", scalar(&robot.joints[joint].name), exact_digits(ratio));
+    let ratios = |of_joints: &[(usize, f64)]| of_joints.iter().map(ratio).collect::<Vec<_>>().join(", ");
+    if robot.has_couplings() {
+        text.push_str("\ncouplings:\n");
+    }
+    for Joint { name, coupling, .. } in &robot.joints {
+        let Some(Coupling { follows, offset }) = coupling else { continue };
+        let follows = ratios(follows);
+        let offset = if *offset == 0.0 { String::new() } else { format!(", offset: {}", exact_digits(*offset)) };
+        let _ = writeln!(text, "  - {{joint: {}, follows: {{{follows}}}{offset}}}", scalar(name));
+    }
+    if !robot.drives.is_empty() {
+        text.push_str("\nmotors:\n");
+    }
+    for Drive { name, turns, rotor } in &robot.drives {
+        let rotor = rotor.map_or_else(String::new, |Rotor { axis, on, inertia }| {
+            let on = on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name));
+            format!(", rotor: {{axis: {}, on: {on}, inertia: {}}}", list(&axis), exact_digits(inertia))
+        });
+        let _ = writeln!(text, "  - {{name: {}, turns: {{{}}}{rotor}}}", scalar(name), ratios(turns));
     }
     text
 }
@@ -78,8 +113,9 @@ fn noted(text: &mut String, line: &str, units: &str) {
     let _ = writeln!(text, "{line}   # {units}");
 }
 
-/// One block of the list; with units where `is_first`.
-fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
+/// One block of the list; the first one with units.
+fn write_joint(text: &mut String, robot: &Robot, index: usize) {
+    let (joint, is_first) = (&robot.joints[index], index == 0);
     let Joint { name, row, limits, motor, .. } = joint;
     let is_revolute = row.kind == JointKind::Revolute;
     let line = |text: &mut String, line: String, units: &str| {
@@ -91,10 +127,24 @@ fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
         }
     };
     let kind = if is_revolute { "revolute" } else { "prismatic" };
-    let _ = writeln!(text, "  - name: {}\n    type: {kind}", scalar(name));
+    let _ = writeln!(text, "  - name: {}", scalar(name));
+    if robot.parent(index) != index.checked_sub(1) {
+        let parent = robot.parent(index).map_or_else(|| "base".to_owned(), |parent| scalar(&robot.joints[parent].name));
+        let _ = writeln!(text, "    parent: {parent}");
+    }
+    let _ = writeln!(text, "    type: {kind}");
+    let mut beginning = String::new();
+    if let Some(FixedFrame { placement, .. }) = joint.branch.filter(|branch| branch.placement != Transform::IDENTITY) {
+        let Transform { xyz: [x, y, b], rpy: [roll, pitch, gamma] } = placement;
+        if robot.convention == Convention::Modified && [x, y, roll.radians, pitch.radians] == [0.0; 4] {
+            beginning = format!("gamma: {}, b: {}, ", angle(gamma.radians), exact_digits(b));
+        } else {
+            let _ = writeln!(text, "    at: {}", transform(&placement));
+        }
+    }
     let dh = &row.dh;
     let dh = format!(
-        "    dh: {{theta: {}, d: {}, a: {}, alpha: {}}}",
+        "    dh: {{{beginning}theta: {}, d: {}, a: {}, alpha: {}}}",
         angle(dh.theta.radians),
         exact_digits(dh.d),
         exact_digits(dh.a),

@@ -32,11 +32,13 @@ pub(crate) struct Scanned {
     pub(crate) robot: Seen,
     pub(crate) links: Vec<Seen>,
     pub(crate) joints: Vec<Seen>,
+    /// Gears between links, of URDF+.
+    pub(crate) couplings: Vec<Seen>,
     /// Kinds of elements and attributes that are not known, in words.
     pub(crate) unknown: Vec<String>,
 }
 
-/// The values of a link or a joint.
+/// The values of a link, a joint or a coupling.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
     /// The place of its tag.
@@ -127,7 +129,7 @@ const ELEMENTS: &[Element] = &[
         "inertial",
         &[number("ixx"), number("ixy"), number("ixz"), number("iyy"), number("iyz"), number("izz")],
     ),
-    element("joint", "robot", &[text("name"), TYPE]),
+    element("joint", "robot", &[text("name"), TYPE, optional("independent", Kind::Text)]),
     element("origin", "joint", ORIGIN),
     element("parent", "joint", &[text("link")]),
     element("child", "joint", &[text("link")]),
@@ -135,6 +137,10 @@ const ELEMENTS: &[Element] = &[
     element("limit", "joint", &[limit("lower"), limit("upper"), limit("effort"), limit("velocity")]),
     element("mimic", "joint", &[text("joint"), optional("multiplier", Kind::Number), optional("offset", Kind::Number)]),
     element("dynamics", "joint", &[optional("damping", Kind::Number), optional("friction", Kind::Number)]),
+    element("coupling", "robot", &[optional("name", Kind::Text)]),
+    element("predecessor", "coupling", &[text("link")]),
+    element("successor", "coupling", &[text("link")]),
+    element("ratio", "coupling", &[number("value")]),
 ];
 
 /// Elements that are known and do not matter here, by the element that contains them.
@@ -232,7 +238,7 @@ impl Scanner<'_> {
         let element = self.element(&name, &place)?;
         if let Some(element) = element {
             if let Some(parent) = self.open.last_mut() {
-                let several = matches!(element.name, "link" | "joint");
+                let several = matches!(element.name, "link" | "joint" | "coupling");
                 if !several && parent.children.contains(&element.name) {
                     let message = format!("a second `{}` in one `{}`", element.name, element.parent);
                     return Err(self.source.error(&place, message, None));
@@ -276,6 +282,12 @@ impl Scanner<'_> {
             let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
             return Err(self.source.error(place, message, help));
         }
+        if (name, name_of_parent) == ("loop", "robot") {
+            let message = "the robot has a closed loop, which the import does not convert".to_owned();
+            let help = "delete the element `loop` to import the tree without it; a robot file describes parallelograms \
+                        in `loops`";
+            return Err(self.source.error(place, message, help.to_owned()));
+        }
         if let (None, Some(parent)) = (element, parent) {
             let matter = ELEMENTS.iter().filter(|element| element.parent == parent.name).map(|element| element.name);
             let others = passed_over(PASSED_OVER, parent.name);
@@ -284,6 +296,7 @@ impl Scanner<'_> {
         let seen = match name {
             "link" => &mut self.scanned.links,
             "joint" => &mut self.scanned.joints,
+            "coupling" => &mut self.scanned.couplings,
             _ => return Ok(element),
         };
         if element.is_some() {
@@ -298,10 +311,11 @@ impl Scanner<'_> {
 
     /// The record of an element: that of its link, its joint or the robot.
     fn owner(&mut self, element: &Element) -> &mut Seen {
-        let Scanned { robot, links, joints, .. } = &mut self.scanned;
+        let Scanned { robot, links, joints, couplings, .. } = &mut self.scanned;
         let owner = match (element.name, element.parent) {
             ("link", _) | (_, "link" | "inertial") => links.last_mut(),
             ("joint", _) | (_, "joint") => joints.last_mut(),
+            ("coupling", _) | (_, "coupling") => couplings.last_mut(),
             _ => None,
         };
         owner.unwrap_or(robot)

@@ -22,6 +22,9 @@ pub struct Selection {
     pub lock: Vec<(String, f64)>,
     /// Whether every other movable joint off the chain is held at zero.
     pub lock_others: bool,
+    /// Whether every movable joint after the base is taken: the robot is a tree, and `tip` is only where its tip frame
+    /// is.
+    pub whole: bool,
 }
 
 impl Urdf {
@@ -106,14 +109,19 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
     }
     // leaves without a movable joint are sensors on the base, or marks on it
     let moved: Vec<usize> = leaves.iter().filter(|(_, joints)| *joints > 0).map(|(leaf, _)| *leaf).collect();
+    let end = |mut others: Vec<usize>| {
+        let named = others.iter().position(|&leaf| urdf.links[leaf].name == TIP);
+        let link = others.remove(named.unwrap_or(others.len() - 1));
+        Ok(End { link, others })
+    };
+    if selection.whole && !moved.is_empty() {
+        return end(moved);
+    }
     let last_joint = |leaf: &usize| last_movable(urdf, base, *leaf);
     if let Some(first) = moved.first()
         && moved.iter().all(|leaf| last_joint(leaf) == last_joint(first))
     {
-        let named = moved.iter().position(|&leaf| urdf.links[leaf].name == TIP);
-        let mut others = moved.clone();
-        let link = others.remove(named.unwrap_or(moved.len() - 1));
-        return Ok(End { link, others });
+        return end(moved);
     }
     let message =
         format!("{} has {} end links, so you must name the tip", quoted(&urdf.links[base].name), leaves.len());

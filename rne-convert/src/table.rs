@@ -33,12 +33,15 @@ pub(crate) struct Table {
     /// Base → frame 0.
     pub(crate) start: Pose,
     pub(crate) rows: Vec<Dh>,
+    /// γ and b of each row, by which it begins in the link frame of its parent; zero but in a tree.
+    pub(crate) branches: Vec<[f64; 2]>,
     /// Frame of each moved link → frame i of the table: both are fixed to the link.
     pub(crate) frames: Vec<Pose>,
-    /// Frame n → tip.
+    /// Frame of the link of the tip → tip.
     pub(crate) tool: Pose,
-    /// Pairs of axes, from 1, that are taken as parallel although they are tilted by so much, rad.
-    pub(crate) levelled: Vec<(usize, f64)>,
+    /// Pairs of axes, from 1, that are taken as parallel although they are tilted by so much, rad. After the joints
+    /// stands the z axis of the base.
+    pub(crate) levelled: Vec<([usize; 2], f64)>,
 }
 
 /// The common normal of the axes of two neighbouring joints.
@@ -71,7 +74,7 @@ pub(crate) fn table(chain: &Chain, convention: Convention) -> Table {
     let mut normals: Vec<Normal> = Vec::new();
     for k in 0..n.saturating_sub(1) {
         let (origin, x) = normals.last().map_or((origin, x), |normal| (normal.to, normal.x));
-        normals.push(axes.normal(k, origin, x, &mut levelled));
+        normals.push(axes.normal((k, k + 1), origin, x, &mut levelled));
     }
     let last = axes.directions[n - 1];
     let last_x = perpendicular(last, axes.links[n - 1].rotation.columns);
@@ -86,9 +89,9 @@ pub(crate) fn table(chain: &Chain, convention: Convention) -> Table {
         let theta = canonical(atan2(z.dot(x.cross(next_x)), x.dot(next_x)));
         let d = length((next_from - o).dot(z), next_from, o);
         let (a, alpha) = match convention {
-            Convention::Standard => axes.twist(k, normals.get(k)),
+            Convention::Standard => axes.twist((k, k + 1), normals.get(k)),
             Convention::Modified => {
-                k.checked_sub(1).map_or((0.0, 0.0), |before| axes.twist(before, normals.get(before)))
+                k.checked_sub(1).map_or((0.0, 0.0), |before| axes.twist((before, k), normals.get(before)))
             }
         };
         rows.push(Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) });
@@ -105,15 +108,57 @@ pub(crate) fn table(chain: &Chain, convention: Convention) -> Table {
     }
     let start = Pose { rotation: Rotation::of_axes(x, first), translation: origin };
     let tool = frames[n - 1].inverse() * chain.tip;
-    Table { start, rows, frames, tool, levelled }
+    Table { start, branches: vec![[0.0; 2]; n], rows, frames, tool, levelled }
+}
+
+/// Writes the tree as a table of modified rows. Frame 0 is the frame of the base, with its z in the place of an axis.
+/// The first joint on a link begins at its link frame, as in a chain; others begin at γ and b.
+pub(crate) fn tree_table(chain: &Chain) -> Table {
+    let mut axes = Axes::of(chain);
+    let n = axes.points.len();
+    // the base behind the joints
+    axes.points.push(Vector::ZERO);
+    axes.directions.push(Vector::unit(2));
+    let parent = |k: usize| chain.joints[k].parent.unwrap_or(n);
+    let mut levelled = Vec::new();
+    let mut normals: Vec<Normal> = Vec::with_capacity(n);
+    // x and origin of the link frames that are known
+    let mut ends: Vec<Option<(Vector, Vector)>> = vec![None; n];
+    ends.push(Some((Vector::unit(0), Vector::ZERO)));
+    for k in 0..n {
+        let p = parent(k);
+        let (x, origin) = ends[p].unwrap_or_else(|| (normals[p].x, normals[p].to));
+        let normal = axes.normal((p, k), origin, x, &mut levelled);
+        ends[p].get_or_insert((normal.x, normal.from));
+        normals.push(normal);
+    }
+    let end = |k: usize| {
+        ends[k].unwrap_or_else(|| (perpendicular(axes.directions[k], axes.links[k].rotation.columns), axes.points[k]))
+    };
+    let about = |z: Vector, from: Vector, to: Vector| canonical(atan2(z.dot(from.cross(to)), from.dot(to)));
+    let (mut rows, mut branches, mut frames) = (Vec::new(), Vec::new(), Vec::new());
+    for (k, normal) in normals.iter().enumerate() {
+        let (p, z) = (parent(k), axes.directions[k]);
+        let ((x, origin), (x_before, origin_before)) = (end(k), end(p));
+        let (a, alpha) = axes.twist((p, k), Some(normal));
+        let theta = about(z, normal.x, x);
+        let d = length((origin - normal.to).dot(z), origin, normal.to);
+        rows.push(Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) });
+        let before = axes.directions[p];
+        let b = length((normal.from - origin_before).dot(before), normal.from, origin_before);
+        branches.push([about(before, x_before, normal.x), b]);
+        let frame = Pose { rotation: Rotation::of_axes(x, z), translation: origin };
+        frames.push(axes.links[k].inverse() * frame);
+    }
+    let tool = frames[chain.tip_on].inverse() * chain.tip;
+    Table { start: Pose::identity(), rows, branches, frames, tool, levelled }
 }
 
 impl Axes {
     fn of(chain: &Chain) -> Self {
         let mut axes = Self { links: Vec::new(), points: Vec::new(), directions: Vec::new() };
-        let mut link = Pose::identity();
         for joint in &chain.joints {
-            link = link * joint.place;
+            let link = joint.parent.map_or(joint.place, |parent| axes.links[parent] * joint.place);
             axes.links.push(link);
             axes.points.push(link.translation);
             axes.directions.push(link.rotation * joint.axis);
@@ -121,25 +166,31 @@ impl Axes {
         axes
     }
 
-    /// The normal from axis `k` to the next one; `origin` and `x` are those of the frame before.
-    fn normal(&mut self, k: usize, origin: Vector, x: Vector, levelled: &mut Vec<(usize, f64)>) -> Normal {
-        let (z, next) = (self.directions[k], self.directions[k + 1]);
+    /// The normal from axis `k` to axis `after`; `origin` and `x` are those of the frame before.
+    fn normal(
+        &mut self,
+        (k, after): (usize, usize),
+        origin: Vector,
+        x: Vector,
+        levelled: &mut Vec<([usize; 2], f64)>,
+    ) -> Normal {
+        let (z, next) = (self.directions[k], self.directions[after]);
         let cross = z.cross(next);
         let tilt = cross.norm();
-        let way = self.points[k + 1] - self.points[k];
+        let way = self.points[after] - self.points[k];
         let skew = (tilt.to_f64() > ROUNDING).then(|| {
             // The feet of two skew lines, by Cramer's rule.
             let square = tilt * tilt;
             let along = way.cross(next).dot(cross) / square;
             let along_next = way.cross(z).dot(cross) / square;
-            (self.points[k] + z * along, self.points[k + 1] + next * along_next)
+            (self.points[k] + z * along, self.points[after] + next * along_next)
         });
         // Feet so far away cannot be written: what their rounding costs is more than the tilt is worth over a metre.
         let skew = skew.filter(|(from, to)| {
-            let far = (*from - self.points[k]).norm().to_f64().max((*to - self.points[k + 1]).norm().to_f64());
+            let far = (*from - self.points[k]).norm().to_f64().max((*to - self.points[after]).norm().to_f64());
             let is_lost = tilt.to_f64() < f64::EPSILON * far;
             if is_lost {
-                levelled.push((k + 1, tilt.to_f64()));
+                levelled.push(([k + 1, after + 1], tilt.to_f64()));
             }
             !is_lost
         });
@@ -151,23 +202,23 @@ impl Axes {
             return Normal { from, to, x: facing(x, z, normal, leads) };
         }
         // The same direction, to the last bit.
-        self.directions[k + 1] = if z.dot(next).to_f64() < 0.0 { -z } else { z };
+        self.directions[after] = if z.dot(next).to_f64() < 0.0 { -z } else { z };
         let across = way.across(z);
         if across.norm().to_f64() <= NOTHING {
-            let point = self.points[k + 1] - (self.points[k + 1] - self.points[k]).across(z);
+            let point = self.points[after] - (self.points[after] - self.points[k]).across(z);
             return Normal { from: point, to: point, x };
         }
         // Not where a nearly parallel pair has led far away.
         let from = if (origin - self.points[k]).norm().to_f64() > FAR { self.points[k] } else { origin };
-        let distance = (self.points[k + 1] - from).across(z);
+        let distance = (self.points[after] - from).across(z);
         let direction = distance.direction().unwrap_or(x);
         Normal { from, to: from + distance, x: facing(x, z, direction, true) }
     }
 
-    /// a and alpha from axis `k` to the next one; of the last joint both are zero.
-    fn twist(&self, k: usize, normal: Option<&Normal>) -> (f64, f64) {
+    /// a and alpha from axis `k` to axis `after`; of the last joint both are zero.
+    fn twist(&self, (k, after): (usize, usize), normal: Option<&Normal>) -> (f64, f64) {
         let Some(Normal { from, to, x }) = normal else { return (0.0, 0.0) };
-        let (z, next) = (self.directions[k], self.directions[k + 1]);
+        let (z, next) = (self.directions[k], self.directions[after]);
         let alpha = canonical(atan2(x.dot(z.cross(next)), z.dot(next)));
         (length((*to - *from).dot(*x), *to, *from), alpha)
     }

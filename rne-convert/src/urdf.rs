@@ -17,6 +17,8 @@ pub struct Urdf {
     pub(crate) links: Vec<Link>,
     /// In the order of the text.
     pub(crate) joints: Vec<Joint>,
+    /// Joints that gears couple to others, of URDF+.
+    pub(crate) gears: Vec<Gear>,
     /// The link that no joint moves.
     pub(crate) root: usize,
     /// Kinds of elements and attributes that are not known, in words.
@@ -43,6 +45,16 @@ pub(crate) struct Link {
     pub(crate) parent: Option<usize>,
     /// The joints whose parent it is.
     pub(crate) children: Vec<usize>,
+}
+
+/// A joint that gears couple to others: its position is Σ ratio · q of those.
+#[derive(Clone, Debug)]
+pub(crate) struct Gear {
+    /// The place of its tag.
+    pub(crate) span: Range<usize>,
+    pub(crate) joint: usize,
+    /// The joints that it follows, and the ratios.
+    pub(crate) follows: Vec<(usize, f64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,6 +151,7 @@ impl Urdf {
             name: scanned.robot.text("robot", "name").unwrap_or_default().to_owned(),
             links: Vec::new(),
             joints: Vec::new(),
+            gears: Vec::new(),
             root: 0,
             unknown: scanned.unknown.clone(),
             beside: scanned.robot.unknown.clone(),
@@ -146,6 +159,7 @@ impl Urdf {
         urdf.take_links(&scanned.links)?;
         urdf.take_joints(&scanned.joints)?;
         urdf.find_root()?;
+        urdf.take_gears(&scanned.couplings)?;
         Ok(urdf)
     }
 
@@ -291,6 +305,54 @@ impl Urdf {
         }
         self.root = root;
         Ok(())
+    }
+
+    /// The elements `coupling` of URDF+ (arXiv 2411.19753): from the link that carries both ends, the positions of the
+    /// joints to the successor add up to those of the joints to the predecessor times the ratio.
+    fn take_gears(&mut self, couplings: &[Seen]) -> Result<(), Report> {
+        for seen in couplings {
+            let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help.to_owned()));
+            let mut ends = [0; 2];
+            for (end, of) in ends.iter_mut().zip(["predecessor", "successor"]) {
+                let Some(link) = seen.text(of, "link") else {
+                    return error(
+                        format!("the coupling has no element `{of}`"),
+                        "write the link into it: <predecessor \
+                        link=\"NAME\"/> <successor link=\"NAME\"/> <ratio value=\"NUMBER\"/>",
+                    );
+                };
+                let Some(known) = self.links.iter().position(|known| known.name == link) else {
+                    let message = format!("the coupling refers to the link {}, which does not exist", quoted(link));
+                    return error(message, "there is no such link in the file");
+                };
+                *end = known;
+            }
+            let ratio = seen.number("ratio", "value").filter(|ratio| *ratio != 0.0);
+            let Some(ratio) = ratio else {
+                return error("the coupling has no ratio other than zero".to_owned(), "write <ratio value=\"6\"/>");
+            };
+            let [to_predecessor, to_successor] = ends.map(|link| self.to_root(link));
+            let moves = |joint: &usize| self.joints[*joint].kind.has_one_freedom();
+            let apart = |of: &[usize], other: &[usize]| -> Vec<usize> {
+                of.iter().copied().filter(|joint| moves(joint) && !other.contains(joint)).collect()
+            };
+            let predecessors = apart(&to_predecessor, &to_successor).into_iter();
+            let mut successors = apart(&to_successor, &to_predecessor).into_iter();
+            let Some(joint) = successors.next() else {
+                let message = "no joint moves the successor of the coupling against its predecessor".to_owned();
+                return error(message, "the successor is the link that follows, such as the rotor of a motor");
+            };
+            let follows =
+                predecessors.map(|joint| (joint, ratio)).chain(successors.map(|joint| (joint, -1.0))).collect();
+            self.gears.push(Gear { span: seen.span.clone(), joint, follows });
+        }
+        Ok(())
+    }
+
+    /// The joints from a link to the root.
+    fn to_root(&self, link: usize) -> Vec<usize> {
+        let parent = |joint: &usize| self.links[self.joints[*joint].parent].parent;
+        std::iter::successors(self.links[link].parent, parent).collect()
     }
 
     /// The line, from 1, in which a place of the text begins.

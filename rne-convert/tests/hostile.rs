@@ -111,10 +111,10 @@ fn what_is_not_known_is_noted() {
     let other = known
         .replace("<link name=\"b\">", "<link name=\"b\" type=\"x\"><verbose value=\"1\"/>")
         .replace("<limit ", "<drake:effort_limit/><limit acceleration=\"2\" ")
-        .replace("</robot>", "<loop/></robot>");
+        .replace("</robot>", "<orbit/></robot>");
     let ignored = "the import ignores these parts, which it does not know: attribute `type` of `link`, element \
                    `verbose` in `link`, element `drake:effort_limit` in `joint`, attribute `acceleration` of `limit`, \
-                   element `loop` in `robot`";
+                   element `orbit` in `robot`";
     assert_eq!(remarks(&other), [ignored]);
     // the link that stands still is no part of the arm
     let still = known.replace("<link name=\"a\"/>", "<link name=\"a\" type=\"x\"><verbose/></link>");

@@ -23,7 +23,10 @@ pub(crate) struct Computation {
     pub(crate) first_factor: f64,
     pub(crate) motor_torques: bool,
     pub(crate) rates_exchanged: bool,
-    pub(crate) from_the_tip: bool,
+    /// The joint of each place in the lists of the state; empty: the order of the rows.
+    pub(crate) order_of_state: Vec<usize>,
+    /// The joint of each place in the list of torques; empty: the order of the rows.
+    pub(crate) order_of_torques: Vec<usize>,
     /// A factor on the torques of revolute joints.
     pub(crate) moment_factor: f64,
     pub(crate) wrench_factor: f64,
@@ -52,7 +55,8 @@ impl Computation {
             first_factor: 1.0,
             motor_torques: false,
             rates_exchanged: false,
-            from_the_tip: false,
+            order_of_state: Vec::new(),
+            order_of_torques: Vec::new(),
             moment_factor: 1.0,
             wrench_factor: 1.0,
             torque_factor: 1.0,
@@ -60,7 +64,7 @@ impl Computation {
     }
 
     /// The computation with slips, made in the order of [`Slip`]; `None` if it cannot be computed: the lecture's
-    /// formulas are of standard tables.
+    /// formulas are of standard tables of serial arms.
     pub(crate) fn with(robot: &Robot, slips: &[Slip]) -> Option<Self> {
         let mut this = Self::right(robot);
         let mut slips = slips.to_vec();
@@ -68,7 +72,8 @@ impl Computation {
         for slip in slips {
             slip.make(&mut this);
         }
-        (this.misprints.is_empty() || this.robot.convention == Convention::Standard).then_some(this)
+        let is_of_lecture = this.robot.convention == Convention::Standard && this.robot.is_serial();
+        (this.misprints.is_empty() || is_of_lecture).then_some(this)
     }
 
     /// Takes the angles, and if `all` speeds and accelerations too, for another unit.
@@ -106,6 +111,13 @@ impl Computation {
         if self.rates_exchanged {
             std::mem::swap(&mut qd, &mut qdd);
         }
+        for list in [&mut q, &mut qd, &mut qdd] {
+            // a list of another length is refused by the arm
+            if list.len() == self.order_of_state.len() {
+                let given = list.clone();
+                self.order_of_state.iter().zip(given).for_each(|(&joint, number)| list[joint] = number);
+            }
+        }
         let joints = self.robot.rows().zip(&mut q).zip(qd.iter_mut().zip(&mut qdd)).enumerate();
         for (index, ((row, q), (qd, qdd))) in joints {
             let revolute = row.kind == JointKind::Revolute;
@@ -141,10 +153,10 @@ impl Computation {
             *tau *= if self.reversed.contains(&index) { -self.torque_factor } else { self.torque_factor };
             *tau *= if row.kind == JointKind::Revolute { self.moment_factor } else { 1.0 };
         }
-        if self.from_the_tip {
-            tau.reverse();
+        if self.order_of_torques.is_empty() {
+            return Ok(tau);
         }
-        Ok(tau)
+        Ok(self.order_of_torques.iter().map(|&joint| tau[joint]).collect())
     }
 
     /// Every vector of the lecture's formulas, in the lecture's axes, with the links where they stand.

@@ -86,7 +86,7 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
 }
 
 /// The torques of a computation that makes some slips, at the state of `at`, whose own torques do not count; `None`
-/// where they cannot be made: the lecture's formulas are of standard tables.
+/// where they cannot be made: the lecture's formulas are of standard tables of serial arms.
 ///
 /// # Errors
 /// When a list of `at` does not have one number per joint.

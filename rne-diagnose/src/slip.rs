@@ -70,8 +70,12 @@ slips! {
     WrenchReversed: "wrench_reversed", "wrench", "The wrench is that of the environment on the arm.";
     NoWrench: "no_wrench", "wrench", "The wrench is left out.";
     NoTool: "no_tool", "wrench", "The wrench acts at the last frame instead of the tip.";
+    TipOnLastRow: "tip_on_last_row", "wrench", "The link of the last row of a tree carries the tip.";
     TorquesReversed: "torques_reversed", "torques", "The torques are those of the arm on its motors.";
     TorquesFromTheTip: "torques_from_the_tip", "order", "The torques stand from tip to base.";
+    TorquesByName: "torques_by_name", "order", "The torques stand in the alphabetical order of the joints.";
+    JointsByName: "joints_by_name", "order",
+        "Positions, velocities, accelerations and torques stand in the alphabetical order of the joints.";
     TorquesInNmm: "torques_in_nmm", "unit of torque", "The torques of revolute joints are N mm.";
     RatesExchanged: "rates_exchanged", "rates", "Velocities and accelerations are exchanged.";
     Misprint(Misprint): "misprint", "formula",
@@ -95,13 +99,12 @@ impl Slip {
                 all.push(slip);
             }
         }
+        all.extend([Self::InertiaAboutOrigin, Self::InertiaShifted, Self::ProductsOfInertia, Self::ComReversed]);
+        if robot.is_serial() {
+            // a link of a tree may have several other ends
+            all.extend([Self::ComFromOtherEnd, Self::ComOfOtherEnd]);
+        }
         all.extend([
-            Self::InertiaAboutOrigin,
-            Self::InertiaShifted,
-            Self::ProductsOfInertia,
-            Self::ComReversed,
-            Self::ComFromOtherEnd,
-            Self::ComOfOtherEnd,
             Self::PositionsAsDegrees,
             Self::PositionsInDegrees,
             Self::StateAsDegrees,
@@ -124,7 +127,16 @@ impl Slip {
             Self::TorquesInNmm,
             Self::RatesExchanged,
         ]);
-        all.extend(Misprint::IN_TORQUES.map(Self::Misprint));
+        if robot.is_serial() {
+            all.extend(Misprint::IN_TORQUES.map(Self::Misprint));
+        } else {
+            // the lecture's formulas are those of a chain, and the order of a chain is that of its links
+            all.retain(|slip| *slip != Self::NoFirstSlide);
+            all.extend(robot.tip_on.map(|_| Self::TipOnLastRow));
+            if !by_name(robot).is_sorted() {
+                all.extend([Self::TorquesByName, Self::JointsByName]);
+            }
+        }
         all
     }
 
@@ -184,14 +196,27 @@ impl Slip {
             Self::WrenchReversed => of.wrench_factor = -1.0,
             Self::NoWrench => of.wrench_factor = 0.0,
             Self::NoTool => robot.tool = Transform::IDENTITY,
+            Self::TipOnLastRow => robot.tip_on = None,
             Self::TorquesReversed => of.torque_factor = -1.0,
-            Self::TorquesFromTheTip => of.from_the_tip = true,
+            Self::TorquesFromTheTip => of.order_of_torques = (0..robot.dof()).rev().collect(),
+            Self::TorquesByName => of.order_of_torques = by_name(robot),
+            Self::JointsByName => {
+                of.order_of_state = by_name(robot);
+                of.order_of_torques.clone_from(&of.order_of_state);
+            }
             Self::TorquesInNmm => of.moment_factor = 1e3,
             Self::RatesExchanged => of.rates_exchanged = true,
             Self::Misprint(misprint) => of.misprints.push(misprint),
             Self::Typo(typo) => typo.make(robot),
         }
     }
+}
+
+/// The joints in the alphabetical order of their names.
+fn by_name(robot: &Robot) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..robot.dof()).collect();
+    order.sort_by_key(|&joint| &robot.joints[joint].name);
+    order
 }
 
 fn close(a: &[f64; 3], b: &[f64; 3]) -> bool {
@@ -300,9 +325,17 @@ impl Slip {
             Self::MotorTorques => "the motors' inertia and friction are in the torques".to_owned(),
             Self::WrenchReversed => "the wrench is what the environment exerts on the arm".to_owned(),
             Self::NoWrench => "the wrench is left out".to_owned(),
-            Self::NoTool => "the wrench acts at the last frame: the tool is left out".to_owned(),
+            Self::NoTool if robot.is_serial() => "the wrench acts at the last frame: the tool is left out".to_owned(),
+            Self::NoTool => "the wrench acts at the frame of the link with the tip: the tool is left out".to_owned(),
+            Self::TipOnLastRow => "the wrench acts at the link of the last row".to_owned(),
             Self::TorquesReversed => "the torques are what the arm exerts on its motors".to_owned(),
-            Self::TorquesFromTheTip => "the torques are listed from tip to base".to_owned(),
+            Self::TorquesFromTheTip if robot.is_serial() => "the torques are listed from tip to base".to_owned(),
+            Self::TorquesFromTheTip => "the torques are listed from the last row to the first".to_owned(),
+            Self::TorquesByName => "the torques are listed in the alphabetical order of the joints".to_owned(),
+            Self::JointsByName => {
+                "positions, velocities, accelerations and torques are listed in the alphabetical order of the joints"
+                    .to_owned()
+            }
             Self::TorquesInNmm => "the torques of revolute joints are in N mm".to_owned(),
             Self::RatesExchanged => "velocities and accelerations are exchanged".to_owned(),
             Self::Misprint(misprint) => misprint.says().to_owned(),
@@ -361,8 +394,16 @@ impl Slip {
             }
             Self::NoWrench => "τ = τ_free + Jᵀ w".to_owned(),
             Self::NoTool => "the wrench acts at the tip frame, in its axes: frame n, then `tool`".to_owned(),
+            Self::TipOnLastRow => {
+                let on = robot.tip().on.and_then(|on| robot.joints.get(on)).map_or("", |joint| &joint.name);
+                format!("the wrench acts at the tip, which is on the link of {on}: `tool: {{on: {on}}}`")
+            }
             Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
-            Self::TorquesFromTheTip => "lists run from base to tip".to_owned(),
+            Self::TorquesFromTheTip if robot.is_serial() => "lists run from base to tip".to_owned(),
+            Self::TorquesFromTheTip | Self::TorquesByName | Self::JointsByName => {
+                let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+                format!("lists are in the order of the rows of the file: {}", names.join(", "))
+            }
             Self::TorquesInNmm => "N m for a revolute joint, N for a prismatic joint".to_owned(),
             Self::RatesExchanged => "q̇ before q̈: τ(q, q̇, q̈)".to_owned(),
             Self::Misprint(misprint) => misprint.right().to_owned(),

@@ -1,10 +1,10 @@
-//! Slips that were made on purpose, with every shipped robot: the diagnosis names them first, and none when there is
-//! none.
+//! Slips that were made on purpose, with every shipped robot and with trees: the diagnosis names them first, and none
+//! when there is none.
 
 use fastrand::Rng;
 use rne_diagnose::{Diagnosis, Observation, Slip, Typo, diagnose, torques_with};
-use rne_model::{JointKind, Robot};
-use rne_runtime::Wrench;
+use rne_model::{JointKind, Reader, Robot};
+use rne_runtime::{DynArm, Wrench};
 
 /// So many cases, every second one a pair; three times as many where all is asked for.
 const CASES: u64 = 100;
@@ -75,17 +75,94 @@ fn made(
 
 #[test]
 fn nine_of_ten_slips_are_named_first() {
-    named_first(38, Slip::candidates, |case| if case % 2 == 0 { 1 } else { 2 });
+    named_first(38, robots(), Slip::candidates, |case| if case % 2 == 0 { 1 } else { 2 });
 }
 
 #[test]
 fn nine_of_ten_mistyped_signs_are_named_first() {
-    named_first(39, |robot| Typo::candidates(robot).into_iter().map(Slip::Typo).collect(), |_| 1);
+    named_first(39, robots(), |robot| Typo::candidates(robot).into_iter().map(Slip::Typo).collect(), |_| 1);
 }
 
-/// Makes slips of some kinds with every shipped robot that has them, so many at once.
-fn named_first(seed: u64, candidates: impl Fn(&Robot) -> Vec<Slip>, count: impl Fn(u64) -> usize) {
-    let (mut robots, mut rng) = (robots(), Rng::with_seed(seed));
+/// A tree by rows of either convention.
+fn trees() -> Vec<Robot> {
+    [include_str!("../../docs/tree.yaml"), STANDARD_TREE]
+        .map(|text| Reader::new("tree").trees().read(text).unwrap_or_else(|report| panic!("{report}")).robot)
+        .into()
+}
+
+/// Two arms of two joints on a slide.
+const STANDARD_TREE: &str = "
+format: 2
+name: two_arms
+source: own
+convention: standard
+gravity: [0, 0.3, -9.8]
+base: {xyz: [0, 0, 0.4], rpy: [0, 0.2, 0]}
+tool: {on: elbow, xyz: [0.1, 0, 0.02], rpy: [0.1, 0, 0]}
+joints:
+  - {name: slide, type: prismatic, dh: {theta: 0.2, d: 0.1, a: 0.1, alpha: pi/2},
+     link: {mass: 4, com: [0.1, 0.2, 0], inertia: {xx: 0.2, yy: 0.3, zz: 0.25, xy: 0.02}}}
+  - {name: shoulder, type: revolute, dh: {theta: 0.3, d: 0.1, a: 0.4, alpha: -pi/2}, motor: {inertia: 1e-4,
+     gear_ratio: 80, viscous: 1e-4}, link: {mass: 2, com: [-0.2, 0.03, 0.01],
+     inertia: {xx: 0.01, yy: 0.04, zz: 0.04, xz: 0.003}}}
+  - {name: elbow, type: revolute, dh: {theta: 0, d: 0.05, a: 0.3, alpha: 0},
+     link: {mass: 1, com: [-0.1, 0.02, 0], inertia: {xx: 0.002, yy: 0.01, zz: 0.01, yz: 0.001}}}
+  - {name: other, parent: slide, at: {xyz: [0.1, -0.2, 0.3], rpy: [0.1, 0.7, -0.3]}, type: revolute,
+     dh: {theta: 0, d: 0, a: 0.25, alpha: pi/2},
+     link: {mass: 1.5, com: [-0.12, 0, 0.03], inertia: {xx: 0.004, yy: 0.02, zz: 0.02}}}
+  - {name: blade, type: revolute, dh: {theta: 1, d: 0.1, a: 0, alpha: 0.5},
+     link: {mass: 0.6, com: [0.05, 0, 0.06], inertia: {xx: 0.001, yy: 0.003, zz: 0.003}}}
+";
+
+#[test]
+fn slips_with_trees_are_named_first() {
+    named_first(40, trees(), Slip::candidates, |case| if case % 2 == 0 { 1 } else { 2 });
+}
+
+/// The lists of another tool, put in the order of the alphabet by hand.
+#[test]
+fn lists_in_the_order_of_the_alphabet_are_named() {
+    let mut rng = Rng::with_seed(41);
+    for robot in trees() {
+        let mut alphabet: Vec<(&str, usize)> = Vec::new();
+        alphabet.extend(robot.joints.iter().enumerate().map(|(joint, row)| (row.name.as_str(), joint)));
+        alphabet.sort_unstable();
+        let of_rows = |list: &[f64]| {
+            let mut numbers = vec![0.0; list.len()];
+            alphabet.iter().zip(list).for_each(|((_, joint), number)| numbers[*joint] = *number);
+            numbers
+        };
+        let in_alphabet = |list: &[f64]| alphabet.iter().map(|(_, joint)| list[*joint]).collect::<Vec<_>>();
+        let arm = DynArm::from_robot(&robot);
+        let states = states(&mut rng, robot.dof());
+        let torques = |read: &dyn Fn(&[f64]) -> Vec<f64>| {
+            let of = |at: &Observation| {
+                let (q, qd, qdd, wrench) = (read(&at.q), read(&at.qd), read(&at.qdd), at.wrench.unwrap());
+                in_alphabet(&arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench).unwrap())
+            };
+            printed(&states, &states.iter().map(of).collect::<Vec<_>>())
+        };
+        assert_eq!(first(&robot, &torques(&<[f64]>::to_vec)), [Slip::TorquesByName], "{}", robot.name);
+        assert_eq!(first(&robot, &torques(&of_rows)), [Slip::JointsByName], "{}", robot.name);
+    }
+}
+
+/// The slips of the first explanation.
+fn first(robot: &Robot, seen: &[Observation]) -> Vec<Slip> {
+    match diagnose(robot, seen).unwrap() {
+        Diagnosis::Explained(all) => all[0].slips.clone(),
+        other => panic!("{}: {other:?}", robot.name),
+    }
+}
+
+/// Makes slips of some kinds with every robot that has them, so many at once.
+fn named_first(
+    seed: u64,
+    mut robots: Vec<Robot>,
+    candidates: impl Fn(&Robot) -> Vec<Slip>,
+    count: impl Fn(u64) -> usize,
+) {
+    let mut rng = Rng::with_seed(seed);
     robots.retain(|robot| !candidates(robot).is_empty());
     let (mut named, mut same, mut hidden, mut others) = (0, 0, 0, Vec::new());
     for case in 0..CASES {

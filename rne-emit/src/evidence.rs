@@ -35,10 +35,11 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
             ),
         },
     ];
-    if let Some(Scales { length, force }) = program.scales {
+    for Scales { behind, length, force } in &program.scales {
+        let links = behind.map_or_else(String::new, |joint| format!(" of the links from joint {joint} on"));
         lines.push(format!(
-            "Scaled values: lengths and the velocities and accelerations of points are multiplied by {length:.6}, \
-             forces by {force:.6}, masses by {:.6}, so that constants become 1. Results are in SI units.",
+            "Scaled values{links}: lengths and the velocities and accelerations of points are multiplied by \
+             {length:.6}, forces by {force:.6}, masses by {:.6}, so that constants become 1. Results are in SI units.",
             force / length
         ));
     }

@@ -27,18 +27,29 @@ pub(super) struct Numbers {
     lever: String,
     /// Everything that the link carries, with the subscript of r.
     carried: Vec<[String; 2]>,
+    /// The joints that follow this one, with their ratios.
+    followers: Vec<(f64, JointKind, Numbers)>,
+    /// Whether this one follows others: what it needs is then a part of their torques.
+    is_follower: bool,
 }
 
 impl Numbers {
     /// The letters in the place of numbers: i for the joint, h = i - 1 and j = i + 1 for its neighbours.
     pub(super) fn letters() -> Self {
         let [joint, parent, next] = ["i", "h", "j"].map(str::to_owned);
-        Self { lever: parent.clone(), carried: vec![[next, joint.clone()]], joint, parent }
+        Self {
+            lever: parent.clone(),
+            carried: vec![[next, joint.clone()]],
+            joint,
+            parent,
+            followers: Vec::new(),
+            is_follower: false,
+        }
     }
 
     /// The numbers of a joint of a robot, counted from 1; n + 1 is the tip.
     pub(super) fn of(robot: &Robot, joint: usize) -> Self {
-        let tip = robot.dof() + 1;
+        let tip = robot.joints.len() + 1;
         // links by the number of their joint; 0 is the base
         let parent = |joint: usize| {
             let link = if joint == tip { robot.tip().on } else { robot.parent(joint.saturating_sub(1)) };
@@ -51,11 +62,18 @@ impl Numbers {
             _ => link.to_string(),
         };
         let carried = carried_by(joint).filter(|_| joint < tip).map(|next| [next.to_string(), lever(joint, next)]);
+        let follower = |(index, other): (usize, &rne_model::Joint)| {
+            let follows = &other.coupling.as_ref()?.follows;
+            let (_, ratio) = follows.iter().find(|(followed, _)| followed + 1 == joint)?;
+            Some((*ratio, other.row.kind, Self::of(robot, index + 1)))
+        };
         Self {
             joint: joint.to_string(),
             parent: parent(joint).to_string(),
             lever: lever(parent(joint), joint),
             carried: carried.collect(),
+            followers: robot.joints.iter().enumerate().filter_map(follower).collect(),
+            is_follower: robot.joints.get(joint.wrapping_sub(1)).is_some_and(|joint| joint.coupling.is_some()),
         }
     }
 }
@@ -92,9 +110,30 @@ pub(super) fn formulas(step: Step, kind: JointKind, numbers: &Numbers, has_first
             (Quantity::JointForce, "f{p},{i} = m{i} (c̈{i} - g{i}) + f{i},{n}"),
             (Quantity::JointMoment, "n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{rn} × f{i},{n}"),
         ],
-        (Step::Torque, Revolute) => &[(Quantity::Torque, "τ{i} = e · n{p},{i}")],
-        (Step::Torque, Prismatic) => &[(Quantity::Torque, "τ{i} = e · f{p},{i}")],
+        (Step::Torque, _) => return with_followers(numbers, of_torque, kind),
         (Step::Beyond, _) => &[],
+    };
+    written(templates, numbers)
+}
+
+/// Step 7 of one joint.
+fn of_torque(kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
+    let templates: Templates = match (kind, numbers.is_follower) {
+        (Revolute, false) => &[(Quantity::Torque, "τ{i} = e · n{p},{i}")],
+        (Revolute, true) => &[(Quantity::AxisTorque, "τ'{i} = e · n{p},{i}")],
+        (Prismatic, false) => &[(Quantity::Torque, "τ{i} = e · f{p},{i}")],
+        (Prismatic, true) => &[(Quantity::AxisTorque, "τ'{i} = e · f{p},{i}")],
+    };
+    written(templates, numbers)
+}
+
+/// Step 7 of one joint, in the reduced form.
+fn of_reduced_torque(kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
+    let templates: Templates = match (kind, numbers.is_follower) {
+        (Revolute, false) => &[(Quantity::Torque, "τ{i} = z · n{i}")],
+        (Revolute, true) => &[(Quantity::AxisTorque, "τ'{i} = z · n{i}")],
+        (Prismatic, false) => &[(Quantity::Torque, "τ{i} = u · f{i}")],
+        (Prismatic, true) => &[(Quantity::AxisTorque, "τ'{i} = u · f{i}")],
     };
     written(templates, numbers)
 }
@@ -140,8 +179,7 @@ pub(super) fn reduced_formulas(step: Step, kind: JointKind, numbers: &Numbers) -
             (Quantity::ReducedForce, "f{i} = m a{i} + U{i} h + R{n} f{n}"),
             (Quantity::ReducedMoment, "n{i} = antisym(U{i} S) + h × a{i} + R{n} n{n} + p{n} × R{n} f{n}"),
         ],
-        (Step::Torque, Revolute) => &[(Quantity::Torque, "τ{i} = z · n{i}")],
-        (Step::Torque, Prismatic) => &[(Quantity::Torque, "τ{i} = u · f{i}")],
+        (Step::Torque, _) => return with_followers(numbers, of_reduced_torque, kind),
         // gravity is in the acceleration of the base, the velocity is not needed
         (Step::Velocity | Step::Gravity | Step::Beyond, _) => &[],
     };
@@ -152,8 +190,29 @@ fn written(templates: Templates, numbers: &Numbers) -> Vec<Formula> {
     templates.iter().map(|&(quantity, template)| Formula { quantity, text: text(template, numbers) }).collect()
 }
 
+/// The formulas of step 7, with what the joints that follow add to the torque: the ratio times what their actuators
+/// would deliver.
+fn with_followers(
+    numbers: &Numbers,
+    of: impl Fn(JointKind, &Numbers) -> Vec<Formula>,
+    kind: JointKind,
+) -> Vec<Formula> {
+    let mut formulas = of(kind, numbers);
+    for formula in &mut formulas {
+        for (ratio, kind, numbers) in &numbers.followers {
+            for follower in of(*kind, numbers) {
+                let term = follower.text.split_once("= ").map_or("", |(_, term)| term);
+                let sign = if *ratio < 0.0 { "-" } else { "+" };
+                let factor = if ratio.abs() == 1.0 { String::new() } else { format!("{} ", ratio.abs()) };
+                formula.text.extend([" ", sign, " ", &factor, term]);
+            }
+        }
+    }
+    formulas
+}
+
 fn text(template: &str, numbers: &Numbers) -> String {
-    let Numbers { joint, parent, lever, carried } = numbers;
+    let Numbers { joint, parent, lever, carried, .. } = numbers;
     let terms = template.split_inclusive(" + ").flat_map(|part| part.split_inclusive(" - "));
     // a term ends with the operator before the next one
     let mut text = String::new();

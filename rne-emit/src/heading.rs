@@ -1,6 +1,8 @@
 //! Heading of everything that is made from a robot.
 
-use rne_model::{Convention, Robot, Transform, one_line};
+use std::fmt::Write as _;
+
+use rne_model::{Body, Convention, Coupling, Drive, FixedFrame, Frame, Robot, Rotor, Transform, one_line};
 
 use super::inert;
 use super::table::{angle, carrier, dh_table};
@@ -16,10 +18,11 @@ pub struct Heading {
     pub title: String,
     /// The source of the numbers.
     pub source: String,
-    /// The convention of its table, and gravity: a line each.
+    /// The convention of its table, and gravity: a line each. Of a tree also a line for each row that does not begin at
+    /// the link frame of its parent, and one for the tip. A line for each follower, for each named tip and for each
+    /// body.
     pub frames: String,
-    /// The base, the beginnings of rows in a tree, and the tool, one line for each, if they differ from what the table
-    /// says.
+    /// The base, and the tool of a serial arm: a line each, if they are not the identity.
     pub ends: Vec<String>,
     /// The Denavit-Hartenberg table of the robot: a line for each joint.
     pub table: String,
@@ -34,29 +37,65 @@ impl Heading {
             Convention::Modified => "modified (proximal) Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
         };
         let [x, y, z] = robot.gravity;
-        let tool = if robot.is_serial() {
-            "tool, behind the last frame".to_owned()
-        } else {
-            format!("tool, in the link frame of {}", carrier(robot, robot.tip().on))
-        };
-        let beginnings = robot.joints.iter().filter_map(|joint| {
-            let branch = joint.branch.as_ref()?;
-            let (row, on) = (one_line(&joint.name), carrier(robot, branch.on));
-            Some((format!("row of {row}, in the link frame of {on}"), &branch.placement))
-        });
-        let ends = std::iter::once(("base, from the world to frame 0".to_owned(), &robot.base));
-        let ends: Vec<_> = ends.chain(beginnings).chain([(tool, &robot.tool)]).collect();
-        let place = |(what, Transform { xyz, rpy }): (String, &Transform)| {
+        let place = |what: &str, Transform { xyz, rpy }: &Transform| {
             let ([x, y, z], [roll, pitch, yaw]) = (xyz, rpy.map(|turn| angle(&turn)));
             format!("{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad")
         };
         let rotors =
             if robot.has_rotors() { "\nwith its rotors: torques contain G² Jm q̈ of the motors" } else { "" };
+        let mut frames = format!("{convention}\nacceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²{rotors}");
+        let mut ends = Vec::new();
+        if robot.base != Transform::IDENTITY {
+            ends.push(place("base, from the world to frame 0", &robot.base));
+        }
+        if robot.is_serial() {
+            if robot.tool != Transform::IDENTITY {
+                ends.push(place("tool, behind the last frame", &robot.tool));
+            }
+        } else {
+            for joint in &robot.joints {
+                let Some(FixedFrame { on, placement }) = joint.branch.filter(|it| !it.placement.is_identity()) else {
+                    continue;
+                };
+                let (row, on) = (one_line(&joint.name), carrier(robot, on));
+                let _ = write!(frames, "\n{}", place(&format!("row of {row}, in the link frame of {on}"), &placement));
+            }
+            let on = carrier(robot, robot.tip().on);
+            let _ = write!(frames, "\n{}", place(&format!("tool, in the link frame of {on}"), &robot.tool));
+        }
+        for (index, joint) in robot.joints.iter().enumerate() {
+            let Some(Coupling { follows, offset }) = &joint.coupling else { continue };
+            let terms = terms(follows);
+            let end = if *offset == 0.0 { String::new() } else { format!(" + {offset}").replace("+ -", "- ") };
+            let _ = write!(frames, "\n{} follows: q{} = {terms}{end}", one_line(&joint.name), index + 1);
+        }
+        for Drive { name, turns, rotor } in &robot.drives {
+            let _ = write!(frames, "\nmotor {} turns with {}", one_line(name), terms(turns));
+            if let Some(Rotor { axis: [x, y, z], on, inertia }) = rotor {
+                let on = carrier(robot, *on);
+                let _ = write!(frames, "; its rotor on {on} turns about ({x}, {y}, {z}), inertia {inertia} kg m²");
+            }
+        }
+        for &tip in &robot.tips {
+            let Frame { name, fixed: FixedFrame { on, placement } } = &robot.frames[tip];
+            let _ = write!(
+                frames,
+                "\n{}",
+                place(&format!("tip {name}, in the link frame of {}", carrier(robot, *on)), placement)
+            );
+        }
+        for Body { name, fixed: FixedFrame { on, .. }, matter } in &robot.bodies.list {
+            let link = match on {
+                Some(_) => format!("a part of the link of {}", carrier(robot, *on)),
+                None => "on the base, without effect".to_owned(),
+            };
+            let _ = write!(frames, "\nbody {name}, {} kg: {link}", matter.mass);
+        }
         Self {
             title: inert::title(robot),
             source: fill(&format!("Source: {}", robot.source.trim_end()), 100, "", ""),
-            frames: format!("{convention}\nacceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²{rotors}"),
-            ends: ends.into_iter().filter(|(_, end)| **end != Transform::IDENTITY).map(place).collect(),
+            frames,
+            ends,
             table: dh_table(robot),
         }
     }
@@ -70,4 +109,10 @@ impl Heading {
     pub(super) fn mark(robot: &Robot) -> String {
         format!("{GENERATED}`{}`; do not edit.", robot.name)
     }
+}
+
+/// Σ ratio · q
+fn terms(of_joints: &[(usize, f64)]) -> String {
+    let terms = of_joints.iter().map(|(joint, ratio)| format!("{ratio} q{}", joint + 1));
+    terms.collect::<Vec<_>>().join(" + ").replace("+ -", "- ")
 }

@@ -214,7 +214,7 @@ pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> List
 fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Section<'a>> {
     // out with steps 1 to 5, back with 6 and 7
     // a payload is one link more
-    let last = program.dof + usize::from(program.function.takes(Argument::Payload));
+    let last = program.joints + usize::from(program.function.takes(Argument::Payload));
     let outward = (1..=last).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
     let inward = (1..=last).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
     let mut sections = Vec::new();
@@ -228,7 +228,7 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
         sections.push(Section { place: None, lines });
     }
     // its joint does not move
-    let is_of_links = |joint, step| joint <= program.dof || !matches!(step, Step::Velocity | Step::Torque);
+    let is_of_links = |joint, step| joint <= program.joints || !matches!(step, Step::Velocity | Step::Torque);
     let places = outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step) && is_of_links(joint, step));
     for (joint, step) in places {
         let here = |place: &Place| place.joint == joint && place.step == step;
@@ -338,7 +338,7 @@ fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
         return (own.heading)(joint);
     }
     match quantity {
-        Quantity::FrameRotation | Quantity::FrameOrigin if joint > program.dof => "the tip in the world".to_owned(),
+        Quantity::FrameRotation | Quantity::FrameOrigin if joint > program.joints => "the tip in the world".to_owned(),
         Quantity::FrameRotation | Quantity::FrameOrigin => format!("frame {joint} in the world"),
         Quantity::LowerFactor
         | Quantity::ScaledFactor
@@ -361,7 +361,7 @@ fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Ve
     let formulas = match recursion(program) {
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),
-        Form::SevenSteps if joint > program.dof => payload_formulas(step, &numbers),
+        Form::SevenSteps if joint > program.joints => payload_formulas(step, &numbers),
         Form::SevenSteps => formulas(step, kind, &numbers, has_first_moment(robot, joint)),
         Form::Reduced if program.is_of_bodies() => Vec::new(),
         Form::Reduced => reduced_formulas(step, kind, &numbers),
@@ -390,7 +390,7 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
     };
     let body = match joint {
         0 => "base".to_owned(),
-        _ if joint > program.dof => "payload".to_owned(),
+        _ if joint > program.joints => "payload".to_owned(),
         _ => format!("joint {joint}"),
     };
     format!("{body}, step {}: {title}", step.number())
@@ -416,7 +416,7 @@ fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
     let words = match found {
         // the statement shows it
         ResolvedAs::Computed => return None,
-        ResolvedAs::Same(..) if name.quantity == Quantity::Torque => return None,
+        ResolvedAs::Same(..) if matches!(name.quantity, Quantity::Torque | Quantity::AxisTorque) => return None,
         ResolvedAs::Same(other, sign) => {
             let sign = if *sign == Sign::Minus { "-" } else { "" };
             return Some(Annotated::default() + " = " + sign + *other);

@@ -15,7 +15,7 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
         return Vec::new();
     }
     let has = |step: Step| {
-        let is_here = |statement: &Statement| statement.place.step == step && statement.place.joint <= program.dof;
+        let is_here = |statement: &Statement| statement.place.step == step && statement.place.joint <= program.joints;
         program.statements.iter().any(is_here) || (step == Step::Torque && program.function.returns_torques())
     };
     let has_kind = |kind| robot.rows().any(|row| row.kind == kind);

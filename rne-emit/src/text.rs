@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use rne_codegen::{ArgumentArray, Layout, Name, Program};
-use rne_model::Robot;
+use rne_codegen::{ArgumentArray, Layout, Name, Program, Quantity};
+use rne_model::{JointIdentifier, Robot};
 
 use super::annotated::Annotated;
 use super::evidence::{evidence, refusals};
@@ -29,6 +29,29 @@ pub fn rust_file(robot: &Robot, programs: &[Program]) -> String {
 #[must_use]
 pub fn rust_file_with_sin_cos(robot: &Robot, programs: &[Program]) -> String {
     file(robot, programs, SinCos::InFile)
+}
+
+/// The names of the joints for such a file: an enum with their indices in arrays, and an array of the names. Two joints
+/// with one identifier give a file that does not compile; [`Checked::identifiers`](rne_model::Checked::identifiers) is
+/// the error then.
+#[must_use]
+pub fn rust_joints(robot: &Robot) -> String {
+    let mut text = "\n/// The joints; `joint as usize` is the index of a joint in arrays.\n\
+                    #[allow(clippy::enum_variant_names)]\n\
+                    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]\npub enum Joint {\n"
+        .to_owned();
+    for (index, joint) in robot.independent_joints().enumerate() {
+        let JointIdentifier { camel_case, .. } = JointIdentifier::of(&joint.name, index);
+        let _ = writeln!(text, "    /// {}\n    {camel_case},", markdown(&joint.name));
+    }
+    let names = robot.independent_joints().map(|joint| Piece::Number(Annotated::from(format!("{:?}", joint.name))));
+    let names = Piece::List('[', ']', names.collect()).broken(0);
+    let _ = writeln!(
+        text,
+        "}}\n\n/// The names of the joints, in the order of arrays.\npub const JOINTS: [&str; {}] = {names};",
+        robot.dof()
+    );
+    text
 }
 
 /// The library whose sine and cosine a file uses.
@@ -141,7 +164,7 @@ fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
         "\nNames, for link or joint `i` and axis `x`, in frame `i` at joint `i`, fixed to link `i`:\n\n\
          | name | meaning |\n|---|---|\n",
     );
-    for (pattern, meaning) in legend(programs) {
+    for (pattern, meaning) in legend(robot, programs) {
         // a bar would end the cell, brackets would be a link
         let meaning = meaning.replace('|', "\\|").replace('[', "\\[");
         let _ = writeln!(text, "| `{pattern}` | {meaning} |");
@@ -190,7 +213,8 @@ const BY_SIGN_OF_FLOAT: &str = "    fn by_sign(self, positive: Self, negative: S
 ";
 
 /// Every kind of name that occurs, with its meaning.
-pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
+pub(super) fn legend(robot: &Robot, programs: &[Program]) -> Vec<(String, &'static str)> {
+    let of_tree = |quantity| if robot.is_serial() { None } else { meaning_in_tree(quantity) };
     let mut names = BTreeSet::new();
     for program in programs {
         let constants = program.constants().map(|constant| constant.name);
@@ -199,10 +223,25 @@ pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
         // functions that mean different things by a name have a line each
         names.extend(constants.chain(statements).chain(turns).map(|Name { quantity, .. }| {
             let own = program.function.own(quantity).and_then(|own| own.meaning);
-            (quantity, own.unwrap_or_else(|| quantity.meaning()))
+            (quantity, own.or_else(|| of_tree(quantity)).unwrap_or_else(|| quantity.meaning()))
         }));
     }
     names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
+}
+
+/// The meaning of a quantity whose usual words name the next joint or the link before, which a tree may not have.
+const fn meaning_in_tree(quantity: Quantity) -> Option<&'static str> {
+    Some(match quantity {
+        Quantity::R => {
+            "r: centre of mass → first joint that the link carries; to another joint j that it carries: ri_x_j"
+        }
+        Quantity::Rotation => "R: frame i → frame of the link that carries joint i",
+        Quantity::ChildForce | Quantity::TurnedForce => "f of a joint that the link carries, in axes of this link",
+        Quantity::ChildMoment | Quantity::TurnedMoment => "n of a joint that the link carries, in axes of this link",
+        Quantity::JointForce => "force exerted on link i by link h, which carries joint i",
+        Quantity::JointMoment => "moment exerted on link i by link h, which carries joint i, about joint i",
+        _ => return None,
+    })
 }
 
 /// Describes the frame that replaces the tip; `None` for a program of the tip.
@@ -219,7 +258,7 @@ fn function(robot: &Robot, program: &Program) -> String {
     }
     text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
     let mut parameters: Vec<String> =
-        arrays.iter().map(|ArgumentArray { name, elements }| format!("{name}: &[T; {}]", elements.len())).collect();
+        arrays.iter().map(|array| format!("{}: &{}", array.name, array_type(&array.lengths()))).collect();
     if parameters::are_used(program) {
         parameters.push("parameters: &Parameters<T>".to_owned());
     }
@@ -231,9 +270,16 @@ fn function(robot: &Robot, program: &Program) -> String {
     } else {
         let _ = writeln!(text, "{start}\n    {},\n{end}", parameters.join(",\n    "));
     }
-    for ArgumentArray { name, elements } in &arrays {
+    for ArgumentArray { name, elements, row } in &arrays {
         let _ = if elements.iter().all(Option::is_none) {
             writeln!(text, "    let _ = {name};")
+        } else if let Some(row) = row {
+            let rows: Vec<String> =
+                elements.chunks(*row).map(|row| format!("[{}]", names(row.iter().copied()))).collect();
+            match rows.as_slice() {
+                [only] => writeln!(text, "    let [{only}] = *{name};"),
+                rows => writeln!(text, "    let [\n        {},\n    ] = *{name};", rows.join(",\n        ")),
+            }
         } else {
             let names = names(elements.iter().copied());
             if names.len() + 2 <= PATTERN {
@@ -272,6 +318,11 @@ fn function(robot: &Robot, program: &Program) -> String {
         let _ = writeln!(text, "    {returned}\n}}");
     }
     text
+}
+
+/// The type of arrays in arrays, by their lengths.
+fn array_type(lengths: &[usize]) -> String {
+    lengths.iter().rev().fold("T".to_owned(), |of, length| format!("[{of}; {length}]"))
 }
 
 /// The names in a pattern, with `_` for each name that is not used.

@@ -104,7 +104,7 @@ impl<'a> Body<'a> {
         let arrays = self.program.argument_arrays().into_iter();
         arrays
             .filter(|array| is_asked(array.name))
-            .map(|ArgumentArray { name, elements }| {
+            .map(|ArgumentArray { name, elements, .. }| {
                 let array = ident(name);
                 let elements: Vec<_> = elements.into_iter().map(|name| name.filter(|name| is_used(*name))).collect();
                 if elements.iter().all(Option::is_none) {

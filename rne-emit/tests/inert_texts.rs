@@ -11,7 +11,7 @@ use proptest::test_runner::TestRunner;
 use pulldown_cmark::{Event, Options, Parser};
 use quote::ToTokens;
 use rne_codegen::{Compiler, Form, Function, Program};
-use rne_emit::{Precision, Prefix};
+use rne_emit::{Additions, Precision, Prefix};
 use rne_model::{Robot, is_control};
 
 /// A robot whose title and joints are to be called otherwise, and its code.
@@ -166,6 +166,16 @@ fn c_of(robot: &Robot) -> String {
     code.one_file()
 }
 
+/// The constants of the joints in C, and all other lines.
+fn constants_of(robot: &Robot) -> (String, String) {
+    let (names, prefix) = (Additions { names: true, ..Additions::default() }, Prefix::of(robot));
+    let code = rne_emit::c_code_with(robot, &PLAIN.1, Precision::Double, &prefix, &names).expect("finite constants");
+    let text = code.one_file();
+    let (before, rest) = text.split_once("\n/// Indices of the joints").expect("constants");
+    let (constants, after) = rest.split_once("};\n\n").expect("an end");
+    (constants.to_owned(), before.to_owned() + after)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: if shipped::is_exhaustive() { 128 } else { 64 },
@@ -189,6 +199,24 @@ proptest! {
             format!("{}: straight-line recursive Newton-Euler.", rne_emit::title(&robot)),
             "{}", documentation
         );
+    }
+
+    #[test]
+    fn names_of_joints_stay_texts(shoulder in nasty(), elbow in nasty()) {
+        let robot = named(&PLAIN.0, "", [shoulder, elbow]);
+        let file = syn::parse_file(&rne_emit::rust_joints(&robot)).expect("Rust");
+        let Some(syn::Item::Const(names)) = file.items.last() else { panic!("no names") };
+        let syn::Expr::Array(names) = &*names.expr else { panic!("no array") };
+        let text = |name: &syn::Expr| match name {
+            syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(name), .. }) => name.value(),
+            other => panic!("{other:?}"),
+        };
+        let names: Vec<String> = names.elems.iter().map(text).collect();
+        prop_assert_eq!(names, robot.joints.iter().map(|joint| joint.name.clone()).collect::<Vec<_>>());
+        let (constants, rest) = constants_of(&robot);
+        prop_assert_eq!(rest, c_of(&robot));
+        // the words of the first comment, the enum's begin, a line for each joint
+        prop_assert_eq!(code(&constants).len(), 4, "{}", constants);
     }
 
     #[test]

@@ -195,7 +195,7 @@ pub fn identify<E: From<MotionError>>(
     let joints = joints(&structure, &fit, &prediction.errors(), &information.rejected);
     let Fit { robot: identified, least_squares, feasible, mut bases, .. } = fit;
     for (base, report) in structure.parameters.bases.iter().zip(&mut bases) {
-        let mut felt = joints.iter().enumerate().filter(|(joint, _)| Parameters::is_felt(base, *joint));
+        let mut felt = joints.iter().enumerate().filter(|(joint, _)| Parameters::is_felt(robot, base, *joint));
         if !felt.any(|(_, joint)| joint.is_excited()) {
             report.uncertainty = f64::INFINITY;
         }

@@ -126,12 +126,17 @@ impl Parameters {
     }
 
     /// Whether the torque of a joint may depend on a base parameter.
-    pub(crate) fn is_felt(base: &Base, joint: usize) -> bool {
+    pub(crate) fn is_felt(robot: &Robot, base: &Base, joint: usize) -> bool {
         match base.kept {
-            Parameter::Link(link, _) => link >= joint,
+            Parameter::Link(link, _) => moves(robot, joint, link),
             Parameter::Rotor(of) => of == joint,
         }
     }
+}
+
+/// Whether a joint moves a link; both count from 0.
+pub(crate) fn moves(robot: &Robot, joint: usize, link: usize) -> bool {
+    std::iter::successors(Some(link), |&link| robot.parent(link)).any(|other| other == joint)
 }
 
 /// The regressor with the columns of rotors at random states, one below the other.

@@ -1,7 +1,8 @@
-//! A payload: the rigid body that the last link carries beyond what a robot file has.
+//! A payload: the rigid body that the link with the tip carries beyond what a robot file has. It is the last link of a
+//! serial arm.
 //!
 //! Its ten inertial parameters φ = (m, m c, J) add S φ to the base parameters θ of the file, where S has the columns of
-//! the regrouping that belong to the last link. With the normal matrix N and the right-hand side b of the log,
+//! the regrouping that belong to this link. With the normal matrix N and the right-hand side b of the log,
 //!
 //! ```text
 //! G = Aᵀ N A    g = Aᵀ (b - N θ)    A = [S  E]    (G + P) x = g + P x₀    covariance = (G + P)⁻¹
@@ -94,15 +95,15 @@ pub struct PayloadNumber {
     pub is_excited: bool,
 }
 
-/// The rigid body at the last link that a robot file does not have, with standard deviations.
+/// The rigid body at the link with the tip that a robot file does not have, with standard deviations.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Payload {
     /// kg; negative if the log shows less mass than the file has.
     pub mass: PayloadNumber,
-    /// Centre of mass in the frame of the last link, m.
+    /// Centre of mass in the frame of this link, m.
     pub com: [PayloadNumber; 3],
-    /// Inertia about the centre of mass in the axes of the last link, kg m²: xx, yy, zz, xy, xz, yz.
+    /// Inertia about the centre of mass in the axes of this link, kg m²: xx, yy, zz, xy, xz, yz.
     pub inertia: [PayloadNumber; 6],
     /// Time by which the torques lag behind the positions, s.
     pub delay: f64,
@@ -181,7 +182,7 @@ impl Payload {
         self.mass.is_excited && self.mass.value.abs() > DEVIATIONS * self.mass.deviation
     }
 
-    /// The ten inertial parameters about the origin of the last link's frame. The inertia is that of a body: products
+    /// The ten inertial parameters about the origin of this link's frame. The inertia is that of a body: products
     /// and moments that the log does not determine are made so that they are possible.
     #[must_use]
     pub fn parameters(&self) -> [f64; PER_LINK] {
@@ -197,18 +198,19 @@ impl Payload {
         [mass, h.x, h.y, h.z, j(0, 0), j(0, 1), j(0, 2), j(1, 1), j(1, 2), j(2, 2)]
     }
 
-    /// The robot with the payload added to its last link; `None` if the last link would not have a positive mass.
+    /// The robot with the payload added to its link with the tip; `None` if this link would not have a positive mass.
     #[must_use]
     pub fn added_to(&self, robot: &Robot) -> Option<Robot> {
         let mut robot = robot.clone();
-        let mut sum = *DynArm::from_robot(&robot).inertial_parameters().last()?;
+        let on = robot.tip().on?;
+        let mut sum = *DynArm::from_robot(&robot).inertial_parameters().get(on)?;
         sum.iter_mut().zip(self.parameters()).for_each(|(sum, of)| *sum += of);
-        let last = robot.joints.last_mut()?;
+        let joint = robot.joints.get_mut(on)?;
         if sum[0] <= 0.0 {
             return None;
         }
-        last.row.link = link(&pseudo_inertia::of(&sum));
-        last.written_inertia = (last.row.link.inertia, InertiaReference::Com);
+        joint.row.link = link(&pseudo_inertia::of(&sum));
+        joint.written_inertia = (joint.row.link.inertia, InertiaReference::Com);
         Some(robot)
     }
 
@@ -218,11 +220,12 @@ impl Payload {
     pub fn robot_file(&self, robot: &Robot, is_added: bool, logs: &str) -> String {
         let mut robot = robot.clone();
         let PayloadNumber { value, deviation, .. } = self.mass;
-        let last = robot.joints.last().map(|joint| one_line(&joint.name)).unwrap_or_default();
+        let on = robot.tip().on.and_then(|on| robot.joints.get(on));
+        let on = on.map(|joint| one_line(&joint.name)).unwrap_or_default();
         let does = if is_added { "added to" } else { "not added to" };
         let logs = one_line(logs);
         let note =
-            format!("- payload: {value:.3} ± {deviation:.3} kg, {does} the link of {last}; identified from {logs}");
+            format!("- payload: {value:.3} ± {deviation:.3} kg, {does} the link of {on}; identified from {logs}");
         robot.notes = Some(match &robot.notes {
             Some(notes) => format!("{}\n{note}", notes.trim_end()),
             None => note,
@@ -281,11 +284,10 @@ impl Equations {
         let (count, dof) = (structure.count(), structure.dof());
         let size = PER_LINK + FRICTION * dof;
         let mut columns = DMatrix::zeros(count + 1, size + 1);
-        let regrouping = &structure.parameters().regrouping;
-        let tip = PER_LINK * (dof - 1);
-        columns.view_mut((0, 0), (regrouping.nrows(), PER_LINK)).copy_from(&regrouping.columns(tip, PER_LINK));
+        let rank = structure.parameters().rank();
+        columns.view_mut((0, 0), (rank, PER_LINK)).copy_from(&structure.payload_columns(PER_LINK));
         for at in 0..FRICTION * dof {
-            columns[(regrouping.nrows() + at, PER_LINK + at)] = 1.0;
+            columns[(rank + at, PER_LINK + at)] = 1.0;
         }
         columns.view_mut((0, size), (count, 1)).copy_from(&-&model.solution);
         columns[(count, size)] = 1.0;
@@ -315,7 +317,7 @@ impl Equations {
     /// last joints is wrong, at a typical acceleration.
     fn moment_error(&self, robot: &Robot) -> f64 {
         let turns = |joint: &usize| robot.joints[*joint].row.kind == JointKind::Revolute;
-        let near = (0..robot.dof()).rev().filter(turns).take(NEAR);
+        let near = std::iter::successors(robot.tip().on, |&link| robot.parent(link)).filter(turns).take(NEAR);
         let coulomb = |joint: usize| self.errors[FRICTION * joint + FrictionParameter::Coulomb as usize] / COULOMB;
         OFFSET * near.map(coulomb).fold(0.0, f64::max) / ACCELERATION
     }

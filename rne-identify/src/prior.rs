@@ -1,9 +1,9 @@
 //! Prior knowledge: the links of the file, or plausible bodies where the file has none.
 
-use nalgebra::{DVector, Matrix4, Vector3};
-use rne_model::{Convention, Robot};
+use nalgebra::{DVector, Matrix4, Rotation3, Vector3};
+use rne_model::{Convention, FixedFrame, Joint, Robot, Row};
 
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, moves};
 use crate::pseudo_inertia;
 use crate::structure::{FRICTION, Structure};
 use rne_model::PER_LINK;
@@ -58,7 +58,7 @@ pub fn links(robot: &Robot) -> Vec<PriorLink> {
         .collect()
 }
 
-/// A round rod from the link's own joint to the next one.
+/// A round rod from the link's own joint to the next one, or to the farthest of those that the link carries.
 fn plausible(robot: &Robot, joint: usize, mass: f64) -> Matrix4<f64> {
     let along = span(robot, joint);
     let centre = along * 0.5;
@@ -86,13 +86,19 @@ fn span(robot: &Robot, joint: usize) -> Vector3<f64> {
             // Rx(-alpha) of (a, 0, d), back
             -Vector3::new(dh.a, sin * dh.d, cos * dh.d)
         }
-        Convention::Modified => robot.joints.get(joint + 1).map_or_else(
-            || Vector3::new(0.0, 0.0, RADIUS),
-            |next| {
-                let dh = &next.row.dh;
-                Vector3::new(dh.a, -dh.alpha.sin * dh.d, dh.alpha.cos * dh.d)
-            },
-        ),
+        Convention::Modified => {
+            let carried = (joint + 1..robot.dof()).filter(|next| robot.parent(*next) == Some(joint));
+            let way = carried.map(|next| {
+                let Joint { row: Row { dh, .. }, branch, .. } = &robot.joints[next];
+                let way = Vector3::new(dh.a, -dh.alpha.sin * dh.d, dh.alpha.cos * dh.d);
+                branch.map_or(way, |FixedFrame { placement, .. }| {
+                    let [roll, pitch, yaw] = placement.rpy.map(|angle| angle.radians);
+                    Vector3::from(placement.xyz) + Rotation3::from_euler_angles(roll, pitch, yaw) * way
+                })
+            });
+            let farther = |a: &Vector3<f64>, b: &Vector3<f64>| a.norm().total_cmp(&b.norm());
+            way.max_by(farther).unwrap_or_else(|| Vector3::new(0.0, 0.0, RADIUS))
+        }
     }
 }
 
@@ -117,7 +123,8 @@ impl Scales {
         if parameters.rotors {
             for joint in 0..robot.dof() {
                 // rotors resist as links do
-                let behind: f64 = (joint..robot.dof()).map(|link| values[link * PER_LINK + 9]).sum();
+                let behind = (joint..robot.dof()).filter(|link| moves(robot, joint, *link));
+                let behind: f64 = behind.map(|link| values[link * PER_LINK + 9]).sum();
                 values[robot.dof() * PER_LINK + joint] = behind;
             }
         }

@@ -1,8 +1,9 @@
 //! The unknowns and the filter of an identification: which parameters, which friction, which low-pass.
 
 use crate::Parameter;
+use nalgebra::DMatrixView;
 use rne_machine::CompiledArm;
-use rne_model::{FrictionTransition, JointKind, Link, Robot};
+use rne_model::{FrictionTransition, JointKind, Link, PER_LINK, Robot};
 
 use crate::parameters::Parameters;
 use crate::smoothing::Kernel;
@@ -87,7 +88,7 @@ impl Structure {
         }
         let felt = (0..robot.dof())
             .map(|joint| {
-                let felt = |base: &usize| Parameters::is_felt(&parameters.bases[*base], joint);
+                let felt = |base: &usize| Parameters::is_felt(robot, &parameters.bases[*base], joint);
                 (0..parameters.rank()).filter(felt).collect()
             })
             .collect();
@@ -130,6 +131,14 @@ impl Structure {
     #[must_use]
     pub fn dof(&self) -> usize {
         self.robot.dof()
+    }
+
+    /// The columns of the regrouping for the first `count` of the ten parameters of the link with the tip: the changes
+    /// of the base parameters by a payload.
+    #[must_use]
+    pub fn payload_columns(&self, count: usize) -> DMatrixView<'_, f64> {
+        let link = self.robot.tip().on.unwrap_or_default();
+        self.parameters.regrouping.columns(PER_LINK * link, count)
     }
 
     /// Columns of the rows of a joint: base parameters; viscous friction, then Coulomb's and the offset by

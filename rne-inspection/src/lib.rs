@@ -30,8 +30,8 @@ use rne_model::Angle;
 
 use crate::component::{Equations, owner};
 pub use crate::record::{
-    Became, Cell, Component, Counts, Folded, Formula, Inspection, Joint, Name, Operations, Quantity, Robot, SineCosine,
-    Statement, Transform,
+    Became, Cell, Component, Counts, Folded, Follows, Formula, Inspection, Joint, Name, Operations, Quantity, Robot,
+    SineCosine, Statement, Transform,
 };
 pub use crate::tree::{Mark, Tree};
 
@@ -246,6 +246,11 @@ fn described(robot: &rne_model::Robot) -> Robot {
             name: joint.name.clone(),
             kind: row.kind.name(),
             parent: name::parent(robot, index + 1),
+            begins: joint.branch.map(|branch| branch.placement).filter(|it| !it.is_identity()).map(|it| transform(&it)),
+            follows: joint.coupling.as_ref().map(|coupling| Follows {
+                ratios: coupling.follows.iter().map(|&(followed, ratio)| (followed + 1, ratio)).collect(),
+                offset: coupling.offset,
+            }),
             theta: row.dh.theta.radians,
             d: row.dh.d,
             a: row.dh.a,
@@ -267,6 +272,7 @@ fn described(robot: &rne_model::Robot) -> Robot {
         gravity: robot.gravity,
         base: transform(&robot.base),
         tool: transform(&robot.tool),
+        tip: name::parent(robot, robot.joints.len() + 1),
         joints: robot.joints.iter().enumerate().map(joint).collect(),
     }
 }

@@ -18,13 +18,16 @@ pub(crate) fn quantity(quantity: Quantity) -> String {
 }
 
 pub(crate) fn record(name: codegen::Name) -> Name {
+    use Quantity::{ChildForce, ChildMoment, OmegaCrossR, R};
     let component = match name.component {
         Component::Scalar => None,
         Component::Vector(axis) => Some(axis.to_string()),
         Component::Matrix(row, column) => Some(format!("{row}{column}")),
     };
     let part = (name.part > 0).then_some(name.part);
-    Name { quantity: quantity(name.quantity), joint: name.joint, component, part }
+    let is_carried = matches!(name.quantity, R | OmegaCrossR | ChildForce | ChildMoment) && name.indices[0] > 0;
+    let carries = is_carried.then_some(name.indices[0]);
+    Name { quantity: quantity(name.quantity), joint: name.joint, component, part, carries }
 }
 
 /// Describes a quantity.
@@ -39,11 +42,11 @@ pub(crate) fn of_quantity(of: Quantity) -> record::Quantity {
     }
 }
 
-/// The number of the joint that carries another; 0 is the base.
+/// The number of the joint that carries another, or the tip; 0 is the base.
 pub(crate) fn parent(robot: &Robot, joint: usize) -> usize {
     match joint {
         0 => 0,
-        _ if joint > robot.dof() => robot.dof(),
+        _ if joint > robot.joints.len() => robot.tip().on.map_or(0, |link| link + 1),
         _ => robot.parent(joint - 1).map_or(0, |parent| parent + 1),
     }
 }

@@ -65,8 +65,10 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// World → frame 0.
     pub base: Transform,
-    /// Frame n → tip frame.
+    /// Frame of the link `tip` → tip frame.
     pub tool: Transform,
+    /// The number of the joint whose link carries the tip.
+    pub tip: usize,
     /// Base to tip.
     pub joints: Vec<Joint>,
 }
@@ -80,6 +82,15 @@ pub struct Transform {
     pub rpy: [f64; 3],
 }
 
+/// How a joint follows others: its position is Σ ratio · q + offset.
+#[derive(Clone, Debug, Serialize)]
+pub struct Follows {
+    /// The joints that it follows, counted from 1, each with its ratio.
+    pub ratios: Vec<(usize, f64)>,
+    /// Its position where those joints are at 0, rad or m.
+    pub offset: f64,
+}
+
 /// A joint and the link that it moves.
 #[derive(Clone, Debug, Serialize)]
 pub struct Joint {
@@ -89,6 +100,12 @@ pub struct Joint {
     pub kind: &'static str,
     /// The number of the joint that carries it; 0 is the base.
     pub parent: usize,
+    /// Where its row begins in the link frame of the parent, if not there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub begins: Option<Transform>,
+    /// How it follows other joints, if it does: it is no coordinate then, and has no torque.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub follows: Option<Follows>,
     /// θ, or its constant part, rad.
     pub theta: f64,
     /// d, or its constant part, m.
@@ -151,6 +168,10 @@ pub struct Name {
     /// Number of the shared term inside the quantity, from 1; absent for the quantity itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub part: Option<usize>,
+    /// The joint to which a lever of the link leads, or that takes what the link hands on; n + 1 is the tip. Absent for
+    /// the first that the link carries.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub carries: Option<usize>,
 }
 
 /// A quantity: letter, unit, axes.

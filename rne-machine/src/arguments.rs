@@ -7,8 +7,8 @@ use rne_runtime::machine::Source;
 /// An argument of many states: its elements, a number per joint most often, for each of them.
 #[derive(Clone, Copy, Debug)]
 pub enum Array<'a, T> {
-    /// All elements of a state one after the other, then the next state's: `q[state][joint]`. From states that are
-    /// arrays, such as `states: Vec<[f64; 7]>`, it is `Array::Rows(states.as_flattened())`.
+    /// All elements of a state one after the other, then the next state's: `q[state][joint]`. States that are arrays,
+    /// such as `states: Vec<[f64; 7]>`, are given as they are: `.q(&states)`.
     Rows(&'a [T]),
     /// One slice per element, and in it one number per state: `q[joint][state]`. It is read fastest.
     Columns(&'a [&'a [T]]),
@@ -80,6 +80,27 @@ impl<'a, T> Array<'a, T> {
     }
 }
 
+impl<'a, T, const N: usize> From<&'a [[T; N]]> for Array<'a, T> {
+    /// States that are arrays.
+    fn from(states: &'a [[T; N]]) -> Self {
+        Self::Rows(states.as_flattened())
+    }
+}
+
+impl<'a, T, const N: usize, const STATES: usize> From<&'a [[T; N]; STATES]> for Array<'a, T> {
+    /// States that are arrays.
+    fn from(states: &'a [[T; N]; STATES]) -> Self {
+        Self::Rows(states.as_flattened())
+    }
+}
+
+impl<'a, T, const N: usize> From<&'a Vec<[T; N]>> for Array<'a, T> {
+    /// States that are arrays.
+    fn from(states: &'a Vec<[T; N]>) -> Self {
+        Self::Rows(states.as_flattened())
+    }
+}
+
 fn strided<T>(numbers: &[T], start: usize, stride: usize) -> Source<'_, T> {
     let numbers = numbers.get(start..).unwrap_or_default();
     if stride == 1 { Source::Column(numbers) } else { Source::Strided(numbers, stride) }
@@ -96,7 +117,10 @@ macro_rules! arguments {
         ///
         /// let q = [0.1, 0.2, 0.3, 0.4]; // two states of two joints
         /// let arguments = Arguments::new().q(Array::Rows(&q)).qd(Array::Same(&[0.0, 0.0]));
-        /// # let _: Arguments<'_, f64> = arguments;
+        /// // states that are arrays
+        /// let states = vec![[0.1, 0.2], [0.3, 0.4]];
+        /// let of_arrays = Arguments::new().q(&states).qd(&[[0.0, 0.0], [0.1, 0.1]]);
+        /// # let _: [Arguments<'_, f64>; 2] = [arguments, of_arrays];
         /// ```
         #[derive(Clone, Copy, Debug)]
         pub struct Arguments<'a, T> {
@@ -110,14 +134,14 @@ macro_rules! arguments {
         impl<'a, T> Arguments<'a, T> {
             $(#[doc = $about]
             #[must_use]
-            pub fn $name(self, $name: Array<'a, T>) -> Self {
-                self.with_array(Place::$name as usize, $name)
+            pub fn $name(self, $name: impl Into<Array<'a, T>>) -> Self {
+                self.with_array(Place::$name as usize, $name.into())
             })*
 
             /// The parameters of the robot file that are known at run time only, in their order.
             #[must_use]
-            pub fn parameters(self, parameters: Array<'a, T>) -> Self {
-                self.with_array(Place::parameters as usize, parameters)
+            pub fn parameters(self, parameters: impl Into<Array<'a, T>>) -> Self {
+                self.with_array(Place::parameters as usize, parameters.into())
             }
         }
 

@@ -13,8 +13,8 @@ use rne_search::PlanFile;
 
 use crate::{Arguments, ArmError, CompiledFunction, EvaluationError, Number};
 
-/// An arm that is read when the program runs, and computes nearly as fast as one that is derived: every function is
-/// compiled when it is first called, once, from whatever thread, and runs on the widest vector unit.
+/// An arm, serial or a tree, that is read when the program runs, and computes nearly as fast as one that is derived:
+/// every function is compiled when it is first called, once, from whatever thread, and runs on the widest vector unit.
 ///
 /// [`run`](Self::run) computes many states of any function. The methods with the functions' own names compute one, and
 /// take and return what `DynArm` does. Clones share what has been compiled.
@@ -146,7 +146,7 @@ impl CompiledArm {
         if let Some(arm) = known(&READ.lock().unwrap_or_else(PoisonError::into_inner)) {
             return Ok(arm);
         }
-        let robot = Reader::new(name).read(&content.robot)?.robot;
+        let robot = Reader::new(name).trees().couplings().read(&content.robot)?.robot;
         let plan = match &content.plan {
             Some(plan) => Some(PlanFile::read(name_of_plan, &String::from_utf8_lossy(plan), &robot)?),
             None => None,

@@ -4,7 +4,7 @@ use rne_codegen::{CompileError, Program};
 use rne_runtime::machine::{Destination, Source};
 use rne_runtime::{NegativeMass, VectorUnit};
 
-use crate::{Arguments, Array, EvaluationError, Machine, Number, arguments};
+use crate::{Arguments, Array, EvaluationError, Machine, Number, WrongSize, arguments};
 
 /// As many inputs find room on the stack: those of an arm of twenty joints, of most functions.
 const FEW: usize = 64;
@@ -103,7 +103,9 @@ impl CompiledFunction {
                 arguments.at(self.places[array])?.source(element, self.arrays[array].1, states)
             })
             .collect();
-        let room = EvaluationError::Room { outputs: self.outputs(), states };
+        let outputs = self.outputs();
+        let size = WrongSize::of_results(&results, outputs, states);
+        let room = EvaluationError::Room { outputs, states, size };
         self.machine.code().run(unit, states, &sources, results).map_err(|_| room)
     }
 
@@ -131,16 +133,17 @@ impl CompiledFunction {
             &mut many
         };
         for (input, &(array, element)) in inputs.iter_mut().zip(&self.inputs) {
-            let (name, elements) = self.arrays[array];
-            let number = arguments.at(self.places[array]).and_then(|array| array.number(element, elements, 0, 1));
-            let wrong = EvaluationError::Argument { argument: name, elements, states: 1 };
-            *input = *number.ok_or(wrong)?;
+            let (argument, elements) = self.arrays[array];
+            let given = self.given(array, arguments)?;
+            let wrong = || refused(argument, given, elements, 1);
+            *input = *given.number(element, elements, 0, 1).ok_or_else(wrong)?;
         }
         #[cfg(feature = "native")]
         if T::call(&self.natives, unit, &self.program, inputs, results) {
             return Ok(());
         }
-        let room = EvaluationError::Room { outputs: self.outputs(), states: 1 };
+        let size = WrongSize::Numbers { needed: self.outputs(), given: results.len() };
+        let room = EvaluationError::Room { outputs: self.outputs(), states: 1, size };
         self.machine.code().run_one(unit, inputs, results).map_err(|_| room)
     }
 
@@ -154,6 +157,16 @@ impl CompiledFunction {
         arrays.try_for_each(|(index, (_, elements))| self.checked(index, *elements, states, arguments).map(|_| ()))
     }
 
+    /// The array of the argument at `index`.
+    fn given<'a, 'b, T>(
+        &self,
+        index: usize,
+        arguments: &'b Arguments<'a, T>,
+    ) -> Result<&'b Array<'a, T>, EvaluationError> {
+        let (function, (argument, _)) = (self.program.function, self.arrays[index]);
+        arguments.at(self.places[index]).ok_or(EvaluationError::Missing { function, argument })
+    }
+
     /// The array of the argument at `index`, which has this number of elements for each state.
     pub(crate) fn checked<'a, 'b, T: Number>(
         &self,
@@ -163,10 +176,9 @@ impl CompiledFunction {
         arguments: &'b Arguments<'a, T>,
     ) -> Result<&'b Array<'a, T>, EvaluationError> {
         let (argument, _) = self.arrays[index];
-        let function = self.program.function;
-        let array = arguments.at(self.places[index]).ok_or(EvaluationError::Missing { function, argument })?;
+        let array = self.given(index, arguments)?;
         if !array.has(elements, states) {
-            return Err(EvaluationError::Argument { argument, elements, states });
+            return Err(refused(argument, array, elements, states));
         }
         if argument == "payload" {
             // its first element is the mass
@@ -183,4 +195,10 @@ impl CompiledFunction {
     pub(crate) fn inputs(&self) -> &[(usize, usize)] {
         &self.inputs
     }
+}
+
+/// The refusal of an array of another size.
+fn refused<T>(argument: &'static str, array: &Array<'_, T>, elements: usize, states: usize) -> EvaluationError {
+    let size = WrongSize::of_argument(array, elements, states);
+    EvaluationError::Argument { argument, elements, states, size }
 }

@@ -9,6 +9,8 @@ use rne_codegen::{CompileError, Function};
 use rne_model::Report;
 use rne_runtime::NegativeMass;
 
+use crate::WrongSize;
+
 /// Why a file gave no arm.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -70,6 +72,8 @@ pub enum EvaluationError {
         elements: usize,
         /// How many states there are.
         states: usize,
+        /// How many numbers were given.
+        size: WrongSize,
     },
     /// The payload of a state has a mass below zero.
     NegativeMass {
@@ -86,6 +90,8 @@ pub enum EvaluationError {
         outputs: usize,
         /// How many states there are.
         states: usize,
+        /// How many numbers the room has.
+        size: WrongSize,
     },
 }
 
@@ -94,30 +100,23 @@ impl fmt::Display for EvaluationError {
         match self {
             Self::Compile(error) => error.fmt(f),
             Self::Missing { function, argument } => write!(f, "`{function}` needs the argument `{argument}`"),
-            Self::Argument { argument, elements, states: 1 } => {
-                write!(
-                    f,
-                    "`{argument}` must have {elements} elements for this arm, but another number of elements was given"
-                )
-            }
-            Self::Argument { argument, elements, states } => {
-                write!(
-                    f,
-                    "`{argument}` must have {elements} elements for each of {states} states, but another number of \
-                     elements was given"
-                )
+            Self::Argument { argument, elements, states, size } => {
+                let of_states = of_states(*states);
+                write!(f, "`{argument}` must have {elements} numbers{of_states}, but {size}")
             }
             Self::NegativeMass { mass, states: 1, .. } => mass.fmt(f),
             Self::NegativeMass { mass, state, states } => write!(f, "state {state} of {states}: {mass}"),
-            Self::Room { outputs, states } => {
-                write!(
-                    f,
-                    "the result has {outputs} numbers for each of {states} states, but the memory that you gave holds \
-                     another number"
-                )
+            Self::Room { outputs, states, size } => {
+                let of_states = of_states(*states);
+                write!(f, "the memory for the result must hold {outputs} numbers{of_states}, but {size}")
             }
         }
     }
+}
+
+/// The words for the states that numbers are of; none for one state.
+fn of_states(states: usize) -> String {
+    if states == 1 { String::new() } else { format!(" for each of {states} states") }
 }
 
 impl Error for EvaluationError {

@@ -24,6 +24,7 @@
 #![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
 
 mod arguments;
+mod array_size;
 mod compiled_arm;
 mod compiled_function;
 mod dataflow;
@@ -41,6 +42,7 @@ mod selection;
 mod translation;
 
 pub use arguments::{ARGUMENTS, Arguments, Array};
+pub use array_size::WrongSize;
 pub use compiled_arm::{CompiledArm, RobotFiles};
 pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};

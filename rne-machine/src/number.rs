@@ -7,8 +7,8 @@ use rne_runtime::BatchScalar;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a number of a state",
     label = "`f64` or `f32` is needed",
-    note = "arrays and destinations are flat slices of numbers: from states such as `states: Vec<[f64; 7]>`, write \
-            `Array::Rows(states.as_flattened())` and `Destination::Rows(states.as_flattened_mut())`"
+    note = "`Array::Rows` and `Destination::Rows` take flat slices of numbers: of states such as \
+            `states: Vec<[f64; 7]>`, write `.q(&states)` and `Destination::Rows(states.as_flattened_mut())`"
 )]
 pub trait Number: BatchScalar + Into<f64> + crate::translation::sealed::Number + natively::Natively {}
 
@@ -17,8 +17,8 @@ pub trait Number: BatchScalar + Into<f64> + crate::translation::sealed::Number +
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a number of a state",
     label = "`f64` or `f32` is needed",
-    note = "arrays and destinations are flat slices of numbers: from states such as `states: Vec<[f64; 7]>`, write \
-            `Array::Rows(states.as_flattened())` and `Destination::Rows(states.as_flattened_mut())`"
+    note = "`Array::Rows` and `Destination::Rows` take flat slices of numbers: of states such as \
+            `states: Vec<[f64; 7]>`, write `.q(&states)` and `Destination::Rows(states.as_flattened_mut())`"
 )]
 pub trait Number: BatchScalar + Into<f64> {}
 

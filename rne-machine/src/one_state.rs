@@ -40,6 +40,7 @@ impl CompiledArm {
 /// The type of an argument.
 macro_rules! taken {
     (Wrench) => { &Wrench<T> };
+    (Wrenches) => { &[Wrench<T>] };
     (Payload) => { &Payload<T> };
     (Base) => { &BaseMotion<T> };
     ($of_joints:ident) => { &[T] };
@@ -49,6 +50,9 @@ macro_rules! taken {
 macro_rules! read {
     (Payload $payload:ident) => {
         $payload.to_array()
+    };
+    (Wrenches $wrenches:ident) => {
+        $wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten().collect::<Vec<_>>()
     };
     ($kind:ident $argument:ident) => {
         $argument
@@ -62,6 +66,9 @@ macro_rules! with {
     };
     ($others:ident, Payload $payload:ident) => {
         $others.payload(Array::Same(&$payload))
+    };
+    ($others:ident, Wrenches $wrenches:ident) => {
+        $others.wrenches(Array::Same(&$wrenches))
     };
     ($others:ident, Base $base:ident) => {
         $others
@@ -84,8 +91,8 @@ macro_rules! methods {
             #[doc = $summary]
             ///
             /// # Errors
-            /// When an argument does not have one element per joint, when a payload has a mass below zero, or when the
-            /// function cannot be compiled for this robot.
+            /// When an argument does not have one element per joint or tip, when a payload has a mass below zero, or
+            /// when the function cannot be compiled for this robot.
             pub fn $name<T: Number>(
                 &self,
                 $($argument: taken!($kind),)*

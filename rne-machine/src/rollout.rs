@@ -9,7 +9,7 @@ use rne_runtime::VectorUnit;
 use rne_runtime::machine::{self, RolloutJoint, SmoothFriction, Source};
 
 use crate::arguments::place;
-use crate::{Arguments, CompiledArm, CompiledFunction, EvaluationError, Number};
+use crate::{Arguments, CompiledArm, CompiledFunction, EvaluationError, Number, WrongSize};
 
 /// How long samples are rolled out, and what acts on the joints beside the dynamics of the arm.
 ///
@@ -120,7 +120,8 @@ impl Rollout {
                 position: position.map(|(lower, upper)| [lower, upper].map(T::from_f64)),
             })
         };
-        robot.joints.iter().enumerate().map(of_joint).collect()
+        // a follower has no motor, and its limits are those of the joint that it follows
+        robot.coordinates().map(|index| of_joint((index, &robot.joints[index]))).collect()
     }
 
     fn friction_of<T: Number>(
@@ -215,7 +216,7 @@ impl CompiledArm {
         for (array, numbers) in ["positions", "velocities"].into_iter().zip(&states) {
             if Some(numbers.len()) != size {
                 let (joints, found) = (joints.len(), numbers.len());
-                return Err(RolloutError::Size { array, samples, steps, joints, found: Some(found) });
+                return Err(RolloutError::Size { array, samples, steps, joints, found });
             }
         }
         compiled.roll_out(unit, samples, &joints, rollout, arguments, states)
@@ -241,9 +242,9 @@ impl CompiledFunction {
             let is_tau = argument == "tau";
             let elements = if is_tau { elements.saturating_mul(steps) } else { elements };
             let array = self.checked(index, elements, samples, arguments).map_err(|error| match error {
-                EvaluationError::Argument { argument: array, .. } if is_tau => {
-                    RolloutError::Size { array, samples, steps, joints: dof, found: None }
-                }
+                EvaluationError::Argument {
+                    argument: array, size: WrongSize::Numbers { given: found, .. }, ..
+                } if is_tau => RolloutError::Size { array, samples, steps, joints: dof, found },
                 error => error.into(),
             })?;
             let (start, sources): (usize, &mut Vec<Source<'_, T>>) = match argument {
@@ -259,7 +260,8 @@ impl CompiledFunction {
         let step = T::from_f64(step);
         let (q, qd, tau, constants, inputs) = (&q[..], &qd[..], &tau[..], &constants[..], &inputs[..]);
         let rollout = machine::Rollout { steps, step, joints, inputs, q, qd, tau, constants };
-        let wrong = |_| RolloutError::Size { array: "tau", samples, steps, joints: dof, found: None };
+        let found = samples.saturating_mul(tau.len());
+        let wrong = |_| RolloutError::Size { array: "tau", samples, steps, joints: dof, found };
         self.machine().code().roll_out(unit, samples, &rollout, states).map_err(wrong)
     }
 }
@@ -296,8 +298,8 @@ pub enum RolloutError {
         steps: usize,
         /// The number of joints.
         joints: usize,
-        /// How many numbers it has, where that is known.
-        found: Option<usize>,
+        /// How many numbers it has.
+        found: usize,
     },
 }
 
@@ -333,14 +335,12 @@ impl fmt::Display for RolloutError {
                 )
             }
             Self::Size { array, samples, steps, joints, found } => {
+                let needed = samples.saturating_mul(*steps).saturating_mul(*joints);
                 write!(
                     f,
-                    "`{array}` must have {samples} × {steps} × {joints} numbers (samples × steps × joints), but "
-                )?;
-                match found {
-                    Some(found) => write!(f, "it has {found}"),
-                    None => f.write_str("another number of them was given"),
-                }
+                    "`{array}` must have {needed} numbers, which are {samples} samples × {steps} steps × {joints} \
+                     joints, but it has {found}"
+                )
             }
         }
     }

@@ -12,7 +12,7 @@ use rne_search::PlanFile;
 const STATES: usize = 150;
 
 /// Arguments and their elements for any function of an arm.
-fn widths(dof: usize) -> [(&'static str, usize); 13] {
+fn widths(dof: usize) -> [(&'static str, usize); 14] {
     [
         ("q", dof),
         ("qd", dof),
@@ -27,6 +27,8 @@ fn widths(dof: usize) -> [(&'static str, usize); 13] {
         ("base_omega_dot", 3),
         ("base_acceleration", 3),
         ("base_gravity", 3),
+        // one tip
+        ("wrenches", 6),
     ]
 }
 
@@ -77,6 +79,7 @@ impl States {
             tau: joints(3),
             force: triple(6),
             moment: triple(7),
+            wrenches: &[of(13, 6).try_into().expect("one tip")],
             payload: of(8, 10).try_into().expect("ten"),
             base: [9, 10, 11, 12].map(triple),
             ..Numbers::of_joints(joints(0), joints(1), joints(2), 0.0)

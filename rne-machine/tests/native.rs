@@ -83,6 +83,21 @@ fn native_code_has_the_bits_of_the_machine() {
     assert!(compared > 10_000);
 }
 
+/// Torques of a link go to the link that carries it, whichever row that is.
+#[test]
+fn native_code_of_a_tree_has_the_bits_of_the_machine() {
+    let text = include_str!("../../docs/tree.yaml");
+    let robot = rne_model::Reader::new("tree.yaml").trees().read(text).expect("a robot file").robot;
+    let compiler = Compiler::new(&robot);
+    let mut random = fastrand::Rng::with_seed(30);
+    for function in [Function::InverseDynamics, Function::MassMatrix, Function::ForwardDynamics, Function::Jacobian] {
+        for form in Form::ALL {
+            let program = compiler.compile(function, form).expect("a program");
+            compare::<f64>("tree", &program, &mut random, |number| number);
+        }
+    }
+}
+
 /// Joints that do not turn, functions of no input, outputs that are inputs or constants.
 #[test]
 fn programs_of_nearly_nothing() {

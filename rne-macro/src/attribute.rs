@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 use rne_codegen::Form;
+use rne_model::did_you_mean;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{DeriveInput, Ident, LitInt, LitStr, Meta, Path, Token};
@@ -101,8 +102,13 @@ impl Attribute {
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `inline`, `tests`, `inspect`, \
-     `allow_lints` and `crate`";
+const KEYS: [&str; 11] =
+    ["path", "yaml", "builtin", "form", "max_ops", "rotors", "inline", "tests", "inspect", "allow_lints", "crate"];
+
+/// The keys in words.
+fn keys() -> String {
+    format!("the keys are {}", KEYS.map(|key| format!("`{key}`")).join(", "))
+}
 
 #[derive(Default)]
 struct Entries {
@@ -134,31 +140,17 @@ impl Entries {
 
     fn entry(&mut self, input: ParseStream<'_>) -> syn::Result<()> {
         if !input.peek(Ident::peek_any) {
-            return Err(input.error(format!("a key is missing here; the keys are {KEYS}")));
+            return Err(input.error(format!("a key is missing here; {}", keys())));
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();
         if name == "urdf" {
             return Err(syn::Error::new(key.span(), of_urdf(input)));
         }
-        if !matches!(
-            name.as_str(),
-            "path"
-                | "yaml"
-                | "builtin"
-                | "form"
-                | "max_ops"
-                | "rotors"
-                | "inline"
-                | "tests"
-                | "inspect"
-                | "allow_lints"
-                | "crate"
-        ) {
-            return Err(syn::Error::new(
-                key.span(),
-                format!("`{name}` is not a key of `#[robot(…)]`; the keys are {KEYS}"),
-            ));
+        if !KEYS.contains(&name.as_str()) {
+            let meant = did_you_mean(&name, KEYS).map(|meant| format!("; did you mean `{meant}`?"));
+            let message = format!("`{name}` is not a key of `#[robot(…)]`; {}", keys());
+            return Err(syn::Error::new(key.span(), message + &meant.unwrap_or_default()));
         }
         if self.seen.contains(&name) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));

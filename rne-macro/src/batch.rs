@@ -44,7 +44,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut said)?;
         compiler.for_target(Machine::Throughput).compile(Function::InverseDynamics, attribute.form).ok()
     });
-    let target = Target { item: &item, krate: &attribute.krate, inline: attribute.inline };
+    let target = Target::new(&item, &attribute, None);
     let (ident, krate) = (&item.ident, &attribute.krate);
     let (impl_generics, type_generics, where_clause) = item.generics.split_for_impl();
     let number = target.number();

@@ -31,6 +31,12 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     };
     own_tests::check(&item, &attribute, &parameters, &mut errors);
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
+    if let (Capability::InverseDynamics, Some((report, source))) =
+        (capability, loaded.one_identifier.zip(attribute.source.as_ref()))
+    {
+        let mistake = report.render(false);
+        errors.at_span(source.span(), format!("`{}` gives two joints one identifier\n\n{mistake}\n", report.name));
+    }
     let compiled = loaded.robot.and_then(|robot| {
         let robot = Robot { rotors: attribute.rotors, ..robot };
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
@@ -38,7 +44,8 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;
         Some((robot, programs))
     });
-    let target = Target { item: &item, krate: &attribute.krate, inline: attribute.inline };
+    let tips = compiled.as_ref().map(|(robot, _)| robot.tip_count());
+    let target = Target::new(&item, &attribute, tips);
     let code = match &compiled {
         Some((robot, programs)) => {
             if let (Capability::InverseDynamics, Some(limit), Some(program)) =
@@ -86,7 +93,7 @@ pub(crate) fn frame_kinematics(input: TokenStream) -> TokenStream {
         Err(error) => return error.to_compile_error(),
     };
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
-    let target = Target { item: &item, krate: &attribute.krate, inline: attribute.inline };
+    let target = Target::new(&item, &attribute, None);
     let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
     let code =
         match loaded.robot.and_then(|robot| target.frames(&robot, attribute.form, &parameters, span, &mut errors)) {
@@ -163,6 +170,8 @@ pub(crate) struct Loaded {
     joints: usize,
     /// Suspicious points of a valid file.
     lints: Option<Report>,
+    /// The mistake of a valid file in which two joints have one identifier.
+    one_identifier: Option<Report>,
 }
 
 pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors) -> Loaded {
@@ -200,18 +209,18 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     };
     let names = parameters.names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let checked = Reader::new(&name).trees().read(&bytes).and_then(|checked| {
+    let checked = Reader::new(&name).trees().couplings().read(&bytes).and_then(|checked| {
         let known: Vec<&str> = checked.robot.parameters.iter().map(|(name, _)| name.as_str()).collect();
         match parameters.check(&known, errors) {
             _ if names.is_empty() => Ok(Some(checked)),
-            true => Reader::new(&name).trees().run_time(&names).read(&bytes).map(Some),
+            true => Reader::new(&name).trees().couplings().run_time(&names).read(&bytes).map(Some),
             false => Ok(None),
         }
     });
     match checked {
-        Ok(Some(Checked { robot, lints, .. })) => {
-            let (joints, robot, lints) = (robot.dof(), Some(robot), Some(lints));
-            Loaded { robot, text, watched, plan, golden, misnamed_golden, joints, lints }
+        Ok(Some(Checked { robot, lints, identifiers, .. })) => {
+            let (joints, robot, lints, one_identifier) = (robot.dof(), Some(robot), Some(lints), identifiers.err());
+            Loaded { robot, text, watched, plan, golden, misnamed_golden, joints, lints, one_identifier }
         }
         // a field is no parameter, which has been said
         Ok(None) => Loaded { watched, ..Loaded::default() },

@@ -49,9 +49,7 @@ impl Target<'_> {
         });
         let number = self.number();
         let (listed, described) = (&names[..count], description::values(&names[..count]));
-        // no name is empty
-        let unknown = robot.frame("").err().map_or_else(String::new, |unknown| unknown.known());
-        let unknown = format!("{} has no frame of this name: {unknown}", robot.name);
+        let unknown = format!(" {}: {}", robot.name, robot.known_frames());
         let (about, about_names) = (
             "The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`. The name is that of a \
              frame in the list `frames` of the robot file, or that of a joint for its link frame. In a constant, \
@@ -82,9 +80,10 @@ impl Target<'_> {
                 #[doc = #about]
                 #[must_use]
                 #vis const fn frame(name: &#str) -> #usize {
-                    match #krate::frame_index(&[#(#names),*], name) {
+                    let names = [#(#names),*];
+                    match #krate::frame_index(&names, name) {
                         ::core::option::Option::Some(index) => index,
-                        ::core::option::Option::None => ::core::panic!(#unknown),
+                        ::core::option::Option::None => #krate::unknown_frame(&names, name, #unknown),
                     }
                 }
             }

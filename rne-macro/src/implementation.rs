@@ -1,11 +1,12 @@
 //! The code for a type: constants and the methods of the trait.
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
+use crate::attribute::Attribute;
 use crate::description;
 use crate::parameters::Parameters;
 
@@ -15,7 +16,12 @@ pub(crate) struct Target<'a> {
     pub(crate) krate: &'a Path,
     /// Whether single calls are compiled for the target alone, to be inlined.
     pub(crate) inline: bool,
+    /// The number of tips of the robot, or a parameter for it.
+    pub(crate) tips: TokenStream,
 }
+
+/// The parameter for the number of tips of a robot that is not known.
+const UNKNOWN_TIPS: &str = "__TIPS";
 
 /// The constants of a type.
 struct Constants {
@@ -29,6 +35,17 @@ struct Constants {
     operations: Operations,
 }
 
+impl<'a> Target<'a> {
+    /// The target of a derive; `None` for a number of tips that is not known.
+    pub(crate) fn new(item: &'a DeriveInput, attribute: &'a Attribute, tips: Option<usize>) -> Self {
+        let tips = tips.map_or_else(
+            || Ident::new(UNKNOWN_TIPS, Span::call_site()).into_token_stream(),
+            |tips| Literal::usize_unsuffixed(tips).into_token_stream(),
+        );
+        Self { item, krate: &attribute.krate, inline: attribute.inline, tips }
+    }
+}
+
 impl Target<'_> {
     /// Everything for a robot and the programs of one capability.
     pub(crate) fn robot(
@@ -39,12 +56,20 @@ impl Target<'_> {
         parameters: &Parameters,
     ) -> TokenStream {
         let constants = match capability {
-            Capability::InverseDynamics => self.constants(&Constants::of(robot, programs)),
+            Capability::InverseDynamics => {
+                let (constants, joints) = (self.constants(&Constants::of(robot, programs)), self.joints(robot));
+                let motors = self.motors(robot);
+                quote!(#constants #joints #motors)
+            }
+            Capability::TipWrenches => {
+                let (counts, tips) = (self.counts(programs), self.tips(robot));
+                quote!(#counts #tips)
+            }
             _ => self.counts(programs),
         };
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
         let (ident, krate, dof) = (&self.item.ident, self.krate, Literal::usize_unsuffixed(robot.dof()));
-        let name = format_ident!("{}", capability.name());
+        let (name, sizes) = (format_ident!("{}", capability.name()), self.sizes(capability, &quote!(#dof)));
         let operations = description::operations(programs);
         let evidence = description::evidence(programs).into_iter().map(|evidence| quote!(#[doc = #evidence]));
         let methods = programs.iter().map(|program| self.method(robot, program, parameters));
@@ -56,17 +81,24 @@ impl Target<'_> {
             #[automatically_derived]
             #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
             #[allow(clippy::inline_always)] // into the code of the processor's instructions
-            impl #impl_generics #krate::#name<#dof> for #ident #type_generics #where_clause {
+            impl #impl_generics #krate::#name<#sizes> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
         }
+    }
+
+    /// The arguments of the trait of a capability: the number of joints, and that of tips where it needs it.
+    fn sizes(&self, capability: Capability, dof: &TokenStream) -> TokenStream {
+        let tips = &self.tips;
+        if capability == Capability::TipWrenches { quote!(#dof, #tips) } else { quote!(#dof) }
     }
 
     /// Writes a stub for a robot that is not known: every use of it compiles, so that the mistake that is reported
     /// stays the only one. The trait is implemented for every number of joints.
     pub(crate) fn stub(&self, capability: Capability, joints: usize) -> TokenStream {
         let constants = if capability == Capability::InverseDynamics {
-            self.constants(&Constants::unknown(joints))
+            let (constants, joints) = (self.constants(&Constants::unknown(joints)), self.joints_stub());
+            quote!(#constants #joints)
         } else {
             self.counts_of(capability.functions().map(|function| (function, Operations::default())))
         };
@@ -74,8 +106,12 @@ impl Target<'_> {
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        if capability == Capability::TipWrenches {
+            generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
+        }
         let (impl_generics, ..) = generics.split_for_impl();
         let joints = quote!(__JOINTS);
+        let sizes = self.sizes(capability, &joints);
         let methods = capability.functions().map(|function| {
             // what has the shape of an argument returns it
             let body = if function.takes(Argument::Positions)
@@ -91,7 +127,7 @@ impl Target<'_> {
             #constants
 
             #[automatically_derived]
-            impl #impl_generics #krate::#name<#joints> for #ident #type_generics #where_clause {
+            impl #impl_generics #krate::#name<#sizes> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
         }
@@ -115,6 +151,17 @@ impl Target<'_> {
         // named as its type's array, which the body takes apart
         let payload =
             function.takes(Argument::Payload).then(|| quote!(let payload = &#krate::Payload::to_array(payload);));
+        let wrenches = function.takes(Argument::Wrenches).then(|| {
+            let numbers = (0..program.tips.len()).flat_map(|tip| {
+                let tip = Literal::usize_unsuffixed(tip);
+                let part = move |part: &str| {
+                    let (tip, part) = (tip.clone(), format_ident!("{part}"));
+                    [0, 1, 2].map(Literal::usize_unsuffixed).map(|axis| quote!(wrenches[#tip].#part[#axis]))
+                };
+                ["force", "moment"].into_iter().flat_map(part)
+            });
+            quote!(let wrenches = &[#(#numbers),*];)
+        });
         let base = function.takes(Argument::Base).then(|| {
             quote! {
                 let #krate::BaseMotion {
@@ -135,7 +182,7 @@ impl Target<'_> {
         let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
         let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
         let dof = quote!(#dof);
-        let body = quote!(#wrench #payload #base #body);
+        let body = quote!(#wrench #payload #wrenches #base #body);
         let body =
             if is_asked { self.call(function, &dof, count, &parameters, &body) } else { quote!(#parameters #body) };
         let method = match program.frame {
@@ -204,7 +251,7 @@ impl Target<'_> {
 
     /// The arguments of a function and their types, references of the given lifetime, in which `T` is the scalar.
     fn arguments(&self, function: Function, dof: &TokenStream, lifetime: &TokenStream) -> Vec<(Ident, TokenStream)> {
-        let krate = self.krate;
+        let (krate, tips) = (self.krate, &self.tips);
         let name_and_type = |argument: &Argument| {
             let (name, kind) = match argument {
                 Argument::Sines => ("sin", quote!([T; #dof])),
@@ -216,6 +263,7 @@ impl Target<'_> {
                 Argument::Wrench => ("wrench", quote!(#krate::Wrench<T>)),
                 Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
                 Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
+                Argument::Wrenches => ("wrenches", quote!([#krate::Wrench<T>; #tips])),
             };
             (format_ident!("{name}"), quote!(&#lifetime #kind))
         };
@@ -388,11 +436,11 @@ impl Target<'_> {
 
 impl Constants {
     fn of(robot: &Robot, programs: &[Program]) -> Self {
-        let limits = || robot.joints.iter().map(|joint| &joint.limits);
+        let limits = || robot.independent_joints().map(|joint| &joint.limits);
         Self {
             description: Some(description::robot(robot)),
             name: robot.name.clone(),
-            joint_names: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+            joint_names: robot.independent_joints().map(|joint| joint.name.clone()).collect(),
             position_limits: limits()
                 .map(|limits| limits.position.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)))
                 .collect(),

@@ -12,11 +12,14 @@ mod expand;
 mod frames;
 mod implementation;
 mod inspection;
+mod joints;
 mod location;
+mod motors;
 mod own_tests;
 mod parameters;
 #[cfg(test)]
 mod tests;
+mod tips;
 mod warning;
 
 use proc_macro::TokenStream;
@@ -198,6 +201,19 @@ pub fn derive_moving_base(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(PayloadDynamics, attributes(robot))]
 pub fn derive_payload_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::PayloadDynamics, input.into()).into()
+}
+
+/// Implements the trait `TipWrenches` for a struct: torques and accelerations of a robot with a wrench at each tip.
+///
+/// The tips are the frames of the list `tips` of the robot file; without the list, the tip frame is the only tip. The
+/// struct gets the names of the tips, `TIPS`, and an enum of the tips: for `struct Torso;` it is `TorsoTip`.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `INVERSE_DYNAMICS_WITH_WRENCHES_OPERATIONS` and so on; `DOF`,
+/// names and limits come with `InverseDynamics`.
+#[proc_macro_derive(TipWrenches, attributes(robot))]
+pub fn derive_tip_wrenches(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::TipWrenches, input.into()).into()
 }
 
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.

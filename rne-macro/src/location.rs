@@ -127,7 +127,7 @@ fn beside(file: &RobotFile, name: fn(&Path) -> PathBuf) -> Result<Option<RobotFi
 /// Finds a shipped robot and its plan; if there is no robot of this name, the error lists all names.
 pub(crate) fn shipped(name: &str) -> Result<(RobotFile, Option<RobotFile>), String> {
     let Some(robot) = rne_robots::find(name) else {
-        let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
+        let names: Vec<&str> = rne_robots::all().map(|robot| robot.name).collect();
         return Err(no_shipped_robot(name, &names));
     };
     let file = |extension: &str, text: &str| RobotFile {

@@ -36,6 +36,8 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         Capability::MovingBase => &["torques_on_a_moving_base_are_those_of_the_runtime"],
         Capability::Actuation => &["actuator_torques_are_those_of_the_runtime"],
         Capability::PayloadDynamics => &["payload_dynamics_are_those_of_the_runtime"],
+        // an `Arm` does not know the tips of a file
+        Capability::TipWrenches => &[],
     }
 }
 

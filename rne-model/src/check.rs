@@ -2,6 +2,8 @@
 
 use crate::decode::Context;
 use crate::diagnostic::{Problems, Report};
+use crate::identifier::{JointIdentifier, identifiers};
+use crate::schema::Takes;
 use crate::{Robot, document, schema, source, urdf};
 
 /// A valid robot file: the robot, and what is remarkable about it.
@@ -12,6 +14,9 @@ pub struct Checked {
     pub robot: Robot,
     /// Lints: warnings and notes, often none.
     pub lints: Report,
+    /// The identifiers of the joints in generated code, in their order; where two joints have one identifier, the error
+    /// at the line of the second. A file with such names is valid: only code that contains the identifiers needs them.
+    pub identifiers: Result<Vec<JointIdentifier>, Report>,
 }
 
 /// Reads robot files: a name for the messages, what to read otherwise than the file says, and then the file.
@@ -45,14 +50,14 @@ pub struct Reader<'a> {
     name: &'a str,
     run_time: Vec<&'a str>,
     settings: Vec<(&'a str, f64)>,
-    takes_trees: bool,
+    takes: Takes,
 }
 
 impl<'a> Reader<'a> {
     /// A reader of a file that messages call `name`, usually its path.
     #[must_use]
     pub const fn new(name: &'a str) -> Self {
-        Self { name, run_time: Vec::new(), settings: Vec::new(), takes_trees: false }
+        Self { name, run_time: Vec::new(), settings: Vec::new(), takes: Takes { trees: false, couplings: false } }
     }
 
     /// These parameters of the file, each once, stay free until run time. The robot is that of their values in the
@@ -75,7 +80,15 @@ impl<'a> Reader<'a> {
     /// are refused at their line, because not every function of rne takes a tree.
     #[must_use]
     pub fn trees(mut self) -> Self {
-        self.takes_trees = true;
+        self.takes.trees = true;
+        self
+    }
+
+    /// Robots with `couplings` or a list `motors` are read, too: some of their joints follow others, or rotors turn on
+    /// their links. Without this they are refused at their line, because not every function of rne takes them.
+    #[must_use]
+    pub fn couplings(mut self) -> Self {
+        self.takes.couplings = true;
         self
     }
 
@@ -127,11 +140,13 @@ impl<'a> Reader<'a> {
             .flatten()
             .and_then(|root| {
                 let context = Context::new(text, &problems, &self.run_time).with_settings(&self.settings);
-                schema::robot(&context, &root, self.takes_trees)
+                let robot = schema::robot(&context, &root, self.takes)?;
+                let identifiers = identifiers((self.name, text), &root, &robot.joints);
+                Some((robot, identifiers))
             });
         let report = problems.finish(self.name, text);
         match robot {
-            Some(robot) if !report.has_errors() => Ok(Checked { robot, lints: report }),
+            Some((robot, identifiers)) if !report.has_errors() => Ok(Checked { robot, lints: report, identifiers }),
             _ => Err(report),
         }
     }

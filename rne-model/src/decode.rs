@@ -342,9 +342,12 @@ fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
         "mass" | "com" | "first_moment" | "inertia" | "inertia_about" | "physical" => "link",
         "position" | "velocity" | "effort" => "limits",
         "gear_ratio" | "viscous" | "coulomb" | "coulomb_width" | "coulomb_displacement" => "motor",
+        "follows" => "an entry of `couplings",
         "xyz" | "rpy" => "base`, `tool` or an entry of `frames",
         "<<" => return Some("YAML merge keys are not part of the format; write the keys out".to_owned()),
-        "offset" => return Some("write the offset of the joint as the constant in `theta` or `d`".to_owned()),
+        "offset" if allowed.contains(&"dh") => {
+            return Some("write the offset of the joint as the constant in `theta` or `d`".to_owned());
+        }
         _ => return None,
     };
     Some(format!("`{key}` belongs under `{place}`"))

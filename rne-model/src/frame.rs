@@ -62,8 +62,7 @@ impl std::error::Error for UnknownFrame {}
 
 impl UnknownFrame {
     /// The names that there are, in words.
-    #[must_use]
-    pub fn known(&self) -> String {
+    fn known(&self) -> String {
         let listed = |names: &[String]| names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         let frames = match self.frames.as_slice() {
             [] => "its file has no list `frames`".to_owned(),
@@ -89,10 +88,17 @@ impl Robot {
         })
     }
 
+    /// The names of the frames that the robot has, in words.
+    #[must_use]
+    pub fn known_frames(&self) -> String {
+        // no name is empty
+        self.frame("").err().map_or_else(String::new, |unknown| unknown.known())
+    }
+
     /// Every frame that has a name: first the list `frames` in the order of the file, then the link frames from base to
     /// tip.
     pub fn frame_ids(&self) -> impl Iterator<Item = FrameId> + use<> {
-        (0..self.frames.len()).map(FrameId::Named).chain((0..self.dof()).map(FrameId::Link))
+        (0..self.frames.len()).map(FrameId::Named).chain((0..self.joints.len()).map(FrameId::Link))
     }
 
     /// The name of a frame.

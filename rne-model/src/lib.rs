@@ -46,7 +46,11 @@ pub use table::{
 };
 
 #[cfg(feature = "std")]
+mod body;
+#[cfg(feature = "std")]
 mod check;
+#[cfg(feature = "std")]
+mod coupling;
 #[cfg(feature = "std")]
 mod data_file;
 #[cfg(feature = "std")]
@@ -58,6 +62,8 @@ pub mod document;
 #[cfg(feature = "std")]
 mod double;
 #[cfg(feature = "std")]
+mod drive;
+#[cfg(feature = "std")]
 mod expression;
 #[cfg(feature = "std")]
 mod formula;
@@ -68,6 +74,8 @@ mod friction;
 #[cfg(feature = "std")]
 mod golden;
 #[cfg(feature = "std")]
+mod identifier;
+#[cfg(feature = "std")]
 mod inertia;
 #[cfg(feature = "std")]
 mod keys;
@@ -75,6 +83,8 @@ mod keys;
 mod link;
 #[cfg(feature = "std")]
 mod lint;
+#[cfg(feature = "std")]
+mod parallelogram;
 #[cfg(feature = "std")]
 mod quantity;
 #[cfg(feature = "std")]
@@ -92,6 +102,8 @@ mod source;
 #[cfg(feature = "std")]
 mod spelling;
 #[cfg(feature = "std")]
+mod tips;
+#[cfg(feature = "std")]
 mod tree;
 #[cfg(feature = "std")]
 mod unit;
@@ -101,13 +113,19 @@ mod urdf;
 mod varying;
 
 #[cfg(feature = "std")]
+pub use body::{Bodies, Body, UnknownBody};
+#[cfg(feature = "std")]
 pub use check::{Checked, Reader};
+#[cfg(feature = "std")]
+pub use coupling::Coupling;
 #[cfg(feature = "std")]
 pub use data_file::{MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Remedy, Report, Severity};
 #[cfg(feature = "std")]
 pub use double::{Double, decimal_digits};
+#[cfg(feature = "std")]
+pub use drive::{Drive, Rotor};
 #[cfg(feature = "std")]
 pub use expression::number;
 #[cfg(feature = "std")]
@@ -118,6 +136,8 @@ pub use frame::{Frame, FrameId, UnknownFrame};
 pub use friction::{Friction, FrictionTransition, TransitionSign};
 #[cfg(feature = "std")]
 pub use golden::{GoldenFile, GoldenState};
+#[cfg(feature = "std")]
+pub use identifier::JointIdentifier;
 #[cfg(feature = "std")]
 pub use keys::{Key, Mapping, mappings};
 #[cfg(feature = "std")]

@@ -128,6 +128,6 @@ fn tensor(cx: &Context, node: &Node, joint: usize) -> Option<Inertia> {
     Some(Inertia { xx, yy, zz, xy, xz, yz })
 }
 
-fn inertia_reference(cx: &Context, node: &Node) -> Option<InertiaReference> {
+pub(crate) fn inertia_reference(cx: &Context, node: &Node) -> Option<InertiaReference> {
     choice(cx, node, "point of reference", &[("com", InertiaReference::Com), ("origin", InertiaReference::Origin)])
 }

@@ -283,6 +283,32 @@ pub(crate) fn placeholders(cx: &Context, root: &Node, joints: &[Joint]) {
     }
 }
 
+/// Joints with friction at least, beside which one without friction was probably forgotten.
+const WITH_FRICTION: usize = 2;
+
+/// One joint without a key of friction where all others have one. Joints that follow others or share motors have their
+/// friction elsewhere.
+pub(crate) fn missing_friction(cx: &Context, root: &Node) {
+    let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
+    if ["couplings", "motors", "loops"].iter().any(|key| root.get(key).is_some()) {
+        return;
+    }
+    let has_friction = |item: &Node| {
+        item.get("motor").is_some_and(|motor| ["viscous", "coulomb"].iter().any(|key| motor.get(key).is_some()))
+    };
+    let mut without = items.iter().enumerate().filter(|(_, item)| !has_friction(item));
+    let (Some((index, item)), None) = (without.next(), without.next()) else { return };
+    if items.len() <= WITH_FRICTION {
+        return;
+    }
+    let message = format!("joint {} has no friction, but all other joints have", index + 1);
+    cx.report(
+        Diagnostic::note(item.get("motor").unwrap_or(item).head(), message).label("forgotten?").help(
+            "add `viscous` and `coulomb` to its `motor`; if the joint has no friction, write `motor: {viscous: 0}`",
+        ),
+    );
+}
+
 /// Numbers of joints of arms that are built in similar proportions. Textbooks have shorter arms of any mass, and longer
 /// ones are slender.
 const PROPORTIONATE: RangeInclusive<usize> = 4..=7;

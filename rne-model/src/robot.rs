@@ -1,7 +1,8 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
 use crate::{
-    Convention, FixedFrame, Frame, FrameId, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia,
+    Angle, Bodies, Convention, Coupling, Drive, FixedFrame, Frame, FrameId, Friction, Inertia, JointKind, Link, Model,
+    Motor, Row, RunTime, Transform, inertia,
 };
 
 /// A validated robot, as its file describes it.
@@ -29,8 +30,14 @@ pub struct Robot {
     pub parameters: Vec<(String, f64)>,
     /// The joints, 1 to 64: base to tip, and in a tree each behind the joint that carries it.
     pub joints: Vec<Joint>,
+    /// The list `motors` of the file, in its order.
+    pub drives: Vec<Drive>,
     /// The named frames of the file, in its order: places on links, beside the tip.
     pub frames: Vec<Frame>,
+    /// The frames that carry wrenches, by their places in `frames`; empty where the tip frame alone does.
+    pub tips: Vec<usize>,
+    /// The bodies that are fixed to links. They are parts of these links already.
+    pub bodies: Bodies,
     /// The frame that the kinematic functions of the tip are taken at instead of the tip (pose, Jacobian, J̇q̇, torques
     /// of a wrench); no file says so, [`Robot::at_frame`] does. Other functions stay those of the tip.
     pub at: Option<FrameId>,
@@ -55,6 +62,8 @@ pub struct Joint {
     pub written_inertia: (Inertia, InertiaReference),
     /// Position, velocity and effort limits.
     pub limits: Limits,
+    /// How it follows other joints, if it does: it is no coordinate of the robot then.
+    pub coupling: Option<Coupling>,
     /// The motor, if the file has one.
     pub motor: Option<Motor>,
     /// The speed about which Coulomb friction changes its sign, rad/s or m/s, where somebody found it: the `width` that
@@ -86,6 +95,20 @@ pub struct Limits {
 }
 
 impl Joint {
+    /// The row where the joint is when those that it follows are at 0: `theta` or `d` with the offset of its coupling.
+    #[must_use]
+    pub fn row_with_offset(&self) -> Row {
+        let mut row = self.row;
+        match (&self.coupling, row.kind) {
+            (Some(Coupling { offset, .. }), JointKind::Revolute) if *offset != 0.0 => {
+                row.dh.theta = Angle::new(row.dh.theta.radians + offset);
+            }
+            (Some(Coupling { offset, .. }), JointKind::Prismatic) => row.dh.d += offset,
+            _ => {}
+        }
+        row
+    }
+
     /// Friction, N m or N, at a speed that the joint has had for long: [`Friction`] knows the way there.
     #[must_use]
     pub fn friction(&self, speed: f64) -> f64 {
@@ -113,10 +136,32 @@ impl Joint {
 }
 
 impl Robot {
-    /// Number of joints.
+    /// Number of coordinates: of the joints that follow no other. So many elements q, q̇, q̈ and τ have.
     #[must_use]
     pub fn dof(&self) -> usize {
-        self.joints.len()
+        self.independent_joints().count()
+    }
+
+    /// The joints that follow no other, counted from 0, in the order of q.
+    pub fn coordinates(&self) -> impl DoubleEndedIterator<Item = usize> {
+        (0..self.joints.len()).filter(|&index| self.joints[index].coupling.is_none())
+    }
+
+    /// The joints that follow no other, in the order of q.
+    pub fn independent_joints(&self) -> impl DoubleEndedIterator<Item = &Joint> {
+        self.joints.iter().filter(|joint| joint.coupling.is_none())
+    }
+
+    /// The joint of a coordinate, which is counted from 0: an element of q belongs to it.
+    #[must_use]
+    pub fn independent_joint(&self, coordinate: usize) -> Option<&Joint> {
+        self.independent_joints().nth(coordinate)
+    }
+
+    /// Whether some joint follows others.
+    #[must_use]
+    pub fn has_couplings(&self) -> bool {
+        self.joints.iter().any(|joint| joint.coupling.is_some())
     }
 
     /// The arm with its rotors: what a rotor behind a gear resists with, G² Jm q̈, is part of its torques, of its mass
@@ -144,7 +189,7 @@ impl Robot {
     /// The tip frame: the link that carries it, and its place there.
     #[must_use]
     pub fn tip(&self) -> FixedFrame {
-        FixedFrame { on: self.tip_on.or(self.dof().checked_sub(1)), placement: self.tool }
+        FixedFrame { on: self.tip_on.or(self.joints.len().checked_sub(1)), placement: self.tool }
     }
 
     /// Whether each row begins where the row before it ends, and the last link carries the tip.

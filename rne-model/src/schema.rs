@@ -3,14 +3,19 @@
 use std::cell::Cell;
 use std::collections::HashMap;
 
+use crate::body::bodies;
+use crate::coupling::{self, couplings};
 use crate::decode::{Context, Parameter, choice, list, not_negative, quantity, read_mapping, text};
 use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, MAX_JOINTS, Node};
+use crate::drive::drives;
 use crate::expression::{Meaning, is_identifier, is_reserved};
-use crate::frame::frames;
+use crate::frame::{carrier, frames};
 use crate::link::link;
+use crate::parallelogram::loops;
 use crate::quantity::Quantity;
 use crate::source::{is_control, is_line_break, one_line, quoted, six_digits};
+use crate::tips::{first_tip, tips};
 use crate::varying::{entry, fixed, unknown_names, unknown_settings, without_effect};
 use crate::{
     Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits, Link,
@@ -20,8 +25,15 @@ use crate::{
 /// More than every number of 64 joints with a name of its own.
 const MAX_PARAMETERS: usize = 2000;
 
+/// The robots that a caller takes, beside serial arms.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Takes {
+    pub(crate) trees: bool,
+    pub(crate) couplings: bool,
+}
+
 /// A whole robot file.
-pub(crate) fn robot(cx: &Context, node: &Node, takes_trees: bool) -> Option<Robot> {
+pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     // In another format every key may mean something else.
     if let Some(version) = node.get("format") {
         format(cx, version)?;
@@ -41,9 +53,24 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes_trees: bool) -> Option<Robo
         tool: or(Transform::IDENTITY) "tool" tool,
         frames: or(Vec::new()) "frames" |cx, list| frames(cx, list, node),
         joints: required "joints" joints,
+        _couplings: optional "couplings" |_, _| Some(()),
+        _loops: optional "loops" |_, _| Some(()),
+        _motors: optional "motors" |_, _| Some(()),
+        _bodies: optional "bodies" |_, _| Some(()),
+        _tips: optional "tips" |_, _| Some(()),
     });
-    let mut joints = joints;
-    let tip_on = tree::branches(cx, node, (format, convention), &mut joints)?;
+    let (mut joints, mut tool) = (joints, tool);
+    let mut tip_on = tree::branches(cx, node, (format, convention), &mut joints)?;
+    let tips = tips(cx, node, format, &frames)?;
+    if node.get("tool").is_none()
+        && let Some(first) = first_tip(cx, &frames, &tips, &joints)
+    {
+        (tip_on, tool) = first;
+    }
+    couplings(cx, node, format, &mut joints)?;
+    loops(cx, node, (format, convention), &mut joints)?;
+    let drives = drives(cx, node, format, &joints)?;
+    let mut bodies = bodies(cx, node, format, &joints)?;
     if let Some(node) = node.get("gravity") {
         lint::gravity_upwards(cx, node, gravity, &base);
     }
@@ -53,14 +80,19 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes_trees: bool) -> Option<Robo
         without_effect(cx);
         lint::inertias(cx, node, convention, &joints);
         lint::placeholders(cx, node, &joints);
+        lint::missing_friction(cx, node);
         // the reach of a tree is not the sum of its rows
         if joints.iter().all(|joint| joint.branch.is_none()) {
             lint::light_for_reach(cx, node, &joints);
         }
-        if !takes_trees {
+        if !takes.trees {
             tree::refuse(cx, node, &joints, tip_on);
         }
+        if !takes.couplings {
+            coupling::refuse(cx, node, &joints, &drives);
+        }
     }
+    bodies.add_to(&mut joints);
     let run_time = cx.run_time.take();
     Some(Robot {
         name,
@@ -74,7 +106,10 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes_trees: bool) -> Option<Robo
         tip_on,
         parameters,
         joints,
+        drives,
         frames,
+        tips,
+        bodies,
         at: None,
         run_time,
         rotors: false,
@@ -100,7 +135,7 @@ fn robot_name(cx: &Context, node: &Node) -> Option<String> {
 }
 
 /// A text of one line: it stands in headings and in comments of generated code.
-fn text_of_one_line(cx: &Context, node: &Node, what: &str) -> Option<String> {
+pub(crate) fn text_of_one_line(cx: &Context, node: &Node, what: &str) -> Option<String> {
     let text = printable(cx, node, &format!("the {what}"), is_line_break)?;
     if !text.contains(is_line_break) {
         return Some(text);
@@ -212,12 +247,22 @@ fn tool(cx: &Context, node: &Node) -> Option<Transform> {
 }
 
 /// A placement that run-time parameters do not change.
-fn fixed_transform(cx: &Context, node: &Node) -> Option<Transform> {
+pub(crate) fn fixed_transform(cx: &Context, node: &Node) -> Option<Transform> {
     read_mapping!(cx, node, "a placement", {
         xyz: or([0.0; 3]) "xyz" |cx, node| list(cx, node, "[x, y, z] (m)", |cx, node, _| fixed_length(cx, node)),
         rpy: or([Angle::ZERO; 3]) "rpy" roll_pitch_yaw,
     });
     Some(Transform { xyz, rpy })
+}
+
+/// Where the cut joint of a loop is on one of its links.
+pub(crate) fn end_of_loop(cx: &Context, node: &Node, names: &[String]) -> Option<FixedFrame> {
+    read_mapping!(cx, node, "an end of a loop", {
+        on: required "on" |cx, node| carrier(cx, node, names, "on"),
+        xyz: or([0.0; 3]) "xyz" |cx, node| list(cx, node, "[x, y, z] (m)", |cx, node, _| fixed_length(cx, node)),
+        rpy: or([Angle::ZERO; 3]) "rpy" roll_pitch_yaw,
+    });
+    Some(FixedFrame { on, placement: Transform { xyz, rpy } })
 }
 
 /// A length that run-time parameters do not change.
@@ -312,7 +357,18 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
     // the link that carries it is not known yet
     let branch = at.or(before).map(|placement| FixedFrame { on: index.checked_sub(1), placement });
     let row = Row { kind, dh, link };
-    Some(Joint { name, row, branch, written_inertia, limits, motor, coulomb_width, coulomb_displacement })
+    Some(Joint {
+        name,
+        row,
+        branch,
+        written_inertia,
+        limits,
+        // no joint below is known yet
+        coupling: None,
+        motor,
+        coulomb_width,
+        coulomb_displacement,
+    })
 }
 
 fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {

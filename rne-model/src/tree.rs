@@ -65,7 +65,7 @@ fn keys(item: &Node) -> Vec<(&'static str, &Node)> {
     of_joint.into_iter().chain(of_row).filter_map(|(key, node)| Some((key, node?))).collect()
 }
 
-fn needs_format_2(key: &str, node: &Node) -> Diagnostic {
+pub(crate) fn needs_format_2(key: &str, node: &Node) -> Diagnostic {
     let message = format!("the key `{key}` needs `format: 2`, and this file has `format: 1`");
     Diagnostic::error(node.head(), message)
         .label("not in `format: 1`")
@@ -124,7 +124,8 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
     }
     let carries = |joint: usize| (joint..joints.len()).any(|other| parent(joints, other) == Some(joint));
     let ends: Vec<&Joint> = joints.iter().enumerate().filter(|(at, _)| !carries(*at)).map(|(_, joint)| joint).collect();
-    if ends.len() < 2 {
+    // without `tool`, the first of `tips` is the tip
+    if ends.len() < 2 || (tool.is_none() && root.get("tips").is_some()) {
         return Some(None);
     }
     let listed: Vec<_> = ends.iter().take(6).map(|joint| quoted(&joint.name)).collect();
@@ -136,7 +137,8 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
     );
     let place = tool.or_else(|| root.get("joints")).unwrap_or(root).head();
     let help = format!(
-        "write `tool: {{on: {}}}`, with `xyz` and `rpy` if the tip is not the link frame; `frames` names other places",
+        "write `tool: {{on: {}}}`, with `xyz` and `rpy` if the tip is not the link frame; `frames` names other places, \
+         and `tips` those that carry wrenches",
         ends[0].name
     );
     cx.refuse(Diagnostic::error(place, message).label("`tool` must name a link").help(help))

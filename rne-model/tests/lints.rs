@@ -34,6 +34,32 @@ fn geometry_alone_is_told_once() {
     assert!(!found(&format!("{head}{joint}{one}")).to_string().contains("geometry only"));
 }
 
+/// One joint of three without friction is a slip; two of three, or a friction of zero, are meant.
+#[test]
+fn missing_friction_is_told() {
+    let arm = |motors: &[&str]| {
+        let joints = motors.iter().map(|motor| {
+            format!(
+                "  - {{type: revolute, dh: {{theta: 0, d: 0.1, a: 0.3, alpha: 0}}, link: {{mass: 3, inertia: \
+                 {{xx: 0.1, yy: 0.1, zz: 0.02}}}}{motor}}}\n"
+            )
+        });
+        let head = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+        found(&(head.to_owned() + &joints.collect::<String>()))
+    };
+    let [viscous, coulomb] = [", motor: {viscous: 0.1}", ", motor: {coulomb: [0.1, -0.1]}"];
+    for forgotten in ["", ", motor: {inertia: 1e-4}"] {
+        let said = arm(&[viscous, forgotten, coulomb]);
+        let [note] = &said.diagnostics[..] else { panic!("{said}") };
+        assert_eq!(note.message, "joint 2 has no friction, but all other joints have");
+        assert_eq!((note.severity, note.line), (Severity::Note, 8));
+        assert!(note.help.as_deref().is_some_and(|help| help.contains("`motor: {viscous: 0}`")), "{said}");
+    }
+    for meant in [&[viscous, ", motor: {viscous: 0}", coulomb][..], &[viscous, "", ""], &["", "", ""], &[viscous, ""]] {
+        assert_eq!(arm(meant).to_string(), "", "{meant:?}");
+    }
+}
+
 /// Three or more links that are the same ball are an exporter's; two, or links that differ, are not.
 #[test]
 fn placeholders_are_told() {

@@ -123,8 +123,9 @@ fn torque_panel(
         .zip(values)
         .map(|(&(name, colour, dash, width), values)| Curve { name, colour, dash, width, values })
         .collect();
-    let unit = robot.joints[joint].row.kind.effort_unit();
-    let name = shortened(&robot.joints[joint].name, 18);
+    let Some(of_joint) = robot.independent_joint(joint) else { return };
+    let unit = of_joint.row.kind.effort_unit();
+    let name = shortened(&of_joint.name, 18);
     let axes = panel(svg, place, &format!("τ{} {name}, {unit}", subscript(joint + 1)), &trajectory.time, &curves);
     if let Some(peak) = history.peaks.get(joint) {
         mark(svg, place, axes, *peak, unit);
@@ -158,7 +159,7 @@ fn mark(svg: &mut Svg, place: Place, (across, up): (Scale, Scale), peak: Peak, u
 }
 
 fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory) {
-    let names: Vec<String> = robot.joints.iter().map(|joint| shortened(&joint.name, 18)).collect();
+    let names: Vec<String> = robot.independent_joints().map(|joint| shortened(&joint.name, 18)).collect();
     let mut curves: Vec<Curve<'_>> = names
         .iter()
         .enumerate()

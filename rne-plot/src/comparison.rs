@@ -1,6 +1,6 @@
 //! The picture of a model beside what was measured: a panel for each joint with both torques and what is left.
 
-use rne_model::Robot;
+use rne_model::{Joint, Robot};
 
 use crate::chart::subscript;
 use crate::panels::{Panel, PanelCurve, panels};
@@ -31,10 +31,10 @@ pub fn comparison_svg(robot: &Robot, comparison: &Comparison<'_>) -> String {
         measured.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect()
     };
     let residuals: Vec<Vec<f64>> = measured.iter().zip(predicted).map(residual).collect();
-    let panel = |joint: usize| {
-        let unit = robot.joints[joint].row.kind.effort_unit();
+    let panel = |(joint, of_joint): (usize, &Joint)| {
+        let unit = of_joint.row.kind.effort_unit();
         Panel {
-            title: format!("τ{} {}, {unit}", subscript(joint + 1), robot.joints[joint].name),
+            title: format!("τ{} {}, {unit}", subscript(joint + 1), of_joint.name),
             note: notes.get(joint).cloned().unwrap_or_default(),
             curves: vec![
                 PanelCurve { name: "measured", values: &measured[joint] },
@@ -46,6 +46,6 @@ pub fn comparison_svg(robot: &Robot, comparison: &Comparison<'_>) -> String {
             bands: Vec::new(),
         }
     };
-    let all: Vec<Panel<'_>> = (0..robot.dof().min(residuals.len())).map(panel).collect();
+    let all: Vec<Panel<'_>> = robot.independent_joints().take(residuals.len()).enumerate().map(panel).collect();
     panels(&format!("Measured and predicted torques: {title}"), title, about, time, &all)
 }

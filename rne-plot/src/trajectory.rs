@@ -144,7 +144,7 @@ impl Trajectory {
             let half = if turns { half.min(PI) } else { half };
             (middle - half / 2.0, middle + half / 2.0)
         };
-        let (from, to) = robot.joints.iter().map(range).unzip();
+        let (from, to) = robot.independent_joints().map(range).unzip();
         [from, to]
     }
 
@@ -158,7 +158,7 @@ impl Trajectory {
             let limit = joint.limits.velocity.filter(|limit| *limit > 0.0)?;
             Some(FASTEST * (to - from).abs() / limit)
         };
-        robot.joints.iter().zip(from.iter().zip(to)).filter_map(duration).fold(0.0, f64::max)
+        robot.independent_joints().zip(from.iter().zip(to)).filter_map(duration).fold(0.0, f64::max)
     }
 }
 

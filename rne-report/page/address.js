@@ -35,7 +35,7 @@ function readAddress(fragment) {
 /** Shows what an address asks for; returns what it cannot show, in words. */
 function showAddress(page, fragment) {
   const { lists, words, cell, look, wrong } = readAddress(fragment);
-  const { dof } = page.inspection;
+  const { coordinates } = page.inspection;
   const fits = (key, count) => {
     if (!lists[key]) return false;
     if (lists[key].length === count) return true;
@@ -43,7 +43,7 @@ function showAddress(page, fragment) {
     return false;
   };
   const state = structuredClone(page.initial);
-  for (const of of OF) if (fits(of, dof)) state[of] = lists[of];
+  for (const of of OF) if (fits(of, coordinates.length)) state[of] = page.inspection.ofJoints(lists[of]);
   const wrench = { f: fits("f", 3) ? lists.f : [0, 0, 0], n: fits("n", 3) ? lists.n : [0, 0, 0] };
   const chosen = (group, first) => group.find((name) => words.has(name)) || first;
   const view = {
@@ -74,12 +74,15 @@ function showAddress(page, fragment) {
   return wrong;
 }
 
+/** The numbers of a list of the address: joints that follow others have none. */
+const listed = (page, ofJoints) => page.inspection.coordinates.map((joint) => ofJoints[joint]);
+
 /** The address of what a page shows. */
 function addressOf(page) {
   const view = viewOf(page);
   const parts = [];
   const isFirst = (a, b) => a.every((value, index) => value === b[index]);
-  for (const of of OF) if (!isFirst(view.state[of], page.initial[of])) parts.push(`${of}=${view.state[of].join(",")}`);
+  for (const of of OF) if (!isFirst(view.state[of], page.initial[of])) parts.push(`${of}=${listed(page, view.state[of]).join(",")}`);
   for (const of of ["f", "n"]) if (view.wrench[of].some((value) => value !== 0)) parts.push(`${of}=${view.wrench[of].join(",")}`);
   if (!isFirst(view.cell, page.firstCell)) parts.push(`cell=${view.cell.join(".")}`);
   const name = page.arm.viewName();
@@ -113,8 +116,8 @@ class Address {
 
   /** Says what an address with a part of a state does not give: `rne eval` takes 0 there. */
   note(missing) {
-    const values = missing.map((of) => `${LETTERS[of]} = (${this.page.state[of].map(typedText).join(", ")})`);
-    const zeros = missing.map((of) => `${of}=${this.page.state[of].map(() => 0).join(",")}`);
+    const values = missing.map((of) => `${LETTERS[of]} = (${listed(this.page, this.page.state[of]).map(typedText).join(", ")})`);
+    const zeros = missing.map((of) => `${of}=${listed(this.page, this.page.state[of]).map(() => 0).join(",")}`);
     byId("state-note").hidden = missing.length === 0;
     byId("state-note").textContent =
       `The address does not give ${missing.join(" and ")}, so the page takes ${values.join(" and ")} of its first view. ` +

@@ -35,6 +35,14 @@ const LAYERS = [
   ["torque", 7],
 ];
 
+/** The key of an arrow: omega-2, or r-1-5 for the lever of link 1 to joint 5, which is not the first on it. */
+const keyOfArrow = ({ quantity, joint, carries }) => `${quantity}-${joint}${carries ? `-${carries}` : ""}`;
+
+function arrowOfKey(key) {
+  const [quantity, joint, carries = 0] = key.split("-");
+  return { quantity, joint: Number(joint), carries: Number(carries) };
+}
+
 /** From where the arm can be looked at by a button. */
 const VIEWS = ["front", "top", "3D"];
 
@@ -125,9 +133,9 @@ class Arm {
     listenToHand(this);
   }
 
-  /** The arrow of a quantity of a joint; made when it is first wanted. */
-  arrow(quantity, joint) {
-    const key = `${quantity}-${joint}`;
+  /** The arrow of a quantity of a joint, or of one of several on a link; made when it is first wanted. */
+  arrow(quantity, joint, carries = 0) {
+    const key = keyOfArrow({ quantity, joint, carries });
     if (!this.arrows.has(key)) {
       const isSlide = AXIAL.includes(quantity) && this.inspection.isPrismatic(joint);
       const slides = quantity === "torque" ? ["force", false] : ["motion", false];
@@ -139,7 +147,7 @@ class Arm {
         shaft: svg("path", { class: "shaft" }),
         head: svg("path", { class: "head" }),
         part: svg("path", { class: "part" }),
-        text: svg("text", {}, of.letter, svg("tspan", { class: "sub", dy: "0.3em" }, indexText({ quantity, joint }))),
+        text: svg("text", {}, of.letter, svg("tspan", { class: "sub", dy: "0.3em" }, this.inspection.indexText({ quantity, joint, carries }))),
       };
       const node = svg(
         "g",
@@ -147,7 +155,7 @@ class Arm {
         ...Object.values(parts),
       );
       this.groups.arrows.append(node);
-      this.arrows.set(key, { key, quantity, joint, of, isAxial, node, ...parts });
+      this.arrows.set(key, { key, quantity, joint, carries, of, isAxial, node, ...parts });
     }
     return this.arrows.get(key);
   }
@@ -190,13 +198,13 @@ class Arm {
   }
 
   /** The vector of an arrow: its numbers, in its own axes, or null where the arm has none. */
-  vector({ quantity, joint, of }) {
+  vector({ quantity, joint, carries, of }) {
     if (of.drawn === "axis") {
       const name = this.inspection.nameOf(quantity, joint);
       return name && AXIAL.includes(quantity) ? [0, 0, this.value(name)] : null;
     }
     if (!of.axes) return null;
-    const names = AXES.map((axis) => this.inspection.nameOf(quantity, joint, axis));
+    const names = AXES.map((axis) => this.inspection.nameOf(quantity, joint, axis, carries));
     return names.every(Boolean) ? names.map((name) => this.value(name)) : null;
   }
 
@@ -329,19 +337,24 @@ class Arm {
 
   drawSolids(pose) {
     const { dof } = this.inspection;
-    const thick = (joint) => this.size * (0.062 - 0.03 * (joint / Math.max(dof, 4)));
+    // the joints from the base to a link
+    const depths = Array.from({ length: dof + 1 }, (_, link) => this.inspection.pathTo(link).length);
+    const thick = (joint) => this.size * (0.062 - 0.03 * (depths[joint] / Math.max(...depths, 4)));
     for (const solid of this.solids) {
       const { joint, kind } = solid;
       const radius = thick(joint);
       if (kind === "link") {
         const from = joint === 0 ? this.inspection.robot.base.xyz : pose.joints[joint];
-        const to = pose.joints[joint + 1];
-        const path = [from, joint === 0 ? to : pose.elbows[joint], to];
-        const outline = path
-          .slice(1)
-          .map((end, at) => capsule(this.project(path[at]), this.project(end), radius * 0.62));
+        const carried = this.inspection.carriedBy(joint).map((end) => pose.joints[end]);
+        // the end of a branch reaches to its centre of mass
+        const ends = carried.length ? carried : [pose.coms[joint]];
+        const paths = ends.map((to) => [from, joint === 0 ? to : pose.elbows[joint], to]);
+        const outline = paths.flatMap((path) =>
+          path.slice(1).map((end, at) => capsule(this.project(path[at]), this.project(end), radius * 0.62)),
+        );
         solid.body.setAttribute("d", outline.join(""));
-        solid.depth = path.reduce((sum, point) => sum + this.project(point).depth, 0) / 3;
+        const points = paths.flat();
+        solid.depth = points.reduce((sum, point) => sum + this.project(point).depth, 0) / points.length;
       } else {
         const axis = kind === "base" ? this.baseAxis : column(pose.rotations[joint], 2);
         const at = kind === "base" ? this.inspection.robot.base.xyz : pose.joints[joint];
@@ -448,12 +461,12 @@ class Arm {
 
   drawArrow(arrow, pose, largest) {
     const { quantity, joint, of, numbers } = arrow;
-    const frame = of.axes === "parent" ? joint - 1 : joint;
+    const frame = of.axes === "parent" ? this.inspection.parentOf(joint) : joint;
     const anchor = {
       joint: pose.joints[joint],
       axis: pose.joints[joint],
       com: pose.coms[joint],
-      lever: pose.joints[joint + 1],
+      lever: pose.joints[this.inspection.endOf(arrow)],
       position: pose.joints[joint],
     };
     const isLength = KINDS[quantity]?.[0] === "length";
@@ -496,8 +509,8 @@ class Arm {
       arrow.node.classList.remove("lit");
     }
     for (const key of arrows) {
-      const at = key.lastIndexOf("-");
-      const arrow = this.arrow(key.slice(0, at), Number(key.slice(at + 1)));
+      const { quantity, joint, carries } = arrowOfKey(key);
+      const arrow = this.arrow(quantity, joint, carries);
       if (!arrow) continue;
       arrow.isLit = true;
       arrow.component = component;

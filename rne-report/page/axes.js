@@ -30,9 +30,7 @@ class ChosenAxes {
     const { dof, robot } = this.inspection;
     if (kind === "link" || link < 1) return null;
     if (kind === "joint") return link > dof ? null : intoLectureAxes(robot.joints[link - 1], this.stateOf()[link - 1]);
-    let turned = rotationOf(this.value, 1);
-    for (let joint = 2; joint <= link; joint++) turned = product(turned, rotationOf(this.value, joint));
-    return turned;
+    return this.inspection.pathTo(link).map((joint) => rotationOf(this.value, joint)).reduce(product);
   }
 
   /** Whether the components of a name are other numbers in other axes: those of vectors, of I and of R. */
@@ -43,8 +41,8 @@ class ChosenAxes {
   }
 
   /** The names of the three components of a vector. */
-  vectorOf({ quantity, joint }) {
-    return AXES.map((axis) => this.inspection.nameOf(quantity, joint, axis));
+  vectorOf({ quantity, joint, carries }) {
+    return AXES.map((axis) => this.inspection.nameOf(quantity, joint, axis, carries));
   }
 
   /** The value of a name in axes of a kind; in link axes that of the code. */
@@ -66,7 +64,8 @@ class ChosenAxes {
     }
     // between two sets of axes that both are those of the base there is no rotation to tell of
     if (kind === "base") return this.value(name);
-    return product(product(own(joint - 1), rotationOf(this.value, joint)), transposed(own(joint)))[at[0]][at[1]];
+    const before = own(this.inspection.parentOf(joint));
+    return product(product(before, rotationOf(this.value, joint)), transposed(own(joint)))[at[0]][at[1]];
   }
 
   /** Whether a name is told in other axes than those of its equation. */
@@ -81,8 +80,9 @@ class ChosenAxes {
     const { dof } = this.inspection;
     if (link < 1 || kind === "base") return "the axes of the base";
     if (link > dof) return "the axes of the tip";
+    const parent = this.inspection.parentOf(link);
     return kind === "link"
       ? `the axes of link ${link}`
-      : `the lecture's axes of joint ${link}, fixed to ${link === 1 ? "the base" : `link ${link - 1}`}`;
+      : `the lecture's axes of joint ${link}, fixed to ${parent === 0 ? "the base" : `link ${parent}`}`;
   }
 }

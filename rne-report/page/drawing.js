@@ -71,7 +71,8 @@ class Drawing {
     const at = pose.joints[joint];
     const length = Math.abs(row.a);
     const name = inspection.robot.convention === "modified" ? null : `a${joint}`;
-    this.dimension(mark.size, mark.lengthText, at, pose.joints[joint + 1], -40, name && length > 0 ? `${name} = ${lengthText(row.a)} m` : null);
+    const [next] = inspection.carriedBy(joint);
+    this.dimension(mark.size, mark.lengthText, at, next ? pose.joints[next] : pose.frames[joint].at, -40, name && length > 0 ? `${name} = ${lengthText(row.a)} m` : null);
     const far = norm(minusV(pose.coms[joint], at));
     this.dimension(mark.com, mark.centreText, at, pose.coms[joint], 18, row.mass > 0 && far > 1e-9 ? `com ${lengthText(far)} m` : null);
   }

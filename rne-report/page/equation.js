@@ -21,7 +21,6 @@ function filledElement(of, attributes, children) {
 }
 
 const DOTS = { "\u0307": "˙", "\u0308": "¨" };
-const JOINTS_OF_BOTH = ["joint_force", "joint_moment", "child_force", "child_moment"];
 
 /** A letter such as ω̈ or (Iω): dots as accents, so that they stand over the letter in every font. */
 function letter(text) {
@@ -38,24 +37,16 @@ function letter(text) {
   return pieces.length === 1 ? pieces[0] : math("mrow", {}, ...pieces);
 }
 
-/** The index of a name: 2x, or 1,2 x for what link 1 exerts on link 2. */
-function index(meaning) {
-  const { component } = meaning;
+/** The index of a name: 2x, or 1,2 x for what link 1 exerts on link 2; `text` is the number. */
+function index({ component }, text) {
   const of = [];
-  const [first, second] = indexText(meaning).split(",");
+  const [first, second] = text.split(",");
   of.push(math("mn", {}, first));
   if (second) {
     of.push(math("mo", { separator: "true", lspace: "0", rspace: "0" }, ","), math("mn", {}, second));
   }
   if (component) of.push(math("mspace", { width: "0.12em" }), math("mi", {}, component));
   return math("mrow", {}, ...of);
-}
-
-/** The number of a name, in text: 2, or 1,2 for what link 1 exerts on link 2, whose own f2 is m c̈. */
-function indexText({ quantity, joint }) {
-  if (!JOINTS_OF_BOTH.includes(quantity)) return String(joint);
-  const end = quantity.startsWith("child") ? joint + 1 : joint;
-  return `${end - 1},${end}`;
 }
 
 class Typesetter {
@@ -70,7 +61,7 @@ class Typesetter {
     let base = letter(meaning.of.letter);
     // the vector of the next joint in the axes of this one
     if (meaning.quantity.startsWith("child")) base = math("mrow", {}, base, math("mo", {}, "′"));
-    const symbol = math("msub", {}, base, index(meaning));
+    const symbol = math("msub", {}, base, index(meaning, this.inspection.indexText(meaning)));
     if (!isPickable) return symbol;
     return math(
       "mrow",

@@ -128,7 +128,7 @@ class Exercise {
     });
     const meaning = this.inspection.meaning(name);
     for (const axis of AXES) {
-      const other = this.inspection.nameOf(meaning.quantity, meaning.joint, axis);
+      const other = this.inspection.nameOf(meaning.quantity, meaning.joint, axis, meaning.carries);
       if (other && other !== name)
         all.push({ text: `This is the ${axis} component`, value: this.equations.value(other) });
     }

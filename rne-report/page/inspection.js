@@ -25,6 +25,8 @@ class Inspection {
   constructor(data) {
     Object.assign(this, data);
     this.dof = data.robot.joints.length;
+    /** The joints that follow no other, from 0, in the order of arrays of `rne`. */
+    this.coordinates = data.robot.joints.flatMap((joint, index) => (joint.follows ? [] : [index]));
     this.components = new Map();
     for (const component of data.table) this.components.set(component.name, component);
     for (const cell of data.cells) {
@@ -54,6 +56,41 @@ class Inspection {
     }
   }
 
+  /** Gives the joints that follow others what they have in a state of those. */
+  follow(state) {
+    this.robot.joints.forEach((joint, index) => {
+      if (!joint.follows) return;
+      for (const of of OF) {
+        const sum = joint.follows.ratios.reduce((sum, [followed, ratio]) => sum + ratio * state[of][followed - 1], 0);
+        state[of][index] = of === "q" ? sum + joint.follows.offset : sum;
+      }
+    });
+    return state;
+  }
+
+  /** The arguments of a state by their names in the code: q1, qd1, qdd1; and a wrench at the tip. Followers have none. */
+  argumentsOf(state, wrench = null) {
+    const given = {};
+    for (const of of OF) {
+      for (const index of this.coordinates) given[`${of}${index + 1}`] = state[of][index];
+    }
+    if (wrench) {
+      const ends = `${this.dof}_${this.dof + 1}`;
+      ["x", "y", "z"].forEach((axis, index) => {
+        given[`f${ends}_${axis}`] = wrench.f[index];
+        given[`n${ends}_${axis}`] = wrench.n[index];
+      });
+    }
+    return given;
+  }
+
+  /** A number for each joint, from one for each coordinate; a follower has `rest`. */
+  ofJoints(ofCoordinates, rest = 0) {
+    const all = this.robot.joints.map(() => rest);
+    this.coordinates.forEach((joint, index) => (all[joint] = ofCoordinates[index]));
+    return all;
+  }
+
   /** Whether a torque depends on a cell, also by terms that vanish; the velocities of step 3 are for the reader. */
   isNeeded(cell) {
     if (!this.needed) {
@@ -79,17 +116,63 @@ class Inspection {
       .map((other) => other.name);
   }
 
+  /** The link that carries a joint or the tip, n + 1, by its joint; 0 is the base. */
+  parentOf(joint) {
+    return joint > this.dof ? this.robot.tip : joint > 0 ? this.robot.joints[joint - 1].parent : 0;
+  }
+
+  /** The joints on a link, and n + 1 where it has the tip. */
+  carriedBy(link) {
+    return Array.from({ length: this.dof + 1 }, (_, index) => index + 1).filter((joint) => this.parentOf(joint) === link);
+  }
+
+  /** The joints from the base to a link or the tip. */
+  pathTo(link) {
+    return link === 0 ? [] : [...this.pathTo(this.parentOf(link)), link];
+  }
+
+  /** The runs of joints of which each is the only one on the link of the one before. */
+  branches() {
+    const runs = [];
+    for (let joint = 1; joint <= this.dof; joint++) {
+      const parent = this.parentOf(joint);
+      const isAlone = this.carriedBy(parent).filter((other) => other <= this.dof).length === 1;
+      if (parent === joint - 1 && isAlone && runs.length) runs.at(-1).push(joint);
+      else runs.push([joint]);
+    }
+    return runs;
+  }
+
+  /** Whether some link carries no joint, or several, before the last one. */
+  isTree() {
+    return this.branches().length > 1;
+  }
+
+  /** Where a lever or what is handed on leads: a joint, or n + 1, the tip. */
+  endOf({ joint, carries = 0 }) {
+    return carries || this.carriedBy(joint)[0] || this.dof + 1;
+  }
+
+  /** The number of a name, in text: 2, or 1,2 for what link 1 exerts on link 2, whose own f2 is m c̈. */
+  indexText(meaning) {
+    const { quantity, joint, carries } = meaning;
+    if (quantity.startsWith("child_")) return `${joint},${this.endOf(meaning)}`;
+    if (quantity.startsWith("joint_force") || quantity.startsWith("joint_moment")) return `${this.parentOf(joint)},${joint}`;
+    return carries ? `${joint},${carries}` : String(joint);
+  }
+
   /** What a name means: its quantity, joint and component, and what there is to know of the quantity. */
   meaning(name) {
     const found = Object.hasOwn(this.names, name) ? this.names[name] : null;
     if (!found) return null;
-    const [quantity, joint, component = null, part = 0] = found;
-    return { name, quantity, joint, component, part, of: this.quantities[quantity] };
+    const [quantity, joint, component = null, part = 0, carries = 0] = found;
+    return { name, quantity, joint, component, part, carries, of: this.quantities[quantity] };
   }
 
   /** What a name is, in words with its own numbers. */
   words({ of, joint }) {
-    const numbers = { "h = i - 1": joint - 1, "i-1": joint - 1, i: joint };
+    const parent = this.parentOf(joint);
+    const numbers = { "h = i - 1": parent, "i-1": parent, i: joint };
     return of.meaning
       .replace(/^[^ ]*: /, "")
       .replace(/\b(link|joint|frame) (h = i - 1|i-1|i)\b/g, (_, what, which) => `${what} ${numbers[which]}`);
@@ -101,15 +184,16 @@ class Inspection {
     return this.components.get((statement && statement.component) || name) || null;
   }
 
-  /** The name of a component of a quantity. */
-  nameOf(quantity, joint, component = null) {
+  /** The name of a component of a quantity; `carries` tells levers of one link apart. */
+  nameOf(quantity, joint, component = null, carries = 0) {
+    const key = (of) => [of[0], of[1], of[2] || "", of[4] || 0].join(" ");
     if (!this.byMeaning) {
       this.byMeaning = new Map();
       for (const [name, of] of Object.entries(this.names)) {
-        if (!of[3]) this.byMeaning.set(`${of[0]} ${of[1]} ${of[2] || ""}`, name);
+        if (!of[3]) this.byMeaning.set(key(of), name);
       }
     }
-    return this.byMeaning.get(`${quantity} ${joint} ${component || ""}`) || null;
+    return this.byMeaning.get(key([quantity, joint, component, 0, carries])) || null;
   }
 
   unit(name) {
@@ -134,7 +218,7 @@ class Inspection {
   /** In whose axes the components of a vector are: the number of a frame, or null. */
   axes(meaning) {
     if (!meaning.of.axes) return null;
-    return meaning.of.axes === "parent" ? meaning.joint - 1 : meaning.joint;
+    return meaning.of.axes === "parent" ? this.parentOf(meaning.joint) : meaning.joint;
   }
 
   /** What became of a name: a number that is 0, 1 or -1 for every state, or NaN. */

@@ -49,11 +49,19 @@ class Trajectory {
   }
 }
 
+/** The joints that a joint follows, in words: `finger_a`, `− left + 0.5 × right`. */
+function followed({ follows }, joints) {
+  const factor = (size) => (size === 1 ? "" : `${exact(size)} × `);
+  const term = ([joint, ratio]) => `${ratio < 0 ? "− " : "+ "}${factor(Math.abs(ratio))}${joints[joint - 1].name}`;
+  return follows.ratios.map(term).join(" ").replace(/^\+ /, "");
+}
+
 class Sliders {
   constructor(table, inspection, state, changed) {
     this.inputs = new Map();
     this.outputs = new Map();
     const { joints } = inspection.robot;
+    this.joints = joints;
     const head = element(
       "tr",
       {},
@@ -69,6 +77,7 @@ class Sliders {
         { scope: "row" },
         String(index + 1),
         element("span", { class: "joint-name", dir: "auto" }, joint.name),
+        joint.follows ? element("span", { class: "follows" }, `follows ${followed(joint, joints)}`) : null,
       );
       row.append(name);
       for (const of of OF) {
@@ -113,6 +122,7 @@ class Sliders {
           input.value = Number(input.value) + (way * (high - low)) / (event.shiftKey ? 1000 : 100);
           input.dispatchEvent(new Event("input", { bubbles: true }));
         });
+        if (joint.follows) for (const part of [input, field, degrees]) if (part) part.disabled = true;
         this.inputs.set(`${of}${index}`, input);
         this.outputs.set(`${of}${index}`, { field, degrees, unit: unitText(unitOf) });
         const sign = degrees ? element("span", { class: "degree-sign", "aria-hidden": "true" }, "°") : null;
@@ -132,6 +142,17 @@ class Sliders {
         this.tell(state, of, index);
       });
     }
+  }
+
+  /** Shows the state of the joints that follow others, which no slider sets. */
+  tellFollowers(state) {
+    this.joints.forEach((joint, index) => {
+      if (!joint.follows) return;
+      for (const of of OF) {
+        this.inputs.get(`${of}${index}`).value = state[of][index];
+        this.tell(state, of, index);
+      }
+    });
   }
 
   tell(state, of, index) {

@@ -20,7 +20,7 @@ class Page {
     this.folded = new Program(data.programs.folded);
     this.reduced = data.programs.reduced ? new Program(data.programs.reduced) : null;
     this.equations = new Equations(inspection.components);
-    this.torques = new Torques(this.folded, new Program(data.programs.with_wrench));
+    this.torques = new Torques(inspection, this.folded, new Program(data.programs.with_wrench));
     this.axes = new ChosenAxes(inspection, (name) => this.value(name), () => this.state.q);
     this.exercise = new Exercise(inspection, this.equations, this.axes);
     this.isLecture = false;
@@ -29,6 +29,7 @@ class Page {
       qd: robot.joints.map((_, index) => [0.5, 0.8, -0.6][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
       qdd: robot.joints.map((_, index) => [1, -1.5, 2][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
     };
+    inspection.follow(this.initial);
     this.state = structuredClone(this.initial);
     this.wrench = { f: [0, 0, 0], n: [0, 0, 0] };
     this.form = "folded";
@@ -67,7 +68,7 @@ class Page {
 
     this.from = [...this.initial.q];
     this.to = ordinaryPose(robot, [-0.9, 1.1, -0.3, 0.9, -0.8, -0.9, 1.0]);
-    this.given = argumentsOf(this.state);
+    this.given = this.inspection.argumentsOf(this.state);
     this.equations.set(this.given);
     this.arm.fit([this.poseAt(this.state.q)]);
     this.retime();
@@ -80,14 +81,16 @@ class Page {
 
   poseAt(q) {
     const equations = new Equations(this.inspection.components);
-    equations.set(argumentsOf({ ...this.state, q }));
+    equations.set(this.inspection.argumentsOf({ ...this.state, q }));
     return new Pose(this.inspection, (name) => equations.value(name), q);
   }
 
   describe() {
     const { robot, generator, dof } = this.inspection;
     const mass = robot.joints.reduce((sum, joint) => sum + joint.mass, 0);
-    byId("described").textContent = `${dof} joints, ${robot.convention} Denavit-Hartenberg, ${short(mass)} kg moved`;
+    const what = this.inspection.isTree() ? `a tree of ${dof} joints` : `${dof} joints`;
+    byId("described").textContent = `${what}, ${robot.convention} Denavit-Hartenberg, ${short(mass)} kg moved`;
+    if (this.inspection.isTree()) byId("tip-link").textContent = `link ${robot.tip}`;
     byId("source").textContent = `Numbers: ${robot.source}`;
     byId("generator").textContent =
       `Written by ${generator}. The code has the vectors of link i in axes fixed to link i, z along joint i; ` +
@@ -108,6 +111,7 @@ class Page {
         state[of].slice(0, this.inspection.dof).forEach((value, index) => {
           this.state[of][index] = Number(value);
         });
+    this.inspection.follow(this.state);
     }
     this.stop();
     this.sliders.show(this.state);
@@ -116,8 +120,10 @@ class Page {
 
   /** Computes and paints everything that depends on the state. */
   update() {
+    this.inspection.follow(this.state);
+    this.sliders.tellFollowers(this.state);
     this.arm.wrench = this.wrench;
-    this.given = argumentsOf(this.state);
+    this.given = this.inspection.argumentsOf(this.state);
     this.split = this.torques.split(this.state, this.wrench);
     this.equations.set(this.given);
     if (this.reduced) this.reduced.run(this.given);
@@ -211,7 +217,8 @@ class Page {
     this.layerButtons = new Map();
     for (const [quantity] of LAYERS) {
       if (!quantities[quantity]) continue;
-      const meaning = quantities[quantity].meaning.replace("h = i - 1", "i-1");
+      const before = this.inspection.isTree() ? "h, which carries joint i," : "i-1";
+      const meaning = quantities[quantity].meaning.replace("h = i - 1", before);
       const button = element(
         "button",
         {
@@ -341,7 +348,7 @@ class Page {
       this.to = [...this.state.q];
       this.retime();
     });
-    for (let joint = 1; joint <= this.inspection.dof; joint++) {
+    for (const joint of this.inspection.coordinates.map((index) => index + 1)) {
       const button = element(
         "button",
         { type: "button", "data-plot": joint, "aria-pressed": String(joint === this.plot.joint) },
@@ -420,12 +427,27 @@ class Page {
       unfolded: Math.max(...cells.map((cell) => total(cell.before)), 1),
       folded: Math.max(...cells.map((cell) => total(cell.after)), 1),
     };
+    const branches = this.inspection.branches();
+    // a line stands before each branch
+    const begins = new Set(branches.slice(1).map(([joint]) => joint));
+    const edge = (joint) => (begins.has(joint) ? "branch" : null);
+    const columns = Array.from({ length: dof }, (_, index) => index + 1);
     const head = element(
       "tr",
       {},
       element("td", {}, "operations of joint"),
-      ...Array.from({ length: dof }, (_, joint) => element("th", { scope: "col" }, String(joint + 1))),
+      ...columns.map((joint) => element("th", { scope: "col", class: edge(joint) }, String(joint))),
     );
+    const ofBranch = ([joint, ...more]) => {
+      const parent = this.inspection.parentOf(joint);
+      const names = this.inspection.robot.joints[joint - 1].name;
+      return element(
+        "th",
+        { scope: "colgroup", colspan: 1 + more.length, class: edge(joint), title: `from joint ${joint}, ${names}` },
+        parent === 0 ? "on the base" : `on link ${parent}`,
+      );
+    };
+    const heads = begins.size ? [element("tr", { class: "branches" }, element("td", {}, "branch"), ...branches.map(ofBranch)), head] : [head];
     const body = element("tbody");
     STEPS.forEach((title, index) => {
       const row = element(
@@ -457,7 +479,7 @@ class Page {
         );
         button.counts = { unfolded: before, folded: after };
         button.isNeeded = isNeeded;
-        row.append(element("td", {}, button));
+        row.append(element("td", { class: edge(joint) }, button));
       }
       body.append(row);
     });
@@ -467,7 +489,7 @@ class Page {
         { class: "visually-hidden" },
         "operations of each step of each joint; a cell opens its equations",
       ),
-      element("thead", {}, head),
+      element("thead", {}, ...heads),
       body,
     );
   }

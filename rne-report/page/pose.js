@@ -60,18 +60,21 @@ class Pose {
     const { robot, dof } = inspection;
     const isModified = robot.convention === "modified";
     const vector = (stem) => AXES.map((axis) => value(`${stem}_${axis}`));
-    const rotation = (joint) => rotationOf(value, joint);
     const base = ofAngles(robot.base.rpy);
     this.rotations = [base];
     this.joints = [robot.base.xyz];
     this.coms = [robot.base.xyz];
     this.elbows = [robot.base.xyz];
     this.frames = [{ at: robot.base.xyz, axes: base }];
-    let at = isModified ? add(robot.base.xyz, times(column(base, 0), robot.joints[0].a)) : robot.base.xyz;
     for (let joint = 1; joint <= dof; joint++) {
       const row = robot.joints[joint - 1];
-      const turned = product(this.rotations[joint - 1], rotation(joint));
-      const [d, r] = [vector(`d${joint}`), vector(`r${joint}`)];
+      const parent = this.frames[row.parent];
+      const turned = product(this.rotations[row.parent], rotationOf(value, joint));
+      const d = vector(`d${joint}`);
+      // where its row begins
+      const begins = row.begins || { xyz: [0, 0, 0], rpy: [0, 0, 0] };
+      const start = add(parent.at, turn(parent.axes, begins.xyz));
+      const at = isModified ? add(start, times(column(product(parent.axes, ofAngles(begins.rpy)), 0), row.a)) : start;
       const b = row.d + (row.kind === "prismatic" ? q[joint - 1] : 0);
       const here = (local) => add(at, turn(turned, local));
       this.rotations.push(turned);
@@ -83,10 +86,11 @@ class Pose {
           ? { at: here([0, 0, b]), axes: turned }
           : { at: here([row.a, 0, b]), axes: product(turned, turnX(row.alpha)) },
       );
-      at = here(add(d, r));
     }
-    this.joints.push(at);
-    this.rotations.push(product(this.rotations[dof], rotation(dof + 1)));
-    this.frames.push({ at, axes: this.rotations[dof + 1] });
+    const { at, axes } = this.frames[robot.tip];
+    const tip = add(at, turn(axes, robot.tool.xyz));
+    this.joints.push(tip);
+    this.rotations.push(product(this.rotations[robot.tip], rotationOf(value, dof + 1)));
+    this.frames.push({ at: tip, axes: this.rotations[dof + 1] });
   }
 }

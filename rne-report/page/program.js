@@ -126,21 +126,3 @@ class Equations {
     return this.function(tree)();
   }
 }
-
-/** The arguments of a state by their names in the code: q1, qd1, qdd1; and a wrench at the tip of n joints. */
-function argumentsOf(state, wrench = null) {
-  const given = {};
-  for (const of of ["q", "qd", "qdd"]) {
-    state[of].forEach((value, index) => {
-      given[`${of}${index + 1}`] = value;
-    });
-  }
-  if (wrench) {
-    const ends = `${state.q.length}_${state.q.length + 1}`;
-    ["x", "y", "z"].forEach((axis, index) => {
-      given[`f${ends}_${axis}`] = wrench.f[index];
-      given[`n${ends}_${axis}`] = wrench.n[index];
-    });
-  }
-  return given;
-}

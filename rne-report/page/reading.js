@@ -20,9 +20,9 @@ class Reading {
   related(selection) {
     if (!selection) return { names: [] };
     if (selection.arrow) {
-      const at = selection.arrow.lastIndexOf("-");
-      const [quantity, joint] = [selection.arrow.slice(0, at), Number(selection.arrow.slice(at + 1))];
-      const names = [null, ...AXES].map((axis) => this.page.inspection.nameOf(quantity, joint, axis)).filter(Boolean);
+      const { quantity, joint, carries } = arrowOfKey(selection.arrow);
+      const nameOf = (axis) => this.page.inspection.nameOf(quantity, joint, axis, carries);
+      const names = [null, ...AXES].map(nameOf).filter(Boolean);
       const cell = names.map((name) => this.page.inspection.owner(name)?.cell).find(Boolean);
       const first = this.page.inspection.meaning(names[0]);
       return { names, arrows: [selection.arrow], cell, frame: first && this.page.inspection.axes(first) };
@@ -48,12 +48,12 @@ class Reading {
     const { quantity, joint, component, of } = meaning;
     const isVector = of.axes && component && component.length === 1;
     if (isVector) {
-      told.arrows = [`${quantity}-${joint}`];
+      told.arrows = [keyOfArrow(meaning)];
       told.component = AXES.indexOf(component);
       told.frame = this.page.inspection.axes(meaning);
     } else if (of.drawn === "axis") {
       told.axis = joint;
-      if (AXIAL.includes(quantity)) told.arrows = [`${quantity}-${joint}`];
+      if (AXIAL.includes(quantity)) told.arrows = [keyOfArrow(meaning)];
     } else if (of.drawn === "frame") {
       told.frame = joint;
     } else if (of.drawn === "link") {

@@ -9,20 +9,22 @@ const PARTS = [
 
 /** The torques of a state and their parts, each a list with a number per joint. */
 class Torques {
-  constructor(folded, withWrench) {
-    this.folded = folded;
-    this.withWrench = withWrench;
+  constructor(inspection, folded, withWrench) {
+    this.inspection = inspection;
+    const run = (program) => (given) => inspection.ofJoints(program.run(given));
+    this.folded = run(folded);
+    this.withWrench = run(withWrench);
   }
 
   split(state, wrench = null) {
     const still = state.q.map(() => 0);
-    const gravity = this.folded.run(argumentsOf({ q: state.q, qd: still, qdd: still }));
-    const moving = this.folded.run(argumentsOf({ q: state.q, qd: state.qd, qdd: still }));
+    const gravity = this.folded(this.inspection.argumentsOf({ q: state.q, qd: still, qdd: still }));
+    const moving = this.folded(this.inspection.argumentsOf({ q: state.q, qd: state.qd, qdd: still }));
     // last, so that the program's intermediates are those of the state
-    const free = this.folded.run(argumentsOf(state));
+    const free = this.folded(this.inspection.argumentsOf(state));
     const total =
       wrench && [...wrench.f, ...wrench.n].some((of) => of !== 0)
-        ? this.withWrench.run(argumentsOf(state, wrench))
+        ? this.withWrench(this.inspection.argumentsOf(state, wrench))
         : free;
     const less = (a, b) => a.map((value, joint) => value - b[joint]);
     return {
@@ -69,7 +71,8 @@ class Bars {
         ),
         text,
       );
-      list.append(row);
+      // no actuator is at a joint that follows others
+      if (!joint.follows) list.append(row);
       return { segments, total, text, low, high, unit: unitOf, end: 0, effort: joint.effort_limit };
     });
   }

@@ -8,10 +8,10 @@ use serde_json::{Map, Value, json};
 /// The data of a page.
 ///
 /// `robot`, `counts`, `quantities`, `reasons` and `cells` are those of the inspection of `torques`, which has
-/// equations. `names` has arrays of quantity, joint, component (or null) and part (where it is one). A component has
-/// its name, its equation and, unless it is computed, what became of it, with its reason by number. `programs` are
-/// three: `folded`, with the tip wrench as arguments `with_wrench`, and `reduced` with names of its own, for its frames
-/// are not those of the lecture.
+/// equations. `names` has arrays of quantity, joint, component (or null), part (where it is one) and what the link
+/// carries there (where it is not the first). A component has its name, its equation and, unless it is computed, what
+/// became of it, with its reason by number. `programs` are three: `folded`, with the tip wrench as arguments
+/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture.
 #[must_use]
 pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Option<&Program>) -> Value {
     let folded = Inspection::new(robot, torques);
@@ -65,9 +65,10 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
 
 /// The meaning of every name.
 fn names(inspection: &Inspection) -> Value {
-    let record = |name: &Name| match name.part {
-        None => json!([name.quantity, name.joint, name.component]),
-        Some(part) => json!([name.quantity, name.joint, name.component, part]),
+    let record = |name: &Name| match (name.part, name.carries) {
+        (None, None) => json!([name.quantity, name.joint, name.component]),
+        (Some(part), None) => json!([name.quantity, name.joint, name.component, part]),
+        (part, Some(carries)) => json!([name.quantity, name.joint, name.component, part.unwrap_or(0), carries]),
     };
     let all: Map<String, Value> = inspection.names.iter().map(|(text, name)| (text.clone(), record(name))).collect();
     Value::Object(all)

@@ -76,7 +76,7 @@ pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileE
     let parts = [
         ("title", template::text(&rne_emit::title(robot))),
         ("style", STYLE.to_owned()),
-        ("data", template::json(&data)),
+        ("data", template::json(data)),
         ("script", script),
     ];
     Ok(template::filled(HTML, &parts))

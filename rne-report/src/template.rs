@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use serde_json::Value;
+
 /// The template with every `{{name}}` replaced, in one pass: what is put in is not searched for gaps.
 pub(crate) fn filled(template: &str, parts: &[(&str, String)]) -> String {
     let mut page = String::new();
@@ -41,7 +43,8 @@ pub(crate) fn text(text: &str) -> String {
 
 /// JSON as the content of a `script` element: neither `</script>` nor `<!--` can stand in it, and nothing that a reader
 /// of HTML would take for the name of a character. In JSON these signs stand inside strings alone.
-pub(crate) fn json(value: &serde_json::Value) -> String {
+pub(crate) fn json(mut value: Value) -> String {
+    without_fractions(&mut value);
     let mut inert = String::new();
     for c in value.to_string().chars() {
         match c {
@@ -52,6 +55,24 @@ pub(crate) fn json(value: &serde_json::Value) -> String {
         }
     }
     inert
+}
+
+/// Whole numbers are written without their `.0`, which JavaScript does not need; a negative zero keeps it.
+fn without_fractions(value: &mut Value) {
+    const LARGEST: f64 = 1e9;
+    match value {
+        Value::Number(number) => {
+            let whole = number.as_f64().filter(|x| number.is_f64() && x.fract() == 0.0 && x.abs() <= LARGEST);
+            if let Some(whole) = whole.filter(|x| *x != 0.0 || x.is_sign_positive()) {
+                #[allow(clippy::cast_possible_truncation)] // it is whole and small
+                let whole = whole as i64;
+                *value = whole.into();
+            }
+        }
+        Value::Array(values) => values.iter_mut().for_each(without_fractions),
+        Value::Object(values) => values.values_mut().for_each(without_fractions),
+        _ => {}
+    }
 }
 
 /// A script without its indentation and without the lines that are comments alone: they would be a tenth of a page.
@@ -100,7 +121,7 @@ mod tests {
     #[test]
     fn json_ends_no_script_and_says_the_same() {
         let value = serde_json::json!({ "</script><!--&amp;": "\u{2028}]]>" });
-        let inert = json(&value);
+        let inert = json(value.clone());
         assert!(!inert.contains(['<', '>', '&', '\u{2028}']), "{inert}");
         assert_eq!(serde_json::from_str::<serde_json::Value>(&inert).ok(), Some(value));
     }

@@ -5,8 +5,8 @@ use std::process::Command;
 
 use rne_codegen::{Compiler, Form, Function};
 use rne_inspection::{Inspection, Tree};
-use rne_model::Robot;
-use rne_runtime::{DynArm, DynTrace, LinkTrace, Scalar};
+use rne_model::{Reader, Robot};
+use rne_runtime::{DynArm, DynTrace, LinkTrace, Pose, Scalar};
 use serde_json::{Value, json};
 
 const STATES: usize = 4;
@@ -17,15 +17,51 @@ struct Asked {
     states: Vec<[Vec<f64>; 3]>,
     /// All vectors of the links.
     traces: Vec<DynTrace<f64>>,
+    /// The frames of the links in the world.
+    poses: Vec<Vec<Pose<f64>>>,
 }
 
+/// The shipped robots that are tried, and trees by rows of either convention.
+fn robots() -> impl Iterator<Item = Robot> {
+    let (gripper, palletiser) = (include_str!("../../docs/gripper.yaml"), include_str!("../../docs/palletiser.yaml"));
+    let trees = [include_str!("../../docs/tree.yaml"), STANDARD_TREE, gripper, palletiser];
+    let tree =
+        |text| Reader::new("tree").trees().couplings().read(text).unwrap_or_else(|report| panic!("{report}")).robot;
+    let shipped = shipped::tried().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
+    shipped.chain(trees.map(tree))
+}
+
+/// A slide with two arms, on a base that is turned.
+const STANDARD_TREE: &str = "
+format: 2
+name: two_arms
+source: own
+convention: standard
+gravity: [0, 0.3, -9.8]
+base: {xyz: [0.2, 0, 0.4], rpy: [0.1, 0.2, -0.5]}
+tool: {on: elbow, xyz: [0.1, 0, 0.02], rpy: [0.1, 0, 0]}
+joints:
+  - {name: slide, type: prismatic, dh: {theta: 0.2, d: 0.1, a: 0.1, alpha: pi/2},
+     link: {mass: 4, com: [0.1, 0.2, 0], inertia: {xx: 0.2, yy: 0.3, zz: 0.25, xy: 0.02}}}
+  - {name: shoulder, type: revolute, dh: {theta: 0.3, d: 0.1, a: 0.4, alpha: -pi/2},
+     link: {mass: 2, com: [-0.2, 0.03, 0.01], inertia: {xx: 0.01, yy: 0.04, zz: 0.04, xz: 0.003}}}
+  - {name: elbow, type: revolute, dh: {theta: 0, d: 0.05, a: 0.3, alpha: 0},
+     link: {mass: 1, com: [-0.1, 0.02, 0], inertia: {xx: 0.002, yy: 0.01, zz: 0.01, yz: 0.001}}}
+  - {name: other, parent: slide, at: {xyz: [0.1, -0.2, 0.3], rpy: [0.1, 0.7, -0.3]}, type: revolute,
+     dh: {theta: 0, d: 0, a: 0.25, alpha: pi/2},
+     link: {mass: 1.5, com: [-0.12, 0, 0.03], inertia: {xx: 0.004, yy: 0.02, zz: 0.02}}}
+  - {name: blade, type: revolute, dh: {theta: 1, d: 0.1, a: 0, alpha: 0.5},
+     link: {mass: 0.6, com: [0.05, 0, 0.06], inertia: {xx: 0.001, yy: 0.003, zz: 0.003}}}
+";
+
 /// The sines and cosines of the runtime at a state, by their angles.
-fn turns(inspection: &Inspection, q: &[f64]) -> Vec<[f64; 3]> {
+fn turns(robot: &Robot, inspection: &Inspection, q: &[f64]) -> Vec<[f64; 3]> {
+    let coordinates: Vec<usize> = robot.coordinates().collect();
     let constants = &inspection.constants;
     let given = |name: &str| -> f64 {
         let joint = name.strip_prefix('q').and_then(|joint| joint.parse::<usize>().ok());
-        match joint {
-            Some(joint) => q[joint - 1],
+        match joint.and_then(|joint| coordinates.iter().position(|index| index + 1 == joint)) {
+            Some(coordinate) => q[coordinate],
             None => constants.iter().find(|(known, _)| known == name).map_or(f64::NAN, |(_, value)| *value),
         }
     };
@@ -49,7 +85,7 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
     let data = rne_report::data(&robot, &torques, &with_wrench, Some(&reduced));
     let inspection = Inspection::new(&robot, &with_wrench);
     let arm = DynArm::from_robot(&robot);
-    let (mut states, mut traces, mut asked) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut states, mut traces, mut poses, mut asked) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for _ in 0..STATES {
         let mut list = |count: usize| (0..count).map(|_| random.f64() * 4.0 - 2.0).collect::<Vec<f64>>();
         let (q, qd, qdd, force, moment) = (list(dof), list(dof), list(dof), list(3), list(3));
@@ -63,13 +99,14 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
         ]);
         let trace = arm.trace(&q, &qd, &qdd, &arm.fixed_base(), None);
         traces.push(trace.expect("one number per joint"));
+        poses.push(arm.link_poses(&q).expect("one number per joint"));
         asked.push(json!({
-            "turns": turns(&inspection, &q),
+            "turns": turns(&robot, &inspection, &q),
             "state": { "q": q, "qd": qd, "qdd": qdd },
             "wrench": { "f": force, "n": moment },
         }));
     }
-    (Asked { robot, states, traces }, json!({ "data": data, "states": asked }))
+    (Asked { robot, states, traces, poses }, json!({ "data": data, "states": asked }))
 }
 
 /// What node says to the questions; nothing where there is no node.
@@ -114,8 +151,7 @@ fn without_blanks(text: &str) -> String {
 #[test]
 fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitted() {
     let mut random = fastrand::Rng::with_seed(38);
-    let robots = shipped::tried().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
-    let (asked, questions): (Vec<Asked>, Vec<Value>) = robots.map(|robot| question(robot, &mut random)).unzip();
+    let (asked, questions): (Vec<Asked>, Vec<Value>) = robots().map(|robot| question(robot, &mut random)).unzip();
     let Some(answers) = answers(&questions) else { return };
     assert_eq!(answers.len(), asked.len());
     let mut named = (0, 0);
@@ -166,29 +202,33 @@ fn vectors(link: &LinkTrace<f64>) -> [[f64; 3]; 7] {
     [of.0, of.1, of.2, of.3, link.gravity, link.joint_force, link.joint_moment]
 }
 
-/// The arm is drawn where the runtime has it: centres of mass and ends of links by its d and r in base axes, arrows by
-/// its vectors there; and what is told in the lecture's axes and in the base's is what it has there.
+/// The arm is drawn where the runtime has it: centres of mass by the frames of its links, ends of links by its r in
+/// base axes, arrows by its vectors there; and what is told in the lecture's axes and in the base's is what it has
+/// there.
 #[test]
 fn links_and_arrows_are_where_the_runtime_has_them() {
     let mut random = fastrand::Rng::with_seed(40);
-    let robots = shipped::tried().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
-    let (asked, questions): (Vec<Asked>, Vec<Value>) = robots.map(|robot| question(robot, &mut random)).unzip();
+    let (asked, questions): (Vec<Asked>, Vec<Value>) = robots().map(|robot| question(robot, &mut random)).unzip();
     let Some(answers) = answers(&questions) else { return };
-    for (Asked { robot, traces, .. }, answer) in asked.iter().zip(&answers) {
+    for (Asked { robot, traces, poses, .. }, answer) in asked.iter().zip(&answers) {
         let name = &robot.name;
         let rpy = robot.base.rpy.map(|angle| angle.radians);
         let sum = |a: [f64; 3], b: [f64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-        for (trace, said) in traces.iter().zip(answer["answers"].as_array().expect("a list")) {
-            let mut at = robot.base.xyz;
-            if robot.convention == rne_model::Convention::Modified {
-                at = sum(at, turned(rpy, [robot.joints[0].row.dh.a, 0.0, 0.0]));
-            }
-            let links = trace.to_base().into_iter().zip(trace.to_lecture());
-            for ((link, lecture), said) in links.zip(said["links"].as_array().expect("a list")) {
-                let com = sum(at, turned(rpy, link.d));
-                at = sum(com, turned(rpy, link.r));
-                close(&numbers(&said["com"]), &com, 1e-13, name);
-                close(&numbers(&said["next"]), &at, 1e-13, name);
+        let said = answer["answers"].as_array().expect("a list");
+        for ((trace, poses), said) in traces.iter().zip(poses).zip(said) {
+            let links = trace.to_base().into_iter().zip(trace.to_lecture()).enumerate();
+            for ((index, (link, lecture)), said) in links.zip(said["links"].as_array().expect("a list")) {
+                // the runtime returns no pose of a link that follows
+                if let Some(pose) = robot.coordinates().position(|joint| joint == index).map(|at| &poses[at]) {
+                    let own = robot.joints[index].row.link.com;
+                    let com = pose.rotation.map(|row| row[0] * own[0] + row[1] * own[1] + row[2] * own[2]);
+                    let com = sum(pose.translation, com);
+                    close(&numbers(&said["com"]), &com, 1e-13, name);
+                    let carries = (0..robot.joints.len()).any(|joint| robot.parent(joint) == Some(index));
+                    if carries || robot.tip().on == Some(index) {
+                        close(&numbers(&said["next"]), &sum(com, turned(rpy, link.r)), 1e-13, name);
+                    }
+                }
                 let in_world = vectors(&link).map(|vector| turned(rpy, vector));
                 close(&numbers(&said["world"]), in_world.as_flattened(), 1e-12, name);
                 close(&numbers(&said["base"]), vectors(&link).as_flattened(), 1e-12, name);

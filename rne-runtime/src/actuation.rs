@@ -44,9 +44,9 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn actuator_torques<T: Scalar>(&self, qd: &[T], qdd: &[T]) -> Result<Vec<T>, WrongLength> {
-        self.has_length("qd", qd)?;
-        self.has_length("qdd", qdd)?;
-        Ok(self.mechanism().actuator_torques(qd, qdd))
+        let qd = &*self.of_joints("qd", qd)?;
+        let qdd = &*self.of_joints("qdd", qdd)?;
+        Ok(self.couplings.torques(self.mechanism().actuator_torques(qd, qdd)))
     }
 
     /// As [`Actuation::actuator_torques_smooth`]: friction that changes its sign within about `width`.

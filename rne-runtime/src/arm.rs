@@ -10,6 +10,7 @@ use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::Known;
+use crate::spin::Spins;
 use crate::trace::{self, LinkTrace, Trace};
 use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Payload, Scalar, Wrench};
 
@@ -164,7 +165,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Known<DOF>, S> {
         let table = table_of(&self.model, &self.branches, self.tip_on);
-        let chain = Chain { links: &self.links, tip: &self.tip, tip_link: table.tip().on };
+        let chain = Chain { links: &self.links, tip: &self.tip, tip_link: table.tip().on, spins: Spins::NONE };
         let (motors, rotors, at) = (&self.motors, self.rotors, self.at.as_ref());
         let Model { gravity, base, .. } = &self.model;
         Mechanism { per_joint: Known, chain, table, motors, rotors, gravity, base, at }

@@ -1,10 +1,38 @@
-//! Wrench of the last link at the tip: none, a given wrench, or the wrench that moves a payload.
+//! Loads at the tips: nothing, a given wrench, a wrench at each named tip, or the wrench that moves a payload.
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::link_state::{ForceMoment, LinkMotion};
+use rne_model::FixedFrame;
+
+use crate::link_frame::{Chain, Table};
+use crate::link_state::{ForceMoment, LinkLoad, LinkMotion};
 use crate::mount::Mount;
-use crate::{Payload, Scalar, Wrench};
+use crate::{Constant, Payload, Scalar, Wrench};
+
+/// A named tip: the link that carries it, and where it stands there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tip<S> {
+    link: Option<usize>,
+    mount: Mount<S>,
+}
+
+impl<S: Constant> Tip<S> {
+    pub(crate) fn new(table: Table<'_, S>, frame: &FixedFrame<S>) -> Self {
+        Self { link: frame.on, mount: Mount::of_frame(table.convention, table.rows, frame) }
+    }
+
+    /// With the wrench that the robot exerts there.
+    pub(crate) fn with<T: Scalar>(self, wrench: &Wrench<T>) -> WrenchAtTip<T> {
+        WrenchAtTip { tip: Tip { link: self.link, mount: self.mount.to() }, wrench: wrench.into() }
+    }
+}
+
+/// A wrench at a named tip, in its axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WrenchAtTip<T> {
+    tip: Tip<T>,
+    wrench: ForceMoment<T>,
+}
 
 impl<T: Scalar> Payload<T> {
     /// Wrench of the last link on the payload, at the tip, in tip axes: steps 1, 2, 4, 5 and 6 of one link more, whose
@@ -34,6 +62,8 @@ pub(crate) enum AtTip<'a, T> {
     Nothing,
     /// A force and a moment.
     Wrench(&'a Wrench<T>),
+    /// Forces and moments at named tips.
+    Wrenches(&'a [WrenchAtTip<T>]),
     /// The wrench that moves a payload.
     Payload(&'a Payload<T>),
 }
@@ -45,8 +75,32 @@ impl<'a, T> From<Option<&'a Wrench<T>>> for AtTip<'a, T> {
 }
 
 impl<T: Scalar> AtTip<'_, T> {
+    /// Puts the load on the links of the tips.
+    pub(crate) fn put<S: Constant>(self, chain: Chain<'_, S>, motions: &[LinkMotion<T>], loads: &mut [LinkLoad<T>]) {
+        if let Self::Wrenches(wrenches) = self {
+            for WrenchAtTip { tip: Tip { link, mount }, wrench } in wrenches {
+                if let Some(load) = link.and_then(|link| loads.get_mut(link)) {
+                    load.carry(&mount.rotation, &mount.r, wrench);
+                }
+            }
+        } else if let Some((load, motion)) =
+            chain.tip_link.and_then(|link| Some((loads.get_mut(link)?, motions.get(link))))
+        {
+            let mount = chain.tip.to();
+            load.carry(&mount.rotation, &mount.r, &self.wrench(motion, &mount));
+        }
+    }
+
+    /// The load that changes the mass matrix: no force does.
+    pub(crate) const fn matter(self) -> Self {
+        match self {
+            Self::Payload(_) => self,
+            _ => Self::Nothing,
+        }
+    }
+
     /// In tip axes, for the last link's motion.
-    pub(crate) fn wrench(self, last: Option<&LinkMotion<T>>, tip: &Mount<T>) -> ForceMoment<T> {
+    fn wrench(self, last: Option<&LinkMotion<T>>, tip: &Mount<T>) -> ForceMoment<T> {
         match (self, last) {
             (Self::Wrench(wrench), _) => wrench.into(),
             (Self::Payload(payload), Some(last)) => payload.wrench(last, tip),

@@ -74,7 +74,7 @@ impl DynArm {
     #[must_use]
     pub fn base_parameters(&self) -> BaseParameters {
         let columns = self.stacked_regressor();
-        let order = (0..self.dof()).flat_map(|link| ORDER.map(|index| LinkParameter { link, index }));
+        let order = (0..self.rows().len()).flat_map(|link| ORDER.map(|index| LinkParameter { link, index }));
         let largest = columns.iter().map(DVector::norm).fold(0.0, f64::max);
         let mut basis = Basis::default();
         let mut found = BaseParameters { parameters: Vec::new(), without_effect: Vec::new(), visible_rank: 0 };
@@ -120,10 +120,11 @@ impl DynArm {
 
     /// The columns of the regressor at many random states, one below the other.
     fn stacked_regressor(&self) -> Vec<DVector<f64>> {
-        let mut columns = vec![Vec::new(); self.dof() * PER_LINK];
+        let mut columns = vec![Vec::new(); self.rows().len() * PER_LINK];
         let mut random = Random(1);
         for _ in 0..STATES {
-            let q: Vec<f64> = self.rows().iter().map(|row| random.position(row)).collect();
+            let q: Vec<f64> =
+                self.couplings.joints().iter().map(|&joint| random.position(&self.rows()[joint])).collect();
             let mut rates = |most: f64| -> Vec<f64> { (0..self.dof()).map(|_| most * random.number()).collect() };
             let (qd, qdd) = (rates(3.0), rates(10.0));
             // there is one number per joint

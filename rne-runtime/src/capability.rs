@@ -325,6 +325,33 @@ pub trait MomentumObserver<const DOF: usize> {
     fn momentum_and_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> MomentumAndRate<DOF, T>;
 }
 
+/// The robot with a wrench at each of its tips: the frames of the list `tips` of the robot file, in its order. Without
+/// that list the tip frame is the only tip.
+///
+/// A wrench is what the robot exerts on its environment at the tip, in axes of the tip, as in
+/// [`inverse_dynamics_with_wrench`](InverseDynamics::inverse_dynamics_with_wrench).
+pub trait TipWrenches<const DOF: usize, const TIPS: usize> {
+    /// Torques, N m or N: τ = τ_free + Σ Jₖᵀ wₖ, with the Jacobian Jₖ of tip k.
+    #[must_use]
+    fn inverse_dynamics_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> [T; DOF];
+
+    /// Accelerations, rad/s² or m/s². See [`forward_dynamics`](ForwardDynamics::forward_dynamics).
+    #[must_use]
+    fn forward_dynamics_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> [T; DOF];
+}
+
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has
 /// the
 /// payload too. [`inverse_dynamics_with_payload`](InverseDynamics::inverse_dynamics_with_payload) belongs to

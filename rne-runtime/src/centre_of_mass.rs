@@ -98,7 +98,7 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When the argument does not have one element per joint.
     pub fn centre_of_mass<T: Scalar>(&self, q: &[T]) -> Result<[T; 3], WrongLength> {
-        self.has_length("q", q)?;
+        let q = &*self.of_joints("q", q)?;
         Ok(self.mechanism().centre_of_mass(q))
     }
 
@@ -107,7 +107,7 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When the argument does not have one element per joint.
     pub fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T]) -> Result<[Vec<T>; 3], WrongLength> {
-        self.has_length("q", q)?;
-        Ok(self.mechanism().centre_of_mass_jacobian(q))
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.couplings.rows(self.mechanism().centre_of_mass_jacobian(q)))
     }
 }

@@ -53,8 +53,8 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn coriolis_matrix<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        self.has_length("q", q)?;
-        self.has_length("qd", qd)?;
-        Ok(self.mechanism().coriolis_matrix(q, qd))
+        let q = &*self.of_joints("q", q)?;
+        let qd = &*self.of_joints("qd", qd)?;
+        Ok(self.couplings.matrix(self.mechanism().coriolis_matrix(q, qd)))
     }
 }

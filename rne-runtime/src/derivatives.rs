@@ -76,8 +76,8 @@ impl<S: Constant> DynArm<S> {
         qd: &[T],
         qdd: &[T],
     ) -> Result<DynTorqueDerivatives<T>, WrongLength> {
-        self.joints(q, qd, qdd)?;
-        let (dq, dqd) = self.mechanism().torque_derivatives(q, qd, qdd, None);
-        Ok(DynTorqueDerivatives { dq, dqd })
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        let (dq, dqd) = self.mechanism().torque_derivatives(&q, &qd, &qdd, None);
+        Ok(DynTorqueDerivatives { dq: self.couplings.matrix(dq), dqd: self.couplings.matrix(dqd) })
     }
 }

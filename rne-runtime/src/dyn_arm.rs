@@ -1,11 +1,15 @@
 //! The runtime robot with a number of joints known at run time.
 
-use rne_model::{Convention, FixedFrame, Model, Motor, Robot, Row, Transform};
+use std::borrow::Cow;
+
+use rne_model::{Convention, FixedFrame, Joint, Model, Motor, Robot, Row, Transform};
 
 use crate::at_tip::AtTip;
+use crate::couplings::Couplings;
 use crate::link_frame::{Chain, LinkFrame, Table};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
+use crate::motors::Motors;
 use crate::mount::Mount;
 use crate::per_joint::Counted;
 use crate::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
@@ -28,7 +32,11 @@ pub struct DynArm<S = f64> {
     tip: Mount<S>,
     motors: Vec<Option<Motor<S>>>,
     rotors: bool,
+    pub(crate) couplings: Couplings<S>,
+    pub(crate) drives: Motors<S>,
     pub(crate) at: Option<FixedFrame<S>>,
+    /// The frames that carry wrenches.
+    pub(crate) tips: Vec<FixedFrame<S>>,
 }
 
 /// The seven steps of one state of a [`DynArm`], in the axes of form P.
@@ -43,12 +51,15 @@ impl DynArm {
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
         let motors = robot.joints.iter().map(|joint| joint.motor).collect();
-        let rows: Vec<Row> = robot.rows().copied().collect();
+        let rows: Vec<Row> = robot.joints.iter().map(Joint::row_with_offset).collect();
         let branches: Vec<_> = robot.joints.iter().map(|joint| joint.branch).collect();
         let (convention, tool, tip_on) = (robot.convention, &robot.tool, robot.tip_on);
         let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on };
         let at = robot.at.map(|frame| robot.fixed_frame(frame));
-        Self { motors, rotors: robot.rotors, at, ..Self::of_table(table, robot.gravity, robot.base) }
+        let (couplings, drives) = (Couplings::of(robot), Motors::of(robot));
+        let rotors = robot.rotors;
+        let parts = Self::of_table(table, robot.gravity, robot.base);
+        Self { motors, rotors, couplings, drives, at, tips: robot.wrench_frames(), ..parts }
     }
 }
 
@@ -74,7 +85,10 @@ impl<S: Constant> DynArm<S> {
             tip: Mount::of_tip(table),
             motors: vec![None; rows.len()],
             rotors: false,
+            couplings: Couplings::none(rows.len()),
+            drives: Motors::NONE,
             at: None,
+            tips: vec![table.tip()],
         }
     }
 
@@ -83,8 +97,12 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When `motors` does not have one element per joint.
     pub fn with_motors(self, motors: Vec<Option<Motor<S>>>) -> Result<Self, WrongLength> {
-        self.has_length("motors", &motors)?;
-        Ok(Self { motors, ..self })
+        let (expected, found) = (self.rows.len(), motors.len());
+        if expected == found {
+            Ok(Self { motors, ..self })
+        } else {
+            Err(WrongLength { argument: "motors", expected, found })
+        }
     }
 
     /// As [`Arm::with_rotors`](crate::Arm::with_rotors): rotors belong to the arm.
@@ -93,10 +111,10 @@ impl<S: Constant> DynArm<S> {
         Self { rotors: true, ..self }
     }
 
-    /// Number of joints.
+    /// Number of coordinates: of the joints that follow no other.
     #[must_use]
     pub fn dof(&self) -> usize {
-        self.rows.len()
+        self.couplings.dof()
     }
 
     /// The table, base to tip.
@@ -168,12 +186,13 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         payload: &Payload<T>,
     ) -> Result<Vec<T>, WrongLength> {
-        let joints = self.joints(q, qd, qdd)?;
-        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Payload(payload));
-        Ok(loads.into_iter().map(|load| load.tau).collect())
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        let joints = JointMotions::new(&q, &qd, &qdd);
+        Ok(self.couplings.torques(self.mechanism().torques(joints, &self.fixed_base(), AtTip::Payload(payload))))
     }
 
-    /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.
+    /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints, and for joints that
+    /// follow others.
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
@@ -187,9 +206,10 @@ impl<S: Constant> DynArm<S> {
     ) -> Result<Vec<T>, WrongLength> {
         self.has_length("sin", sin)?;
         self.has_length("cos", cos)?;
-        let joints = JointMotions { turns: Some((sin, cos)), ..self.joints(q, qd, qdd)? };
-        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Nothing);
-        Ok(loads.into_iter().map(|load| load.tau).collect())
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        let (sin, cos) = self.couplings.turns(sin, cos, &q);
+        let joints = JointMotions { turns: Some((&sin, &cos)), ..JointMotions::new(&q, &qd, &qdd) };
+        Ok(self.couplings.torques(self.mechanism().torques(joints, &self.fixed_base(), AtTip::Nothing)))
     }
 
     /// Torques that hold the arm still against gravity, τ(q, 0, 0).
@@ -236,9 +256,9 @@ impl<S: Constant> DynArm<S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> Result<Vec<T>, WrongLength> {
-        let joints = self.joints(q, qd, qdd)?;
-        let (_, loads) = self.mechanism().passes(joints, base, wrench.into());
-        Ok(loads.into_iter().map(|load| load.tau).collect())
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        let joints = JointMotions::new(&q, &qd, &qdd);
+        Ok(self.couplings.torques(self.mechanism().torques(joints, base, wrench.into())))
     }
 
     /// Every vector of the seven steps, in the axes of form P. Arguments as in
@@ -254,7 +274,8 @@ impl<S: Constant> DynArm<S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> Result<DynTrace<T>, WrongLength> {
-        Ok(self.traced(self.joints(q, qd, qdd)?, base, wrench.into()))
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        Ok(self.traced(JointMotions::new(&q, &qd, &qdd), base, wrench.into()))
     }
 
     /// Traces the seven steps on a base at rest, with `payload` fixed to the tip.
@@ -268,28 +289,43 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         payload: &Payload<T>,
     ) -> Result<DynTrace<T>, WrongLength> {
-        Ok(self.traced(self.joints(q, qd, qdd)?, &self.fixed_base(), AtTip::Payload(payload)))
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        Ok(self.traced(JointMotions::new(&q, &qd, &qdd), &self.fixed_base(), AtTip::Payload(payload)))
     }
 
     fn traced<T: Scalar>(&self, joints: JointMotions<'_, T>, base: &BaseMotion<T>, tip: AtTip<'_, T>) -> DynTrace<T> {
         let (motions, loads) = self.mechanism().passes(joints, base, tip);
-        let mut links = vec![LinkTrace::empty(); self.dof()];
+        let mut links = vec![LinkTrace::empty(); self.rows.len()];
         let velocities = self.mechanism().velocities(joints, base, &motions);
         trace::record(self.mechanism().chain, joints.q, &velocities, &motions, &loads, &mut links);
         DynTrace { links }
     }
 
-    /// The joint arguments, one element per joint each.
-    pub(crate) fn joints<'a, T>(
+    /// The positions, rates and accelerations of all joints, from those of the coordinates.
+    #[allow(clippy::type_complexity)] // three arrays
+    pub(crate) fn of_all_joints<'a, T: Scalar>(
         &self,
         q: &'a [T],
         qd: &'a [T],
         qdd: &'a [T],
-    ) -> Result<JointMotions<'a, T>, WrongLength> {
-        for (argument, values) in [("q", q), ("qd", qd), ("qdd", qdd)] {
-            self.has_length(argument, values)?;
-        }
-        Ok(JointMotions::new(q, qd, qdd))
+    ) -> Result<(Cow<'a, [T]>, Cow<'a, [T]>, Cow<'a, [T]>), WrongLength> {
+        Ok((self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("qdd", qdd)?))
+    }
+
+    /// An argument with an element for each joint, from one with an element for each coordinate.
+    pub(crate) fn of_joints<'a, T: Scalar>(
+        &self,
+        argument: &'static str,
+        values: &'a [T],
+    ) -> Result<Cow<'a, [T]>, WrongLength> {
+        self.has_length(argument, values)?;
+        Ok(self.couplings.of_joints(values))
+    }
+
+    /// The torques of the actuators of all joints.
+    pub(crate) fn applied<'a, T: Scalar>(&self, tau: &'a [T]) -> Result<Cow<'a, [T]>, WrongLength> {
+        self.has_length("tau", tau)?;
+        Ok(self.couplings.applied(tau))
     }
 
     pub(crate) fn has_length<T>(&self, argument: &'static str, values: &[T]) -> Result<(), WrongLength> {
@@ -300,9 +336,24 @@ impl<S: Constant> DynArm<S> {
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Counted, S> {
-        let Self { convention, gravity, base, tool, rows, branches, tip_on, links, tip, motors, rotors, at } = self;
+        let Self {
+            convention,
+            gravity,
+            base,
+            tool,
+            rows,
+            branches,
+            tip_on,
+            links,
+            tip,
+            motors,
+            rotors,
+            drives,
+            at,
+            ..
+        } = self;
         let table = Table { convention: *convention, rows, branches, tool, tip_on: *tip_on };
-        let chain = Chain { links, tip, tip_link: table.tip().on };
+        let chain = Chain { links, tip, tip_link: table.tip().on, spins: drives.spins() };
         let (per_joint, rotors, at) = (Counted(rows.len()), *rotors, at.as_ref());
         Mechanism { per_joint, chain, table, motors, rotors, gravity, base, at }
     }
@@ -318,9 +369,17 @@ impl DynArm<f64> {
         let branches: Vec<_> = self.branches.iter().map(|branch| branch.map(FixedFrame::to_f32)).collect();
         let motors = self.motors.iter().map(|motor| motor.map(Motor::to_f32)).collect();
         let (convention, tool, tip_on) = (self.convention, &self.tool.to_f32(), self.tip_on);
-        let (rotors, at) = (self.rotors, self.at.map(FixedFrame::to_f32));
+        let (rotors, couplings, at) = (self.rotors, self.couplings.to_f32(), self.at.map(FixedFrame::to_f32));
         let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on };
-        DynArm { motors, rotors, at, ..DynArm::of_table(table, self.gravity.map(|x| x as f32), self.base.to_f32()) }
+        DynArm {
+            motors,
+            rotors,
+            couplings,
+            drives: self.drives.to_f32(),
+            at,
+            tips: self.tips.iter().map(|tip| tip.to_f32()).collect(),
+            ..DynArm::of_table(table, self.gravity.map(|x| x as f32), self.base.to_f32())
+        }
     }
 }
 

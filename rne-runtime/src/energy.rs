@@ -6,6 +6,8 @@
 //! V = - Σ m_i g · c_i                          c_i = R_i c̄_i + p_i from the rows of the table, in the axes of frame 0
 //! ```
 //!
+//! A rotor of the list `motors`, of spin s about the axis a on link c, adds ½ Jm s (s + 2 a · ω_c) to T.
+//!
 //! A link with a first moment h beside its mass has ċ_i · (ω_i × h_i) in T, and - g · R_i h̄_i in V.
 //!
 //! Sums run from the base to the tip; the half, and the sign, come last.
@@ -41,6 +43,13 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
                 twice += rotor.to::<T>() * (qd * qd);
             }
         }
+        let spins = self.chain.spins;
+        for spin in spins.all() {
+            let speed = spins.of_joints(spin, qd);
+            let carried = spin.on.map(|link| spin.axis.map(S::to::<T>).dot(&motions.as_ref()[link].omega));
+            let whole = carried.map_or(speed, |along| (speed + along) + along);
+            twice += (spin.inertia.to::<T>() * speed) * whole;
+        }
         twice * T::from_f64(0.5)
     }
 
@@ -75,8 +84,8 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn kinetic_energy<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<T, WrongLength> {
-        self.has_length("q", q)?;
-        self.has_length("qd", qd)?;
+        let q = &*self.of_joints("q", q)?;
+        let qd = &*self.of_joints("qd", qd)?;
         Ok(self.mechanism().kinetic_energy(q, qd))
     }
 
@@ -85,7 +94,7 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn potential_energy<T: Scalar>(&self, q: &[T]) -> Result<T, WrongLength> {
-        self.has_length("q", q)?;
+        let q = &*self.of_joints("q", q)?;
         Ok(self.mechanism().potential_energy(q))
     }
 }

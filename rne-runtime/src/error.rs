@@ -64,23 +64,37 @@ pub struct WrongJointCount {
     pub expected: usize,
     /// Joints that the robot has.
     pub found: usize,
+    /// How many of them follow others; an `Arm` has none.
+    pub followers: usize,
+    /// How many motors its list `motors` has; an `Arm` has none.
+    pub drives: usize,
 }
 
 impl fmt::Display for WrongJointCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { expected, found } = self;
+        let Self { expected, found, followers, drives } = self;
+        if *followers > 0 {
+            return write!(
+                f,
+                "{followers} of the robot's {} follow others; an `Arm` cannot have such joints, so use a `DynArm`",
+                Count(*found, "joint")
+            );
+        }
+        if *drives > 0 {
+            return write!(f, "the robot has a list `motors`; an `Arm` cannot have one, so use a `DynArm`");
+        }
         write!(f, "the robot has {}, but an `Arm<{expected}>` was asked for", Count(*found, "joint"))
     }
 }
 
 impl Error for WrongJointCount {}
 
-/// A joint argument of a [`DynArm`](crate::DynArm) does not have one element per joint.
+/// An argument of a [`DynArm`](crate::DynArm) does not have one element per joint, or `wrenches` not one per tip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongLength {
-    /// Name of the argument: `q`, `qd`, `qdd`, `sin`, `cos`, `tau` or `motors`.
+    /// Name of the argument: `q`, `qd`, `qdd`, `sin`, `cos`, `tau`, `motors`, `motor_torques` or `wrenches`.
     pub argument: &'static str,
-    /// Joints of the robot.
+    /// Joints of the robot; motors, for `motor_torques`; tips, for `wrenches`.
     pub expected: usize,
     /// Elements of the argument.
     pub found: usize,
@@ -89,7 +103,12 @@ pub struct WrongLength {
 impl fmt::Display for WrongLength {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { argument, expected, found } = self;
-        write!(f, "`{argument}` has {}, but the robot has {}", Count(*found, "element"), Count(*expected, "joint"))
+        let thing = match *argument {
+            "motor_torques" => "motor",
+            "wrenches" => "tip",
+            _ => "joint",
+        };
+        write!(f, "`{argument}` has {}, but the robot has {}", Count(*found, "element"), Count(*expected, thing))
     }
 }
 

@@ -28,7 +28,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let zeros = self.zeros();
         let bias = self.torques(JointMotions::new(q, qd, zeros.as_ref()), &self.fixed_base(), tip);
         let mut x = self.per_joint.of(|i| tau[i] - bias.as_ref()[i]);
-        let (mut m, mut inverse) = (self.mass_matrix(q, tip), zeros);
+        let (mut m, mut inverse) = (self.mass_matrix(q, tip.matter()), zeros);
         factor(m.as_mut(), inverse.as_mut());
         solve(m.as_ref(), inverse.as_ref(), x.as_mut());
         x
@@ -48,9 +48,25 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn forward_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<Vec<T>, WrongLength> {
-        self.has_length("q", q)?;
-        self.has_length("qd", qd)?;
+        self.forward_dynamics_with(q, qd, tau, AtTip::Nothing)
+    }
+
+    pub(crate) fn forward_dynamics_with<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        tip: AtTip<'_, T>,
+    ) -> Result<Vec<T>, WrongLength> {
         self.has_length("tau", tau)?;
-        Ok(self.mechanism().forward_dynamics(q, qd, tau, AtTip::Nothing))
+        let at_rest = vec![T::zero(); self.dof()];
+        let (q, qd, zeros) = self.of_all_joints(q, qd, &at_rest)?;
+        let bias = self.mechanism().torques(JointMotions::new(&q, &qd, &zeros), &self.fixed_base(), tip);
+        let mut x: Vec<T> = tau.iter().zip(self.couplings.torques(bias)).map(|(&tau, bias)| tau - bias).collect();
+        let mut m = self.couplings.symmetric(self.mechanism().mass_matrix(&q, tip.matter()));
+        let mut inverse = vec![T::zero(); self.dof()];
+        factor(&mut m, &mut inverse);
+        solve(&m, &inverse, &mut x);
+        Ok(x)
     }
 }

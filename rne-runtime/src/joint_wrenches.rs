@@ -26,12 +26,12 @@ impl<const DOF: usize, S: Constant> JointWrenches<DOF> for Arm<DOF, S> {
 
 #[cfg(feature = "std")]
 impl<S: Constant> DynArm<S> {
-    /// As [`JointWrenches::joint_wrenches`], base to tip.
+    /// As [`JointWrenches::joint_wrenches`], base to tip, for the joints that follow no other.
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn joint_wrenches<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Wrench<T>>, WrongLength> {
-        self.joints(q, qd, qdd)?;
-        Ok(self.mechanism().joint_wrenches(q, qd, qdd))
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        Ok(self.couplings.of_coordinates(self.mechanism().joint_wrenches(&q, &qd, &qdd)))
     }
 }

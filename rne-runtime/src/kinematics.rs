@@ -284,17 +284,18 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn forward_kinematics<T: Scalar>(&self, q: &[T]) -> Result<Pose<T>, WrongLength> {
-        self.has_length("q", q)?;
+        let q = &*self.of_joints("q", q)?;
         Ok(self.mechanism().forward_kinematics(q))
     }
 
-    /// As [`Kinematics::link_poses`]: the link frames in the world, base to tip.
+    /// As [`Kinematics::link_poses`]: the link frames in the world, base to tip. Links whose joints follow others have
+    /// none; [`at_frame`](Self::at_frame) finds them.
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn link_poses<T: Scalar>(&self, q: &[T]) -> Result<Vec<Pose<T>>, WrongLength> {
-        self.has_length("q", q)?;
-        Ok(self.mechanism().link_poses(q))
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.couplings.of_coordinates(self.mechanism().link_poses(q)))
     }
 
     /// As [`Kinematics::jacobian`]: six rows with one element per joint.
@@ -302,8 +303,8 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn jacobian<T: Scalar>(&self, q: &[T]) -> Result<[Vec<T>; 6], WrongLength> {
-        self.has_length("q", q)?;
-        Ok(self.mechanism().jacobian(q))
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.couplings.rows(self.mechanism().jacobian(q)))
     }
 
     /// As [`Kinematics::jacobian_rate_times_velocity`]: J̇ q̇.
@@ -311,8 +312,8 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<[T; 6], WrongLength> {
-        self.has_length("q", q)?;
-        self.has_length("qd", qd)?;
+        let q = &*self.of_joints("q", q)?;
+        let qd = &*self.of_joints("qd", qd)?;
         Ok(self.mechanism().jacobian_rate_times_velocity(q, qd))
     }
 
@@ -321,8 +322,8 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn wrench_torques<T: Scalar>(&self, q: &[T], wrench: &Wrench<T>) -> Result<Vec<T>, WrongLength> {
-        self.has_length("q", q)?;
-        Ok(self.mechanism().wrench_torques(q, wrench))
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.couplings.torques(self.mechanism().wrench_torques(q, wrench)))
     }
 
     /// This arm with the frame `frame` in the place of the tip; see [`Arm::at_frame`].
@@ -331,6 +332,6 @@ impl<S: Constant> DynArm<S> {
     #[must_use]
     pub fn at_frame(mut self, frame: FixedFrame<S>) -> Option<Self> {
         self.at = Some(frame);
-        frame.on.is_none_or(|link| link < self.dof()).then_some(self)
+        frame.on.is_none_or(|link| link < self.rows().len()).then_some(self)
     }
 }

@@ -20,6 +20,8 @@ mod capability;
 mod centre_of_mass;
 #[cfg(feature = "arm")]
 mod coriolis_matrix;
+#[cfg(all(feature = "arm", feature = "std"))]
+mod couplings;
 #[cfg(feature = "arm")]
 mod derivatives;
 mod dual;
@@ -33,6 +35,7 @@ mod error;
 mod forward_dynamics;
 #[cfg(feature = "arm")]
 mod joint;
+mod joint_order;
 #[cfg(feature = "arm")]
 mod joint_wrenches;
 #[cfg(feature = "arm")]
@@ -52,8 +55,11 @@ mod mass_matrix;
 mod mechanism;
 #[cfg(feature = "arm")]
 mod momentum;
+#[cfg(all(feature = "arm", feature = "std"))]
+mod motors;
 #[cfg(feature = "arm")]
 mod mount;
+mod names;
 mod observer;
 mod operational_space;
 mod operations;
@@ -74,10 +80,14 @@ mod scalar;
 mod seven_steps;
 mod sin_cos;
 mod smooth_sign;
+#[cfg(feature = "arm")]
+mod spin;
 #[doc(hidden)]
 pub mod testing;
 #[cfg(feature = "rayon")]
 mod threads;
+#[cfg(feature = "arm")]
+mod tip_wrenches;
 #[cfg(feature = "arm")]
 mod trace;
 mod wrench;
@@ -91,7 +101,7 @@ pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, AtFrame, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, FrameKinematics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TorqueDerivatives, frame_index,
+    PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;
@@ -100,6 +110,9 @@ pub use dual::Dual;
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
+pub use joint_order::{JointOrderError, joint_order};
+#[doc(hidden)]
+pub use names::unknown_frame;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use observer::DynObserverState;
 pub use observer::ObserverState;

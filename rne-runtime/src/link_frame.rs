@@ -19,6 +19,7 @@ use rne_model::{Angle, Convention, FixedFrame, JointKind, QuarterTurns, Row, Tra
 
 use crate::joint::JointLaws;
 use crate::mount::Mount;
+use crate::spin::Spins;
 use crate::{Constant, Scalar};
 
 /// The constants of link i and of its joint. `S` is the scalar of the table, or that of a computation after
@@ -92,6 +93,8 @@ pub(crate) struct Chain<'a, S> {
     pub(crate) tip: &'a Mount<S>,
     /// The link that carries the tip; `None` without links.
     pub(crate) tip_link: Option<usize>,
+    /// The rotors that turn on the links and on the base.
+    pub(crate) spins: Spins<'a, S>,
 }
 
 impl<S: Constant> LinkFrame<S> {

@@ -27,9 +27,13 @@ impl<const DOF: usize> Arm<DOF> {
     /// The robot of a robot file that has been read.
     ///
     /// # Errors
-    /// When the robot does not have `DOF` joints.
+    /// When the robot does not have `DOF` joints, some of its joints follow others, or it has a list `motors`:
+    /// [`DynArm`] takes such robots.
     pub fn from_robot(robot: &Robot) -> Result<Self, WrongJointCount> {
-        let model = robot.model().ok_or(WrongJointCount { expected: DOF, found: robot.dof() })?;
+        let followers = robot.joints.len() - robot.dof();
+        let drives = robot.drives.len();
+        let wrong = WrongJointCount { expected: DOF, found: robot.joints.len(), followers, drives };
+        let model = robot.model().filter(|_| followers == 0 && drives == 0).ok_or(wrong)?;
         let arm = Self::prepared(model, array::from_fn(|joint| robot.joints[joint].branch), robot.tip_on)
             .with_motors(array::from_fn(|joint| robot.joints[joint].motor));
         Ok(if robot.rotors { arm.with_rotors() } else { arm })
@@ -57,9 +61,13 @@ impl DynArm {
 fn read(path: &Path) -> Result<Robot, LoadError> {
     let bytes = read_file(path);
     let bytes = bytes.map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
-    Ok(Reader::new(&path.display().to_string()).trees().read(&bytes)?.robot)
+    Ok(reader(&path.display().to_string()).read(&bytes)?.robot)
 }
 
 fn of_text(text: &str) -> Result<Robot, LoadError> {
-    Ok(Reader::new("<yaml>").trees().read(text)?.robot)
+    Ok(reader("<yaml>").read(text)?.robot)
+}
+
+fn reader(name: &str) -> Reader<'_> {
+    Reader::new(name).trees().couplings()
 }

@@ -44,8 +44,8 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn mass_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        self.has_length("q", q)?;
-        Ok(self.mechanism().mass_matrix(q, AtTip::Nothing))
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.couplings.symmetric(self.mechanism().mass_matrix(q, AtTip::Nothing)))
     }
 
     /// As [`MassMatrix::inverse_mass_matrix`]: rows of M(q)⁻¹.

@@ -60,12 +60,14 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     ) -> (J::Of<LinkMotion<T>>, J::Of<LinkLoad<T>>) {
         let motions = self.motions(joints, base);
         let mut loads = self.per_joint.all(&LinkLoad::empty());
-        seven_steps::backward(self.chain, motions.as_ref(), tip, loads.as_mut());
+        seven_steps::backward(self.chain, joints, motions.as_ref(), tip, loads.as_mut());
         for (index, (load, &qdd)) in loads.as_mut().iter_mut().zip(joints.qdd).enumerate() {
             if let Some(rotor) = self.rotor(index) {
                 load.tau += rotor.to::<T>() * qdd;
             }
         }
+        let of_carrier = |on: Option<usize>| on.map_or(base.omega_dot.into(), |link| motions.as_ref()[link].omega_dot);
+        self.chain.spins.resist(joints.qdd, of_carrier, |joint, torque| loads.as_mut()[joint].tau += torque);
         (motions, loads)
     }
 

@@ -16,8 +16,9 @@
 //!
 //! k runs over the joints that link i carries, and over the payload at the tip; j̇_i = R_iᵀ (ċ_p + ω_p × r_i). A first
 //! moment h beside the mass adds h_i
-//! to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. The order of the operations is part of the contract; generated code
-//! repeats it.
+//! to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. A rotor of the list `motors` adds Jm s a to L of its carrier c, and n
+//! (Jm s + Jm a · ω_c) to p of each joint with which it turns. The order of the operations is part of the contract;
+//! generated code repeats it.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::JointKind;
@@ -50,7 +51,13 @@ struct Carried<T> {
 
 impl<T: Scalar> Body<T> {
     /// M_i, s_i, P_i and L_i.
-    fn of(link: &LinkFrame<T>, motion: &LinkMotion<T>, velocity: &Vector3<T>, carried: Option<&Carried<T>>) -> Self {
+    fn of(
+        link: &LinkFrame<T>,
+        motion: &LinkMotion<T>,
+        velocity: &Vector3<T>,
+        spins: impl Iterator<Item = Vector3<T>>,
+        carried: Option<&Carried<T>>,
+    ) -> Self {
         let (d, omega) = (&motion.d, &motion.omega);
         let mass = carried.map_or(link.mass, |carried| link.mass + carried.of_joints.mass);
         let (mut first_moment, mut linear) = (d * mass, velocity * link.mass);
@@ -59,6 +66,9 @@ impl<T: Scalar> Body<T> {
             first_moment += h;
             linear += omega.cross(h);
             angular += h.cross(velocity);
+        }
+        for momentum in spins {
+            angular += momentum;
         }
         match carried {
             None => Self { mass, first_moment, linear, angular: angular + d.cross(&linear) },
@@ -127,6 +137,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let (motions, velocities) = (motions.as_ref(), velocities.as_ref());
         let still = (LinkMotion::of_base(&base), Vector3::zeros());
         let e = Vector3::new(T::zero(), T::zero(), T::one());
+        let spins = self.chain.spins;
         let mut carried = self.per_joint.all(&None);
         if let (Some(link), Some(payload)) = (self.chain.tip_link, payload) {
             let tip = self.chain.tip.to::<T>();
@@ -136,7 +147,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let [mut momentum, mut rate] = [self.zeros::<T>(), self.zeros::<T>()];
         for (i, link) in self.chain.links::<T>().enumerate().rev() {
             let this = &motions[i];
-            let body = Body::of(&link, this, &velocities[i], carried.as_ref()[i].as_ref());
+            let of_spins = spins.on(i).map(|spin| spins.momentum(spin, qd));
+            let body = Body::of(&link, this, &velocities[i], of_spins, carried.as_ref()[i].as_ref());
             let turning = this.omega.cross(&e);
             let (along, of_motion, of_gravity) = match link.kind {
                 JointKind::Revolute => {
@@ -155,6 +167,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
                 *place = Some(carry(*place, body.turned(&this.rotation), &link.mount.r));
             }
         }
+        let of_carrier = |on: Option<usize>| on.map_or_else(Vector3::zeros, |link| motions[link].omega);
+        spins.resist(qd, of_carrier, |joint, more| momentum.as_mut()[joint] += more);
         [momentum, rate]
     }
 }
@@ -173,9 +187,9 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn momentum_and_rate<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<[Vec<T>; 2], WrongLength> {
-        self.has_length("q", q)?;
-        self.has_length("qd", qd)?;
-        self.has_length("tau", tau)?;
-        Ok(self.mechanism().momentum_and_rate(q, qd, tau, None))
+        let q = &*self.of_joints("q", q)?;
+        let qd = &*self.of_joints("qd", qd)?;
+        let tau = &*self.applied(tau)?;
+        Ok(self.couplings.rows(self.mechanism().momentum_and_rate(q, qd, tau, None)))
     }
 }

@@ -89,8 +89,8 @@ impl<S: Constant> DynArm<S> {
         q: &[T],
         payload: &Payload<T>,
     ) -> Result<Vec<Vec<T>>, WrongLength> {
-        self.has_length("q", q)?;
-        Ok(self.mechanism().mass_matrix(q, AtTip::Payload(payload)))
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.couplings.symmetric(self.mechanism().mass_matrix(q, AtTip::Payload(payload))))
     }
 
     /// As [`PayloadDynamics::forward_dynamics_with_payload`].
@@ -104,10 +104,7 @@ impl<S: Constant> DynArm<S> {
         tau: &[T],
         payload: &Payload<T>,
     ) -> Result<Vec<T>, WrongLength> {
-        self.has_length("q", q)?;
-        self.has_length("qd", qd)?;
-        self.has_length("tau", tau)?;
-        Ok(self.mechanism().forward_dynamics(q, qd, tau, AtTip::Payload(payload)))
+        self.forward_dynamics_with(q, qd, tau, AtTip::Payload(payload))
     }
 
     /// As [`PayloadDynamics::inverse_dynamics_derivatives_with_payload`]: rows of ∂τ/∂q and ∂τ/∂q̇.
@@ -121,9 +118,9 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         payload: &Payload<T>,
     ) -> Result<DynTorqueDerivatives<T>, WrongLength> {
-        self.joints(q, qd, qdd)?;
-        let (dq, dqd) = self.mechanism().torque_derivatives(q, qd, qdd, Some(payload));
-        Ok(DynTorqueDerivatives { dq, dqd })
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        let (dq, dqd) = self.mechanism().torque_derivatives(&q, &qd, &qdd, Some(payload));
+        Ok(DynTorqueDerivatives { dq: self.couplings.matrix(dq), dqd: self.couplings.matrix(dqd) })
     }
 
     /// As [`PayloadDynamics::momentum_and_rate_with_payload`]: the momenta, then their rates.
@@ -137,9 +134,9 @@ impl<S: Constant> DynArm<S> {
         tau: &[T],
         payload: &Payload<T>,
     ) -> Result<[Vec<T>; 2], WrongLength> {
-        self.has_length("q", q)?;
-        self.has_length("qd", qd)?;
-        self.has_length("tau", tau)?;
-        Ok(self.mechanism().momentum_and_rate(q, qd, tau, Some(payload)))
+        let q = &*self.of_joints("q", q)?;
+        let qd = &*self.of_joints("qd", qd)?;
+        let tau = &*self.applied(tau)?;
+        Ok(self.couplings.rows(self.mechanism().momentum_and_rate(q, qd, tau, Some(payload))))
     }
 }

@@ -120,7 +120,11 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Vec<[T; PER_LINK]>>, WrongLength> {
-        self.joints(q, qd, qdd)?;
-        Ok(self.mechanism().regressor(q, qd, qdd))
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        let rows = self.mechanism().regressor(&q, &qd, &qdd);
+        Ok(self.couplings.gathered(rows, |sum: Vec<[T; PER_LINK]>, row, ratio| {
+            let links = sum.into_iter().zip(row);
+            links.map(|(a, b)| array::from_fn(|i| a[i] + b[i] * ratio.to())).collect()
+        }))
     }
 }

@@ -175,21 +175,20 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
 }
 
 /// The backward pass, steps 6 and 7, from the ends to the base: each link hands its wrench on to its parent. `tip` is
-/// what the link of the tip exerts there.
+/// what the links of the tips exert there.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
+    joints: JointMotions<'_, T>,
     motions: &[LinkMotion<T>],
     tip: AtTip<'_, T>,
     loads: &mut [LinkLoad<T>],
 ) {
-    let at_tip = chain.tip_link.and_then(|link| Some((loads.get_mut(link)?, motions.get(link))));
-    if let Some((load, motion)) = at_tip {
-        let mount = chain.tip.to();
-        let tip = tip.wrench(motion, &mount);
-        load.carry(&mount.rotation, &mount.r, &tip);
-    }
+    tip.put(chain, motions, loads);
     for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
-        let inertia = inertia_wrench(&link, this);
+        let mut inertia = inertia_wrench(&link, this);
+        for spin in chain.spins.on(index) {
+            inertia.moment += chain.spins.moment(spin, joints, this);
+        }
         let joint = joint_wrench(&link, this, &inertia, loads[index].carried.as_ref());
         let tau = actuator(&link, &joint);
         loads[index] = LinkLoad { inertia, joint, tau, ..loads[index] };
@@ -206,6 +205,7 @@ mod tests {
     use super::*;
     use crate::link_frame::Table;
     use crate::mount::Mount;
+    use crate::spin::Spins;
 
     fn row(kind: JointKind, [a, d, alpha, mass]: [f64; 4]) -> Row {
         let inertia = Inertia { xx: 0.2, yy: 0.3, zz: 0.25, xy: 0.01, xz: -0.02, yz: 0.03 };
@@ -215,14 +215,15 @@ mod tests {
 
     /// Torques of links by their parents, all moved by the same numbers.
     fn torques(links: &[LinkFrame<f64>], tip: &Mount<f64>) -> Vec<f64> {
-        let chain = Chain { links, tip, tip_link: links.len().checked_sub(1) };
+        let chain = Chain { links, tip, tip_link: links.len().checked_sub(1), spins: Spins::NONE };
         let all = |value: f64| vec![value; links.len()];
         let (q, qd, qdd) = (all(0.4), all(-1.3), all(2.1));
         let base = BaseMotion { omega: [0.1, -0.4, 0.2], ..BaseMotion::fixed([0.3, 1.0, -9.81]) };
         let mut motions = vec![LinkMotion::empty(); links.len()];
         let mut loads = vec![LinkLoad::empty(); links.len()];
-        forward(chain, &base, JointMotions::new(&q, &qd, &qdd), &mut motions);
-        backward(chain, &motions, AtTip::Nothing, &mut loads);
+        let joints = JointMotions::new(&q, &qd, &qdd);
+        forward(chain, &base, joints, &mut motions);
+        backward(chain, joints, &motions, AtTip::Nothing, &mut loads);
         loads.iter().map(|load| load.tau).collect()
     }
 

@@ -51,7 +51,7 @@ joints:
 
 #[test]
 fn mistakes_are_named() {
-    let wrong = WrongJointCount { expected: 7, found: 6 };
+    let wrong = WrongJointCount { expected: 7, found: 6, followers: 0, drives: 0 };
     let error = Arm::<7>::from_file(PUMA).unwrap_err();
     assert!(matches!(error, LoadError::WrongJointCount(count) if count == wrong), "{error}");
     assert_eq!(error.to_string(), "the robot has 6 joints, but an `Arm<7>` was asked for");

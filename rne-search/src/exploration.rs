@@ -44,26 +44,24 @@ impl<'v> Exploration<'v> {
         Progress { plans: self.plans.counted(), best: self.plans.best().0, phase }
     }
 
-    /// Coordinate descent: the best of all neighbours, again and again; when none is better, neighbours of those that
-    /// cost little more. No random numbers.
+    /// Coordinate descent: each part takes the best of its choices, again and again; joints that are alike together at
+    /// first. When none is better, two changes of which the first costs little. No random numbers.
     pub(crate) fn descend(&mut self, clock: Clock<'_>) -> Result<(), Over> {
         let mut plan = self.plans.best().1.clone();
         let Some(mut weight) = self.plans.cost(&plan).map(|cost| cost.weight()) else { return Ok(()) };
         loop {
-            let mut weighed = self.weigh(&plan, clock)?;
-            weighed.sort_by_key(|(weight, _)| *weight);
-            let Some((least, best)) = weighed.first() else { return Ok(()) };
-            if *least < weight {
-                (weight, plan) = (*least, best.clone());
-                continue;
+            if self.neighbourhood.has_alike() {
+                self.settle((&mut weight, &mut plan), true, clock)?;
             }
+            self.settle((&mut weight, &mut plan), false, clock)?;
+            let mut weighed = self.weigh(self.neighbourhood.neighbours(&plan), clock)?;
+            weighed.sort_by_key(|(weight, _)| *weight);
             // A first step that costs something, and a second one that gains more.
             let limit = weight + 6;
             let mut found = None;
             'first: for (_, first) in weighed.iter().take_while(|(cost, _)| *cost <= limit) {
-                self.tick(clock, "descent")?;
                 for second in self.neighbourhood.neighbours(first) {
-                    if let Some(cost) = self.plans.cost(&second)
+                    if let Some(cost) = self.tried(&second, clock)?
                         && cost.weight() < weight
                     {
                         found = Some((cost.weight(), second));
@@ -78,15 +76,46 @@ impl<'v> Exploration<'v> {
         }
     }
 
-    /// All neighbours of a plan with their weights.
-    fn weigh(&mut self, plan: &Plan, clock: Clock<'_>) -> Result<Vec<(usize, Plan)>, Over> {
-        let mut weighed = Vec::new();
-        for (index, other) in self.neighbourhood.neighbours(plan).into_iter().enumerate() {
-            if index % 64 == 0 {
-                self.tick(clock, "descent")?;
+    /// Lets each part in turn take the best of its choices, until none changes.
+    fn settle(
+        &mut self,
+        (weight, plan): (&mut usize, &mut Plan),
+        together: bool,
+        clock: Clock<'_>,
+    ) -> Result<(), Over> {
+        loop {
+            let before = *weight;
+            for part in self.neighbourhood.parts(together) {
+                let weighed = self.weigh(self.neighbourhood.beside(plan, part, together), clock)?;
+                if let Some((least, best)) = weighed.into_iter().min_by_key(|(weight, _)| *weight)
+                    && least < *weight
+                {
+                    (*weight, *plan) = (least, best);
+                }
             }
-            if let Some(cost) = self.plans.cost(&other) {
-                weighed.push((cost.weight(), other));
+            if *weight == before {
+                return Ok(());
+            }
+        }
+    }
+
+    /// The cost of a plan, and a look at the clock now and then.
+    fn tried(&mut self, plan: &Plan, clock: Clock<'_>) -> Result<Option<Cost>, Over> {
+        let before = self.plans.counted();
+        let cost = self.plans.cost(plan);
+        if self.plans.counted() % 64 == 0 && self.plans.counted() > before {
+            self.tick(clock, "descent")?;
+        }
+        Ok(cost)
+    }
+
+    /// Plans with their weights.
+    fn weigh(&mut self, plans: Vec<Plan>, clock: Clock<'_>) -> Result<Vec<(usize, Plan)>, Over> {
+        let mut weighed = Vec::new();
+        self.tick(clock, "descent")?;
+        for plan in plans {
+            if let Some(cost) = self.tried(&plan, clock)? {
+                weighed.push((cost.weight(), plan));
             }
         }
         Ok(weighed)

@@ -4,6 +4,15 @@ use rne_codegen::plan::{Descent, Moment, OpenChoices, OriginShift, Plan, Regroup
 use rne_model::JointKind::Revolute;
 use rne_model::Robot;
 
+/// Part of a robot that makes choices of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Whole robot.
+    Arm,
+    /// A joint, counted from 0.
+    Joint(usize),
+}
+
 /// The plans beside a plan, of one robot.
 #[derive(Clone, Debug)]
 pub struct Neighbourhood(OpenChoices);
@@ -16,18 +25,53 @@ impl Neighbourhood {
     }
 
     /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group
-    /// of parallel axes shares.
+    /// of parallel axes shares; of joints that are alike, one alone or all together.
     #[must_use]
     pub fn neighbours(&self, plan: &Plan) -> Vec<Plan> {
-        let mut list = Vec::new();
-        self.of_the_arm(plan, &mut list);
-        for index in 0..self.0.joints.len() {
-            self.of_joint(plan, index, &mut list);
-            self.of_unturned_frame(plan, index, &mut list);
-            self.of_group(plan, index, &mut list);
-            self.of_gauge(plan, index, &mut list);
+        let alone = self.parts(false).into_iter().map(|part| (part, false));
+        let together = self.parts(true).into_iter().filter(|part| self.followers(*part) > 0).map(|part| (part, true));
+        alone.chain(together).flat_map(|(part, together)| self.beside(plan, part, together)).collect()
+    }
+
+    /// Parts for which a descent chooses, one after the other. Of joints that choose together, the first one stands for
+    /// all.
+    pub(crate) fn parts(&self, together: bool) -> Vec<Part> {
+        let joints = self.0.joints.iter().enumerate();
+        let first = joints.filter(|(index, joint)| !together || joint.alike.first() == Some(index));
+        [Part::Arm].into_iter().chain(first.map(|(index, _)| Part::Joint(index))).collect()
+    }
+
+    /// Whether some joints are alike, so that they can choose together.
+    pub(crate) fn has_alike(&self) -> bool {
+        self.0.joints.iter().any(|joint| joint.alike.len() > 1)
+    }
+
+    /// How many other joints are like this one.
+    fn followers(&self, part: Part) -> usize {
+        match part {
+            Part::Arm => 0,
+            Part::Joint(index) => self.0.joints[index].alike.len() - 1,
         }
-        list
+    }
+
+    /// Plans in which one part makes other choices, and, where they choose together, the joints that are like it.
+    pub(crate) fn beside(&self, plan: &Plan, part: Part, together: bool) -> Vec<Plan> {
+        let mut list = Vec::new();
+        match part {
+            Part::Arm => self.of_the_arm(plan, &mut list),
+            Part::Joint(index) => {
+                self.of_joint(plan, index, &mut list);
+                self.of_unturned_frame(plan, index, &mut list);
+                self.of_group(plan, index, &mut list);
+                self.of_gauge(plan, index, &mut list);
+            }
+        }
+        if together { list.into_iter().map(|other| self.everywhere(plan, other)).collect() } else { list }
+    }
+
+    /// The change from one plan to another, made at all joints that are alike.
+    fn everywhere(&self, from: &Plan, to: Plan) -> Plan {
+        to.followed(from, |index| &self.0.joints[index].alike)
     }
 
     fn of_the_arm(&self, plan: &Plan, list: &mut Vec<Plan>) {
@@ -47,18 +91,26 @@ impl Neighbourhood {
         if self.0.carried_prismatics {
             put(&|plan| plan.carried_prismatics = !plan.carried_prismatics);
         }
-        for &length in self.0.lengths.iter().chain(&[Scale::Default, Scale::One]) {
-            put(&|plan| (plan.length_scale, plan.force_scale) = (length, Scale::Default));
-            put(&|plan| plan.length_scale = length);
-            put(&|plan| plan.force_scale = length);
+        let all: Vec<usize> = (0..self.0.joints.len()).collect();
+        for [length, force] in self.scales(&all) {
+            put(&|plan| {
+                plan.length_scale = length.unwrap_or(plan.length_scale);
+                plan.force_scale = force.unwrap_or(plan.force_scale);
+            });
         }
-        for joint in 1..=self.0.joints.len() {
-            for axis in 0..3 {
-                put(&|plan| plan.length_scale = Scale::FirstMoment(joint, axis));
-                put(&|plan| plan.force_scale = Scale::FirstMoment(joint, axis));
-            }
-            put(&|plan| plan.force_scale = Scale::Mass(joint));
-        }
+    }
+
+    /// Scales of lengths and of forces to try, from all lengths and from the matter of some joints.
+    fn scales(&self, joints: &[usize]) -> Vec<[Option<Scale>; 2]> {
+        let lengths = self.0.lengths.iter().chain(&[Scale::Default, Scale::One]);
+        let of_lengths = lengths
+            .flat_map(|&length| [[Some(length), Some(Scale::Default)], [Some(length), None], [None, Some(length)]]);
+        let of_matter = joints.iter().flat_map(|index| {
+            let joint = index + 1;
+            let moments = (0..3).map(move |axis| Scale::FirstMoment(joint, axis));
+            moments.flat_map(|h| [[Some(h), None], [None, Some(h)]]).chain([[None, Some(Scale::Mass(joint))]])
+        });
+        of_lengths.chain(of_matter).collect()
     }
 
     fn of_joint(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
@@ -70,6 +122,14 @@ impl Neighbourhood {
                 list.push(other);
             }
         };
+        let own_scales = if row.scaled.is_empty() { Vec::new() } else { self.scales(&row.scaled) };
+        for [length, force] in own_scales {
+            put(&|plan| {
+                let joint = &mut plan.joints[index];
+                joint.length_scale = length.unwrap_or(joint.length_scale);
+                joint.force_scale = force.unwrap_or(joint.force_scale);
+            });
+        }
         for &origin_shift in &self.0.joints[index].origin_shifts {
             put(&|plan| plan.joints[index].origin_shift = origin_shift);
         }
@@ -204,7 +264,8 @@ impl Neighbourhood {
                 left -= 1;
             }
         }
-        other
+        // mostly, what is alike chooses alike
+        if self.has_alike() && rng.u32(..3) > 0 { self.everywhere(plan, other) } else { other }
     }
 
     /// Makes one random change; false when it came to nothing.
@@ -227,6 +288,12 @@ impl Neighbourhood {
             34..46 => {
                 joint.origin_shift =
                     self.0.joints[index].origin_shifts[rng.usize(..self.0.joints[index].origin_shifts.len())];
+            }
+            46..50 if !row.scaled.is_empty() => {
+                let scales = self.scales(&row.scaled);
+                let [length, force] = scales[rng.usize(..scales.len())];
+                joint.length_scale = length.unwrap_or(joint.length_scale);
+                joint.force_scale = force.unwrap_or(joint.force_scale);
             }
             46..50 => {
                 let length = *[Scale::One, Scale::Default]

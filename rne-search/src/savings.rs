@@ -10,7 +10,7 @@ use rne_model::Robot;
 pub fn without(robot: &Robot, plans: &PlanSet, tricks: &[Trick]) -> PlanSet {
     let mut without = plans.clone();
     let plan = without_tricks(&mut Descent::new(robot, &[]), &plans.plan, tricks);
-    without.plan = plan.unwrap_or_else(|| Plan::new(robot.dof()));
+    without.plan = plan.unwrap_or_else(|| Plan::new(robot.joints.len()));
     let uses = |rewritten: &Rewritten, trick: &Trick| {
         *trick == Trick::Rewriting || rewritten.plan.as_ref().is_some_and(|plan| trick.is_in(plan))
     };

@@ -102,6 +102,26 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
     }
 }
 
+/// A plan of a tree is no plan of the tree whose branch begins elsewhere.
+#[test]
+fn the_fingerprint_of_a_tree_knows_where_its_branches_begin() {
+    let fingerprint = |parent: &str, b: &str| {
+        let yaml = format!(
+            "{{format: 2, name: tree, source: test, convention: modified, gravity: [0, 0, -9.81], \
+             tool: {{on: c}}, joints: [\n  \
+             {{name: a, type: revolute, dh: {{theta: 0, d: 0, a: 0, alpha: 0}}}},\n  \
+             {{name: b, type: revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}}},\n  \
+             {{name: c, parent: {parent}, type: revolute, dh: {{b: {b}, theta: 0, d: 0, a: 1, alpha: pi/2}}}}]}}"
+        );
+        let read = rne_model::Reader::new("tree").trees().read(&yaml);
+        rne_search::fingerprint(&read.unwrap_or_else(|report| panic!("{report}")).robot)
+    };
+    let first = fingerprint("a", "0.1");
+    assert_eq!(first, fingerprint("a", "0.1"));
+    assert_ne!(first, fingerprint("a", "0.2"));
+    assert_ne!(first, fingerprint("base", "0.1"));
+}
+
 #[test]
 fn a_slip_in_a_plan_file_is_told() {
     let robot = robot("puma560");

@@ -5,10 +5,17 @@ use std::collections::HashMap;
 use common::robot;
 use rne_codegen::plan::{Formulation, Plan, PlanSet, Reference};
 use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Reason, Target};
-use rne_model::Robot;
+use rne_model::{Reader, Robot};
 use rne_search::Neighbourhood;
 
 mod common;
+#[path = "../../tests/random/motors.rs"]
+mod motors;
+#[allow(dead_code)] // arms, which are not asked for here
+#[path = "../../tests/random/robots.rs"]
+mod robots;
+#[path = "../../tests/random/trees.rs"]
+mod trees;
 
 /// The functions of one robot by the seven steps, each compiled when it is first needed.
 struct SevenSteps<'r> {
@@ -99,6 +106,14 @@ fn every_single_choice_is_the_seven_steps() {
 
 #[test]
 fn all_algorithms_under_random_plans_are_the_seven_steps() {
+    for name in ["puma560", "scara_cobra600", "stanford", "ur5", "dense6_2p"] {
+        let tried = wander_with_all_algorithms(&robot(name), rounds(40), 11);
+        assert!(tried > rounds(40) / 2, "{name}: {tried}");
+    }
+}
+
+/// Some rounds of random changes, every plan that applies proved for an algorithm in turn; how many applied.
+fn wander_with_all_algorithms(robot: &Robot, rounds: usize, seed: u64) -> usize {
     const FUNCTIONS: [Function; 5] = [
         Function::GravityTorques,
         Function::MassMatrix,
@@ -106,24 +121,23 @@ fn all_algorithms_under_random_plans_are_the_seven_steps() {
         Function::CoriolisMatrix,
         Function::InverseDynamicsDerivatives,
     ];
-    for name in ["puma560", "scara_cobra600", "stanford", "ur5", "dense6_2p"] {
-        let robot = robot(name);
-        let (neighbourhood, mut steps) = (Neighbourhood::of(&robot), SevenSteps::new(&robot));
-        let mut rng = fastrand::Rng::with_seed(11);
-        let mut plan = Plan::new(robot.dof());
-        let mut tried = 0;
-        for round in 0..rounds(40) {
-            let other = neighbourhood.random(&plan, &mut rng);
-            let function = FUNCTIONS[round % FUNCTIONS.len()];
-            let algorithms = Algorithm::of(function);
-            let algorithm = algorithms[(round / FUNCTIONS.len()) % algorithms.len()];
-            if steps.must_be_given_by(&other, function, algorithm) {
-                plan = other;
-                tried += 1;
-            }
+    let (neighbourhood, mut steps) = (Neighbourhood::of(robot), SevenSteps::new(robot));
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut plan = Plan::new(robot.dof());
+    let mut tried = 0;
+    for round in 0..rounds {
+        let other = neighbourhood.random(&plan, &mut rng);
+        let function = FUNCTIONS[round % FUNCTIONS.len()];
+        // articulated bodies are those of links alone
+        let is_of_robot = |it: &Algorithm| !(matches!(it, Algorithm::Aba(_)) && robot.has_spinning_rotors());
+        let algorithms: Vec<_> = Algorithm::of(function).iter().copied().filter(is_of_robot).collect();
+        let algorithm = algorithms[(round / FUNCTIONS.len()) % algorithms.len()];
+        if steps.must_be_given_by(&other, function, algorithm) {
+            plan = other;
+            tried += 1;
         }
-        assert!(tried > rounds(40) / 2, "{name}: {tried}");
     }
+    tried
 }
 
 /// Some rounds of random changes, every plan that applies proved for a function in turn.
@@ -157,4 +171,50 @@ fn unusual_robots_are_the_seven_steps() {
     for name in (0..seeds).map(|seed| seed.to_string()) {
         wander(&robot(&name), 8, 2);
     }
+}
+
+/// Links that carry several joints, and rows that begin at placements: every choice of a joint is one beside siblings.
+#[test]
+fn random_plans_of_trees_are_the_seven_steps() {
+    let mut tried = 0;
+    for index in 0..rounds(45) {
+        let seed = u64::try_from(index).expect("small");
+        let yaml = trees::yaml(seed, 3 + index % 6);
+        let robot = Reader::new("tree").trees().read(&yaml).unwrap_or_else(|report| panic!("{report}\n{yaml}")).robot;
+        // of many placements that are turned in any way, no reading of the numbers may have all roots
+        let plain = Plan::new(robot.dof());
+        if !SevenSteps::new(&robot).must_be_given_by(&plain, Function::InverseDynamics, Algorithm::Rnea) {
+            continue;
+        }
+        wander(&robot, 8, seed);
+        // of a joint that moves no mass, algorithms divide by zero
+        if robot.rows().all(|row| row.link.mass > 0.0 || row.link.has_first_moment()) {
+            tried += wander_with_all_algorithms(&robot, 15, seed);
+        }
+    }
+    assert!(tried > rounds(45) * 4, "{tried}");
+}
+
+/// Rotors on links: about axes that are parallel to joints or not, of motors that turn with one joint or several.
+#[test]
+fn random_plans_with_rotors_are_the_seven_steps() {
+    let mut tried = 0;
+    for index in 0..rounds(45) {
+        let seed = u64::try_from(index).expect("small");
+        let dof = 2 + index % 4;
+        let tree = trees::yaml(seed, dof);
+        let without: Vec<&str> = tree.lines().filter(|line| !line.starts_with("    motor:")).collect();
+        let yaml = without.join("\n") + "\n" + &motors::yaml(&mut fastrand::Rng::with_seed(seed), dof);
+        let reader = Reader::new("tree").trees().couplings();
+        let robot = reader.read(&yaml).unwrap_or_else(|report| panic!("{report}\n{yaml}")).robot;
+        let plain = Plan::new(robot.dof());
+        if !SevenSteps::new(&robot).must_be_given_by(&plain, Function::InverseDynamics, Algorithm::Rnea) {
+            continue;
+        }
+        wander(&robot, 4, seed);
+        if robot.rows().all(|row| row.link.mass > 0.0 || row.link.has_first_moment()) {
+            tried += wander_with_all_algorithms(&robot, 15, seed);
+        }
+    }
+    assert!(tried > rounds(45) * 4, "{tried}");
 }

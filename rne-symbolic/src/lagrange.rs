@@ -14,7 +14,7 @@ use rne_model::{Convention, JointKind};
 use crate::derivation::TooLong;
 use crate::equations::Equations;
 use crate::polynomial::Polynomial;
-use crate::rational::fraction;
+use crate::rational::{exact, fraction};
 use crate::table::{Row, Table};
 use crate::vector::{Matrix, Vector};
 
@@ -56,17 +56,35 @@ fn placed(before: &Frame, row: &Row, convention: Convention) -> (Vector, Frame) 
     }
 }
 
+/// Where the row of a joint begins, behind the frame of its parent: Rz(yaw) Ry(pitch) Rx(roll) of right angles.
+fn beginning(parent: &Frame, table: &Table, joint: usize) -> Frame {
+    let Some(branch) = &table.robot.joints[joint].branch else { return parent.clone() };
+    let number = |value: f64| Polynomial::number(exact(value));
+    let [roll, pitch, yaw] = branch.placement.rpy.map(|angle| (number(angle.sin), number(angle.cos)));
+    // Ry is Rx about another axis: Rz(π/2) Rx Rz(-π/2)
+    let quarter = Matrix::about_z(&(Polynomial::integer(1), Polynomial::zero()));
+    let about_y = &(&quarter * &Matrix::about_x(&pitch)) * &quarter.transpose();
+    let placed = parent.shifted(&Vector(branch.placement.xyz.map(number)));
+    placed.turned(&Matrix::about_z(&yaw)).turned(&about_y).turned(&Matrix::about_x(&roll))
+}
+
+/// Whether a joint turns a link.
+fn turns(table: &Table, joint: usize, link: usize) -> bool {
+    let mut carriers = std::iter::successors(Some(link), |&link| table.robot.parent(link));
+    table.rows[joint].kind == JointKind::Revolute && carriers.any(|carrier| carrier == joint)
+}
+
 /// M, the Christoffel symbols and γ.
 pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
     let dof = table.rows.len();
     let zero = Polynomial::zero();
     let mut mass_matrix = vec![vec![zero.clone(); dof]; dof];
     let mut potential = zero.clone();
-    let mut frame = Frame { rotation: Matrix::identity(), origin: Vector::zero() };
-    let mut axes: Vec<Vector> = Vec::new();
+    let base = Frame { rotation: Matrix::identity(), origin: Vector::zero() };
+    let (mut axes, mut frames): (Vec<Vector>, Vec<Frame>) = (Vec::new(), Vec::new());
     for (i, row) in table.rows.iter().enumerate() {
-        let (axis, link) = placed(&frame, row, table.convention);
-        frame = link;
+        let parent = table.robot.parent(i).map_or(&base, |parent| &frames[parent]);
+        let (axis, frame) = placed(&beginning(parent, table, i), row, table.convention);
         axes.push(axis);
         let com = frame.shifted(&row.com).origin;
         potential = potential - &row.mass * &table.gravity.dot(&com);
@@ -76,9 +94,8 @@ pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
         }
         let inertia = &(&frame.rotation * &row.inertia) * &frame.rotation.transpose();
         let linear: Vec<Vector> = (0..=i).map(|j| Vector(com.0.clone().map(|x| x.by_joint(j)))).collect();
-        let angular: Vec<Vector> = (0..=i)
-            .map(|j| if table.rows[j].kind == JointKind::Revolute { axes[j].clone() } else { Vector::zero() })
-            .collect();
+        let angular: Vec<Vector> =
+            (0..=i).map(|j| if turns(table, j, i) { axes[j].clone() } else { Vector::zero() }).collect();
         for j in 0..=i {
             for k in j..=i {
                 let mut energy = &row.mass * &linear[j].dot(&linear[k]) + angular[j].dot(&(&inertia * &angular[k]));
@@ -93,6 +110,7 @@ pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
             }
         }
         mass_matrix[i][i] = &mass_matrix[i][i] + &row.rotor;
+        frames.push(frame);
     }
     // only the upper half was summed
     let element = |j: usize, k: usize| mass_matrix[j.min(k)][j.max(k)].clone();

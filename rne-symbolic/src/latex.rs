@@ -41,12 +41,9 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
         LatexStyle::Article => article(form, title),
         LatexStyle::Body => {
             let mut text = format!("% {}; needs amsmath\n", latex_text(title));
-            for section in sections(form, Script::Latex) {
-                let mut rows = rows(&section.items, COLUMNS);
-                if !rows.is_empty() {
-                    let _ = writeln!(text, "% {}", mixed(&section.title));
-                }
-                aligned(&mut text, &mut rows);
+            for section in sections(form, Script::Latex).iter().filter(|section| is_of_equations(&section.items)) {
+                let _ = writeln!(text, "% {}", mixed(&section.title));
+                content(&mut text, &section.items, COLUMNS);
             }
             text
         }
@@ -72,18 +69,36 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
 
 /// A slide with formulas of a section; long ones go on in another slide.
 fn frame(text: &mut String, title: &str, items: &[Item]) {
-    let mut rows = rows(items, COLUMNS_OF_SLIDE);
-    if rows.is_empty() {
-        return;
+    if is_of_equations(items) {
+        let _ = writeln!(text, "\n\\begin{{frame}}[allowframebreaks]{{{title}}}\n\\small\\allowdisplaybreaks");
+        content(text, items, COLUMNS_OF_SLIDE);
+        text.push_str("\\end{frame}\n");
     }
-    let _ = writeln!(text, "\n\\begin{{frame}}[allowframebreaks]{{{title}}}\n\\small\\allowdisplaybreaks");
-    aligned(text, &mut rows);
-    text.push_str("\\end{frame}\n");
 }
 
-/// The formulas of a section as rows below one another.
-fn rows(items: &[Item], columns: usize) -> Vec<String> {
-    items.iter().flat_map(|item| rows_of(item, columns)).collect()
+/// Whether a section has equations, or the values of their letters: all others are words about the whole.
+fn is_of_equations(items: &[Item]) -> bool {
+    items.iter().any(|item| !matches!(item, Item::Words(_)))
+}
+
+/// The formulas, words and lists of a section.
+fn content(text: &mut String, items: &[Item], columns: usize) {
+    let mut rows: Vec<String> = Vec::new();
+    for item in items {
+        match item {
+            Item::Formula { .. } => rows.extend(rows_of(item, columns)),
+            Item::Words(words) => {
+                aligned(text, &mut rows);
+                let _ = writeln!(text, "\n{}\n", mixed(words));
+            }
+            Item::List(entries) => {
+                aligned(text, &mut rows);
+                let entry = |(formula, unit): &(String, String)| format!("${formula}$%\n{}", latex_unit(unit));
+                let _ = writeln!(text, "{}\n", entries.iter().map(entry).collect::<Vec<_>>().join(",\n"));
+            }
+        }
+    }
+    aligned(text, &mut rows);
 }
 
 /// The rows of an item; none of words.
@@ -102,22 +117,7 @@ fn article(form: &ClosedForm, title: &str) -> String {
         if !section.title.is_empty() {
             let _ = writeln!(text, "\n\\subsection*{{{}}}", mixed(&section.title));
         }
-        let mut rows: Vec<String> = Vec::new();
-        for item in section.items {
-            match item {
-                item @ Item::Formula { .. } => rows.extend(rows_of(&item, COLUMNS)),
-                Item::Words(words) => {
-                    aligned(&mut text, &mut rows);
-                    let _ = writeln!(text, "\n{}\n", mixed(&words));
-                }
-                Item::List(entries) => {
-                    aligned(&mut text, &mut rows);
-                    let entry = |(formula, unit): &(String, String)| format!("${formula}$%\n{}", latex_unit(unit));
-                    let _ = writeln!(text, "{}\n", entries.iter().map(entry).collect::<Vec<_>>().join(",\n"));
-                }
-            }
-        }
-        aligned(&mut text, &mut rows);
+        content(&mut text, &section.items, COLUMNS);
     }
     text.push_str("\\end{document}\n");
     text

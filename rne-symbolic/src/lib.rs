@@ -80,8 +80,11 @@ pub struct ClosedForm {
 /// More joints than these have no form that fits a page, unless they all slide.
 const MOST_JOINTS: usize = 4;
 
-/// The equations of an arm, if they are short enough.
+/// The equations of an arm, if they are short enough and have only the angles of the table.
 fn equations(table: &Table) -> Result<(Equations, Written), TooLong> {
+    if table.oblique().is_some() {
+        return Err(TooLong);
+    }
     let equations = Equations::sorted(&Derivation::new(table, &[])?.torques());
     let written = Written::of(table, &equations)?;
     Ok((equations, written))

@@ -2,7 +2,7 @@
 //! they take of each link.
 
 use rne_codegen::Quantity;
-use rne_model::{Convention, JointKind};
+use rne_model::{Convention, JointKind, one_line};
 
 use crate::collected::Collector;
 use crate::derivation::Derivation;
@@ -50,18 +50,17 @@ const BACKWARD: [Formula; 4] = [
     (["τi", r"\tau_i"], ["e · np,i", r"e \cdot n_{p,i}"]),
 ];
 
-/// The formulas, the constants of each link, and the letters.
+/// The formulas, the constants of each link, and the letters; of a tree the reason why there is no closed form.
 pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Section> {
     let script = composer.notation.script;
-    let mut why = vec![format!(
-        "The closed form of these {} joints is too long to be read: a torque takes more than {MOST_LINES} lines, or \
-         has more than {MOST_TERMS} terms multiplied out. So here is the recursion that gives it, in the same letters.",
-        form.joints()
-    )];
+    let mut why = vec![no_closed_form(form)];
     if let Some(joints) = form.shorter {
         why.extend([String::new(), format!(" The arm up to joint {joints} has a closed form that fits.")]);
     }
     let mut sections = vec![Section { title: Vec::new(), items: vec![Item::Words(why)] }];
+    if !form.table.robot.is_serial() {
+        return sections;
+    }
     let formula = |(left, right): &Formula| {
         let at = usize::from(script == Script::Latex);
         let right = Pieces::of_terms(&[(right[at].to_owned(), right[0].to_owned())]);
@@ -134,6 +133,27 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     sections.push(Section { title: title("Of each link, in the frame at its joint, z along the joint's axis"), items });
     sections.extend(letters(composer, &form.table, &used(seen.iter())));
     sections
+}
+
+/// Why there is no closed form, and of a serial arm what follows.
+fn no_closed_form(form: &ClosedForm) -> String {
+    if let Some(row) = form.table.oblique() {
+        let name = one_line(&form.table.robot.joints[row].name);
+        return format!(
+            "There is no closed form, because the row of {name} begins at an angle (`gamma` or `rpy` of `at`) that is \
+             not a multiple of pi/2."
+        );
+    }
+    let long = format!(
+        "The closed form of these {} joints is too long to be read: a torque takes more than {MOST_LINES} lines, or \
+         has more than {MOST_TERMS} terms multiplied out.",
+        form.joints()
+    );
+    if form.table.robot.is_serial() {
+        long + " So here is the recursion that gives it, in the same letters."
+    } else {
+        long
+    }
 }
 
 /// The terms of sliding joints, rotors and first moments without mass, in words.

@@ -5,7 +5,7 @@
 //! I2_xx.
 
 use rne_model::{
-    Angle as Turn, Convention, Entry, Formula, Inertia, InertiaElement, InertiaReference, JointKind, Robot,
+    Angle as Turn, Convention, Entry, FixedFrame, Formula, Inertia, InertiaElement, InertiaReference, JointKind, Robot,
 };
 
 use crate::polynomial::Polynomial;
@@ -203,10 +203,11 @@ impl Table {
         let mut rows = Vec::with_capacity(robot_rows.len());
         let mut offsets = Vec::new();
         for (i, row) in robot_rows.iter().enumerate() {
-            // row i of a modified table has the length and the twist behind link i - 1
+            // row i of a modified table has the length and the twist behind link i - 1; in a tree several rows have
+            // those of one link
             let behind = match robot.convention {
-                Convention::Standard => i + 1,
-                Convention::Modified => i,
+                Convention::Modified if robot.is_serial() => i,
+                _ => i + 1,
             };
             let length = (Kind::Other, "m");
             let a = letters.entry(Entry::A(i), row.dh.a, &format!("a{behind}"), length);
@@ -238,7 +239,16 @@ impl Table {
         constants.distinguish(structure(&robot_rows.iter().map(|row| row.kind).collect::<Vec<_>>()));
         let mut robot = robot.clone();
         robot.joints.truncate(rows.len());
+        // the tip is free: no torque depends on its place
+        robot.tip_on = None;
         Self { convention: robot.convention, robot, rows, gravity, constants, angles, offsets }
+    }
+
+    /// The row that begins at an angle that is not a multiple of a right angle, counted from 0: no fractions tell its
+    /// sine.
+    pub(crate) fn oblique(&self) -> Option<usize> {
+        let is_oblique = |branch: &FixedFrame| branch.placement.rpy.iter().any(|angle| angle.right.is_none());
+        self.robot.joints.iter().position(|joint| joint.branch.as_ref().is_some_and(is_oblique))
     }
 
     /// The values of all letters in a state of the arm: positions, rates and accelerations of the joint variables q.

@@ -55,8 +55,35 @@ joints:
      link: {mass: m/k, com: [0, 1/k - r/(k*l), 0.2], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}",
 ];
 
+/// Two pendulums on a cart, and two arms on a column, one of which slides.
+const TREES: [&str; 2] = [
+    "parameters: {M: 3, m1: 1, m2: 2, l1: 0.4, l2: 0.7, g: 9.81}
+convention: standard
+gravity: [0, -g, 0]
+tool: {on: long}
+joints:
+  - {name: cart, parent: base, at: {xyz: [0, 0, 0], rpy: [0, pi/2, 0]}, type: prismatic,
+     dh: {theta: 0, d: 0, a: 0, alpha: -pi/2}, link: {mass: M}}
+  - {name: short, parent: cart, at: {xyz: [0.1, 0.2, 0], rpy: [pi/2, 0, 0]}, type: revolute,
+     dh: {theta: -pi/2, d: 0, a: l1, alpha: 0}, link: {mass: m1}}
+  - {name: long, parent: cart, at: {xyz: [-0.1, 0.2, 0.5], rpy: [pi/2, pi, -pi/2]}, type: revolute,
+     dh: {theta: 0, d: 0, a: l2, alpha: 0}, link: {mass: m2, com: [-l2/4, 0, 0.1], inertia: {zz: 0.02, yy: 0.02}}}",
+    "parameters: {h: 0.5, a: 0.3, m: 2}
+convention: modified
+gravity: [0.5, 0, -9.81]
+tool: {on: left}
+joints:
+  - {name: column, type: revolute, dh: {theta: 0, d: h, a: 0, alpha: 0}, motor: {inertia: 0.002, gear_ratio: 50},
+     link: {mass: 12, com: [0.1, 0.2, 0], inertia: {xx: 0.3, yy: 0.3, zz: 0.2, xy: 0.01}}}
+  - {name: left, parent: column, type: revolute, dh: {gamma: pi/2, b: 0.3, theta: 0.2, d: 0.1, a: a, alpha: pi/2},
+     link: {mass: m, com: [0.2, 0, 0.04], inertia: {xx: 0.01, yy: 0.03, zz: 0.03, yz: 0.002}}}
+  - {name: right, parent: column, type: prismatic, dh: {gamma: -pi/2, b: -0.3, theta: 0, d: 0, a: a, alpha: 0.4},
+     link: {mass: m, com: [0.2, 0.1, 0], inertia: {yy: 0.03, zz: 0.03}}}",
+];
+
 pub(crate) fn robot(text: &str) -> Robot {
-    let text = format!("format: 1\nname: arm\nsource: a test\n{text}\n");
+    let format = if text.contains("parent:") { 2 } else { 1 };
+    let text = format!("format: {format}\nname: arm\nsource: a test\n{text}\n");
     read("arm.yaml", text.as_bytes()).unwrap_or_else(|report| panic!("{report}\n{text}"))
 }
 
@@ -120,11 +147,14 @@ fn without_mass(mut robot: Robot) -> Robot {
 /// The arms of every test below: textbook, shipped, random.
 fn robots() -> Vec<Robot> {
     let textbook = TEXTBOOK.map(robot);
+    let trees = TREES.map(robot);
     let first = [("stanford", 3), ("puma560", 3), ("puma560_mdh", 3), ("ur5", 3), ("fr3", 2), ("jaco", 2)];
     let first = first.map(|(name, joints)| up_to(&shipped(name), joints));
     let whole = ["planar1", "planar2", "planar3", "cylindrical_rpp", "gantry_ppp", "scara_cobra600", "spherical_rrp"];
     textbook
         .into_iter()
+        .chain(trees.iter().cloned())
+        .chain(trees.clone().map(Robot::with_rotors))
         .chain(first)
         .chain(whole.map(shipped))
         .chain(random_robots(60))
@@ -172,6 +202,20 @@ fn the_parts_are_the_torque() {
             assert_eq!(equations.torque(joint), *torque);
         }
     }
+}
+
+/// Joints of different branches have no mass in common, and a placement at other angles has no fractions.
+#[test]
+fn a_tree_has_a_closed_form() {
+    for tree in TREES {
+        let form = crate::ClosedForm::of(&robot(tree), 3);
+        assert_eq!(form.is_lagranges(), Some(true));
+        let mass = form.mass(1, 2);
+        assert!(mass.is_none_or(|mass| mass == "0"), "{tree}");
+    }
+    let oblique = robot(&TREES[1].replace("gamma: pi/2", "gamma: 0.4"));
+    let text = crate::ClosedForm::of(&oblique, 3).text();
+    assert!(text.contains("the row of left begins at an angle"), "{text}");
 }
 
 /// A pendulum of a first moment: no mass, no square of its lever.

@@ -2,7 +2,6 @@
 
 use nalgebra::DMatrix;
 use rne_identify::{FittedModel, FrictionParameter, LEAST_FRICTION, LIGHT_ARM, SLOWEST, Structure};
-use rne_model::PER_LINK;
 
 use crate::selection::Statistic;
 
@@ -15,7 +14,7 @@ pub enum Candidate {
     Viscous(usize),
     /// The part of a joint's torque that does not depend on the motion, N m or N.
     Offset(usize),
-    /// The mass that the last link carries in addition, kg.
+    /// The mass that the link with the tip carries in addition, kg.
     Payload,
     /// The delay of the efforts against the positions, s.
     Delay,
@@ -77,10 +76,9 @@ impl Candidate {
             Self::Delay => unit(structure.options().delay.then(|| structure.count() - 1)),
             Self::Gain(joint) => unit(Some(structure.count() + joint)),
             Self::Payload => {
-                let regrouping = &structure.parameters().regrouping;
-                let tip = PER_LINK * (structure.dof() - 1);
                 let mut columns = DMatrix::zeros(count, MOMENTS);
-                columns.view_mut((0, 0), (regrouping.nrows(), MOMENTS)).copy_from(&regrouping.columns(tip, MOMENTS));
+                let rank = structure.parameters().rank();
+                columns.view_mut((0, 0), (rank, MOMENTS)).copy_from(&structure.payload_columns(MOMENTS));
                 columns
             }
         }

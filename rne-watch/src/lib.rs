@@ -39,6 +39,7 @@ mod dates;
 mod error;
 mod event;
 mod picture;
+mod reply;
 mod report;
 mod rivals;
 mod score;
@@ -56,6 +57,7 @@ pub use crate::error::WatchError;
 pub use crate::event::{Cause, Event, unit};
 
 pub use crate::picture::svg;
+pub use crate::reply::{TrendReply, WatchReply};
 pub use crate::report::{Report, changes, watch};
 pub use crate::selection::Statistic;
 pub use crate::sensor::exchanged_efforts;

@@ -3,7 +3,7 @@
 use rne::{
     Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
-    Pose, Regressor, Scalar, Wrench,
+    Pose, Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -35,6 +35,7 @@ pub(crate) trait Everything<const DOF: usize>:
     + MovingBase<DOF>
     + Actuation<DOF>
     + PayloadDynamics<DOF>
+    + TipWrenches<DOF, 1>
 {
 }
 
@@ -60,6 +61,12 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
         Function::InverseDynamics => robot.inverse_dynamics(q, qd, qdd).to_vec(),
         Function::InverseDynamicsWithWrench => {
             robot.inverse_dynamics_with_wrench(q, qd, qdd, &Wrench { force, moment }).to_vec()
+        }
+        Function::InverseDynamicsWithWrenches => {
+            robot.inverse_dynamics_with_wrenches(q, qd, qdd, &[Wrench { force, moment }]).to_vec()
+        }
+        Function::ForwardDynamicsWithWrenches => {
+            robot.forward_dynamics_with_wrenches(q, qd, tau, &[Wrench { force, moment }]).to_vec()
         }
         Function::InverseDynamicsWithPayload => {
             robot.inverse_dynamics_with_payload(q, qd, qdd, &states::payload(payload)).to_vec()
@@ -137,6 +144,7 @@ macro_rules! robot {
                 rne::MovingBase,
                 rne::Actuation,
                 rne::PayloadDynamics,
+                rne::TipWrenches,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

@@ -132,6 +132,9 @@ impl Driver<'_> {
                 | Function::InverseDynamicsDerivatives
                 | Function::JointWrenches => "q, qd, qdd",
                 Function::InverseDynamicsWithWrench => "q, qd, qdd, force, moment",
+                // the moment stands behind the force
+                Function::InverseDynamicsWithWrenches => &format!("q, qd, qdd, (const {real} (*)[6])force"),
+                Function::ForwardDynamicsWithWrenches => &format!("q, qd, tau, (const {real} (*)[6])force"),
                 Function::InverseDynamicsWithPayload | Function::InverseDynamicsDerivativesWithPayload => {
                     "q, qd, qdd, payload"
                 }

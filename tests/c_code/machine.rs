@@ -62,6 +62,7 @@ impl States {
             ("cos", turns(|turn| turn.1)),
             ("force", vector(0)),
             ("moment", vector(1)),
+            ("wrenches", rows(&|state| state.vectors[..2].concat())),
             ("payload", rows(&|state| payload(state).to_vec())),
             ("base_omega", vector(2)),
             ("base_omega_dot", vector(3)),
@@ -86,7 +87,9 @@ fn payload(state: &State) -> [f64; 10] {
 fn interpreted(interpreter: &Interpreter, state: &State) -> Vec<f64> {
     let [q, qd, qdd, tau] = state.joints.each_ref().map(Vec::as_slice);
     let [force, moment, base @ .., _, _, _, _] = state.vectors;
-    let numbers = Numbers { tau, force, moment, payload: payload(state), base, ..Numbers::of_joints(q, qd, qdd, 0.0) };
+    let wrenches = [std::array::from_fn(|at| if at < 3 { force[at] } else { moment[at - 3] })];
+    let of_joints = Numbers::of_joints(q, qd, qdd, 0.0);
+    let numbers = Numbers { tau, force, moment, wrenches: &wrenches, payload: payload(state), base, ..of_joints };
     interpreter.run(&numbers, f64::from_f64, Scalar::sin_cos).expect("arrays of the right length")
 }
 

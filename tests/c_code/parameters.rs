@@ -56,6 +56,20 @@ macro_rules! loaded {
 loaded!(Loaded, "seven_steps");
 loaded!(LoadedReduced, "reduced");
 
+/// A mass on two branches of a tree, and a length behind which another branch begins.
+macro_rules! branches {
+    ($name:ident, $form:literal) => {
+        #[derive(InverseDynamics, MassMatrix, ForwardDynamics, Energy, Kinematics)]
+        #[robot(path = "branches.yaml", form = $form, inline)]
+        struct $name {
+            m: f64,
+            span: f64,
+        }
+    };
+}
+branches!(Branches, "seven_steps");
+branches!(BranchesReduced, "reduced");
+
 /// All numbers that a function of a derived robot returns.
 fn derived<const DOF: usize, T: Scalar, R>(robot: &R, function: Function, [q, qd, qdd]: [&[T]; 3]) -> Vec<T>
 where
@@ -132,7 +146,7 @@ fn compare<const DOF: usize>(
     single: impl Fn(Form, &[f64], Function, [&[f32]; 3]) -> Vec<f32>,
 ) {
     let Some(compiler) = Compiler::found() else { return };
-    let checked = Reader::new(file).run_time(names).read(&read(&format!("{ROOT}/{file}")));
+    let checked = Reader::new(file).trees().run_time(names).read(&read(&format!("{ROOT}/{file}")));
     let robot = checked.unwrap_or_else(|report| panic!("{report}")).robot;
     let programs = |form| {
         let compiler = rne_codegen::Compiler::new(&robot);
@@ -255,4 +269,17 @@ fn a_payload_at_run_time() {
     }
     let names = (&["double", "g", "payload"][..], &["double_", "g", "payload"][..]);
     compare::<3>("tests/c_code/loaded.yaml", names, of, of);
+}
+
+#[test]
+fn masses_and_lengths_of_a_tree_at_run_time() {
+    fn of<T: Scalar>(form: Form, parameters: &[f64], function: Function, joints: [&[T]; 3]) -> Vec<T> {
+        let &[m, span] = parameters else { panic!("two parameters") };
+        match form {
+            Form::SevenSteps => derived::<4, T, _>(&Branches { m, span }, function, joints),
+            Form::Reduced => derived::<4, T, _>(&BranchesReduced { m, span }, function, joints),
+        }
+    }
+    let names = ["m", "span"];
+    compare::<4>("tests/c_code/branches.yaml", (&names, &names), of, of);
 }

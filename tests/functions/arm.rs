@@ -8,7 +8,7 @@ use std::sync::{Mutex, OnceLock};
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Scalar, Wrench};
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program, Real};
-use rne_model::Robot;
+use rne_model::{Reader, Robot};
 use rne_search::PlanFile;
 
 use crate::check::{ROOT, flat};
@@ -92,7 +92,7 @@ impl<T: Scalar> Real for Number<T> {
 struct Code {
     form: Form,
     plans: OnceLock<PlanSet>,
-    functions: [OnceLock<(Program, Interpreter)>; Function::ALL.len()],
+    functions: Vec<OnceLock<(Program, Interpreter)>>,
 }
 
 /// An arm.
@@ -105,7 +105,8 @@ pub(crate) struct Arm {
 impl Arm {
     /// By the choices of a build without a plan file.
     pub(crate) fn new(robot: &Robot, maker: Maker) -> Self {
-        let code = |form| Code { form, plans: OnceLock::new(), functions: Default::default() };
+        let functions = || Function::ALL.iter().map(|_| OnceLock::new()).collect();
+        let code = |form| Code { form, plans: OnceLock::new(), functions: functions() };
         let code = match maker {
             Maker::Runtime => None,
             Maker::Code(form) => Some(code(form)),
@@ -132,7 +133,8 @@ impl Arm {
     fn read(file: &str, maker: Maker) -> Self {
         let path = format!("{ROOT}/{file}");
         let yaml = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-        let robot = Robot::from_yaml(&yaml).unwrap_or_else(|report| panic!("{report}"));
+        let read = Reader::new(file).trees().couplings().read(&yaml);
+        let robot = read.unwrap_or_else(|report| panic!("{report}")).robot;
         let arm = Self::new(&robot, maker);
         if let Some(code) = &arm.code
             && let Ok(plan) = std::fs::read_to_string(path.replace(".yaml", ".plan.yaml"))
@@ -170,7 +172,12 @@ impl Arm {
         let [q, qd, qdd, tau] = [given.q, given.qd, given.qdd, given.tau]
             .map(|array| array.iter().copied().map(Number).collect::<Vec<_>>());
         let BaseMotion { omega, omega_dot, acceleration, gravity, .. } = given.base;
+        let wrenches: Vec<[Number<T>; 6]> = at_tips(self.robot.tip_count(), &given.wrench)
+            .iter()
+            .map(|&Wrench { force: [fx, fy, fz], moment: [nx, ny, nz] }| [fx, fy, fz, nx, ny, nz].map(Number))
+            .collect();
         let arguments = Arguments {
+            wrenches: &wrenches,
             force: given.wrench.force.map(Number),
             moment: given.wrench.moment.map(Number),
             payload: given.payload.to_array().map(Number),
@@ -331,13 +338,23 @@ fn pose<T: Scalar>(numbers: &[T]) -> Pose<T> {
     Pose { rotation: [0, 3, 6].map(triple), translation: triple(9) }
 }
 
+/// A wrench at each tip, each another one: that at the tip frame is the first.
+pub(crate) fn at_tips<T: Copy>(tips: usize, wrench: &Wrench<T>) -> Vec<Wrench<T>> {
+    let Wrench { force: [a, b, c], moment: [d, e, f] } = *wrench;
+    let others = [([a, b, c], [d, e, f]), ([e, f, a], [b, c, d]), ([c, d, b], [f, a, e])];
+    others.into_iter().cycle().take(tips).map(|(force, moment)| Wrench { force, moment }).collect()
+}
+
 /// What the runtime returns, as a row of numbers.
 pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
     let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base } = *given;
     let poses = |poses: Vec<Pose<T>>| -> Vec<T> {
         poses.iter().flat_map(|pose| [flat(pose.rotation), pose.translation.to_vec()].concat()).collect()
     };
+    let wrenches = at_tips(arm.tips().len(), wrench);
     let numbers = match function {
+        Function::InverseDynamicsWithWrenches => arm.inverse_dynamics_with_wrenches(q, qd, qdd, &wrenches),
+        Function::ForwardDynamicsWithWrenches => arm.forward_dynamics_with_wrenches(q, qd, tau, &wrenches),
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
         Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
         Function::InverseDynamicsWithPayload => arm.inverse_dynamics_with_payload(q, qd, qdd, payload),

@@ -86,6 +86,11 @@ impl Worst {
         }
     }
 
+    /// How many quantities were seen.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
     /// The worse of both.
     pub(crate) fn join(&mut self, other: Self) {
         other.0.into_iter().for_each(|(what, error)| self.see(what, error));

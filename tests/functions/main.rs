@@ -7,9 +7,11 @@ mod arms;
 mod case;
 mod centre_of_mass;
 mod check;
+mod compiled_trees;
 #[path = "../c_code/compiler.rs"]
 mod compiler;
 mod conventions;
+mod couplings;
 #[path = "../c_code/driver.rs"]
 mod driver;
 mod energy;
@@ -20,12 +22,17 @@ mod golden;
 mod kinematics;
 mod matrices;
 mod momentum;
+mod motors;
 mod operational_space;
 mod operations;
 mod payload;
 mod peers;
 mod published;
 mod random_arms;
+#[path = "../random/motors.rs"]
+mod random_motors;
+#[path = "../random/trees.rs"]
+mod random_trees;
 mod real_trees;
 #[path = "../random/robots.rs"]
 mod robots;
@@ -36,3 +43,4 @@ mod states;
 mod tree_oracle;
 mod trees;
 mod wrenches;
+mod written;

@@ -9,6 +9,7 @@ use rne_model::Robot;
 use crate::arm::{Arm, Maker};
 use crate::arms;
 use crate::check::{Conditioning, Worst, conditioning, flat};
+use crate::trees;
 
 /// An arm at a state, and rows of its Jacobian that are independent there.
 struct Task {
@@ -132,6 +133,12 @@ fn random_arms_obey_the_laws() {
     let robots = (0..500).map(|seed| Robot::from_yaml(&arms::yaml(seed)).unwrap_or_else(|report| panic!("{report}")));
     let compared = laws_of("random arms", robots);
     assert!(compared > 250, "{compared}");
+}
+
+#[test]
+fn random_trees_obey_the_laws() {
+    let compared = laws_of("random trees", (0..60).map(|seed| trees::random(seed, trees::dof(seed))));
+    assert!(compared > 20, "{compared}");
 }
 
 /// Two links without mass but for points of 2 kg at the elbow and 1.5 kg at the tip.

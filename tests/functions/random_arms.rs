@@ -77,7 +77,7 @@ fn names_are_distinct(program: &Program) {
 }
 
 /// Arms of the given seeds on all cores.
-fn of_each(seeds: &[u64], property: impl Fn(u64, &mut Worst) + Sync) -> Worst {
+pub(crate) fn of_each(seeds: &[u64], property: impl Fn(u64, &mut Worst) + Sync) -> Worst {
     let (next, worst) = (AtomicU64::new(0), Mutex::new(Worst::default()));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from).min(8) {
@@ -110,7 +110,7 @@ fn at<R>(state: &State, ask: impl FnOnce(&Given<'_, f64>) -> R) -> R {
 }
 
 /// One in how many arms is tried at least, if `RNE_EXHAUSTIVE` says so.
-fn one_in() -> Option<u64> {
+pub(crate) fn one_in() -> Option<u64> {
     let said = std::env::var("RNE_EXHAUSTIVE").ok()?;
     Some(said.parse().unwrap_or(1).max(1))
 }

@@ -1,15 +1,17 @@
-//! Real robots with branches, their bases held: torques beside Pinocchio, and operations of the reduced form.
+//! Real robots with branches, their bases held: functions beside Pinocchio, and operations of the reduced form.
 //!
-//! `trees/from_urdf.py` writes the robot files and the golden files. Both programs get the same snapped numbers.
+//! Six robot files and their golden files are by `trees/from_urdf.py`; both programs got the same snapped numbers. The
+//! others are by `xtask/trees.py`: `rne import --whole` made the robot file, and Pinocchio read the URDF.
 
 use rne_codegen::{Compiler, Form, Function};
 use rne_model::{GoldenFile, Robot};
 
 use crate::arm::{Arm, Given, Maker};
-use crate::check::{Worst, error_on_scale};
+use crate::check::{ROOT, Worst, conditioning, error_on_scale, json, numbers, wrench};
 use crate::trees::robot;
 
 const TOLERANCE: f64 = 1e-12;
+const FOLDER: &str = "tests/functions/trees";
 
 /// Operations of torques: general, without regrouping, as a symbolic generator writes them; after Khalil and
 /// Kleinfinger, with base parameters; and by the plan that a build finds without a search. The first two are counted by
@@ -38,7 +40,7 @@ const TREES: [Tree; 6] = [
 
 impl Tree {
     fn text(&self, ending: &str) -> String {
-        let path = format!("{}/tests/functions/trees/{}.{ending}", env!("CARGO_MANIFEST_DIR"), self.name);
+        let path = format!("{ROOT}/{FOLDER}/{}.{ending}", self.name);
         std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
     }
 
@@ -62,6 +64,59 @@ fn torques_of_real_trees_are_those_of_pinocchio() {
             }
         }
         worst.at_most(TOLERANCE, &format!("real trees, {maker}"));
+    }
+}
+
+/// The golden files of `xtask/trees.py`: names of the robots.
+fn imported() -> Vec<String> {
+    let folder = format!("{ROOT}/{FOLDER}");
+    let files = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{folder}: {error}"));
+    let names = files.filter_map(|file| {
+        let name = file.expect("a file").file_name().into_string().expect("UTF-8");
+        name.strip_suffix(".golden.json").map(str::to_owned)
+    });
+    names.collect()
+}
+
+#[test]
+fn functions_of_imported_trees_are_those_of_pinocchio() {
+    let names = imported();
+    assert!(names.len() + TREES.len() >= 20, "{names:?}");
+    // a program of the reduced form of many joints takes long to compile
+    let most = if shipped::is_exhaustive() { usize::MAX } else { 8 };
+    for maker in Maker::ALL {
+        let mut worst = Worst::default();
+        for name in &names {
+            let golden = json(&format!("{FOLDER}/{name}.golden.json"));
+            let file = format!("{ROOT}/{FOLDER}/{name}.yaml");
+            let robot = robot(&std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}")));
+            if maker != Maker::Runtime && robot.dof() > most {
+                continue;
+            }
+            let array = |key: &str| numbers(&golden[key]);
+            let (q, qd, qdd, tau) = (array("q"), array("qd"), array("qdd"), array("tau"));
+            let wrench = wrench(array("wrench").try_into().expect("six numbers"));
+            let given = Given { tau: &tau, wrench, ..Given::of_joints(&q, &qd, &qdd) };
+            let arm = Arm::by_no_choice(&robot, maker);
+            let torque = array("inverse_dynamics_with_wrench").iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+            let of_mass = conditioning(&arm.runtime.mass_matrix(&q).expect("one per joint")).expect("bodies");
+            let functions = Function::ALL.into_iter().filter(|function| golden.get(function.name()).is_some());
+            for function in functions {
+                let scale = match function {
+                    _ if function.returns_torques() => torque,
+                    Function::InverseDynamicsDerivatives | Function::WrenchTorques => torque,
+                    Function::PotentialEnergy | Function::JacobianRateTimesVelocity => 1.0,
+                    _ => 0.0,
+                };
+                let magnification = if function.inverts_mass() { of_mass.number } else { 1.0 };
+                let found = arm.numbers(function, &given);
+                let error = error_on_scale(&found, &array(function.name()), scale) / magnification;
+                assert!(error <= TOLERANCE, "{maker}, {name}, {function}: {error:e}");
+                worst.see(function.name(), error);
+            }
+        }
+        worst.at_most(TOLERANCE, &format!("imported trees, {maker}"));
+        assert_eq!(worst.len(), 14);
     }
 }
 

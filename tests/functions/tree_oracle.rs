@@ -1,10 +1,15 @@
 //! Dynamics of a tree without a recursion: every link's pose is a product of 4 × 4 matrices along its path from the
 //! base, differentiated twice along the motion, and the torques are the projected Newton-Euler equations,
 //! τ_j = Σ v_j · (m (p̈ - g) + R̈ h) + w_j · (I ω̇ + ω × I ω + R h × (p̈ - g)), summed over the links.
+//!
+//! Derivatives are exact without a rule of differentiation: the torques are polynomials of second degree in the rates
+//! and in the position of a joint that slides, and sums of sines and cosines of q and 2 q for a joint that turns.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use rne::{BaseMotion, Payload};
-use rne_model::{Angle, Convention, FixedFrame, JointKind, Robot, Transform};
+use rne_model::{Angle, Convention, FixedFrame, JointKind, Motor, Robot, Transform};
 
 /// A pose along a motion: its value, and its first and second derivative.
 pub(crate) type Jet = [Matrix4<f64>; 3];
@@ -52,8 +57,9 @@ fn placed(transform: &Transform) -> Matrix4<f64> {
     moved(transform.xyz) * turned(2, yaw) * turned(1, pitch) * turned(0, roll)
 }
 
-fn still(matrix: Matrix4<f64>) -> Jet {
-    [matrix, Matrix4::zeros(), Matrix4::zeros()]
+/// What is fixed to a moving frame.
+fn fixed(to: &Jet, at: Matrix4<f64>) -> Jet {
+    to.map(|derivative| derivative * at)
 }
 
 fn product(a: &Jet, b: &Jet) -> Jet {
@@ -94,7 +100,7 @@ fn link(robot: &Robot, index: Option<usize>, motion: &Motion<'_>) -> [Jet; 2] {
     let row = &robot.joints[index].row;
     let [mut pose, _] = link(robot, robot.parent(index), motion);
     if let Some(branch) = &robot.joints[index].branch {
-        pose = product(&pose, &still(placed(&branch.placement)));
+        pose = fixed(&pose, placed(&branch.placement));
     }
     let variable = joint(row.kind, motion.joints.map(|values| values[index]));
     let turn = turned(2, &row.dh.theta);
@@ -103,15 +109,15 @@ fn link(robot: &Robot, index: Option<usize>, motion: &Motion<'_>) -> [Jet; 2] {
         Convention::Standard => (turn, length * twist),
         Convention::Modified => (twist * length * turn, Matrix4::identity()),
     };
-    let at_joint = product(&product(&pose, &still(before)), &variable);
+    let at_joint = product(&fixed(&pose, before), &variable);
     // the reference point of the joint: the offset d, and the sliding, lie behind it
-    let mut point = product(&pose, &still(before));
+    let mut point = fixed(&pose, before);
     point[0].fixed_view_mut::<3, 3>(0, 0).copy_from(&at_joint[0].fixed_view::<3, 3>(0, 0));
-    [product(&at_joint, &still(moved([0.0, 0.0, row.dh.d]) * behind)), point]
+    [fixed(&at_joint, moved([0.0, 0.0, row.dh.d]) * behind), point]
 }
 
 pub(crate) fn frame(robot: &Robot, frame: &FixedFrame, motion: &Motion<'_>) -> Jet {
-    product(&link(robot, frame.on, motion)[0], &still(placed(&frame.placement)))
+    fixed(&link(robot, frame.on, motion)[0], placed(&frame.placement))
 }
 
 /// World → frame 0.
@@ -144,16 +150,51 @@ pub(crate) fn rates(jet: &Jet, point: &Vector3<f64>) -> [[Vector3<f64>; 2]; 2] {
     [[r1 * point + p1, omega], [r2 * point + p2, omega_dot]]
 }
 
+/// Whether a joint moves a link, or what is on the base.
+pub(crate) fn moves(robot: &Robot, joint: usize, link: Option<usize>) -> bool {
+    std::iter::successors(link, |&link| robot.parent(link)).any(|link| link == joint)
+}
+
 /// Velocity of a point of a frame, and angular velocity, per rate of each joint, on a base that stands still.
 pub(crate) fn jacobian(robot: &Robot, of: &FixedFrame, q: &[f64], point: &Vector3<f64>) -> Vec<[Vector3<f64>; 2]> {
     let zeros = vec![0.0; q.len()];
-    let column = |index: usize| {
-        let mut unit = zeros.clone();
-        unit[index] = 1.0;
+    let column = |joint: usize| {
+        if !moves(robot, joint, of.on) {
+            return [Vector3::zeros(); 2];
+        }
+        let unit = moved_by(&zeros, joint, 1.0);
         let motion = Motion { joints: [q, &unit, &zeros], base: BaseMotion::fixed([0.0; 3]) };
         rates(&frame(robot, of, &motion), point)[0]
     };
     (0..q.len()).map(column).collect()
+}
+
+fn moved_by(values: &[f64], joint: usize, step: f64) -> Vec<f64> {
+    let mut values = values.to_vec();
+    values[joint] += step;
+    values
+}
+
+/// The derivative of what is a polynomial of second degree in a rate, at a rate.
+pub(crate) fn by_rate(qd: &[f64], joint: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    odd_part(qd, joint, 1.0, of)
+}
+
+/// The derivative by the position of a joint. The odd part of b₁ sin x + b₂ sin 2 x at π/2 is b₁, that at π/4 is
+/// b₁/√2 + b₂, and the derivative b₁ + 2 b₂.
+pub(crate) fn by_position(robot: &Robot, q: &[f64], joint: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    match robot.joints[joint].row.kind {
+        JointKind::Prismatic => odd_part(q, joint, 1.0, of),
+        JointKind::Revolute => {
+            let (half, quarter) = (odd_part(q, joint, FRAC_PI_2, &of), odd_part(q, joint, FRAC_PI_4, &of));
+            half.iter().zip(quarter).map(|(half, quarter)| 2.0 * quarter + (1.0 - SQRT_2) * half).collect()
+        }
+    }
+}
+
+fn odd_part(at: &[f64], joint: usize, step: f64, of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    let [after, before] = [step, -step].map(|step| of(&moved_by(at, joint, step)));
+    after.iter().zip(before).map(|(after, before)| (after - before) / 2.0).collect()
 }
 
 fn bodies(robot: &Robot, payload: Option<&Payload<f64>>) -> Vec<Body> {
@@ -180,6 +221,10 @@ fn bodies(robot: &Robot, payload: Option<&Payload<f64>>) -> Vec<Body> {
 
 /// What moves each link, and the payload, against gravity.
 pub(crate) fn needed(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<Needed> {
+    needed_by(robot, motion, &bodies(robot, payload))
+}
+
+fn needed_by(robot: &Robot, motion: &Motion<'_>, bodies: &[Body]) -> Vec<Needed> {
     let gravity = Vector3::from(motion.base.gravity);
     let of_body = |body: &Body| {
         let jet = frame(robot, &body.frame, motion);
@@ -194,33 +239,126 @@ pub(crate) fn needed(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payloa
             moment: turning + (r * body.first_moment).cross(&specific),
         }
     };
-    bodies(robot, payload).iter().map(of_body).collect()
+    bodies.iter().map(of_body).collect()
 }
 
 /// The part of each body in each torque: by body, then by joint.
-pub(crate) fn torque_parts(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<Vec<f64>> {
-    let bodies = bodies(robot, payload);
-    let parts = bodies.iter().zip(needed(robot, motion, payload)).map(|(body, needed)| {
+fn torque_parts(robot: &Robot, motion: &Motion<'_>, bodies: &[Body]) -> Vec<Vec<f64>> {
+    let parts = bodies.iter().zip(needed_by(robot, motion, bodies)).map(|(body, needed)| {
         let columns = jacobian(robot, &body.frame, motion.joints[0], &body.com);
         columns.iter().map(|[v, w]| v.dot(&needed.force) + w.dot(&needed.moment)).collect()
     });
     parts.collect()
 }
 
+/// The torques of a unit of each inertial parameter of each link, about the origin of the link frame: by torque, then
+/// by link.
+pub(crate) fn regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
+    let body = |index: usize, mass: f64, first_moment: Vector3<f64>, inertia: Matrix3<f64>| Body {
+        frame: FixedFrame { on: Some(index), placement: Transform::IDENTITY },
+        com: Vector3::zeros(),
+        mass,
+        first_moment,
+        inertia,
+    };
+    let element = |row: usize, column: usize| {
+        let mut tensor = Matrix3::zeros();
+        (tensor[(row, column)], tensor[(column, row)]) = (1.0, 1.0);
+        tensor
+    };
+    let of_link = |index: usize| {
+        let of_moment = |axis: usize| body(index, 0.0, Vector3::ith(axis, 1.0), Matrix3::zeros());
+        let elements = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+        let of_tensor = elements.map(|(row, column)| body(index, 0.0, Vector3::zeros(), element(row, column)));
+        let point = body(index, 1.0, Vector3::zeros(), Matrix3::zeros());
+        [point].into_iter().chain((0..3).map(of_moment)).chain(of_tensor).collect::<Vec<_>>()
+    };
+    let units: Vec<Body> = (0..robot.dof()).flat_map(of_link).collect();
+    let parts = torque_parts(robot, motion, &units);
+    (0..robot.dof()).flat_map(|joint| parts.iter().map(move |part| part[joint]).collect::<Vec<_>>()).collect()
+}
+
+/// G² Jm of each joint, where rotors belong to the robot.
+fn rotors(robot: &Robot) -> impl Iterator<Item = f64> {
+    let of = |motor: Motor| motor.gear_ratio * motor.gear_ratio * motor.inertia;
+    robot.joints.iter().map(move |joint| joint.motor.filter(|_| robot.rotors).map_or(0.0, of))
+}
+
 pub(crate) fn torques(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<f64> {
-    let parts = torque_parts(robot, motion, payload);
-    (0..robot.dof()).map(|joint| parts.iter().map(|part| part[joint]).sum()).collect()
+    let parts = torque_parts(robot, motion, &bodies(robot, payload));
+    let of_links = |joint: usize| parts.iter().map(|part| part[joint]).sum::<f64>();
+    let of_spins = spin_torques(robot, motion.joints);
+    let of_rotors = rotors(robot).zip(of_spins).enumerate();
+    of_rotors.map(|(joint, (rotor, spin))| of_links(joint) + rotor * motion.joints[2][joint] + spin).collect()
+}
+
+/// ½ Jm s (s + 2 a · ω) of the rotors that turn on links, with the base at rest.
+fn spin_energy(robot: &Robot, q: &[f64], qd: &[f64]) -> f64 {
+    let zeros = vec![0.0; q.len()];
+    let motion = Motion { joints: [q, qd, &zeros], base: BaseMotion::fixed([0.0; 3]) };
+    let mut energy = 0.0;
+    for (rotor, turns) in robot.spinning_rotors() {
+        let spin: f64 = turns.iter().map(|&(joint, n)| n * qd[joint]).sum();
+        let jet = frame(robot, &FixedFrame { on: rotor.on, placement: Transform::IDENTITY }, &motion);
+        let ((r, _), [[_, omega], _]) = (parts(&jet[0]), rates(&jet, &Vector3::zeros()));
+        energy += 0.5 * rotor.inertia * spin * (spin + 2.0 * (r * Vector3::from(rotor.axis)).dot(&omega));
+    }
+    energy
+}
+
+/// Lagrange's equations of that energy: τ = d/dt ∂T/∂q̇ - ∂T/∂q, with the momenta ∂T/∂q̇ linear in the rates.
+fn spin_torques(robot: &Robot, [q, qd, qdd]: [&[f64]; 3]) -> Vec<f64> {
+    let mut torques = vec![0.0; q.len()];
+    if !robot.has_spinning_rotors() {
+        return torques;
+    }
+    let momenta = |q: &[f64], qd: &[f64]| -> Vec<f64> {
+        (0..q.len()).map(|joint| by_rate(qd, joint, |qd| vec![spin_energy(robot, q, qd)])[0]).collect()
+    };
+    let accelerated = momenta(q, qdd);
+    for joint in 0..q.len() {
+        torques[joint] += accelerated[joint];
+        for (torque, moved) in torques.iter_mut().zip(by_position(robot, q, joint, |q| momenta(q, qd))) {
+            *torque += moved * qd[joint];
+        }
+        torques[joint] -= by_position(robot, q, joint, |q| vec![spin_energy(robot, q, qd)])[0];
+    }
+    torques
+}
+
+/// What motors need beside the links: G² Jm q̈ where rotors do not belong to the robot, and friction.
+pub(crate) fn actuator_torques(robot: &Robot, qd: &[f64], qdd: &[f64]) -> Vec<f64> {
+    let of_motor = |(motor, joint): (Motor, usize)| {
+        let square = motor.gear_ratio.powi(2);
+        let rotor = if robot.rotors { 0.0 } else { motor.inertia };
+        let coulomb = motor.coulomb[usize::from(qd[joint] < 0.0)];
+        square * (rotor * qdd[joint] + motor.viscous * qd[joint]) + motor.gear_ratio.abs() * coulomb
+    };
+    robot.joints.iter().enumerate().map(|(index, joint)| joint.motor.map_or(0.0, |it| of_motor((it, index)))).collect()
 }
 
 /// The columns of M: torques of unit accelerations, at rest and without gravity.
 pub(crate) fn mass_matrix(robot: &Robot, q: &[f64], payload: Option<&Payload<f64>>) -> Vec<Vec<f64>> {
     let zeros = vec![0.0; q.len()];
-    let column = |index: usize| {
-        let mut unit = zeros.clone();
-        unit[index] = 1.0;
+    let column = |joint: usize| {
+        let unit = moved_by(&zeros, joint, 1.0);
         torques(robot, &Motion { joints: [q, &zeros, &unit], base: BaseMotion::fixed([0.0; 3]) }, payload)
     };
     (0..q.len()).map(column).collect()
+}
+
+/// ½ Σ m v · v + ω · I ω + 2 v · (ω × R h), and that of rotors.
+pub(crate) fn kinetic_energy(robot: &Robot, q: &[f64], qd: &[f64], payload: Option<&Payload<f64>>) -> f64 {
+    let zeros = vec![0.0; q.len()];
+    let motion = Motion { joints: [q, qd, &zeros], base: BaseMotion::fixed([0.0; 3]) };
+    let of_body = |body: &Body| {
+        let jet = frame(robot, &body.frame, &motion);
+        let ((r, _), [[v, omega], _]) = (parts(&jet[0]), rates(&jet, &body.com));
+        let inertia = r * body.inertia * r.transpose();
+        body.mass * v.dot(&v) + omega.dot(&(inertia * omega)) + 2.0 * v.dot(&omega.cross(&(r * body.first_moment)))
+    };
+    let of_rotors = rotors(robot).zip(qd).map(|(rotor, qd)| rotor * qd * qd);
+    bodies(robot, payload).iter().map(of_body).chain(of_rotors).sum::<f64>() / 2.0 + spin_energy(robot, q, qd)
 }
 
 /// Mass, and first moment from the origin of frame 0.
@@ -231,66 +369,4 @@ pub(crate) fn first_moment(robot: &Robot, q: &[f64]) -> (f64, Vector3<f64>) {
         let (r, p) = parts(&frame(robot, &body.frame, &motion)[0]);
         (mass + body.mass, moment + (r * body.com + p) * body.mass + r * body.first_moment)
     })
-}
-
-/// The first moment's derivative by each joint.
-pub(crate) fn first_moment_rates(robot: &Robot, q: &[f64]) -> Vec<Vector3<f64>> {
-    let mut columns = vec![Vector3::zeros(); q.len()];
-    for body in bodies(robot, None) {
-        let (r, _) = {
-            let zeros = vec![0.0; q.len()];
-            let motion = Motion { joints: [q, &zeros, &zeros], base: BaseMotion::fixed([0.0; 3]) };
-            parts(&frame(robot, &body.frame, &motion)[0])
-        };
-        let moment = r * body.first_moment;
-        for (column, [v, w]) in columns.iter_mut().zip(jacobian(robot, &body.frame, q, &body.com)) {
-            *column += v * body.mass + w.cross(&moment);
-        }
-    }
-    columns
-}
-
-/// ∂T/∂q. T is a quadratic form of the rates, so ∂T/∂q_j is that of the velocities and of their derivatives by q_j: for
-/// the link's velocity V along q̇, ∂V/∂q_j comes from the second derivative of the pose along q̇ and e_j.
-pub(crate) fn kinetic_energy_by_position(
-    robot: &Robot,
-    q: &[f64],
-    qd: &[f64],
-    payload: Option<&Payload<f64>>,
-) -> Vec<f64> {
-    let zeros = vec![0.0; q.len()];
-    let at = |rates: &[f64], body: &Body| {
-        let motion = Motion { joints: [q, rates, &zeros], base: BaseMotion::fixed([0.0; 3]) };
-        frame(robot, &body.frame, &motion)
-    };
-    let mut all = vec![0.0; q.len()];
-    for body in bodies(robot, payload) {
-        let along = at(qd, &body);
-        for (joint, energy) in all.iter_mut().enumerate() {
-            let [mut plus, mut minus] = [qd.to_vec(), qd.to_vec()];
-            plus[joint] += 1.0;
-            minus[joint] -= 1.0;
-            // ∂²X/∂q_j ∂t by polarisation of the quadratic form Ẍ
-            let (plus, minus) = (at(&plus, &body), at(&minus, &body));
-            let mixed = parts(&((plus[2] - minus[2]) / 4.0));
-            let by_joint = parts(&((plus[1] - minus[1]) / 2.0));
-            let [(r, _), (r1, p1)] = [parts(&along[0]), parts(&along[1])];
-            // ω = vee(Ṙ Rᵀ), and its derivative by q_j
-            let omega = vector_of(&(r1 * r.transpose()));
-            let omega_by = vector_of(&(mixed.0 * r.transpose() + r1 * by_joint.0.transpose()));
-            let velocity = r1 * body.com + p1;
-            let velocity_by = mixed.0 * body.com + mixed.1;
-            let inertia = r * body.inertia * r.transpose();
-            let spin = by_joint.0 * r.transpose();
-            let inertia_by = spin * inertia + inertia * spin.transpose();
-            let moment = r * body.first_moment;
-            let moment_by = by_joint.0 * body.first_moment;
-            *energy += body.mass * velocity.dot(&velocity_by)
-                + omega.dot(&(inertia * omega_by))
-                + omega.dot(&(inertia_by * omega)) / 2.0
-                + velocity_by.dot(&omega.cross(&moment))
-                + velocity.dot(&(omega_by.cross(&moment) + omega.cross(&moment_by)));
-        }
-    }
-    all
 }

@@ -27,28 +27,35 @@ pub(crate) fn yaml(seed: u64, dof: usize) -> String {
         let (theta, d) = (angle(&mut rng, sparsity), number(&mut rng, sparsity, 0.5));
         let (a, alpha) = (number(&mut rng, sparsity, 0.5), angle(&mut rng, sparsity));
         let _ = writeln!(text, "  - type: {kind}\n    dh: {{theta: {theta}, d: {d}, a: {a}, alpha: {alpha}}}");
-        if rng.f64() < 0.15 {
-            continue; // massless
+        if let Some(link) = link(&mut rng, sparsity) {
+            let _ = writeln!(text, "    link: {link}");
         }
-        let mass = if rng.f64() < 0.1 { 0.0 } else { rng.f64() * 10.0 };
-        let (com, inertia) = (vector(&mut rng, sparsity, 0.3), inertia(&mut rng, sparsity));
-        // without mass the same numbers are a first moment: no body, but what base parameters look like
-        let (place, ends) = if mass == 0.0 { ("first_moment", ", physical: false") } else { ("com", "") };
-        let _ = writeln!(text, "    link: {{mass: {mass}, {place}: {com}, inertia: {inertia}{ends}}}");
     }
     text
 }
 
-fn number(rng: &mut Rng, sparsity: f64, scale: f64) -> f64 {
+/// A link; `None` of those without mass and inertia.
+pub(crate) fn link(rng: &mut Rng, sparsity: f64) -> Option<String> {
+    if rng.f64() < 0.15 {
+        return None;
+    }
+    let mass = if rng.f64() < 0.1 { 0.0 } else { rng.f64() * 10.0 };
+    let (com, inertia) = (vector(rng, sparsity, 0.3), inertia(rng, sparsity));
+    // without mass the same numbers are a first moment: no body, but what base parameters look like
+    let (place, ends) = if mass == 0.0 { ("first_moment", ", physical: false") } else { ("com", "") };
+    Some(format!("{{mass: {mass}, {place}: {com}, inertia: {inertia}{ends}}}"))
+}
+
+pub(crate) fn number(rng: &mut Rng, sparsity: f64, scale: f64) -> f64 {
     if rng.f64() < sparsity { 0.0 } else { (2.0 * rng.f64() - 1.0) * scale }
 }
 
-fn vector(rng: &mut Rng, sparsity: f64, scale: f64) -> String {
+pub(crate) fn vector(rng: &mut Rng, sparsity: f64, scale: f64) -> String {
     let [x, y, z] = [(); 3].map(|()| number(rng, sparsity, scale));
     format!("[{x}, {y}, {z}]")
 }
 
-fn angle(rng: &mut Rng, sparsity: f64) -> String {
+pub(crate) fn angle(rng: &mut Rng, sparsity: f64) -> String {
     if rng.f64() < sparsity {
         let right = ["0", "pi/2", "-pi/2", "pi", "-pi", "3*pi/2"];
         return (*rng.choice(right.iter()).unwrap_or(&"0")).to_owned();
@@ -56,7 +63,7 @@ fn angle(rng: &mut Rng, sparsity: f64) -> String {
     format!("{}", (2.0 * rng.f64() - 1.0) * 3.0)
 }
 
-fn angles(rng: &mut Rng, sparsity: f64) -> String {
+pub(crate) fn angles(rng: &mut Rng, sparsity: f64) -> String {
     let [roll, pitch, yaw] = [(); 3].map(|()| angle(rng, sparsity));
     format!("[{roll}, {pitch}, {yaw}]")
 }

@@ -40,11 +40,14 @@ pub(crate) enum Check {
     Code,
     /// Pages for students: equations, closed forms and pictures, compared with the runtime and Lagrange's equations.
     Views,
+    /// Trees: both forms and the runtime, beside projected Newton-Euler, Pinocchio and each other.
+    Trees,
 }
 
 impl Check {
     /// All, in the order of the document.
-    pub(crate) const ALL: [Self; 5] = [Self::Compare, Self::Prove, Self::Functions, Self::Code, Self::Views];
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Compare, Self::Prove, Self::Functions, Self::Code, Self::Views, Self::Trees];
 
     /// Arguments of `cargo test`.
     pub(crate) fn tests(self) -> &'static [&'static str] {
@@ -63,6 +66,23 @@ impl Check {
             ],
             Self::Functions => &["--test", "functions", "--", "equality::", "golden::"],
             Self::Code => &["--test", "c_code"],
+            Self::Trees => &[
+                "-p",
+                "rne",
+                "-p",
+                "rne-codegen",
+                "-p",
+                "rne-search",
+                "--lib",
+                "--test",
+                "functions",
+                "--test",
+                "trees",
+                "--test",
+                "random_plans",
+                "--",
+                "tree",
+            ],
             Self::Views => &[
                 "-p",
                 "rne-inspection",
@@ -89,6 +109,7 @@ impl Check {
             Self::Functions => "The other functions",
             Self::Code => "C",
             Self::Views => "The teaching views",
+            Self::Trees => "Trees",
         }
     }
 
@@ -114,6 +135,12 @@ a shift of an origin, or of a scale of lengths or forces gives the same function
                 "\
 The tests compare equations with the runtime library, closed forms with Lagrange's equations, and the parts of a torque
 with the torque."
+            }
+            Self::Trees => {
+                "\
+A mutation confuses the parent of a joint with the joint before it, or makes the placement of a row wrong. A chain does
+not show it. The tests compare random and real trees with values that are independent of rne, and the form `reduced`
+with the seven steps."
             }
             Self::Code => {
                 "\

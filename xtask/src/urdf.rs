@@ -1,5 +1,7 @@
 //! Robot files made of URDFs against Pinocchio, which reads the same URDF.
 
+use std::path::PathBuf;
+
 use anyhow::Result;
 use clap::Args;
 use xshell::cmd;
@@ -13,15 +15,25 @@ const PACKAGES: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-dat
 /// Imports real arms and compares them with Pinocchio
 ///
 /// Torques, mass matrix and tip of at least 12 arms of packages, in both conventions: to 1e-10 without snapping, and
-/// with it by no more than the import tells. `xtask/urdf.py` has the arms and the comparison.
+/// with it by no more than the import tells. `xtask/urdf.py` has the arms and the comparison. With a folder of URDFs of
+/// trees: all functions that Pinocchio has, of the whole robots that `xtask/trees.py` names, to 1e-12.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; Pinocchio and the arms are fetched into target/urdf/venv.
 
 Examples:
   cargo xtask urdf              with what is installed there
-  cargo xtask urdf --install    install it first")]
+  cargo xtask urdf --install    install it first
+  cargo xtask urdf --trees DIR  whole robots of the URDFs in a folder
+  cargo xtask urdf --trees DIR --write
+                                also write the files of tests/functions/trees")]
 pub(crate) struct Urdf {
+    /// Compare whole robots of the URDFs in this folder instead
+    #[arg(long, value_name = "DIR")]
+    trees: Option<PathBuf>,
+    /// Write the robot files and the values of those trees whose licence allows it to tests/functions/trees
+    #[arg(long, requires = "trees")]
+    write: bool,
     /// Install what is missing, with pip, below target/
     #[arg(long)]
     pub(crate) install: bool,
@@ -57,6 +69,12 @@ impl Urdf {
         }
         machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
         let rne = target.join("debug/rne");
-        Ok(Verdict::from(cmd!(shell, "{python} xtask/urdf.py {rne}").quiet().run().is_ok()))
+        let write = self.write.then_some("--write");
+        let compare = if let Some(folder) = &self.trees {
+            cmd!(shell, "{python} xtask/trees.py {rne} {folder} {write...}")
+        } else {
+            cmd!(shell, "{python} xtask/urdf.py {rne}")
+        };
+        Ok(Verdict::from(compare.quiet().run().is_ok()))
     }
 }

@@ -139,7 +139,7 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "exhaustive",
-        about: "all shipped arms and thousands of random ones, where `cargo test` tries some",
+        about: "all shipped arms, thousands of random ones and of random trees, where `cargo test` tries some",
         variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--release"],
         needs: Needs::Time,

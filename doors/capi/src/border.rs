@@ -124,7 +124,7 @@ pub unsafe extern "C" fn rne_arm_load_urdf(
                 names.iter().zip(values).map(|(name, value)| Ok((text(*name, "lock_names[…]")?.to_owned(), *value)));
             let lock = lock.collect::<Result<_, Failure>>()?;
             let (base, tip) = (optional(base, "base")?, optional(tip, "tip")?);
-            Arm::of_urdf(path, Selection { base, tip, lock, lock_others })
+            Arm::of_urdf(path, Selection { base, tip, lock, lock_others, ..Selection::default() })
         })
     }
 }

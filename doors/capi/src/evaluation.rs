@@ -4,7 +4,7 @@ use std::panic::resume_unwind;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use rne_machine::{ARGUMENTS, Arguments, Array, CompiledFunction, Destination, EvaluationError, Number};
+use rne_machine::{ARGUMENTS, Arguments, Array, CompiledFunction, Destination, EvaluationError, Number, WrongSize};
 use rne_runtime::VectorUnit;
 
 use crate::handle::Arm;
@@ -110,7 +110,8 @@ pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
         return Ok(function.run(VectorUnit::widest(), states, &all, Destination::Rows(outputs))?);
     }
     if states.checked_mul(width) != Some(outputs.len()) {
-        return Err(EvaluationError::Room { outputs: width, states }.into());
+        let size = WrongSize::Numbers { needed: states.saturating_mul(width), given: outputs.len() };
+        return Err(EvaluationError::Room { outputs: width, states, size }.into());
     }
     function.check(states, &all)?;
     let tasks = Mutex::new(outputs.chunks_mut((TASK * width).max(1)).enumerate());

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use rne_codegen::UnknownName;
-use rne_convert::{Description, Options, Selection};
+use rne_convert::{Description, Selection};
 use rne_machine::{ARGUMENTS, CompiledArm, CompiledFunction, Function};
 use rne_robots::RobotFile;
 
@@ -49,7 +49,7 @@ impl Arm {
     fn new(arm: CompiledArm) -> Self {
         let robot = arm.robot();
         let name = c_text(&robot.name);
-        let joints = robot.joints.iter().map(|joint| c_text(&joint.name)).collect();
+        let joints = robot.independent_joints().map(|joint| c_text(&joint.name)).collect();
         Self { compiled: arm, name, joints }
     }
 
@@ -67,15 +67,12 @@ impl Arm {
         Ok(Self::new(CompiledArm::from_yaml(text)?))
     }
 
-    /// Of a chain of a URDF; its numbers stay as they are.
+    /// The arm of a URDF, as `rne import` converts it.
     pub(crate) fn of_urdf(path: &str, selection: Selection) -> Result<Self, Failure> {
         let (Description::Urdf(bytes) | Description::RobotFile(bytes)) = Description::open(Path::new(path))? else {
             return Err(Failure::new(Status::InvalidFile, format!("{path} is a shipped robot, no URDF")));
         };
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is not text in UTF-8")))?;
-        let options = Options { selection, snap: false, frames: true, ..Options::default() };
-        let imported = rne_convert::import(path, &text, &options)?;
+        let imported = rne_convert::import_arm(path, bytes, selection)?;
         Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))
     }
 
@@ -111,14 +108,14 @@ impl Arm {
     }
 
     pub(crate) fn limits(&self, joint: usize) -> Result<Limits, Failure> {
-        let limits = self.compiled.robot().joints.get(joint).ok_or_else(|| self.no_joint(joint))?.limits;
+        let limits = self.compiled.robot().independent_joint(joint).ok_or_else(|| self.no_joint(joint))?.limits;
         let (lower, upper) = limits.position.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let or_none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         Ok(Limits { lower, upper, velocity: or_none(limits.velocity), effort: or_none(limits.effort) })
     }
 
     pub(crate) fn joint_kind(&self, joint: usize) -> Result<JointKind, Failure> {
-        let joint = self.compiled.robot().joints.get(joint).ok_or_else(|| self.no_joint(joint))?;
+        let joint = self.compiled.robot().independent_joint(joint).ok_or_else(|| self.no_joint(joint))?;
         Ok(match joint.row.kind {
             rne_model::JointKind::Revolute => JointKind::Revolute,
             rne_model::JointKind::Prismatic => JointKind::Prismatic,
@@ -176,4 +173,30 @@ pub(crate) fn function_id(name: &str) -> Result<u32, Failure> {
 fn argument_name(name: &str) -> Option<&'static CStr> {
     static NAMES: LazyLock<Vec<CString>> = LazyLock::new(|| ARGUMENTS.iter().map(|name| c_text(name)).collect());
     NAMES.iter().map(CString::as_c_str).find(|known| known.to_bytes() == name.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use rne_convert::Selection;
+
+    use super::Arm;
+
+    #[test]
+    fn angles_of_a_urdf_are_those_of_rne_import() {
+        let body = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>\
+                    </inertial></link>";
+        let text = format!(
+            "<robot name=\"two\"><link name=\"base\"/><link name=\"a\">{body}<link name=\"b\">{body}\
+             <joint name=\"one\" type=\"continuous\"><parent link=\"base\"/><child link=\"a\"/>\
+             <axis xyz=\"0 0 1\"/></joint>\
+             <joint name=\"two\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/>\
+             <origin rpy=\"1.5708 0 0\"/><axis xyz=\"0 0 1\"/></joint></robot>"
+        );
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("two.urdf");
+        std::fs::write(&file, text).expect("a file");
+        let arm = Arm::of_urdf(file.to_str().expect("Unicode"), Selection::default()).expect("an arm");
+        let mut joints = arm.compiled().robot().joints.iter();
+        assert!(joints.any(|joint| joint.row.dh.alpha.radians.abs() == std::f64::consts::FRAC_PI_2));
+    }
 }

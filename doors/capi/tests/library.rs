@@ -277,7 +277,7 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
     };
     check(2, &good[..1], 12, Status::MissingArgument, "`bias_torques` needs the argument `qd`");
     check(3, &good, 12, Status::WrongSize, "that is 18 numbers; `count` says 12");
-    check(2, &good, 11, Status::WrongSize, "the result has 6 numbers for each of 2 states");
+    check(2, &good, 11, Status::WrongSize, "must hold 6 numbers for each of 2 states");
     check(2, &[good[0], good[1], good[0]], 12, Status::WrongSize, "the argument `q` is given twice");
     check(2, &[input(c"q", &q[..5], 0, 1), good[1]], 12, Status::WrongSize, "`q` has 6 elements");
     check(2, &[input(c"q", &q, usize::MAX, 1), good[1]], 12, Status::WrongSize, "more than memory");

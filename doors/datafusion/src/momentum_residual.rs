@@ -156,7 +156,7 @@ impl Observed {
     fn new(robot: &Robot, period: f64) -> Self {
         Self {
             observer: DynObserverState::new(robot.dof(), GAIN, period),
-            friction: robot.joints.iter().map(Friction::of).collect(),
+            friction: robot.independent_joints().map(Friction::of).collect(),
         }
     }
 

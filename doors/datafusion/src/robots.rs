@@ -46,6 +46,19 @@ impl Held {
         });
         Arc::clone(found)
     }
+
+    /// Refuses robots whose parameters are not identified.
+    pub(crate) fn identified(&self) -> Result<&Self> {
+        let robot = self.arm.robot();
+        match robot.joints.iter().find(|joint| joint.coupling.is_some()) {
+            Some(follower) => plan_err!(
+                "the joint {} of {} follows other joints, and parameters of such a robot are not identified yet",
+                follower.name,
+                robot.name
+            ),
+            None => Ok(self),
+        }
+    }
 }
 
 impl Robots {
@@ -60,7 +73,7 @@ impl Robots {
     /// # Errors
     /// Never for the shipped ones, which tests read.
     pub fn shipped() -> Result<Self> {
-        rne_robots::ROBOTS.iter().try_fold(Self::none(), |robots, file| {
+        rne_robots::all().try_fold(Self::none(), |robots, file| {
             let arm = match file.plan {
                 Some(plan) => CompiledArm::with_plan(file.yaml, plan),
                 None => CompiledArm::from_yaml(file.yaml),

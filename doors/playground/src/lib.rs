@@ -20,7 +20,7 @@ const NAME: &str = "robot.yaml";
 /// has null for all four. `page` is that of `rne report`, with the plan that the compiler makes by itself.
 #[must_use]
 pub fn answer(text: &str) -> Value {
-    let Checked { robot, lints, .. } = match Reader::new(NAME).read(text) {
+    let Checked { robot, lints, .. } = match Reader::new(NAME).trees().couplings().read(text) {
         Ok(checked) => checked,
         Err(report) => return json!({ "diagnostics": diagnostics(&report) }),
     };

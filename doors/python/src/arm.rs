@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rne::compiled::{CompiledArm, Form, Function, PlanFile};
-use rne_codegen::Compiler;
-use rne_model::{Convention, Robot};
+use rne_codegen::{Argument, Compiler};
+use rne_model::{Convention, Joint, Robot};
 
 use crate::arrays::Given;
 use crate::errors::{of_arm, of_evaluation, of_report};
@@ -53,6 +53,7 @@ impl std::str::FromStr for FormOr {
 ///
 /// Made by `rne.load` or `rne.robots`. Arguments are arrays of the shape `(n,)` for one state or `(N, n)` for many, a
 /// single row standing for all; revolute joints in rad, rad/s, rad/s² and N m, prismatic ones in m, m/s, m/s² and N.
+/// An argument with a number per joint may be a dict of joint name → number or array (N,).
 /// Arrays of float32 are computed in single precision, everything else in double. `out` is an array that the result is
 /// written to; it shares no memory with an argument. `parameters` are the run-time parameters, in the order of the
 /// property `parameters`, or a dict of them by name.
@@ -114,9 +115,31 @@ impl Arm {
         }
     }
 
-    /// An argument with a number per joint.
-    pub(crate) fn of_joints<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> Given<'py> {
-        Given { name, parts: &[], elements: self.arm.dof(), value: value.clone() }
+    /// An argument with a number per joint: an array in the order of the joints, or a dict by their names.
+    pub(crate) fn of_joints<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        let value = if value.is_instance_of::<PyDict>() {
+            in_order(value, self.joints(), name, "joint")?
+        } else {
+            value.clone()
+        };
+        Ok(Given { name, parts: &[], elements: self.arm.dof(), value })
+    }
+
+    /// The name that the keyword `frame` has; a TypeError lists the names where it is not a text.
+    pub(crate) fn frame_name(&self, frame: &Bound<'_, PyAny>) -> PyResult<String> {
+        frame.extract().map_err(|_| {
+            let known = self.robot().known_frames();
+            let given = frame.repr().map_or_else(|_| "no text".to_owned(), |text| text.to_string());
+            PyTypeError::new_err(format!("`frame` is {given}, but it must be the name of a frame: {known}"))
+        })
+    }
+
+    /// A wrench at each tip: a dict by the names of the tips, or an array of shape (tips, 6) or (N, tips, 6).
+    pub(crate) fn of_tips<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        let tips = self.robot().tip_names();
+        let elements = Argument::Wrenches.elements(self.arm.dof(), tips.len());
+        let value = value.py().import("rne.names")?.call_method1("of_tips", (value, tips, name))?;
+        Ok(Given { name, parts: &[], elements, value })
     }
 
     /// A function of joint arrays and whatever else it takes; of a pair of results a tuple.
@@ -142,8 +165,7 @@ impl Arm {
         if !run_time.is_empty() {
             let value = match parameters {
                 Some(value) if value.is_instance_of::<PyDict>() => {
-                    let names = run_time.names.clone();
-                    py.import("rne.parameters")?.call_method1("in_order", (value, names))?
+                    in_order(value, self.parameters(), "parameters", "run-time parameter")?
                 }
                 Some(value) => value.clone(),
                 // those of the file
@@ -180,6 +202,16 @@ pub(crate) fn name<T: std::str::FromStr<Err = rne_codegen::UnknownName>>(text: &
     text.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))
 }
 
+/// The values of a dict in the order of names.
+fn in_order<'py>(
+    values: &Bound<'py, PyAny>,
+    names: Vec<&str>,
+    argument: &str,
+    kind: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    values.py().import("rne.names")?.call_method1("in_order", (values, names, argument, kind))
+}
+
 #[pymethods]
 impl Arm {
     /// The robot's name.
@@ -194,10 +226,42 @@ impl Arm {
         self.arm.dof()
     }
 
-    /// The names of the joints, base to tip.
+    /// The names of the joints, base to tip. Joints that follow others are not among them: see `followers`.
     #[getter]
     fn joints(&self) -> Vec<&str> {
-        self.robot().joints.iter().map(|joint| joint.name.as_str()).collect()
+        self.robot().independent_joints().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// The joints that follow others: a dict of the name of each to the ratios, by the names of the joints that it
+    /// follows, and the offset, rad or m: `{"finger_b": ({"finger_a": 1.0}, 0.0)}`. The position of such a joint is the
+    /// sum of ratio times position, plus the offset; it has no element in `q` and no torque.
+    #[getter]
+    fn followers(&self) -> BTreeMap<String, (BTreeMap<String, f64>, f64)> {
+        let joints = &self.robot().joints;
+        let follower = |joint: &Joint| {
+            let coupling = joint.coupling.as_ref()?;
+            let ratio = |&(followed, ratio): &(usize, f64)| (joints[followed].name.clone(), ratio);
+            Some((joint.name.clone(), (coupling.follows.iter().map(ratio).collect(), coupling.offset)))
+        };
+        joints.iter().filter_map(follower).collect()
+    }
+
+    /// The names of the tips, in the order of arrays of wrenches: the list `tips` of the robot file, or `tip`.
+    #[getter]
+    fn tips(&self) -> Vec<&str> {
+        self.robot().tip_names()
+    }
+
+    /// The place of each joint of the arm in a list of joint names of another program, an integer array of shape (n,).
+    ///
+    /// `order[i]` is the place of joint i in `names`: `q = theirs[arm.order(names)]` has the order of the arm, and
+    /// `theirs[arm.order(names)] = q` writes back. For arrays of shape (N, m), write `theirs[:, arm.order(names)]`.
+    ///
+    /// A joint that is missing or in the list twice is a ValueError. So is a name that is not of this arm, unless
+    /// `extra` is True.
+    #[pyo3(signature = (names, extra=false))]
+    fn order<'py>(&self, names: &Bound<'py, PyAny>, extra: bool) -> PyResult<Bound<'py, PyAny>> {
+        names.py().import("rne.names")?.call_method1("order", (self.joints(), names, extra))
     }
 
     /// `standard` or `modified`: how the rows of the table are read.
@@ -223,7 +287,7 @@ impl Arm {
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let infinite = (f64::NEG_INFINITY, f64::INFINITY);
         let limits: Vec<(f64, f64)> =
-            self.robot().joints.iter().map(|joint| joint.limits.position.unwrap_or(infinite)).collect();
+            self.robot().independent_joints().map(|joint| joint.limits.position.unwrap_or(infinite)).collect();
         py.import("numpy")?.call_method1("array", (limits,))
     }
 
@@ -231,7 +295,7 @@ impl Arm {
     #[getter]
     fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits: Vec<f64> =
-            self.robot().joints.iter().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY)).collect();
+            self.robot().independent_joints().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY)).collect();
         py.import("numpy")?.call_method1("array", (limits,))
     }
 
@@ -239,7 +303,7 @@ impl Arm {
     #[getter]
     fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits: Vec<f64> =
-            self.robot().joints.iter().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY)).collect();
+            self.robot().independent_joints().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY)).collect();
         py.import("numpy")?.call_method1("array", (limits,))
     }
 

@@ -287,6 +287,7 @@ fn converted<'py, T: Element>(
     if !["f", "i", "u", "b"].contains(&kind.as_str()) {
         let order = match name {
             "parameters" => ": write them in the order of `arm.parameters`, or as a dict by their names",
+            "payload" => ": it has 10 numbers, which `rne.payload` makes, or the 4 numbers of a point mass",
             _ => "",
         };
         return Err(PyTypeError::new_err(format!("`{name}` is not an array of real numbers{order}")));

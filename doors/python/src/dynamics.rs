@@ -13,6 +13,10 @@ macro_rules! about {
     (Wrench) => {
         "`wrench`: force, then moment; shape (6,) or (N, 6).\n\n"
     };
+    (Wrenches) => {
+        "`wrenches`: force, then moment, of each tip; a dict from names of tips to six numbers, or to arrays of shape \
+         (N, 6), where a tip without an entry exerts nothing; or an array of shape (tips, 6) or (N, tips, 6).\n\n"
+    };
     (Payload) => {
         "`payload`: shape (10,) or (N, 10); `rne.payload` makes one. A point mass has the first four numbers alone: \
          shape (4,) or (N, 4).\n\n"
@@ -152,7 +156,7 @@ macro_rules! method {
             ) -> PyResult<Bound<'py, PyAny>> {
                 let zero = PyTuple::new(py, [0.0; 3])?.into_any();
                 let gravity = PyTuple::new(py, self.robot().gravity)?.into_any();
-                let joints = [("q", q), ("qd", qd), ("qdd", qdd)].map(|(name, value)| self.of_joints(name, value));
+                let joints = [self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("qdd", qdd)?];
                 let base = [
                     ("base_omega", base_omega.unwrap_or(&zero)),
                     ("base_omega_dot", base_omega_dot.unwrap_or(&zero)),
@@ -213,7 +217,7 @@ macro_rules! at_frame {
                 &self,
                 py: Python<'py>,
                 $($argument: &Bound<'py, PyAny>,)*
-                frame: Option<&str>,
+                frame: Option<&Bound<'py, PyAny>>,
                 parameters: Option<&Bound<'py, PyAny>>,
                 out: Option<&Bound<'py, PyAny>>,
             ) -> PyResult<Bound<'py, PyAny>> {
@@ -221,7 +225,8 @@ macro_rules! at_frame {
                 let Some(frame) = frame else {
                     return self.compute(py, Function::$variant, given, parameters, out);
                 };
-                let arm = self.arm.at_frame(frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
+                let frame = self.frame_name(frame)?;
+                let arm = self.arm.at_frame(&frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
                 let at = Self { arm, origin: self.origin.clone() };
                 at.compute(py, Function::$variant, given, parameters, out)
             }
@@ -271,14 +276,17 @@ macro_rules! given {
     ($arm:ident, $argument:ident: Payload) => {
         given!($arm, $argument: Payload, &[])
     };
+    ($arm:ident, $argument:ident: Wrenches) => {
+        $arm.of_tips(stringify!($argument), $argument)?
+    };
     ($arm:ident, $argument:ident: $of_joints:ident) => {
-        $arm.of_joints(stringify!($argument), $argument)
+        $arm.of_joints(stringify!($argument), $argument)?
     };
     ($arm:ident, $argument:ident: $kind:ident, $parts:expr) => {
         Given {
             name: stringify!($argument),
             parts: $parts,
-            elements: Argument::$kind.elements($arm.arm.dof()),
+            elements: Argument::$kind.elements($arm.arm.dof(), $arm.robot().tip_count()),
             value: $argument.clone(),
         }
     };

@@ -21,6 +21,7 @@ mod notebook;
 mod operational_space;
 mod payload;
 mod pose;
+mod reply;
 mod rollout;
 mod watching;
 

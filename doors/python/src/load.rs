@@ -15,7 +15,7 @@ use crate::errors::{RobotFileWarning, in_keywords, of_opening, of_report};
 /// The names of the robots in the box.
 #[pyfunction]
 pub(crate) fn names() -> Vec<&'static str> {
-    rne_robots::ROBOTS.iter().map(|robot| robot.name).collect()
+    rne_robots::all().map(|robot| robot.name).collect()
 }
 
 /// A robot of the box by its name.
@@ -25,7 +25,7 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
     Arm::of(py, Origin::default().shipped(file))
 }
 
-/// Read an arm: a robot file (YAML), a URDF, or the text of either.
+/// Read an arm or a tree: a robot file (YAML), a URDF, or the text of either.
 ///
 /// Parameters
 /// ----------
@@ -34,12 +34,14 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     honoured.
 /// tip, base : str, optional
 ///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
+/// whole : bool
+///     Of a URDF: take all links after the base, a tree, and not one arm. `tip` is then the link that carries the tip.
 /// lock : dict of str to float, optional
 ///     Of a URDF: movable joints that are held still, rad or m.
 /// lock_others : bool
 ///     Of a URDF: hold every other movable joint off the chain at zero.
-/// convention : {"standard", "modified"}
-///     Of a URDF: the rows of the table that is made.
+/// convention : {"standard", "modified"}, optional
+///     Of a URDF: the rows of the table that is made. The default is standard; of a whole tree it is modified.
 /// snap : bool
 ///     Of a URDF: replace angles within 2e-4 rad of a multiple of pi/12 by this multiple, as the command line does.
 ///     False keeps the numbers of the URDF, for comparisons with programs that read the same file.
@@ -67,17 +69,18 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
 ///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`.
 #[pyfunction]
-#[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=true,
-    keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
+#[pyo3(signature = (source, *, tip=None, base=None, whole=false, lock=None, lock_others=false, convention=None,
+    snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
 #[allow(clippy::fn_params_excessive_bools)] // keywords of Python
 pub(crate) fn load(
     py: Python<'_>,
     source: &Bound<'_, PyAny>,
     tip: Option<String>,
     base: Option<String>,
+    whole: bool,
     lock: Option<BTreeMap<String, f64>>,
     lock_others: bool,
-    convention: &str,
+    convention: Option<&str>,
     snap: bool,
     keep_unphysical: bool,
     run_time: Vec<String>,
@@ -87,9 +90,10 @@ pub(crate) fn load(
 ) -> PyResult<Arm> {
     let form = form.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))?;
     let convention = match convention {
-        "standard" => Convention::Standard,
-        "modified" => Convention::Modified,
-        other => {
+        None if whole => Convention::Modified,
+        None | Some("standard") => Convention::Standard,
+        Some("modified") => Convention::Modified,
+        Some(other) => {
             return Err(PyValueError::new_err(format!("`{other}` is not a convention; write standard or modified")));
         }
     };
@@ -121,7 +125,7 @@ pub(crate) fn load(
     };
     let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
-    let selection = Selection { base, tip, lock, lock_others };
+    let selection = Selection { base, tip, lock, lock_others, whole };
     let options = Options { selection, convention, snap, keep_unphysical, frames: true, ..Options::default() };
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
@@ -189,7 +193,7 @@ impl Origin {
     /// The table as a reader of this origin reads it, with its lints.
     pub(crate) fn read(&self, name: &str, text: &[u8]) -> Result<Checked, Report> {
         let names: Vec<&str> = self.run_time.iter().map(String::as_str).collect();
-        let reader = Reader::new(name).run_time(&names);
+        let reader = Reader::new(name).trees().couplings().run_time(&names);
         let reader = self.settings.iter().fold(reader, |reader, (name, value)| reader.setting(name, *value));
         reader.read(text)
     }

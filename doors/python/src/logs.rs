@@ -6,13 +6,14 @@ use std::path::PathBuf;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rne_identify::{ArmLogOptions, ArmLogRemark, Purpose, check_units, joint_options};
-use rne_logs::{Angles, Cutoff, Log, LogError, Mapping, Motion, Options, Run, Survey, TimeUnit};
+use rne_identify::{ArmLogOptions, ArmLogRemark, LogReply, Purpose, check_units, joint_options};
+use rne_logs::{Angles, Log, LogError, Mapping, Motion, Options, TimeUnit};
 use rne_model::Robot;
 
 use crate::arm::Arm;
 use crate::interruption::interruptible;
 use crate::log_errors::{log_remark, of_arm_log, of_log, remark};
+use crate::reply::dict_of;
 
 /// The keywords by which a log is read, from the dict that the package makes of them.
 #[derive(Clone, Debug, FromPyObject)]
@@ -82,8 +83,16 @@ impl Reading {
     }
 }
 
-/// The robot of an arm: of one with free parameters nobody knows the torques.
+/// The robot of an arm whose torques a log may have: of one with free parameters nobody knows them, and parameters of
+/// followers are not identified.
 pub(crate) fn robot_of(arm: &Arm) -> PyResult<Robot> {
+    if let Some(follower) = arm.robot().joints.iter().find(|joint| joint.coupling.is_some()) {
+        return Err(PyValueError::new_err(format!(
+            "the joint `{}` follows other joints, and logs of such a robot are not read yet: functions such as \
+             `inverse_dynamics` and `momentum_and_rate` take it",
+            follower.name
+        )));
+    }
     if arm.robot().run_time.is_empty() {
         return Ok(arm.robot().clone());
     }
@@ -95,111 +104,6 @@ pub(crate) type Said = (bool, String);
 
 pub(crate) fn said(remarks: &[ArmLogRemark]) -> Vec<Said> {
     remarks.iter().map(|of| (of.is_warning(), remark(of))).collect()
-}
-
-pub(crate) fn finite(number: f64) -> Option<f64> {
-    number.is_finite().then_some(number)
-}
-
-#[derive(IntoPyObject)]
-struct OfJoint {
-    name: String,
-    position: (f64, f64),
-    velocity: Option<(f64, f64)>,
-    effort: Option<(f64, f64)>,
-    velocity_disagreement: Option<f64>,
-    motion_ends: Option<f64>,
-}
-
-#[derive(IntoPyObject)]
-struct OfLeftOut {
-    why: String,
-    messages: u64,
-}
-
-#[derive(IntoPyObject)]
-struct OfRun {
-    begins: String,
-    start: f64,
-    duration: f64,
-    states: u64,
-    jitter: f64,
-    longest_interval: f64,
-}
-
-/// The content of a log, with the keys of `rne log --json`.
-#[derive(IntoPyObject)]
-pub(crate) struct Content {
-    format: String,
-    topic: Option<String>,
-    recorded_times: bool,
-    origin_ns: i64,
-    rate: f64,
-    velocities: bool,
-    efforts: bool,
-    joints: Vec<OfJoint>,
-    ignored_joints: Vec<String>,
-    messages: u64,
-    states: u64,
-    left_out: Vec<OfLeftOut>,
-    run_count: u64,
-    runs: Vec<OfRun>,
-    cutoff: Option<f64>,
-    cutoff_from: &'static str,
-    dropped_states: usize,
-    notes: Vec<String>,
-}
-
-impl Content {
-    fn of(log: &Log, survey: &Survey, matched: Option<&ArmLogRemark>) -> Self {
-        let layout = log.layout();
-        let ends = match &survey.cutoff {
-            Cutoff::Spectrum { ends, .. } => Some(ends),
-            _ => None,
-        };
-        let joint = |(joint, name): (usize, &String)| OfJoint {
-            name: name.clone(),
-            position: survey.positions[joint],
-            velocity: survey.velocities.get(joint).copied(),
-            effort: survey.efforts.get(joint).copied(),
-            velocity_disagreement: survey.disagreement.get(joint).copied(),
-            motion_ends: ends.and_then(|ends| ends.get(joint)).copied(),
-        };
-        let run = |run: &Run| OfRun {
-            begins: run.begins.to_string(),
-            start: run.start,
-            duration: run.duration,
-            states: run.states,
-            jitter: run.jitter,
-            longest_interval: run.longest,
-        };
-        let left_out = log.left_out(survey);
-        let remarks = log.remarks(survey);
-        Self {
-            format: layout.format.to_string(),
-            topic: layout.topic.clone(),
-            recorded_times: layout.recorded,
-            origin_ns: layout.origin,
-            rate: 1.0 / layout.step,
-            velocities: layout.has_velocities,
-            efforts: layout.has_efforts,
-            joints: layout.joints.iter().enumerate().map(joint).collect(),
-            ignored_joints: layout.ignored.clone(),
-            messages: survey.counts.messages,
-            states: survey.counts.states,
-            left_out: left_out.iter().map(|of| OfLeftOut { why: of.why(), messages: of.count }).collect(),
-            run_count: survey.run_count,
-            runs: survey.runs.iter().map(run).collect(),
-            cutoff: survey.cutoff.hertz(),
-            cutoff_from: match survey.cutoff {
-                Cutoff::Given { .. } => "given",
-                Cutoff::Spectrum { .. } => "spectrum",
-                Cutoff::Unknown => "unknown",
-            },
-            dropped_states: survey.dropped,
-            notes: matched.map(remark).into_iter().chain(remarks.iter().map(log_remark)).collect(),
-        }
-    }
 }
 
 /// A log that was opened, by the joints of an arm where one is given.
@@ -217,19 +121,22 @@ fn open(paths: &[PathBuf], robot: Option<&Robot>, mut options: Options) -> PyRes
 
 /// What a log has.
 #[pyfunction]
-pub(crate) fn log_content(
-    py: Python<'_>,
+pub(crate) fn log_content<'py>(
+    py: Python<'py>,
     paths: Vec<PathBuf>,
     arm: Option<PyRef<'_, Arm>>,
     reading: Reading,
-) -> PyResult<Content> {
+) -> PyResult<Bound<'py, PyDict>> {
     let robot = arm.map(|arm| robot_of(&arm)).transpose()?;
     let options = reading.options()?;
-    interruptible(py, |look| {
+    let content = interruptible(py, |look| {
         let (log, matched) = open(&paths, robot.as_ref(), options)?;
         let survey = log.survey(look).map_err(|error| of_log(&error, &[]))?;
-        Ok(Content::of(&log, &survey, matched.as_ref()))
-    })?
+        let remarks = log.remarks(&survey);
+        let notes = matched.as_ref().map(remark).into_iter().chain(remarks.iter().map(log_remark)).collect();
+        Ok::<_, PyErr>(LogReply::of(&log, &survey, notes))
+    })??;
+    dict_of(py, &content)
 }
 
 /// All filtered states of a log: of each quantity the numbers of one state after those of another.

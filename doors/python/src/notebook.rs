@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use pyo3::PyResult;
 use rne::compiled::{Form, Function};
 use rne_codegen::Program;
-use rne_emit::Selection;
+use rne_emit::{Heading, Selection};
 use rne_model::{JointKind, Robot};
 
 /// Of whose counts a notebook has a row.
@@ -23,9 +23,15 @@ const COUNTED: [Function; 6] = [
 pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> PyResult<Program>) -> PyResult<String> {
     let escape = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
     let title = escape(robot.title.as_deref().unwrap_or(&robot.name));
+    let (on, places) = if robot.is_serial() {
+        ("", String::new())
+    } else {
+        // where rows begin, and where the tip is
+        ("<th>on", format!("<p>{}</p>", escape(&Heading::of(robot).frames).replace('\n', "<br>")))
+    };
     let mut html = format!(
-        "<p><b>{title}</b>: {} joints, {rows} table</p><table><tr><th>joint<th>type<th>θ (rad)<th>d (m)<th>a (m)\
-         <th>α (rad)<th>mass (kg)</tr>",
+        "<p><b>{title}</b>: {} joints, {rows} table</p>{places}<table><tr><th>joint{on}<th>type<th>θ (rad)\
+         <th>d (m)<th>a (m)<th>α (rad)<th>mass (kg)</tr>",
         robot.dof()
     );
     for (index, joint) in robot.joints.iter().enumerate() {
@@ -42,9 +48,14 @@ pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> Py
             JointKind::Revolute => "revolute",
             JointKind::Prismatic => "prismatic",
         };
+        let on = match robot.parent(index) {
+            _ if robot.is_serial() => String::new(),
+            Some(parent) => format!("<td>{}", escape(&robot.joints[parent].name)),
+            None => "<td>base".to_owned(),
+        };
         let _ = write!(
             html,
-            "<tr><td>{}<td>{word}<td>{}<td>{}<td>{:.6}<td>{:.6}<td>{:.6}</tr>",
+            "<tr><td>{}{on}<td>{word}<td>{}<td>{}<td>{:.6}<td>{:.6}<td>{:.6}</tr>",
             escape(&joint.name),
             variable(kind == JointKind::Revolute, dh.theta.radians),
             variable(kind == JointKind::Prismatic, dh.d),

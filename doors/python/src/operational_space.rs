@@ -42,7 +42,7 @@ impl Arm {
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
-        frame: Option<&str>,
+        frame: Option<&Bound<'py, PyAny>>,
         rows: Option<Vec<i64>>,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
@@ -67,7 +67,7 @@ impl Arm {
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
-        frame: Option<&str>,
+        frame: Option<&Bound<'py, PyAny>>,
         rows: Option<Vec<i64>>,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
@@ -85,7 +85,7 @@ impl Arm {
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
-        frame: Option<&str>,
+        frame: Option<&Bound<'py, PyAny>>,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<[Bound<'py, PyAny>; 2]> {
@@ -98,21 +98,22 @@ impl Arm {
             keywords.set_item("parameters", parameters)?;
             arm.call_method(name, (q,), Some(&keywords))
         };
-        let frame = frame.map(|frame| frame.into_pyobject(py)).transpose()?.map(Bound::into_any);
         let mass = called("mass_matrix", &[("payload", payload.cloned())])?;
-        let jacobian = called("jacobian", &[("frame", frame)])?;
+        let jacobian = called("jacobian", &[("frame", frame.cloned())])?;
         // a payload in double precision beside positions in single precision
         let jacobian = jacobian.call_method1("astype", (mass.getattr("dtype")?,))?;
         Ok([mass, jacobian])
     }
 
     /// The rows of the Jacobian that are asked for.
-    fn task(&self, rows: Option<Vec<i64>>, frame: Option<&str>) -> PyResult<Vec<usize>> {
+    fn task(&self, rows: Option<Vec<i64>>, frame: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         let robot = self.robot();
-        let id = frame.map(|name| robot.frame(name)).transpose();
+        let frame = frame.map(|frame| self.frame_name(frame)).transpose()?;
+        let id = frame.as_ref().map(|name| robot.frame(name)).transpose();
         let id = id.map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
-        // the joints up to the link that carries the frame
-        let moving = id.map_or(self.arm.dof(), |id| robot.fixed_frame(id).on.map_or(0, |joint| joint + 1));
+        // the joints from the base to the link that carries the frame
+        let on = id.map_or_else(|| robot.tip(), |id| robot.fixed_frame(id)).on;
+        let moving = std::iter::successors(on, |&joint| robot.parent(joint)).count();
         let given = rows.unwrap_or_else(|| (0..6).collect());
         let known = given.iter().filter_map(|&row| usize::try_from(row).ok());
         let rows: Vec<usize> = known.filter(|&row| row < ROWS).collect();

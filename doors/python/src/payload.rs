@@ -5,45 +5,14 @@ use std::path::PathBuf;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rne_identify::{ArmLog, JointError, MotionError, Part, PassError, Payload, PayloadNumber, Purpose};
+use rne_identify::{ArmLog, JointError, MotionError, Part, PassError, Payload, PayloadReply, Purpose};
 
 use crate::arm::Arm;
 use crate::identification::Judged;
 use crate::interruption::interruptible;
 use crate::log_errors::{of_arm_log, of_pass};
-use crate::logs::{Reading, Said, finite, robot_of, said};
-
-/// A number with its standard deviation; None where the log does not determine it.
-#[derive(IntoPyObject)]
-struct Number {
-    value: Option<f64>,
-    deviation: Option<f64>,
-    unit: &'static str,
-    excited: bool,
-}
-
-impl Number {
-    fn of(number: &PayloadNumber, unit: &'static str) -> Self {
-        let of = |value: f64| finite(value).filter(|_| number.is_excited);
-        Self { value: of(number.value), deviation: of(number.deviation), unit, excited: number.is_excited }
-    }
-}
-
-#[derive(IntoPyObject)]
-struct OfPayload {
-    found: bool,
-    mass: Number,
-    com: [Number; 3],
-    inertia: [Number; 6],
-}
-
-#[derive(IntoPyObject)]
-struct OfJoint {
-    joint: usize,
-    name: String,
-    error: Option<f64>,
-    error_with_payload: Option<f64>,
-}
+use crate::logs::{Reading, Said, robot_of, said};
+use crate::reply::dict_of;
 
 /// What was computed without the interpreter.
 struct Found {
@@ -103,27 +72,9 @@ pub(crate) fn payload_identified<'py>(
         })
     })??;
     let Found { payload, without, with, .. } = &found;
-    let joints = robot.joints.iter().enumerate().map(|(at, joint)| OfJoint {
-        joint: at + 1,
-        name: joint.name.clone(),
-        error: without.errors.get(at).and_then(|error| finite(error.error)),
-        error_with_payload: with.as_ref().and_then(|with| finite(with.get(at)?.error)),
-    });
-    let reply = PyDict::new(py);
-    reply.set_item("robot", &robot.name)?;
-    reply.set_item("logs", paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>())?;
-    reply.set_item("states", without.extent.states)?;
-    reply.set_item("duration", without.extent.duration)?;
-    reply.set_item("cutoff", found.cutoff)?;
-    let of_payload = OfPayload {
-        found: payload.is_there(),
-        mass: Number::of(&payload.mass, "kg"),
-        com: std::array::from_fn(|at| Number::of(&payload.com[at], "m")),
-        inertia: std::array::from_fn(|at| Number::of(&payload.inertia[at], "kg m²")),
-    };
-    reply.set_item("payload", of_payload)?;
-    reply.set_item("joints", joints.collect::<Vec<_>>())?;
-    reply.set_item("delay", payload.delay)?;
+    let logs = paths.iter().map(|path| path.display().to_string()).collect();
+    let errors = [Some(&without.errors[..]), with.as_deref()];
+    let reply = dict_of(py, &PayloadReply::of(&robot, payload, errors, logs, found.cutoff, without.extent))?;
     reply.set_item("robot_file", &found.robot_file)?;
     reply.set_item("remarks", &found.remarks)?;
     Ok(reply)

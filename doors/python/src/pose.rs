@@ -42,7 +42,7 @@ impl Arm {
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         target: &Bound<'py, PyAny>,
-        frame: Option<&str>,
+        frame: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let keywords = PyDict::new(py);

@@ -34,7 +34,8 @@ impl Arm {
     /// q, qd : array of shape (n,) or (N, n)
     ///     The state in which each sample begins, rad and rad/s, or m and m/s.
     /// tau : array of shape (T, n) or (N, T, n)
-    ///     The torques of the actuators in each step, N m or N.
+    ///     The torques of the actuators in each step, N m or N. The first of three axes is always that of the samples.
+    ///     If q, qd, payload and out have no axis N, nothing shows that torques are in the order (T, N, n) instead.
     /// step : float
     ///     The duration of a step, s; above zero.
     /// friction : bool or float
@@ -69,11 +70,11 @@ impl Arm {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         let dof = self.arm.dof();
-        let mut given = vec![self.of_joints("q", q), self.of_joints("qd", qd), self.of_joints("tau", tau)];
+        let mut given = vec![self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("tau", tau)?];
         given.extend(payload.map(|payload| Given {
             name: "payload",
             parts: &[],
-            elements: Argument::Payload.elements(dof),
+            elements: Argument::Payload.elements(dof, self.robot().tip_count()),
             value: payload.clone(),
         }));
         given.extend(self.given_parameters(py, parameters)?);

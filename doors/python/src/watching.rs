@@ -7,152 +7,18 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne_identify::{ArmLog, Identification, JointError, Part, Prediction, Purpose};
-use rne_logs::UtcTime;
 use rne_model::{Robot, one_line};
-use rne_watch::{
-    Baseline, Candidate, Cause, Changes, Event, Report, Settings, Statistic, Trend, changes, svg, unit, watch,
-};
+use rne_watch::{Baseline, Changes, Event, Report, Settings, Trend, TrendReply, WatchReply, changes, svg, watch};
 
 use crate::arm::Arm;
 use crate::errors::of_report;
 use crate::interruption::interruptible;
 use crate::log_errors::{of_arm_log, of_pass, of_watch};
-use crate::logs::{Reading, Said, finite, robot_of, said};
+use crate::logs::{Reading, Said, robot_of, said};
+use crate::reply::dict_of;
 
 /// N m or N: what is left of an effort where nothing is.
 const NOTHING: f64 = 1e-9;
-
-#[derive(IntoPyObject)]
-struct OfEvent {
-    cause: &'static str,
-    joint: Option<usize>,
-    name: Option<String>,
-    parameter: &'static str,
-    value: f64,
-    file_value: f64,
-    baseline_value: f64,
-    deviation: Option<f64>,
-    half_interval: Option<f64>,
-    threshold: Option<f64>,
-    unit: &'static str,
-    run: u64,
-    since: f64,
-    until: f64,
-    whole: bool,
-    lasts: bool,
-    since_time: Option<String>,
-    until_time: Option<String>,
-    not_before_time: Option<String>,
-    not_after_time: Option<String>,
-    also: Vec<usize>,
-    rivals: Vec<&'static str>,
-}
-
-fn name(robot: &Robot, joint: Option<usize>) -> Option<String> {
-    joint.map(|joint| robot.joints[joint].name.clone())
-}
-
-/// Causes that a log cannot tell from an event.
-fn rivals(event: &Event) -> Vec<&'static str> {
-    let of_friction: &[&str] = if event.cause == Cause::Friction { &["temperature", "speed"] } else { &[] };
-    of_friction.iter().chain(&event.rivals).copied().collect()
-}
-
-impl OfEvent {
-    fn of(robot: &Robot, event: &Event) -> Self {
-        Self {
-            cause: event.cause.name(),
-            joint: event.joint.map(|joint| joint + 1),
-            name: name(robot, event.joint),
-            parameter: event.parameter,
-            value: event.value,
-            file_value: event.file_value,
-            baseline_value: event.baseline_value,
-            deviation: finite(event.deviation),
-            half_interval: finite(event.half_interval),
-            threshold: finite(event.threshold),
-            unit: event.unit,
-            run: event.run + 1,
-            since: event.since,
-            until: event.until,
-            whole: event.is_whole,
-            lasts: event.lasts,
-            since_time: event.since_time.map(UtcTime::rfc3339),
-            until_time: event.until_time.map(UtcTime::rfc3339),
-            not_before_time: event.not_before.map(UtcTime::rfc3339),
-            not_after_time: event.not_after.map(UtcTime::rfc3339),
-            also: event.others.iter().map(|joint| joint + 1).collect(),
-            rivals: rivals(event),
-        }
-    }
-
-    fn all(robot: &Robot, events: &[Event]) -> Vec<Self> {
-        events.iter().map(|event| Self::of(robot, event)).collect()
-    }
-}
-
-#[derive(IntoPyObject)]
-struct OfParameter {
-    cause: &'static str,
-    joint: Option<usize>,
-    name: Option<String>,
-    parameter: &'static str,
-    change: f64,
-    deviation: f64,
-    threshold: f64,
-    ratio: f64,
-    unit: &'static str,
-    watched: bool,
-}
-
-impl OfParameter {
-    fn of(robot: &Robot, baseline: &Baseline, statistic: &Statistic) -> Self {
-        Self {
-            cause: Cause::of(statistic.candidate).name(),
-            joint: statistic.candidate.joint().map(|joint| joint + 1),
-            name: name(robot, statistic.candidate.joint()),
-            parameter: statistic.candidate.parameter(),
-            change: statistic.change,
-            deviation: statistic.deviation,
-            threshold: statistic.threshold,
-            ratio: statistic.ratio(),
-            unit: unit(robot, statistic.candidate),
-            watched: baseline.scale.is_watched(statistic),
-        }
-    }
-}
-
-#[derive(IntoPyObject)]
-struct OfJoint {
-    joint: usize,
-    name: String,
-    error: Option<f64>,
-    unfiltered: Option<f64>,
-    residual: f64,
-    residual_of_baseline: f64,
-    observer_deviation: f64,
-}
-
-#[derive(IntoPyObject)]
-struct OfFriction {
-    joint: usize,
-    name: String,
-    coulomb: Option<f64>,
-    coulomb_deviation: Option<f64>,
-    threshold: Option<f64>,
-    file_value: f64,
-    residual: f64,
-    unit: &'static str,
-}
-
-#[derive(IntoPyObject)]
-struct OfRow {
-    log: String,
-    events: Vec<OfEvent>,
-    payload: Option<f64>,
-    payload_deviation: Option<f64>,
-    joints: Vec<OfFriction>,
-}
 
 /// What later logs are compared with.
 struct Known {
@@ -320,26 +186,9 @@ pub(crate) fn watched<'py>(
         Ok::<_, PyErr>(Watched { known, report, errors, words, read_to, picture })
     })??;
     let Watched { known, report, errors, .. } = &found;
-    let of_joint = |(at, error): (usize, &JointError)| OfJoint {
-        joint: at + 1,
-        name: robot.joints[at].name.clone(),
-        error: finite(error.error),
-        unfiltered: finite(error.unfiltered),
-        residual: report.changes.residual[at],
-        residual_of_baseline: known.baseline.residual[at],
-        observer_deviation: report.contact.joints[at].deviation,
-    };
-    let statistics = report.changes.statistics.iter();
-    let reply = PyDict::new(py);
-    reply.set_item("robot", &robot.name)?;
-    reply.set_item("log", &found.words)?;
-    reply.set_item("baseline", &known.words)?;
-    reply.set_item("low_pass", known.baseline.cutoff)?;
-    reply.set_item("read_to", found.read_to)?;
-    reply.set_item("events", OfEvent::all(&robot, &report.events))?;
-    let parameters: Vec<OfParameter> = statistics.map(|of| OfParameter::of(&robot, &known.baseline, of)).collect();
-    reply.set_item("parameters", parameters)?;
-    reply.set_item("joints", errors.iter().enumerate().map(of_joint).collect::<Vec<_>>())?;
+    let (baseline, words) = (&known.baseline, &known.words);
+    let reply = WatchReply::of(&robot, found.words.clone(), found.read_to, words, baseline, report, errors);
+    let reply = dict_of(py, &reply)?;
     reply.set_item("picture", &found.picture)?;
     reply.set_item("remarks", &remarks)?;
     reply.set_item("baseline_file", &known.text)?;
@@ -404,30 +253,8 @@ pub(crate) fn followed<'py>(
         Ok::<_, PyErr>(Followed { known, trend, events })
     })??;
     let Followed { known, trend, events } = &found;
-    let rows = trend.rows.iter().zip(events).map(|(row, events)| {
-        let joints = row.friction.iter().zip(&row.residual).enumerate().map(|(joint, (of, residual))| OfFriction {
-            joint: joint + 1,
-            name: robot.joints[joint].name.clone(),
-            coulomb: finite(of.value),
-            coulomb_deviation: finite(of.deviation),
-            threshold: finite(of.threshold),
-            file_value: trend.friction[joint][0],
-            residual: *residual,
-            unit: unit(&robot, Candidate::Coulomb(joint)),
-        });
-        OfRow {
-            log: row.name.clone(),
-            events: OfEvent::all(&robot, events),
-            payload: finite(row.payload.value),
-            payload_deviation: finite(row.payload.deviation),
-            joints: joints.collect(),
-        }
-    });
     let about = format!("{} logs compared with {}", trend.rows.len(), known.words);
-    let reply = PyDict::new(py);
-    reply.set_item("robot", &robot.name)?;
-    reply.set_item("baseline", &known.words)?;
-    reply.set_item("logs", rows.collect::<Vec<_>>())?;
+    let reply = dict_of(py, &TrendReply::of(&robot, &known.words, trend, events))?;
     reply.set_item("left_out", trend.left_out.iter().cloned().collect::<BTreeMap<String, String>>())?;
     reply.set_item("table", trend.csv(&robot))?;
     reply.set_item("picture", trend.svg(&robot, &about))?;

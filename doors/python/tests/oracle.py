@@ -8,6 +8,8 @@ def rotation(axis, angle):
     c, s = np.cos(angle), np.sin(angle)
     if axis == "x":
         return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    if axis == "y":
+        return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
 
 
@@ -17,6 +19,7 @@ class RandomArm:
     def __init__(self, seed):
         random = self.random = np.random.default_rng(seed)
         self.n = int(random.integers(1, 8))
+        self.parents = list(range(-1, self.n - 1))
         self.convention = random.choice(["standard", "modified"])
         self.gravity = random.normal(size=3) * 6
         sparsity = random.choice([0.0, 0.3, 0.7])
@@ -40,6 +43,12 @@ class RandomArm:
                     "inertia": np.trace(factor @ factor.T) * np.eye(3) - factor @ factor.T,
                 }
             )
+        # where a row begins on its parent
+        self.places = [(np.zeros(3), np.zeros(3))] * self.n
+
+    def carries(self, joint, link):
+        """Whether a joint moves a link."""
+        return link == joint or link > joint and self.carries(joint, self.parents[link])
 
     def yaml(self):
         def numbers(values):
@@ -62,9 +71,13 @@ class RandomArm:
 
     def frames(self, q):
         """Of every link: its frame's rotation and origin, and the point and direction of its joint's axis."""
-        turn, origin = np.eye(3), np.zeros(3)
         found = []
-        for joint, position in zip(self.joints, q):
+        for index, (joint, position) in enumerate(zip(self.joints, q)):
+            parent = self.parents[index]
+            turn, origin = (np.eye(3), np.zeros(3)) if parent < 0 else found[parent][:2]
+            xyz, (roll, pitch, yaw) = self.places[index]
+            origin = origin + turn @ xyz
+            turn = turn @ rotation("z", yaw) @ rotation("y", pitch) @ rotation("x", roll)
             revolute = joint["type"] == "revolute"
             theta = joint["theta"] + (position if revolute else 0)
             d = joint["d"] + (0 if revolute else position)
@@ -81,9 +94,12 @@ class RandomArm:
         return found
 
     def torques(self, q, qd, qdd):
-        omega, alpha, at, acceleration = np.zeros(3), np.zeros(3), np.zeros(3), -self.gravity
-        frames, forces = self.frames(q), []
-        for joint, speed, change, (turn, origin, point, axis) in zip(self.joints, qd, qdd, frames):
+        base = np.zeros(3), np.zeros(3), np.zeros(3), -self.gravity
+        frames, forces, motions = self.frames(q), [], []
+        for parent, joint, speed, change, (turn, origin, point, axis) in zip(
+            self.parents, self.joints, qd, qdd, frames
+        ):
+            omega, alpha, at, acceleration = base if parent < 0 else motions[parent]
             def of_point(place):
                 arm = place - at
                 return acceleration + np.cross(alpha, arm) + np.cross(omega, np.cross(omega, arm))
@@ -97,13 +113,14 @@ class RandomArm:
             else:
                 acceleration = of_point(origin) + axis * change + 2 * np.cross(omega, axis * speed)
             at = origin
+            motions.append((omega, alpha, at, acceleration))
             arm = turn @ joint["com"]
             of_com = acceleration + np.cross(alpha, arm) + np.cross(omega, np.cross(omega, arm))
             tensor = turn @ joint["inertia"] @ turn.T
             forces.append((origin + arm, joint["mass"] * of_com, tensor @ alpha + np.cross(omega, tensor @ omega)))
         torques = []
         for index, (joint, (_, _, point, axis)) in enumerate(zip(self.joints, frames)):
-            behind = forces[index:]
+            behind = [force for link, force in enumerate(forces) if self.carries(index, link)]
             if joint["type"] == "revolute":
                 torques.append(sum(axis @ (moment + np.cross(where - point, force)) for where, force, moment in behind))
             else:
@@ -114,3 +131,32 @@ class RandomArm:
         zero = np.zeros(self.n)
         still = self.torques(q, zero, zero)
         return np.array([self.torques(q, zero, row) - still for row in np.eye(self.n)]).T
+
+
+class RandomTree(RandomArm):
+    """A table whose rows are on any link before them; `tip` is the joint whose link carries the tip."""
+
+    def __init__(self, seed):
+        super().__init__(seed)
+        random = self.random
+        self.parents = [int(random.integers(-1, joint)) if joint else -1 for joint in range(self.n)]
+        self.places = [(random.normal(size=3) * 0.3, random.normal(size=3)) for _ in range(self.n)]
+        self.tip = int(random.integers(0, self.n))
+
+    def yaml(self):
+        def numbers(values):
+            return "[" + ", ".join(repr(float(value)) for value in values) + "]"
+
+        lines, joint = [], 0
+        for line in super().yaml().splitlines():
+            if line == "format: 1":
+                lines += ["format: 2", f"tool: {{on: j{self.tip}, xyz: [0, 0, 0], rpy: [0, 0, 0]}}"]
+                continue
+            if line.startswith("  - type:"):
+                parent = "base" if self.parents[joint] < 0 else f"j{self.parents[joint]}"
+                xyz, rpy = (numbers(values) for values in self.places[joint])
+                lines += [f"  - name: j{joint}", f"    parent: {parent}", f"    at: {{xyz: {xyz}, rpy: {rpy}}}"]
+                line = line.replace("  - type", "    type")
+                joint += 1
+            lines.append(line)
+        return "\n".join(lines) + "\n"

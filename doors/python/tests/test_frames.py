@@ -55,6 +55,23 @@ def test_many_states_are_computed_at_once(arm):
     assert np.array_equal(jacobians[7], arm.jacobian(many[7], frame="camera"))
 
 
+@pytest.mark.parametrize("frame", [3, b"camera", ["camera"]])
+def test_a_frame_that_is_no_name_lists_the_names(arm, frame):
+    calls = [
+        lambda: arm.pose(Q, frame=frame),
+        lambda: arm.jacobian(Q, frame=frame),
+        lambda: arm.wrench_torques(Q, np.zeros(6), frame=frame),
+        lambda: arm.pose_error(Q, np.eye(4), frame=frame),
+        lambda: arm.operational_space_inertia(Q, rows=[0], frame=frame),
+        lambda: arm.dynamically_consistent_inverse(Q, rows=[0], frame=frame),
+    ]
+    for call in calls:
+        with pytest.raises(TypeError) as refused:
+            call()
+        for part in (f"`frame` is {frame!r}", "the name of a frame", *(f"`{name}`" for name in FRAMES)):
+            assert part in str(refused.value)
+
+
 def test_a_wrong_name_lists_the_names(arm):
     with pytest.raises(ValueError, match="did you mean `camera`"):
         arm.jacobian(Q, frame="camra")

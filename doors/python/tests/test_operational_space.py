@@ -25,7 +25,11 @@ def same(found, expected, magnification):
     assert (error <= 1e-15 * magnification).all(), (error / magnification).max()
 
 
-@pytest.mark.parametrize("name", [name for name in rne.robots if rne.robots[name].dof >= 6])
+# of a tree, some joints do not move the tip
+SERIAL = [name for name in rne.robots if "\nformat: 1" in rne.robots[name].yaml]
+
+
+@pytest.mark.parametrize("name", [name for name in SERIAL if rne.robots[name].dof >= 6])
 def test_shipped_arms_are_those_of_numpy(name):
     arm = rne.robots[name]
     q = np.random.default_rng(71).uniform(-2.5, 2.5, (40, arm.dof))

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rne_convert::{Description, Options, Selection};
+use rne_convert::{Description, Selection};
 use rne_machine::CompiledArm;
 
 /// The arm of a file or of a shipped robot, with the rotors of its motors. `selection` chooses the chain of a URDF.
@@ -21,10 +21,7 @@ pub fn open(path: &Path, selection: Selection) -> Result<CompiledArm, String> {
         },
         Description::Urdf(bytes) => {
             let name = path.display().to_string();
-            let text = String::from_utf8(bytes).map_err(|_| format!("{name} is not text in UTF-8"))?;
-            // numbers of a machine stay as they are
-            let options = Options { selection, snap: false, ..Options::default() };
-            let imported = rne_convert::import(&name, &text, &options).map_err(|report| report.to_string())?;
+            let imported = rne_convert::import_arm(&name, bytes, selection).map_err(|report| report.to_string())?;
             CompiledArm::from_yaml(&imported.text)
         }
         _ => CompiledArm::from_file(path),
@@ -54,6 +51,25 @@ mod tests {
             assert!(said.contains(why), "{said}");
         }
         std::fs::remove_dir_all(&folder).expect("the folder");
+    }
+
+    #[test]
+    fn angles_of_a_urdf_are_those_of_rne_import() {
+        let file = std::env::temp_dir().join(format!("rne-ros2-{}.urdf", std::process::id()));
+        let body = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>\
+                    </inertial></link>";
+        let text = format!(
+            "<robot name=\"two\"><link name=\"base\"/><link name=\"a\">{body}<link name=\"b\">{body}\
+             <joint name=\"one\" type=\"continuous\"><parent link=\"base\"/><child link=\"a\"/>\
+             <axis xyz=\"0 0 1\"/></joint>\
+             <joint name=\"two\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/>\
+             <origin rpy=\"1.5708 0 0\"/><axis xyz=\"0 0 1\"/></joint></robot>"
+        );
+        std::fs::write(&file, text).expect("a file");
+        let arm = open(&file, Selection::default()).expect("an arm");
+        std::fs::remove_file(&file).expect("the file");
+        let mut joints = arm.robot().joints.iter();
+        assert!(joints.any(|joint| joint.row.dh.alpha.radians.abs() == std::f64::consts::FRAC_PI_2), "{arm:?}");
     }
 
     #[test]

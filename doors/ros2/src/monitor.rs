@@ -110,7 +110,7 @@ impl Monitor {
             is_by_order: false,
             places: (Vec::new(), Err(Fault::Foreign)),
             observer: DynObserverState::new(arm.dof(), settings.gain, 0.0),
-            friction: arm.robot().joints.iter().map(Friction::of).collect(),
+            friction: arm.robot().independent_joints().map(Friction::of).collect(),
             last: None,
             observed: None,
             report: Report::default(),
@@ -295,7 +295,7 @@ impl Monitor {
     /// The observer forgets all, and begins at the next message that has everything.
     fn begin(&mut self) {
         self.observer.reset();
-        self.friction = self.arm.robot().joints.iter().map(Friction::of).collect();
+        self.friction = self.arm.robot().independent_joints().map(Friction::of).collect();
         self.observed = None;
     }
 }
@@ -308,7 +308,7 @@ fn seconds(from: i64, to: i64) -> f64 {
 
 /// The names of the joints of the robot file, base to tip.
 fn names_of(arm: &CompiledArm) -> Vec<String> {
-    arm.robot().joints.iter().map(|joint| joint.name.clone()).collect()
+    arm.robot().independent_joints().map(|joint| joint.name.clone()).collect()
 }
 
 /// Torques, if all of them are finite.

@@ -194,6 +194,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Wrench => "force, moment",
         Argument::Payload => "payload",
         Argument::Base => "base_omega, base_zero, base_zero, base_gravity",
+        Argument::Wrenches => "(const float[1][6]){{force[0], force[1], force[2], moment[0], moment[1], moment[2]}}",
     });
     let arguments = arguments.collect::<Vec<_>>().join(", ");
     let layout = function.layout(dof);

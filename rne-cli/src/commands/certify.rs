@@ -187,6 +187,7 @@ impl Arguments {
             precision,
             friction: self.friction,
             limits: self.limits,
+            names: !robot.is_serial(),
             tests: self.tests,
             ascii: self.ascii,
         };
@@ -313,7 +314,7 @@ fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
 
 /// The certificate, and a remark where the robot file has warnings.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Chain)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Coupled)?;
     let robot = arguments.rotors.of(checked.robot);
     let compiled = Compiler::new(&arguments.file, &robot);
     let programs = arguments.programs().into_iter().map(|function| compiled.compile(function, arguments.form));

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rne_codegen::{Derivation, ExactConstant, ExactStep, Function, Program};
 use rne_emit::{Precision, Prefix};
-use rne_model::{Angle, InertiaReference, QuarterTurns, Robot};
+use rne_model::{Angle, InertiaReference, QuarterTurns, Robot, Transform};
 use serde_json::{Value, json};
 
 use crate::commands::certify::{Arguments, Language};
@@ -122,14 +122,16 @@ fn table(robot: &Robot) -> Value {
         Some(QuarterTurns::Three) => text(-std::f64::consts::FRAC_PI_2),
         None => text(angle.radians),
     };
+    let is_tree = robot.joints.iter().any(|joint| joint.branch.is_some());
     let joints: Vec<Value> = robot
         .joints
         .iter()
-        .map(|joint| {
+        .enumerate()
+        .map(|(index, joint)| {
             let (dh, link) = (&joint.row.dh, &joint.row.link);
             let (inertia, reference) = &joint.written_inertia;
             let inertia = [inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.xz, inertia.yz];
-            json!({
+            let mut row = json!({
                 "name": joint.name,
                 "type": joint.row.kind.name(),
                 "theta": angle(&dh.theta),
@@ -140,7 +142,15 @@ fn table(robot: &Robot) -> Value {
                 "com": link.com.map(text),
                 "inertia": inertia.map(text),
                 "inertia_about": if *reference == InertiaReference::Com { "com" } else { "origin" },
-            })
+            });
+            if is_tree {
+                let placement = joint.branch.map_or(Transform::IDENTITY, |branch| branch.placement);
+                // counted from 1; 0 is the base
+                row["parent"] = json!(robot.parent(index).map_or(0, |parent| parent + 1).to_string());
+                row["xyz"] = json!(placement.xyz.map(text));
+                row["rpy"] = json!(placement.rpy.each_ref().map(angle));
+            }
+            row
         })
         .collect();
     json!({"convention": robot.convention.name(), "gravity": robot.gravity.map(text), "joints": joints})

@@ -105,7 +105,7 @@ struct Good {
 
 /// A robot file, and its plan with it, unless that is among the files to be checked itself.
 fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
-    let Checked { robot, lints, .. } = robot_file::read(path, Shape::Tree)?;
+    let Checked { robot, lints, .. } = robot_file::read(path, Shape::Coupled)?;
     if !arguments.files.contains(&plan_of(path))
         && let Some(read) = plan_file::read(path, &robot)?
     {
@@ -126,7 +126,7 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
     const MOST_JOINTS: usize = 8;
     // of geometry alone a warning tells, and why accelerations cannot be computed
     let has_links = robot.joints.iter().any(|joint| !joint.row.link.is_empty());
-    if robot.dof() > MOST_JOINTS || !has_links {
+    if robot.joints.len() > MOST_JOINTS || !has_links {
         return Ok(Vec::new());
     }
     let compiler = Compiler::new(path, robot);
@@ -155,7 +155,7 @@ fn misnamed_golden(path: &Path) -> Option<String> {
 
 /// Whether a plan belongs to its robot and gives what the seven steps give; what it costs.
 fn plan(robot_file: &Path) -> Result<Good, Failure> {
-    let robot = robot_file::robot(robot_file, Shape::Tree)?;
+    let robot = robot_file::robot(robot_file, Shape::Coupled)?;
     let Some(read) = plan_file::read(robot_file, &robot)? else {
         return Err(Failure::input(format_args!("there is no plan {}", plan_of(robot_file).display())));
     };

@@ -65,7 +65,7 @@ impl Wanted {
         letters: Letters,
         of: impl FnOnce(Robot) -> Robot,
     ) -> Result<Outcome, Failure> {
-        let (checked, bytes) = robot_file::read_with_run_time(file, &[], Frames::Dropped, Shape::Chain)?;
+        let (checked, bytes) = robot_file::read_with_run_time(file, &[], Frames::Dropped, Shape::Tree)?;
         let joints = match self.first {
             Some(joint) if joint == 0 || joint > checked.robot.dof() => {
                 let (name, dof) = (&checked.robot.name, checked.robot.dof());

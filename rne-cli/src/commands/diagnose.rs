@@ -10,6 +10,7 @@ use rne_model::Robot;
 use serde::Serialize;
 
 use crate::files::chosen_arm::ChosenArm;
+use crate::files::robot_file::Shape;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{ERROR, FOUND, GOOD, QUIET, TITLE};
 use crate::render::answer::not_finite;
@@ -33,8 +34,9 @@ rne tries the usual mistakes one by one, then in pairs: convention, gravity,
 inertia and centre of mass about another point, units, offsets, signs, motors,
 wrench, and the misprints of the lecture (docs/lecture/errata.md). Single
 mistakes also include the sign of one alpha, one theta, or one component of a
-centre of mass. Give speeds and accelerations of all joints: such a state
-distinguishes most mistakes.")]
+centre of mass. In a tree rne also tries lists in alphabetical order and a tip
+on another link, and no misprints. Give speeds and accelerations of all joints:
+such a state distinguishes most mistakes.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
@@ -107,7 +109,7 @@ const COARSEST: f64 = 1e-3;
 const SHOWN: usize = 5;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.arm.robot_with_payload()?;
+    let robot = arguments.arm.robot_with_payload(Shape::Tree)?;
     let (seen, right) = observation(arguments, &robot)?;
     let diagnosis = rne_diagnose::diagnose(&robot, std::slice::from_ref(&seen)).map_err(Failure::usage)?;
     let at_fault = matches!(diagnosis, Diagnosis::Unexplained(_));
@@ -120,10 +122,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
         Diagnosis::Explained(all) => table(&robot, &seen, &right) + "\n" + &explained(&robot, &all),
         Diagnosis::Unexplained(_) => {
+            let trace = if robot.is_serial() { "compare link by link: rne eval … --trace; " } else { "" };
             table(&robot, &seen, &right)
                 + &format!(
                     "\n{ERROR}no usual mistake{ERROR:#} gives these torques, and no pair of mistakes does\n\
-                     {QUIET}compare link by link: rne eval … --trace; accept larger errors: --tolerance 1e-3{QUIET:#}\n"
+                     {QUIET}{trace}accept larger errors: --tolerance 1e-3{QUIET:#}\n"
                 )
         }
     };

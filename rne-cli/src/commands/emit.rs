@@ -44,8 +44,8 @@ pub(crate) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Programming language of the code
-    #[arg(long, value_enum, default_value_t = Language::Rust)]
+    /// Language of the code: rust or c
+    #[arg(long, value_enum, default_value_t = Language::Rust, hide_possible_values = true)]
     lang: Language,
     /// Number type of C code: float (default) or double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
@@ -73,6 +73,9 @@ pub(crate) struct Arguments {
     /// Add effort limits to C code: limit_torques
     #[arg(long)]
     limits: bool,
+    /// Add the index of each joint under its name
+    #[arg(long)]
+    names: bool,
     /// Add functions for sine and cosine to Rust code; C code always contains them
     #[arg(long)]
     with_sin_cos: bool,
@@ -100,6 +103,12 @@ impl Arguments {
             Language::Rust => Form::SevenSteps,
             Language::C => Form::Reduced,
         })
+    }
+
+    /// Whether the code has the indices of the joints under their names. In code of a chain, they stand on request, so
+    /// that its bytes stay what they were.
+    fn names_joints(&self, robot: &Robot) -> bool {
+        self.names || !robot.is_serial()
     }
 }
 
@@ -175,8 +184,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
     let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf, Shape::Tree)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf, Shape::Coupled)?;
     let robot = arguments.rotors.of(checked.robot);
+    if arguments.names_joints(&robot) {
+        checked.identifiers.map_err(|report| Failure::from(&report))?;
+    }
     let mut outcome = emitted(arguments, &robot, &bytes, out, header)?;
     outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);
     Ok(outcome)
@@ -198,12 +210,14 @@ fn emitted(
         precision: arguments.real.map_or_else(Precision::default, Real::precision),
         friction: arguments.friction,
         limits: arguments.limits,
+        names: arguments.names_joints(robot),
         tests: arguments.tests,
         ascii: arguments.ascii,
     };
     let c_code = || c_code(&request, robot, &programs);
     let rust_file = if arguments.with_sin_cos { rne_emit::rust_file_with_sin_cos } else { rne_emit::rust_file };
-    let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &rust_tests(arguments, robot, &programs)?);
+    let names = if arguments.names_joints(robot) { rne_emit::rust_joints(robot) } else { String::new() };
+    let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &names + &rust_tests(arguments, robot, &programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
     let files = match (arguments.lang, out, header) {
@@ -467,6 +481,7 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     for (option, is_given) in [
         (" --friction", arguments.friction),
         (" --limits", arguments.limits),
+        (" --names", arguments.names),
         (" --with-sin-cos", arguments.with_sin_cos),
     ] {
         command.push_str(if is_given { option } else { "" });

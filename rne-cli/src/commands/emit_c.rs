@@ -49,20 +49,21 @@ pub(super) struct Request<'a> {
     pub(super) precision: Precision,
     pub(super) friction: bool,
     pub(super) limits: bool,
+    pub(super) names: bool,
     pub(super) tests: bool,
     pub(super) ascii: bool,
 }
 
 /// The code, with the tests that are asked for.
 pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
-    let &Request { file, precision, limits, .. } = request;
+    let &Request { file, precision, limits, names, .. } = request;
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     // without its folder: the same file gives the same bytes wherever it is
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let name = if is_stream(file) { "on standard input" } else { &*name };
     let origin = Origin::new(name, &rne_certify::sha256(request.bytes));
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
-    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits };
+    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names };
     if limits && robot.joints.iter().all(|joint| joint.limits.effort.is_none()) {
         return Err(Failure::input(format_args!(
             "{}: no joint has an effort limit; write it in `limits` of the joint, for example `limits: {{effort: 40}}` \

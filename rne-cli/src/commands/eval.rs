@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::DynArm;
-use rne_codegen::{Argument, Function, Layout, Record, Step};
+use rne_codegen::{Argument, CompileError, Function, Layout, Record, Step};
 use rne_diagnose::worksheet::Worksheet;
+use rne_model::Robot;
 use serde_json::{Value, json};
 
 use crate::commands::compare::{self, Manner};
@@ -25,7 +26,7 @@ use crate::render::worksheet::{self, Axes, Narrowed};
 use crate::values::choice;
 use crate::values::limits;
 use crate::values::numbers::List;
-use crate::values::state::{Given, State};
+use crate::values::state::{Given, State, TipWrench};
 
 /// Compute torques, or another function of an arm, at given states
 #[derive(Args)]
@@ -58,13 +59,16 @@ pub(crate) struct Arguments {
     /// Force and moment of the tip on its environment, fx,fy,fz,nx,ny,nz, N and N m, in tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
+    /// A wrench at the tip N of `tips`; may be repeated
+    #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
+    tip_wrench: Vec<TipWrench>,
     /// Angular velocity of a moving base, x,y,z, rad/s
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
     /// Angular acceleration of the base, x,y,z, rad/s²
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
-    /// Acceleration of a moving base, x,y,z, m/s², without gravity
+    /// Its acceleration, x,y,z, m/s², without gravity
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
     /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
@@ -72,14 +76,14 @@ pub(crate) struct Arguments {
     gravity: Option<List>,
     /// Print torques at N random states, as a file of expected values for tests (NAME.golden.csv)
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
-        "gravity", "trace", "json", "csv", "compare", "frame",
+        "function", "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
+        "base_acceleration", "gravity", "trace", "json", "csv", "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute the function at every state in this file: CSV or npy; - is standard input
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration", "gravity",
-        "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
+        "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
+        "base_acceleration", "gravity", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
     /// Output file of --states: CSV, or NAME.npy
@@ -97,7 +101,7 @@ pub(crate) struct Arguments {
     /// Print only joint I of --trace; 1 is at the base
     #[arg(long, value_name = "I", value_parser = choice::joint, requires = "trace", conflicts_with = "compare")]
     joint: Option<usize>,
-    /// Print only step S of --trace: 1 angular velocity, …, 7 torque
+    /// Print only step S of --trace, 1 to 7
     #[arg(long, value_name = "S", value_parser = choice::step, requires = "trace", conflicts_with = "compare")]
     step: Option<Step>,
     /// Print the values of --trace as CSV
@@ -145,6 +149,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.arm.robot_at(&arguments.at)?;
     let is_at_frame = arguments.at.frame.is_some();
     let function = arguments.function.unwrap_or(match (&arguments.wrench, is_at_frame) {
+        _ if !arguments.tip_wrench.is_empty() => Function::InverseDynamicsWithWrenches,
         (Some(_), true) => Function::WrenchTorques,
         (None, true) => Function::ForwardKinematics,
         (Some(_), false) => Function::InverseDynamicsWithWrench,
@@ -168,10 +173,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
             arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
         return golden::file(&robot, states, &settings).map(Outcome::text);
     }
-    let loaded = function.with_payload().filter(|_| arguments.arm.carried.payload.is_some());
-    let function = loaded.unwrap_or(function);
-    // of a function that takes no payload, the payload is a part of the last link
-    let robot = if function.takes(Argument::Payload) { robot } else { arguments.arm.carried.of(robot)? };
+    let (function, robot) = arguments.loaded(function, robot)?;
     if arguments.trace && !function.returns_torques() {
         let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
         return Err(Failure::usage(format_args!(
@@ -180,7 +182,18 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
             with.join(", ")
         )));
     }
+    let follower = robot.joints.iter().find(|joint| joint.coupling.is_some());
+    if let Some(joint) = follower.filter(|_| function.is_of_every_link()) {
+        let error = CompileError::OfEveryLink { function, follower: joint.name.clone() };
+        return Err(Failure::usage(error));
+    }
     let zeros = List(vec![0.0; robot.dof()]);
+    if arguments.trace && !robot.is_serial() {
+        return Err(Failure::usage(
+            "--trace takes serial arms, but the robot is a tree; without --trace, `rne eval` computes the torques of a \
+             tree, and `rne show` prints the formulas of its joints",
+        ));
+    }
     let (given, assumed) = arguments.given(function).at_rest(function, &zeros);
     let state = State::new(function, given, &robot)?;
     let arm = DynArm::from_robot(&robot);
@@ -227,6 +240,22 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 impl Arguments {
+    /// The function and the robot with the payload: an argument where the function has one, else a part of a link.
+    fn loaded(&self, function: Function, robot: Robot) -> Result<(Function, Robot), Failure> {
+        let carried = &self.arm.carried;
+        let function = function.with_payload().filter(|_| carried.is_at_tip()).unwrap_or(function);
+        if !function.takes(Argument::Payload) {
+            return Ok((function, carried.of(robot)?));
+        }
+        if carried.payload_on.is_some() {
+            return Err(Failure::usage(format_args!(
+                "{function} takes a payload at the tip; for a payload at another frame, name the function without a \
+                 payload, such as inverse_dynamics"
+            )));
+        }
+        Ok((function, robot))
+    }
+
     fn given(&self, function: Function) -> Given<'_> {
         Given {
             q: self.q.as_ref(),
@@ -234,6 +263,7 @@ impl Arguments {
             qdd: self.qdd.as_ref(),
             tau: self.tau.as_ref(),
             wrench: self.wrench.as_ref(),
+            tip_wrenches: &self.tip_wrench,
             payload: self.arm.carried.payload.as_ref().filter(|_| function.takes(Argument::Payload)),
             base_omega: self.base_omega.as_ref(),
             base_omega_dot: self.base_omega_dot.as_ref(),

@@ -104,7 +104,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.carried.of(robot_file::robot(&arguments.file, Shape::Chain)?)?;
+    let robot = arguments.carried.of(robot_file::robot(&arguments.file, Shape::Tree)?)?;
     if arguments.seconds * arguments.rate > MOST {
         return Err(Failure::usage(format_args!(
             "{} s at {} Hz are more than {MOST} samples; use a lower --rate",

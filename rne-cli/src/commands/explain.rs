@@ -101,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// Explains a name in the code of a robot.
 fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> {
     let (name, function, form) = (&arguments.topic, arguments.function, arguments.form);
-    let robot = robot_file::robot(path, Shape::Tree).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
+    let robot = robot_file::robot(path, Shape::Coupled).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
     let program = match form {
         Form::SevenSteps => Compiler::new(&robot)
             .with_equations()

@@ -23,7 +23,7 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
     let in_file = robot.run_time.values(robot);
     (0..STATES)
         .map(|_| {
-            let state = random::state(&random, robot.dof());
+            let state = random::state(&random, robot);
             let parameters: Vec<f64> =
                 in_file.iter().map(|value| rounded(value * (1.25 + random.number(0.5)))).collect();
             let robot = &robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
@@ -94,6 +94,7 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("tau", state.tau.clone()),
         ("force", wrench.force.to_vec()),
         ("moment", wrench.moment.to_vec()),
+        ("wrenches", state.wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten().collect()),
         ("payload", state.payload.unwrap_or_default().to_array().to_vec()),
         ("base_omega", omega.to_vec()),
         ("base_omega_dot", omega_dot.to_vec()),
@@ -123,7 +124,7 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
         GoldenFile::header(robot.dof()).join(",")
     );
     for _ in 0..states {
-        let state = random::state(&random, robot.dof());
+        let state = random::state(&random, robot);
         let torques = state.numbers(&arm).map_err(Failure::usage)?;
         let numbers = [&state.q, &state.qd, &state.qdd, &torques].into_iter().flatten();
         let numbers: Vec<String> = numbers.copied().map(exact_digits).collect();

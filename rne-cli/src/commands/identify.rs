@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_identify::{
-    Identification, JointError, MotionError, Options, Part, Payload, Prediction, Purpose, Verdict, identify,
+    Identification, IdentificationReply, JointError, JudgedPart, MotionError, Options, Part, Payload, Prediction,
+    Purpose, Verdict, identify,
 };
 use rne_logs::Motion;
 use rne_model::{Robot, one_line};
@@ -20,10 +21,9 @@ use crate::files::output_file::{
 use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{TITLE, TYPED, WARNING};
-use crate::render::identification_reply::{Extent, Reply};
 use crate::render::identified_parameters;
 use crate::render::layout::{PAGE, wrap};
-use crate::render::payload::WordedPayload;
+use crate::render::payload::{WordedPayload, link_with_tip};
 use crate::render::verdict::{TIED, Worded};
 use crate::values::log_arguments::LogArguments;
 use crate::values::numbers::{checked, rounded};
@@ -65,7 +65,7 @@ pub(crate) struct Arguments {
     /// Identify nothing; compute how well FILE predicts the torques in the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
     judge: bool,
-    /// Identify only a payload at the last link, not the links
+    /// Identify only a payload at the last link (in a tree: at the link with the tip), not the links
     #[arg(long, conflicts_with_all = ["judge", "rotors", "no_friction", "hold_out", "pull"])]
     payload: bool,
     /// Print every parameter, and the errors by joint speed
@@ -93,7 +93,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Tree)?;
     // a file is judged by all that the log has
     let purpose = if arguments.judge { Purpose::Judge } else { Purpose::Fit };
     let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading, purpose)?;
@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         draw(arguments, &robot, &log, &judged, [about, "the whole log".to_owned()], &sources, &mut remark)?;
         tabulate(arguments, &robot, &log, &[(Part::All, false)], &mut remark)?;
         if arguments.json {
-            let reply = Reply::of_file(&robot, &verdict, logs(arguments), log.cutoff(), judged.extent);
+            let reply = IdentificationReply::of_file(&robot, &verdict, logs(arguments), log.cutoff(), judged.extent);
             return Ok(Outcome { remark, ..Outcome::json(&reply)? });
         }
         let worded = Worded { verdict: &verdict, robot: &robot, file: &arguments.file, held_out: "", rows: 0 };
@@ -153,7 +153,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let text = if arguments.json {
         let held_out = held_out.as_ref().map(|held_out| held_out.extent);
-        Outcome::json(&Reply::of(&found, &verdict, logs(arguments), log.cutoff(), held_out))?.text
+        Outcome::json(&IdentificationReply::of(&found, &verdict, logs(arguments), log.cutoff(), held_out))?.text
     } else {
         account(arguments, &worded, &found, &log, held_out.as_ref())
     };
@@ -223,8 +223,11 @@ fn payload(
     let is_lost = found.is_there() && with.is_none();
     if !found.mass.is_excited || is_lost {
         let why = if is_lost {
-            "according to the log, the last link and the payload together have a negative mass, so FILE and the log \
-             are not from the same arm"
+            &format!(
+                "according to the log, {} and the payload together have a negative mass, so FILE and the log are not \
+                 from the same arm",
+                link_with_tip(robot)
+            )
         } else {
             "the log does not determine the mass of a payload: record a motion in which gravity or accelerations load \
              the joints"
@@ -295,20 +298,15 @@ fn logs(arguments: &Arguments) -> Vec<String> {
 struct Judged {
     part: Part,
     errors: Vec<JointError>,
-    extent: Extent,
+    extent: JudgedPart,
 }
 
 impl Judged {
     fn of(robot: &Robot, log: &MotionLog, part: Part) -> Result<Self, Failure> {
         let mut prediction = Prediction::new(robot, Some(log.cutoff()));
-        let mut extent = Extent::default();
+        let mut extent = JudgedPart::default();
         log.pass(part, &mut |motion| {
-            if let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) {
-                extent.from.get_or_insert(*first);
-                extent.until = Some(*last);
-                extent.states += motion.len() as u64;
-                extent.duration += last - first;
-            }
+            extent.add(motion);
             prediction.absorb(motion)
         })?;
         Ok(Self { part, errors: prediction.errors(), extent })

@@ -23,6 +23,7 @@ Examples:
   rne export puma560 --urdf -o puma.urdf         a URDF to try it on
   rne import puma.urdf --convention modified     to the terminal
   rne import puma.urdf --name puma -o puma.yaml
+  rne import quadruped.urdf --whole -o quadruped.yaml
 
 For an arm with several ends: --base torso_lift_link --tip arm_tool_link. For a
 URDF with joints outside the arm: --lock torso_lift_joint=0.1 --lock-others.
@@ -42,9 +43,12 @@ pub(crate) struct Arguments {
     /// Last link of the arm [default: the last link, if the URDF has only one end]
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
-    /// Denavit-Hartenberg convention of the new table: standard or modified
-    #[arg(long, value_name = "C", value_parser = convention(), default_value = "standard", hide_possible_values = true)]
-    convention: Convention,
+    /// Convert the whole robot after the base, a tree of links, and not one arm; --tip then says where the tip is
+    #[arg(long)]
+    whole: bool,
+    /// Denavit-Hartenberg convention of the new table: standard or modified [default: standard; modified for a tree]
+    #[arg(long, value_name = "C", value_parser = convention(), hide_possible_values = true)]
+    convention: Option<Convention>,
     /// Lock a movable joint at this position, rad or m, such as finger=0.04; may be repeated
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
     lock: Vec<(String, f64)>,
@@ -83,11 +87,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         tip: arguments.tip.clone(),
         lock: arguments.lock.clone(),
         lock_others: arguments.lock_others,
+        whole: arguments.whole,
     };
+    let usual = if arguments.whole { Convention::Modified } else { Convention::Standard };
     urdf.check_names(&selection).map_err(|report| Failure::unknown_name(&report))?;
     let options = Options {
         selection,
-        convention: arguments.convention,
+        convention: arguments.convention.unwrap_or(usual),
         snap: !arguments.no_snap,
         keep_unphysical: arguments.keep_unphysical,
         frames: arguments.frames,

@@ -2,7 +2,6 @@
 
 use clap::Args;
 use rne_model::Reader;
-use rne_robots::ROBOTS;
 
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TYPED};
@@ -24,8 +23,9 @@ pub(crate) struct Arguments {}
 
 pub(crate) fn run(_: &Arguments) -> Result<Outcome, Failure> {
     let mut rows = Vec::new();
-    for file in ROBOTS {
-        let robot = Reader::new(file.name).read(file.yaml).map_err(|report| Failure::from(&report))?.robot;
+    for file in rne_robots::all() {
+        let robot =
+            Reader::new(file.name).trees().couplings().read(file.yaml).map_err(|report| Failure::from(&report))?.robot;
         let title = robot.title.clone().unwrap_or_default();
         let kinds = about(&robot);
         let kinds = kinds.strip_prefix(&format!("{}, ", file.name)).unwrap_or(&kinds);

@@ -20,7 +20,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, TYPED};
 use crate::render::layout::{PAGE, wrap};
 use crate::render::log_groups::{self, Group};
-use crate::render::log_report::{self, Described, Reply};
+use crate::render::log_report::{self, Described};
 use crate::values::log_arguments::{LogArguments, failure};
 
 /// Describe a log of an arm; filter it and add accelerations
@@ -67,7 +67,7 @@ impl Arguments {
     /// Opens and surveys the log, by the joints of the robot where there is one.
     fn describe(&self, mut options: Options, is_result_shown: bool) -> Result<Described, Failure> {
         let mut matched = None;
-        let robot = self.robot.as_deref().map(|path| robot_file::robot(path, Shape::Chain)).transpose()?;
+        let robot = self.robot.as_deref().map(|path| robot_file::robot(path, Shape::Tree)).transpose()?;
         if let Some(robot) = &robot {
             (options, matched) =
                 joint_options(&self.files, robot, options).map_err(|error| motion_log::failure(&error))?;
@@ -150,7 +150,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let described = arguments.describe(arguments.reading.options(), is_result_shown)?;
     let text = match (is_result_shown, arguments.json) {
         (true, _) => String::new(),
-        (false, true) => Outcome::json(&Reply::of(&described))?.text,
+        (false, true) => Outcome::json(&described.reply())?.text,
         (false, false) => log_report::text(&described, !arguments.raw),
     };
     let Some(path) = out else {

@@ -10,6 +10,7 @@ use rne_plot::{TorqueHistory, Trajectory, svg};
 use crate::files::chosen_arm::{ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
 use crate::files::output_file::{self, Output};
+use crate::files::robot_file::Shape;
 use crate::files::trajectory_file;
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TYPED};
@@ -53,7 +54,7 @@ const DURATION: f64 = 2.0;
 const SAMPLES: usize = 241;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.arm.robot_with_payload()?;
+    let robot = arguments.arm.robot_with_payload(Shape::Coupled)?;
     let (trajectory, mut about) = motion(arguments, &robot)?;
     for Setting { name, value } in &arguments.arm.set {
         let _ = write!(about, ", {name} = {value}");

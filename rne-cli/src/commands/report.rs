@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.carried.of(arguments.rotors.robot(&arguments.file, Shape::Chain)?)?;
+    let robot = arguments.carried.of(arguments.rotors.robot(&arguments.file, Shape::Coupled)?)?;
     let compiler = match arguments.carried.payload {
         Some(_) => Compiler::without_file(&arguments.file, &robot),
         None => Compiler::new(&arguments.file, &robot),

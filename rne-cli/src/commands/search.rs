@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     }
     let robot = robot_file::robot_in_yaml(&arguments.file)?;
-    let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
+    let options = SearchOptions { rewrite: rewritten(arguments, &robot)?, seed: arguments.seed };
     let known = plan_file::known(&arguments.file, &robot, arguments.fresh)?;
     let path = plan_of(&arguments.file);
     interruption::expect();
@@ -171,7 +171,7 @@ fn locked(robot_file: &Path) -> Option<File> {
 }
 
 /// The functions whose graphs are to be rewritten.
-fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
+fn rewritten(arguments: &Arguments, robot: &Robot) -> Result<Vec<Function>, Failure> {
     let asked = &arguments.functions;
     let is_asked = |function: Function| match asked.as_slice() {
         [] => function == Function::InverseDynamics,
@@ -187,7 +187,7 @@ fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
         )));
     }
     if asked.contains(&FunctionOrAll::All) {
-        return Ok(Function::ALL.into_iter().filter(|function| function.can_be_rewritten()).collect());
+        return Ok(choice::functions_of(robot).filter(|function| function.can_be_rewritten()).collect());
     }
     Ok(functions)
 }

@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return arguments.closed_form.run(&arguments.file, letters, |robot| arguments.rotors.of(robot));
     }
     let file = arguments.file.display().to_string();
-    let robot = arguments.rotors.robot(&arguments.file, Shape::Tree)?;
+    let robot = arguments.rotors.robot(&arguments.file, Shape::Coupled)?;
     if arguments.base_parameters {
         let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
         return Ok(Outcome::text(letters.page(&text, PAGE)));

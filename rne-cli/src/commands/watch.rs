@@ -7,7 +7,7 @@ use clap::Args;
 use rne_identify::{ArmLogRemark, Identification, Part, Purpose};
 use rne_logs::{LabelValue, Log};
 use rne_model::{Robot, one_line};
-use rne_watch::{Baseline, Changes, Report, Settings, Trend, WatchError, changes, svg, watch};
+use rne_watch::{Baseline, Changes, Report, Settings, Trend, TrendReply, WatchError, WatchReply, changes, svg, watch};
 
 use crate::commands::prediction_errors::{errors_table, prediction};
 use crate::files::file_name::Format;
@@ -19,7 +19,6 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED, WARNING};
 use crate::render::layout::{PAGE, wrap};
 use crate::render::watch_dates::{LogName, LogNames};
-use crate::render::watch_reply::{Reply, TrendReply};
 use crate::render::watch_report;
 use crate::values::log_arguments::{self, LogArguments};
 use crate::values::numbers::{above_zero, rounded};
@@ -98,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let inputs = arguments.logs.iter().chain(&arguments.quiet).chain(&arguments.baseline).chain([&arguments.file]);
     let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Tree)?;
     let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
     let mut remark = String::new();
     let known = known_baseline(arguments, &robot, &settings, &sources, &mut remark)?;
@@ -259,7 +258,7 @@ fn events(
         remark += &output_file::write_new(path, &table, sources, arguments.force)?;
     }
     if arguments.json {
-        let reply = Reply::of(robot, log.words(), log.read_to(), &words, &baseline, &report, &errors);
+        let reply = WatchReply::of(robot, log.words(), log.read_to(), &words, &baseline, &report, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
     }
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), baseline.cutoff);

@@ -102,14 +102,29 @@ pub(crate) struct Carried {
     /// axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub(crate) payload: Option<List>,
+    /// Frame or joint that carries --payload, not the tip
+    #[arg(long, value_name = "NAME", requires = "payload", hide = true)]
+    pub(crate) payload_on: Option<String>,
 }
 
 impl Carried {
-    /// A robot with the payload as a part of its last link.
+    /// A robot with the payload as a part of the link with the tip.
     pub(crate) fn of(&self, robot: Robot) -> Result<Robot, Failure> {
         let Some(list) = &self.payload else { return Ok(robot) };
         let Payload { mass, com, inertia } = payload(list)?;
-        Ok(rne_convert::carrying(&robot, mass, com, inertia))
+        let frame = match &self.payload_on {
+            Some(name) => robot.fixed_frame(robot.frame(name).map_err(Failure::usage)?),
+            None => robot.tip(),
+        };
+        if frame.on.is_none() {
+            return Err(Failure::usage("--payload-on names a frame on the base, where a payload has no effect"));
+        }
+        Ok(rne_convert::carrying_at(&robot, &frame, mass, com, inertia))
+    }
+
+    /// Whether the payload is an argument of a function that takes one, not a part of a link.
+    pub(crate) const fn is_at_tip(&self) -> bool {
+        self.payload.is_some() && self.payload_on.is_none()
     }
 }
 
@@ -121,9 +136,12 @@ pub(crate) struct ChosenArm {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Replace the value of a parameter; may be repeated
+    /// Set a parameter of FILE; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub(crate) set: Vec<Setting>,
+    /// Leave out a body of `bodies`; may be repeated
+    #[arg(long, value_name = "BODY")]
+    without: Vec<String>,
     #[command(flatten)]
     pub(crate) carried: Carried,
 }
@@ -134,19 +152,15 @@ impl ChosenArm {
         &self.file
     }
 
-    /// The robot with the payload as a part of its last link.
-    pub(crate) fn robot_with_payload(&self) -> Result<Robot, Failure> {
-        self.carried.of(self.robot()?)
-    }
-
-    /// The robot without the payload.
-    pub(crate) fn robot(&self) -> Result<Robot, Failure> {
-        self.read(Frames::Dropped, Shape::Chain)
+    /// The robot with the payload as a part of the link with the tip.
+    pub(crate) fn robot_with_payload(&self, shape: Shape) -> Result<Robot, Failure> {
+        self.carried.of(self.read(Frames::Dropped, shape)?)
     }
 
     /// The robot without the payload, seen from a frame.
     pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<Robot, Failure> {
-        at.of(self.read(if at.frame.is_some() { Frames::Kept } else { Frames::Dropped }, Shape::Tree)?)
+        let names_frame = at.frame.is_some() || self.carried.payload_on.is_some();
+        at.of(self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Coupled)?)
     }
 
     fn read(&self, frames: Frames, shape: Shape) -> Result<Robot, Failure> {
@@ -157,7 +171,9 @@ impl ChosenArm {
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
-        Ok(self.rotors.of(with_settings(&self.file, &self.set, frames, shape)?))
+        let robot = self.rotors.of(with_settings(&self.file, &self.set, frames, shape)?);
+        let without: Vec<&str> = self.without.iter().map(String::as_str).collect();
+        robot.without_bodies(&without).map_err(Failure::usage)
     }
 }
 

@@ -86,7 +86,7 @@ fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
         let value = number();
         step(value.signum() * (0.2 + (most - 0.2) * value.abs()), 10.0)
     };
-    let q = robot.joints.iter().map(|joint| {
+    let q = robot.independent_joints().map(|joint| {
         let (low, high) = if joint.row.kind == JointKind::Revolute { (-1.5_f64, 1.5_f64) } else { (0.1, 0.5) };
         let (low, high) = match joint.limits.position {
             Some((lower, upper)) if lower.max(low) < upper.min(high) => (lower.max(low), upper.min(high)),
@@ -99,7 +99,7 @@ fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
         Some(step(value, 20.0)).filter(|value| (low..=high).contains(value)).unwrap_or(value.clamp(low, high))
     });
     let q = q.collect();
-    let [qd, qdd] = [2.0, 3.0].map(|most| robot.joints.iter().map(|_| rate(most)).collect());
+    let [qd, qdd] = [2.0, 3.0].map(|most| robot.independent_joints().map(|_| rate(most)).collect());
     at(q, qd, qdd)
 }
 

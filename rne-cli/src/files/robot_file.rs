@@ -15,8 +15,11 @@ use crate::terminal::remark;
 pub(crate) enum Shape {
     /// Serial arms. A tree is refused at its line.
     Chain,
-    /// Serial arms and trees.
+    /// Serial arms and trees. Couplings are refused at their line.
+    #[allow(dead_code)] // TODO
     Tree,
+    /// Serial arms and trees, whose joints may follow others.
+    Coupled,
 }
 
 /// A valid robot with its lints. The path `-` is standard input.
@@ -114,7 +117,11 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
 }
 
 fn checked(name: &str, bytes: &[u8], (settings, run_time): Parameters<'_>, shape: Shape) -> Result<Checked, Failure> {
-    let plain = || if shape == Shape::Tree { Reader::new(name).trees() } else { Reader::new(name) };
+    let plain = || match shape {
+        Shape::Chain => Reader::new(name),
+        Shape::Tree => Reader::new(name).trees(),
+        Shape::Coupled => Reader::new(name).trees().couplings(),
+    };
     let reader = plain().run_time(run_time);
     let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));
     reader.read(bytes).map_err(|report| {
@@ -169,7 +176,7 @@ pub(crate) fn robot_in_yaml(path: &Path) -> Result<Robot, Failure> {
         Opened::RobotFile(name, bytes) => (name, bytes),
         Opened::Urdf(name, text) => (name, text.into_bytes()),
     };
-    Ok(checked(&name, &bytes, (&[], &[]), Shape::Tree)?.robot)
+    Ok(checked(&name, &bytes, (&[], &[]), Shape::Coupled)?.robot)
 }
 
 /// A path as a shell reads it back.

@@ -35,6 +35,11 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
         match name {
             "payload" => payload.map(str::to_owned).into(),
             "parameters" => arm.robot().run_time.names.clone(),
+            "wrenches" => {
+                let parts = ["fx", "fy", "fz", "nx", "ny", "nz"];
+                let tips = arm.robot().tip_names().into_iter();
+                tips.flat_map(|tip| parts.map(|part| format!("{tip}_{part}"))).collect()
+            }
             "q" | "qd" | "qdd" | "tau" | "sin" | "cos" => {
                 (1..=elements).map(|joint| format!("{name}{joint}")).collect()
             }
@@ -46,7 +51,7 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
 
 /// The same columns as `rne log` names them in a table: elements of joints by the names of the robot's joints.
 fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<String>> {
-    let joints: Vec<String> = arm.robot().joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints: Vec<String> = arm.robot().independent_joints().map(|joint| joint.name.clone()).collect();
     let headings = |&(name, elements): &(&str, usize)| -> Vec<Option<String>> {
         match Heading::quantity(name).filter(|_| elements == joints.len()) {
             Some(quantity) => Heading::of(&joints).columns(quantity).into_iter().map(Some).collect(),
@@ -66,7 +71,7 @@ fn mass(compiled: &CompiledFunction) -> Option<usize> {
 /// places in it, from 1, as those of a matrix by row and column.
 fn results(function: Function, dof: usize) -> Vec<String> {
     let symbol = match function {
-        Function::ForwardDynamics => Some("qdd"),
+        Function::ForwardDynamics | Function::ForwardDynamicsWithWrenches => Some("qdd"),
         _ if *function.answer() == Answer::Torques => Some("tau"),
         _ => None,
     };

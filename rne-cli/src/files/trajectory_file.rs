@@ -58,7 +58,7 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
         }
         return mistakes.finish(()).and(Err(Failure::input("the file is empty")));
     };
-    let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints: Vec<String> = robot.independent_joints().map(|joint| joint.name.clone()).collect();
     let Some(columns) = columns(&header, &joints, &help, &mut mistakes) else {
         return mistakes.finish(()).and(Err(Failure::input("this is not the header of a trajectory")));
     };

@@ -8,6 +8,7 @@ use rne_model::{INERTIAL_PARAMETERS, Inertia, InertiaElement, JointKind, Robot, 
 
 use crate::palette::{QUIET, TITLE};
 use crate::render::layout::{Align, columns, left, width};
+use crate::render::payload::link_with_tip;
 use crate::values::numbers::{at_the_point, rounded};
 use crate::values::state::State;
 
@@ -22,7 +23,7 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
     let frame = state.function.frame(robot).map(|frame| robot.frame_name(frame));
     let at = frame.map(|frame| format!(" at the frame {frame}")).unwrap_or_default();
     let mut text = format!("{TITLE}{}{TITLE:#} of {}{at}\n", state.function, robot.name);
-    let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints: Vec<String> = robot.independent_joints().map(|joint| joint.name.clone()).collect();
     match state.function.answer() {
         Answer::Torques | Answer::Accelerations => per_joint(&mut text, robot, state, numbers),
         Answer::Number(unit) => {
@@ -74,21 +75,25 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
         (if forward { "qdd" } else { "tau" }, result, true),
     ];
     let mut cells = vec![vec![String::new()]];
-    cells.extend(robot.joints.iter().map(|joint| vec![format!("  {}", joint.name)]));
+    cells.extend(robot.independent_joints().map(|joint| vec![format!("  {}", joint.name)]));
     for (title, values, _) in all.into_iter().filter(|(.., taken)| *taken) {
         let numbers: Vec<String> = values.iter().copied().map(exact_digits).collect();
         let column = std::iter::once(title.to_owned()).chain(at_the_point(&numbers));
         cells.iter_mut().zip(column).for_each(|(line, cell)| line.push(cell));
     }
-    for (line, joint) in cells.iter_mut().skip(1).zip(&robot.joints) {
+    for (line, joint) in cells.iter_mut().skip(1).zip(robot.independent_joints()) {
         line.push(unit(joint.row.kind, forward).to_owned());
     }
     write_lines(text, &cells);
     if let Some(Wrench { force, moment }) = &state.wrench {
         let frame = state.function.frame(robot).map(|frame| robot.frame_name(frame));
-        let link =
-            frame.map_or_else(|| "the last link".to_owned(), |frame| format!("the link of {frame}, in its axes,"));
+        let link = frame.map_or_else(|| link_with_tip(robot), |frame| format!("the link of {frame}, in its axes,"));
         let _ = writeln!(text, "{QUIET}{link} exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
+    }
+    if takes(Argument::Wrenches) {
+        for (tip, Wrench { force, moment }) in robot.tip_names().iter().zip(&state.wrenches) {
+            let _ = writeln!(text, "{QUIET}tip {tip} exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
+        }
     }
     if let Some(Payload { mass, com, inertia }) = &state.payload {
         let mass = exact_digits(*mass);
@@ -214,7 +219,7 @@ enum Kinds {
 
 impl Kinds {
     fn of(robot: &Robot) -> Self {
-        let revolute = robot.rows().filter(|row| row.kind == JointKind::Revolute).count();
+        let revolute = robot.independent_joints().filter(|joint| joint.row.kind == JointKind::Revolute).count();
         match revolute {
             0 => Self::Prismatic,
             all if all == robot.dof() => Self::Revolute,
@@ -242,7 +247,7 @@ impl Kinds {
 /// Explains why a result is not a finite number.
 pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
     let joint = |index: usize| {
-        let name = robot.joints.get(index).map_or("", |joint| &joint.name);
+        let name = robot.independent_joints().nth(index).map_or("", |joint| &joint.name);
         format!("joint {} ({name})", index + 1)
     };
     if let Some(meaning) = function.divides() {

@@ -28,7 +28,7 @@ pub(crate) fn text(robot: &Robot) -> String {
     let heading = format!(
         "{TITLE}{} base parameters{TITLE:#}: the torques depend on these combinations of the {} inertial parameters",
         base.rank(),
-        10 * robot.dof()
+        10 * robot.joints.len()
     );
     let about = wrap(ABOUT, columns, "");
     let _ = writeln!(text, "{heading}\n{QUIET}{about}{QUIET:#}\n");

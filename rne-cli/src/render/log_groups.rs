@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use rne_identify::LogReply;
 use rne_logs::number::short;
 use rne_model::one_line;
 use serde::Serialize;
@@ -9,7 +10,7 @@ use serde::Serialize;
 use crate::outcome::Failure;
 use crate::palette::{QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, columns};
-use crate::render::log_report::{self, Described, push_remark, titled};
+use crate::render::log_report::{Described, push_remark, titled};
 
 /// The rows of one text.
 pub(crate) struct Group {
@@ -46,7 +47,7 @@ pub(crate) struct Reply {
 struct OfGroup {
     value: String,
     rows: u64,
-    log: Option<log_report::Reply>,
+    log: Option<LogReply>,
     error: Option<String>,
 }
 
@@ -55,7 +56,7 @@ impl Reply {
         let group = |group: &Group| OfGroup {
             value: group.value.clone(),
             rows: group.rows,
-            log: group.described.as_ref().ok().map(log_report::Reply::of),
+            log: group.described.as_ref().ok().map(Described::reply),
             error: group.described.as_ref().err().map(Failure::sentence),
         };
         Self { by: column.to_owned(), values: groups.iter().map(group).collect() }

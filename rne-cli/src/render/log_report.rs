@@ -2,11 +2,10 @@
 
 use std::fmt::Write as _;
 
-use rne_identify::ArmLogRemark;
+use rne_identify::{ArmLogRemark, LogReply};
 use rne_logs::number::short;
-use rne_logs::{Cutoff, Format, Interruption, LeftOut, Log, Remark, Run, Survey};
+use rne_logs::{Cutoff, Format, Interruption, Log, Remark, Run, Survey};
 use rne_model::one_line;
-use serde::Serialize;
 
 use crate::palette::{QUIET, Style, TITLE, WARNING};
 use crate::render::layout::{Align, columns, wrap};
@@ -32,6 +31,11 @@ impl Described {
     pub(crate) fn is_at_fault(&self) -> bool {
         let Self { log, survey, .. } = self;
         survey.may_be_degrees(log).is_some() || !log.unsaid_currents().is_empty() || survey.cutoff == Cutoff::Unknown
+    }
+
+    /// The log as data.
+    pub(crate) fn reply(&self) -> LogReply {
+        LogReply::of(&self.log, &self.survey, self.notes().into_iter().map(|note| note.text).collect())
     }
 
     /// Remarks on the log.
@@ -63,109 +67,6 @@ impl Note {
     fn push(&self, text: &mut String) {
         let (word, style) = if self.is_warning { ("warning", WARNING) } else { ("note", QUIET) };
         push_remark(text, word, style, &self.text);
-    }
-}
-
-/// A log as JSON has it.
-#[derive(Serialize)]
-pub(crate) struct Reply {
-    format: String,
-    topic: Option<String>,
-    recorded_times: bool,
-    origin_ns: i64,
-    rate: f64,
-    velocities: bool,
-    efforts: bool,
-    joints: Vec<OfJoint>,
-    ignored_joints: Vec<String>,
-    messages: u64,
-    states: u64,
-    left_out: Vec<OfLeftOut>,
-    run_count: u64,
-    runs: Vec<OfRun>,
-    cutoff: Option<f64>,
-    cutoff_from: &'static str,
-    dropped_states: usize,
-    notes: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct OfJoint {
-    name: String,
-    position: (f64, f64),
-    velocity: Option<(f64, f64)>,
-    effort: Option<(f64, f64)>,
-    velocity_disagreement: Option<f64>,
-    motion_ends: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct OfLeftOut {
-    why: String,
-    messages: u64,
-}
-
-impl OfLeftOut {
-    fn of(left_out: &LeftOut) -> Self {
-        Self { why: left_out.why(), messages: left_out.count }
-    }
-}
-
-#[derive(Serialize)]
-struct OfRun {
-    begins: String,
-    start: f64,
-    duration: f64,
-    states: u64,
-    jitter: f64,
-    longest_interval: f64,
-}
-
-impl Reply {
-    pub(crate) fn of(described: &Described) -> Self {
-        let Described { log, survey, .. } = described;
-        let layout = log.layout();
-        let ends = ends(survey);
-        let joint = |(joint, name): (usize, &String)| OfJoint {
-            name: name.clone(),
-            position: survey.positions[joint],
-            velocity: survey.velocities.get(joint).copied(),
-            effort: survey.efforts.get(joint).copied(),
-            velocity_disagreement: survey.disagreement.get(joint).copied(),
-            motion_ends: ends.and_then(|ends| ends.get(joint)).copied(),
-        };
-        let run = |run: &Run| OfRun {
-            begins: run.begins.to_string(),
-            start: run.start,
-            duration: run.duration,
-            states: run.states,
-            jitter: run.jitter,
-            longest_interval: run.longest,
-        };
-        Self {
-            format: layout.format.to_string(),
-            topic: layout.topic.clone(),
-            recorded_times: layout.recorded,
-            origin_ns: layout.origin,
-            rate: 1.0 / layout.step,
-            velocities: layout.has_velocities,
-            efforts: layout.has_efforts,
-            joints: layout.joints.iter().enumerate().map(joint).collect(),
-            ignored_joints: layout.ignored.clone(),
-            messages: survey.counts.messages,
-            states: survey.counts.states,
-            left_out: log.left_out(survey).iter().map(OfLeftOut::of).collect(),
-            run_count: survey.run_count,
-            runs: survey.runs.iter().map(run).collect(),
-            cutoff: survey.cutoff.hertz(),
-            cutoff_from: match survey.cutoff {
-                Cutoff::Given { .. } => "given",
-                Cutoff::Spectrum { .. } => "spectrum",
-                Cutoff::Unknown => "unknown",
-            },
-            dropped_states: survey.dropped,
-            notes: described.notes().into_iter().map(|note| note.text).collect(),
-        }
     }
 }
 

@@ -2,13 +2,11 @@
 
 use std::fmt::Write as _;
 
-use rne_identify::{JointError, Payload, PayloadNumber};
+use rne_identify::{JointError, JudgedPart, Payload, PayloadNumber, PayloadReply};
 use rne_logs::median;
 use rne_model::{Robot, one_line};
-use serde::Serialize;
 
 use crate::palette::{GOOD, WARNING};
-use crate::render::identification_reply::Extent;
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
 use crate::values::numbers::with_deviation;
 
@@ -48,8 +46,9 @@ impl WordedPayload<'_> {
             };
             let mut cells = vec![["  number".to_owned(), "value".to_owned(), "unit".to_owned()]];
             cells.extend(rows.map(row));
-            let title = "payload in the frame of the last link, inertia about its centre of mass";
-            push_table(&mut text, title, &[Align::Left, Align::Right, Align::Left], &cells);
+            let link = link_with_tip(self.robot);
+            let title = format!("payload in the frame of {link}, inertia about its centre of mass");
+            push_table(&mut text, &title, &[Align::Left, Align::Right, Align::Left], &cells);
         }
         if let Some(with) = self.with {
             let mut cells = vec![["  joint", "FILE", "with payload"].map(str::to_owned)];
@@ -67,19 +66,20 @@ impl WordedPayload<'_> {
     fn verdict(&self) -> String {
         let Payload { mass, com, .. } = self.payload;
         let kilograms = format!("{} kg", with_deviation(mass.value, mass.deviation));
+        let link = link_with_tip(self.robot);
         if !mass.is_excited {
             return format!("The log does {WARNING}not determine{WARNING:#} the mass of a payload.");
         }
         if !self.payload.is_there() {
             return format!(
-                "{GOOD}no payload{GOOD:#}: the log shows a mass of {kilograms} at the last link beyond that of FILE"
+                "{GOOD}no payload{GOOD:#}: the log shows a mass of {kilograms} at {link} beyond that of FILE"
             );
         }
         let centre = if com.iter().all(|number| number.is_excited) {
             let largest = com.iter().map(|number| number.deviation).fold(0.0, f64::max);
             let each = com.map(|number| of_deviation(number.value, largest));
             let deviation = of_deviation(largest, largest);
-            format!("centre of mass ({}) ± {deviation} m in the frame of the last link", each.join(", "))
+            format!("centre of mass ({}) ± {deviation} m in the frame of {link}", each.join(", "))
         } else {
             let known = ["x", "y", "z"].into_iter().zip(com).filter(|(_, number)| number.is_excited);
             let known: Vec<String> = known
@@ -89,7 +89,7 @@ impl WordedPayload<'_> {
                 "centre of mass not excited".to_owned()
             } else {
                 format!(
-                    "centre of mass {} in the frame of the last link; the log does not excite the other coordinates",
+                    "centre of mass {} in the frame of {link}; the log does not excite the other coordinates",
                     known.join(", ")
                 )
             }
@@ -108,30 +108,17 @@ impl WordedPayload<'_> {
         text
     }
 
-    /// The reply as JSON.
-    pub(crate) fn reply(&self, logs: Vec<String>, cutoff: f64, extent: Extent) -> Reply {
-        let Payload { mass, com, inertia, delay, .. } = self.payload;
-        let joint = |(at, joint): (usize, &rne_model::Joint)| OfJoint {
-            joint: at + 1,
-            name: joint.name.clone(),
-            error: self.errors.get(at).and_then(|error| finite(error.error)),
-            error_with_payload: self.with.and_then(|with| finite(with.get(at)?.error)),
-        };
-        Reply {
-            robot: self.robot.name.clone(),
-            logs,
-            states: extent.states,
-            duration: extent.duration,
-            cutoff,
-            payload: OfPayload {
-                found: self.payload.is_there(),
-                mass: Number::of(mass, "kg"),
-                com: com.map(|number| Number::of(&number, "m")),
-                inertia: inertia.map(|number| Number::of(&number, "kg m²")),
-            },
-            joints: self.robot.joints.iter().enumerate().map(joint).collect(),
-            delay: *delay,
-        }
+    /// The reply as data.
+    pub(crate) fn reply(&self, logs: Vec<String>, cutoff: f64, part: JudgedPart) -> PayloadReply {
+        PayloadReply::of(self.robot, self.payload, [Some(self.errors), self.with], logs, cutoff, part)
+    }
+}
+
+/// The link that carries the tip, in words.
+pub(crate) fn link_with_tip(robot: &Robot) -> String {
+    match robot.tip().on.and_then(|on| robot.joints.get(on)) {
+        Some(joint) if !robot.is_serial() => format!("the link of {}", one_line(&joint.name)),
+        _ => "the last link".to_owned(),
     }
 }
 
@@ -143,53 +130,4 @@ fn of_deviation(value: f64, deviation: f64) -> String {
 
 fn percent(part: f64) -> String {
     if part.is_finite() { format!("{:.1} %", 100.0 * part) } else { "no motion".to_owned() }
-}
-
-fn finite(number: f64) -> Option<f64> {
-    number.is_finite().then_some(number)
-}
-
-#[derive(Serialize)]
-pub(crate) struct Reply {
-    robot: String,
-    logs: Vec<String>,
-    states: u64,
-    duration: f64,
-    cutoff: f64,
-    payload: OfPayload,
-    joints: Vec<OfJoint>,
-    delay: f64,
-}
-
-#[derive(Serialize)]
-struct OfPayload {
-    found: bool,
-    mass: Number,
-    com: [Number; 3],
-    /// xx, yy, zz, xy, xz, yz
-    inertia: [Number; 6],
-}
-
-/// A number with its standard deviation; null where the log does not determine it.
-#[derive(Serialize)]
-struct Number {
-    value: Option<f64>,
-    deviation: Option<f64>,
-    unit: &'static str,
-    excited: bool,
-}
-
-impl Number {
-    fn of(number: &PayloadNumber, unit: &'static str) -> Self {
-        let known = |value: f64| finite(value).filter(|_| number.is_excited);
-        Self { value: known(number.value), deviation: known(number.deviation), unit, excited: number.is_excited }
-    }
-}
-
-#[derive(Serialize)]
-struct OfJoint {
-    joint: usize,
-    name: String,
-    error: Option<f64>,
-    error_with_payload: Option<f64>,
 }

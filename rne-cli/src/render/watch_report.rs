@@ -8,7 +8,6 @@ use rne_watch::{Baseline, Candidate, Cause, Changes, Event, Report, Statistic, T
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, cell, push_table, shortened, wrap};
 use crate::render::watch_dates::{LogNames, times};
-use crate::render::watch_reply::name;
 use crate::values::numbers::{rounded, with_deviation};
 
 /// Events that are shown; the others are counted.
@@ -241,7 +240,7 @@ pub(crate) fn parameters_csv(robot: &Robot, baseline: &Baseline, changes: &Chang
     for statistic in &changes.statistics {
         let candidate = statistic.candidate;
         let joint = candidate.joint().map_or_else(String::new, |joint| (joint + 1).to_string());
-        let name = name(robot, candidate.joint()).map_or_else(String::new, |name| cell(&one_line(&name)));
+        let name = candidate.joint().map_or_else(String::new, |joint| cell(&one_line(&robot.joints[joint].name)));
         let (cause, unit) = (Cause::of(candidate).name(), unit(robot, candidate));
         let Statistic { change, deviation, threshold, .. } = statistic;
         let (ratio, is_watched) = (statistic.ratio(), baseline.scale.is_watched(statistic));

@@ -5,7 +5,7 @@ use std::fmt;
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rne_codegen::plan::Trick;
-use rne_codegen::{Form, Function, Quantity, Step};
+use rne_codegen::{Argument, Form, Function, Quantity, Step};
 use rne_model::{Convention, Robot};
 
 use crate::outcome::Failure;
@@ -145,7 +145,7 @@ impl Kept {
 /// Whether a robot has this joint.
 pub(crate) fn check_joint(robot: &Robot, joint: Option<usize>) -> Result<(), Failure> {
     match joint {
-        Some(joint) if joint == 0 || joint > robot.dof() => {
+        Some(joint) if joint == 0 || joint > robot.joints.len() => {
             let joints: Vec<String> = robot
                 .joints
                 .iter()
@@ -160,8 +160,14 @@ pub(crate) fn check_joint(robot: &Robot, joint: Option<usize>) -> Result<(), Fai
 }
 
 /// The functions that a robot has something to compute for, in the order of the traits: without motors,
-/// `actuator_torques` is zero, and there for who asks for it by name.
+/// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no `regressor`. Without
+/// named tips, a function with a wrench at each tip is the one with a wrench at the tip.
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
-    Function::ALL.into_iter().filter(move |&function| function != Function::ActuatorTorques || has_motors)
+    let (has_couplings, has_tips) = (robot.has_couplings(), !robot.tips.is_empty());
+    Function::ALL.into_iter().filter(move |function| {
+        (*function != Function::ActuatorTorques || has_motors)
+            && !(has_couplings && function.is_of_every_link())
+            && (has_tips || !function.takes(Argument::Wrenches))
+    })
 }

@@ -8,7 +8,7 @@ use rne_model::{Robot, six_digits};
 /// the same: limits are no part of the dynamics.
 pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
     let mut text = String::new();
-    for (index, (joint, &q)) in robot.joints.iter().zip(q).enumerate() {
+    for (index, (joint, &q)) in robot.independent_joints().zip(q).enumerate() {
         let Some((lower, upper)) = joint.limits.position else { continue };
         // a limit that is given as an expression and a position that is given as its digits
         let rounding = 1e-12 * lower.abs().max(upper.abs());

@@ -3,6 +3,7 @@
 use rne::testing::{JOINTS, Random};
 use rne_codegen::Function;
 use rne_emit::Precision;
+use rne_model::Robot;
 
 use crate::values::state::State;
 
@@ -21,8 +22,15 @@ pub(crate) const fn rounding(precision: Precision) -> fn(f64) -> f64 {
 }
 
 /// A state of an arm, and what acts on it: rad, m, kg, N.
-pub(crate) fn state(random: &Random, dof: usize) -> State {
+pub(crate) fn state(random: &Random, robot: &Robot) -> State {
+    let dof = robot.dof();
     let [q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect());
     let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
-    State { function: Function::InverseDynamics, q, qd, qdd, tau, wrench, payload, base: random.base() }
+    let base = random.base();
+    // without named tips, the wrench at the tip
+    let wrenches = match robot.tips.len() {
+        0 => wrench.into_iter().collect(),
+        tips => (0..tips).map(|_| random.wrench()).collect(),
+    };
+    State { function: Function::InverseDynamics, q, qd, qdd, tau, wrench, wrenches, payload, base }
 }

@@ -1,5 +1,7 @@
 //! Arguments of a function, complete and of the right lengths.
 
+use std::str::FromStr;
+
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::Robot;
@@ -15,6 +17,7 @@ pub(crate) struct Given<'a> {
     pub(crate) qdd: Option<&'a List>,
     pub(crate) tau: Option<&'a List>,
     pub(crate) wrench: Option<&'a List>,
+    pub(crate) tip_wrenches: &'a [TipWrench],
     pub(crate) payload: Option<&'a List>,
     pub(crate) base_omega: Option<&'a List>,
     pub(crate) base_omega_dot: Option<&'a List>,
@@ -47,6 +50,8 @@ pub(crate) struct State {
     pub(crate) qdd: Vec<f64>,
     pub(crate) tau: Vec<f64>,
     pub(crate) wrench: Option<Wrench<f64>>,
+    /// One for each tip.
+    pub(crate) wrenches: Vec<Wrench<f64>>,
     pub(crate) payload: Option<Payload<f64>>,
     pub(crate) base: BaseMotion<f64>,
 }
@@ -55,7 +60,7 @@ impl State {
     /// Checks that the function's arguments, all of them and no others, are there.
     pub(crate) fn new(function: Function, given: Given<'_>, robot: &Robot) -> Result<Self, Failure> {
         use Argument::{Accelerations, Base, Positions, Rates, Torques};
-        let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
         let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
         let of_joints = |name, list, kind| argument(function, name, list, kind, robot.dof(), &per_joint);
         let q = of_joints("--q", given.q, Positions)?;
@@ -65,6 +70,7 @@ impl State {
         let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
         let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
         let wrench = wrench.map(|w| Wrench { force: triple(&w, 0), moment: triple(&w, 3) });
+        let wrenches = tip_wrenches(function, given.tip_wrenches, robot)?;
         let payload = match given.payload {
             Some(list) => Some(payload(list)?),
             None if function.takes(Argument::Payload) => {
@@ -86,7 +92,7 @@ impl State {
             gravity: if given.gravity.is_some() { of_base("--gravity", given.gravity)? } else { robot.gravity },
         };
         let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
-        Ok(Self { function, q, qd, qdd, tau, wrench, payload, base })
+        Ok(Self { function, q, qd, qdd, tau, wrench, wrenches, payload, base })
     }
 
     /// The arguments for another function.
@@ -96,7 +102,7 @@ impl State {
 
     /// The function's result, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
-        let Self { q, qd, qdd, tau, base, .. } = self;
+        let Self { q, qd, qdd, tau, wrenches, base, .. } = self;
         let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
         let mut numbers = Vec::new();
@@ -121,6 +127,9 @@ impl State {
             };
             (wrench) => {
                 wrench
+            };
+            (wrenches) => {
+                wrenches
             };
             (payload) => {
                 payload
@@ -202,6 +211,61 @@ pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     Ok(payload)
 }
 
+/// The wrench at a tip: `left=0,0,-5,0,0,0`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TipWrench {
+    tip: String,
+    numbers: List,
+}
+
+impl FromStr for TipWrench {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (tip, numbers) = text.split_once('=').ok_or("write NAME=fx,fy,fz,nx,ny,nz, such as left=0,0,-5,0,0,0")?;
+        let numbers: List = numbers.parse()?;
+        match numbers.0.len() {
+            6 => Ok(Self { tip: tip.trim().to_owned(), numbers }),
+            found => Err(format!("a wrench has 6 numbers, not {found}: fx,fy,fz,nx,ny,nz")),
+        }
+    }
+}
+
+/// The wrench at each tip of a robot: that of the command line, or zero.
+fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Result<Vec<Wrench<f64>>, Failure> {
+    let names = robot.tip_names();
+    let mut wrenches = vec![Wrench::zero(); names.len()];
+    if !function.takes(Argument::Wrenches) {
+        return if given.is_empty() {
+            Ok(wrenches)
+        } else {
+            Err(Failure::usage(format_args!(
+                "{function} takes no --tip-wrench; {} and {} do",
+                Function::InverseDynamicsWithWrenches,
+                Function::ForwardDynamicsWithWrenches
+            )))
+        };
+    }
+    if given.is_empty() {
+        let names = names.join(", ");
+        return Err(Failure::usage(format_args!(
+            "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: {names}",
+            robot.name
+        )));
+    }
+    for (index, TipWrench { tip, numbers: List(numbers) }) in given.iter().enumerate() {
+        let Some(place) = names.iter().position(|name| name == tip) else {
+            let names = names.join(", ");
+            return Err(Failure::usage(format_args!("{} has no tip {tip}; its tips are {names}", robot.name)));
+        };
+        if given[..index].iter().any(|other| other.tip == *tip) {
+            return Err(Failure::usage(format_args!("--tip-wrench gives the wrench at {tip} twice")));
+        }
+        wrenches[place] = Wrench { force: triple(numbers, 0), moment: triple(numbers, 3) };
+    }
+    Ok(wrenches)
+}
+
 fn triple(list: &[f64], from: usize) -> [f64; 3] {
     [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
 }
@@ -225,6 +289,7 @@ fn argument(
             let hint = match others.as_slice() {
                 [only] => format!("; {only} does"),
                 [one, other] => format!("; {one} and {other} do"),
+                [one, other, last] => format!("; {one}, {other} and {last} do"),
                 _ => String::new(),
             };
             Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))

@@ -68,7 +68,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask frozen", ".ci/run", "step cargo xtask frozen\n"),
     ("cargo xtask light", ".ci/run", "step cargo xtask light\n"),
     // its page is checked, and it breaks sources
-    ("cargo xtask mutate", "tests/documents.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
+    ("cargo xtask mutate", "tests/documents/pages.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
     // it measures times
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
     // it fetches Pinocchio

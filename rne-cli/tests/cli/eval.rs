@@ -344,7 +344,7 @@ fn functions_take_their_arguments_and_no_others() {
         2,
         "bias_torques",
         &[q, qd, ["--tau", "1,2"]].concat(),
-        &["takes no --tau; forward_dynamics and momentum_and_rate do"],
+        &["takes no --tau; forward_dynamics, momentum_and_rate and forward_dynamics_with_wrenches do"],
     );
     call(
         2,

@@ -8,14 +8,18 @@ use crate::call::{ROOT, command, fails, fine, folder, rne};
 fn every_robot_of_the_folder_is_listed() {
     let list = fine(&["list"]);
     let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    let mut files: Vec<String> = fs::read_dir(format!("{ROOT}/robots"))
-        .expect("the folder of robots")
-        .filter_map(|entry| Some(entry.expect("an entry").file_name().to_str()?.strip_suffix(".yaml")?.to_owned()))
-        .filter(|name| !name.contains('.'))
-        .collect();
-    files.sort();
-    assert_eq!(names, files);
+    let robots = |folder: &str| {
+        let mut files: Vec<String> = fs::read_dir(format!("{ROOT}/{folder}"))
+            .expect("a folder of robots")
+            .filter_map(|entry| Some(entry.expect("an entry").file_name().to_str()?.strip_suffix(".yaml")?.to_owned()))
+            .filter(|name| !name.contains('.'))
+            .collect();
+        files.sort();
+        files
+    };
+    assert_eq!(names, [robots("robots"), robots("robots/trees")].concat());
     assert!(list.contains("puma560") && list.contains("RRRRRR, standard"), "{list}");
+    assert!(list.contains("RRRRRRRPP, modified") && list.contains("Panda with its hand"), "{list}");
 }
 
 #[test]

@@ -57,8 +57,8 @@ fn the_fields_of_an_inspection_are_written_down() {
     let told: BTreeSet<String> =
         rows.filter_map(|row| Some(row.split_once('`')?.0.rsplit('.').next()?.to_owned())).collect();
     let mut found = BTreeSet::new();
-    for arguments in [&["show", "stanford", "--json"][..], &["show", "ur5", "--json"]] {
-        let mut json: Value = serde_json::from_str(&fine(arguments)).expect("JSON");
+    for robot in ["stanford", "ur5", "docs/tree.yaml", "docs/gripper.yaml"] {
+        let mut json: Value = serde_json::from_str(&fine(&["show", robot, "--json"])).expect("JSON");
         // keys that are names, not fields
         for table in ["names", "quantities"] {
             let values: Vec<Value> = json[table].as_object().expect("a table").values().cloned().collect();
@@ -317,10 +317,29 @@ fn a_tree_is_shown_by_its_branches() {
     assert!(explained.contains("fc1_x_5 + fc1_x"), "{explained}");
 }
 
+/// The head of emitted code says where each row of a tree begins, and its names say which link carries a joint.
 #[test]
-fn commands_that_take_serial_arms_refuse_a_tree_at_its_line() {
-    for command in [&["plot"][..], &["identify", "motion.csv"], &["export", "--urdf"], &["certify"]] {
-        let arguments = [&command[..1], &["docs/tree.yaml"], &command[1..]].concat();
-        fails(1, &arguments, &["docs/tree.yaml:14:13", "the robot is a tree", "docs/robot-file.md"]);
+fn emitted_code_of_a_tree_describes_the_tree() {
+    for language in ["rust", "c"] {
+        let arguments = ["emit", "docs/tree.yaml", "--lang", language, "--form", "seven_steps"];
+        let text = fine(&[&arguments[..], &["--function", "joint_wrenches"]].concat());
+        for line in [
+            "row of right, in the link frame of waist: (0, 0, 0.3) m, roll pitch yaw (0, 0, -π/2) rad",
+            "tool, in the link frame of finger_a: (0, 0, 0.04) m, roll pitch yaw (0, 0, 0) rad",
+            "force exerted on link i by link h, which carries joint i",
+        ] {
+            assert!(text.contains(line), "{language}: {line}: {text}");
+        }
+        // link 1 carries link 5, and link 2 carries link 4
+        assert!(["f1_5_x", "n1_5_z", "f2_4_z"].iter().all(|name| text.contains(name)), "{text}");
+        assert!(!text.contains("f4_5") && !text.contains("n3_4") && !text.contains("i - 1"), "{text}");
     }
+}
+
+#[test]
+fn a_trace_of_a_tree_is_refused() {
+    let state = ["--q", "0,0,0,0,0", "--qd", "0,0,0,0,0", "--qdd", "0,0,0,0,0"];
+    let arguments = [&["eval", "docs/tree.yaml"][..], &state].concat();
+    assert!(fine(&arguments).contains("finger_b"));
+    fails(2, &[&arguments[..], &["--trace"]].concat(), &["--trace takes serial arms, but the robot is a tree"]);
 }

@@ -19,12 +19,17 @@
 //! modified    R_b Rx(α_i)       R_b (a_i, 0, 0) + p_b
 //! ```
 
-use rne_model::{Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, JointKind, Robot, Transform};
+use rne_model::{
+    Angle, Convention, Entry, FixedFrame, Formula, FrameId, InertiaElement, Joint, JointKind, Robot, Row, Transform,
+};
 
+use crate::coordinates::Coordinates;
+use crate::formulate::Spin;
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// Where a joint, or the tip frame, is mounted on its parent link: the constants between a link and what it carries.
+#[derive(Clone, Copy)]
 pub(crate) struct Mount<'s> {
     /// Turns components in the axes of the joint at θ = 0, or of the tip frame, into components in those of the parent.
     pub(crate) rotation: Matrix<'s>,
@@ -64,11 +69,17 @@ pub(crate) struct Link<'s> {
 /// The constants of a robot.
 pub(crate) struct Arm<'s> {
     pub(crate) builder: &'s Builder,
+    pub(crate) coordinates: Coordinates,
     pub(crate) links: Vec<Link<'s>>,
+    /// The rotors that turn on links and on the base.
+    pub(crate) spins: Vec<Spin<'s>>,
     /// Where the tip frame is mounted on its link; a frame may stand in its place.
     pub(crate) tip: Mount<'s>,
     /// The link that carries the tip frame, counted from 0; `None` for the base.
     pub(crate) tip_link: Option<usize>,
+    /// The tips at which the function that is being written takes a load, with their links: the tip frame, or those
+    /// of the list `tips`.
+    pub(crate) tips: Vec<(Option<usize>, Mount<'s>)>,
     /// Gravity in frame 0.
     pub(crate) gravity: Vector<'s>,
     /// World → frame 0.
@@ -77,21 +88,30 @@ pub(crate) struct Arm<'s> {
 
 impl<'s> Arm<'s> {
     pub(crate) fn new(builder: &'s Builder, robot: &Robot) -> Self {
-        let dof = robot.dof();
+        let joints = robot.joints.len();
         let zero = || builder.constant(0.0, Cause::Arithmetic);
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
         let frame = builder.function.frame(robot);
-        let FixedFrame { on: tip_link, placement } =
-            frame.map_or_else(|| robot.tip(), |frame| robot.fixed_frame(frame));
-        let tool = Placement::new(builder, robot, &placement, |axis| match frame {
-            Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
-            // the placement of a link frame is no entry, and zero
-            _ => Entry::ToolXyz(axis),
-        });
+        let tips = match frame {
+            Some(frame) => vec![robot.fixed_frame(frame)],
+            None if builder.function.takes(Argument::Wrenches) => robot.wrench_frames(),
+            None => vec![robot.tip()],
+        };
+        let placed = |(tip, FixedFrame { on, placement }): (usize, &FixedFrame)| {
+            let entry = |axis| match frame {
+                Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
+                None if builder.function.takes(Argument::Wrenches) => robot.tip_entry(tip, axis),
+                // the placement of a link frame is no entry, and zero
+                _ => Entry::ToolXyz(axis),
+            };
+            (*on, Placement::new(builder, robot, placement, entry))
+        };
+        let placed: Vec<_> = tips.iter().enumerate().map(placed).collect();
+        let rows: Vec<Row> = robot.joints.iter().map(Joint::row_with_offset).collect();
         let twists: Vec<_> =
-            robot.rows().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
-        let mut links: Vec<Link<'s>> = Vec::with_capacity(dof);
-        for (index, row) in robot.rows().enumerate() {
+            rows.iter().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
+        let mut links: Vec<Link<'s>> = Vec::with_capacity(joints);
+        for (index, row) in rows.iter().enumerate() {
             let (joint, parent) = (index + 1, robot.parent(index));
             let length = || Vector([number(Entry::A(index), row.dh.a), zero(), zero()]);
             let (rotation, lever) = match (beginning(builder, robot, index), robot.convention, parent) {
@@ -141,23 +161,33 @@ impl<'s> Arm<'s> {
                 }),
             });
         }
-        let (rotation, lever) = match (robot.convention, tip_link.map(|link| &twists[link])) {
-            (Convention::Standard, Some(&twist)) => (twist * tool.rotation, twist * tool.translation),
-            _ => (tool.rotation, tool.translation),
-        };
-        let is_first = links.iter().all(|link| link.parent != tip_link);
-        let label = if is_first { 0 } else { dof + 1 };
-        // a frame carries no load, and its link has a lever to the next joint already
-        let r = match frame {
-            Some(_) => builder.zeros(Cause::FreeTip),
-            None => from_com(builder, &links, tip_link, (label, lever)),
-        };
-        let rotation = builder.name_matrix(Quantity::TipRotation, dof + 1, rotation);
+        let mut tips: Vec<(Option<usize>, Mount<'s>)> = Vec::with_capacity(placed.len());
+        for (index, (link, at)) in placed.into_iter().enumerate() {
+            let (rotation, lever) = match (robot.convention, link.map(|link| &twists[link])) {
+                (Convention::Standard, Some(&twist)) => (twist * at.rotation, twist * at.translation),
+                _ => (at.rotation, at.translation),
+            };
+            let tip = joints + 1 + index;
+            let is_first = links.iter().all(|other| other.parent != link) && tips.iter().all(|(on, _)| *on != link);
+            let label = if is_first { 0 } else { tip };
+            // a frame carries no load, and its link has a lever to the next joint already
+            let r = match frame {
+                Some(_) => builder.zeros(Cause::FreeTip),
+                None => from_com(builder, &links, link, (label, lever)),
+            };
+            let rotation = builder.name_matrix(Quantity::TipRotation, tip, rotation);
+            tips.push((link, Mount { rotation, r, lever, label }));
+        }
+        let (tip_link, tip) = tips[0];
+        let spins = Spin::all(builder, robot, &twists);
         Self {
             builder,
+            coordinates: Coordinates::of(robot),
             links,
-            tip: Mount { rotation, r, lever, label },
+            spins,
+            tip,
             tip_link,
+            tips,
             gravity: gravity(builder, robot),
             base: Placement::new(builder, robot, &robot.base, Entry::BaseXyz),
         }

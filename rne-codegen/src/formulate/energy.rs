@@ -1,6 +1,7 @@
 //! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
 //!
-//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇²; V = -Σ m_i g · c_i, with c_i from the origin of
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇², with those of the list `motors` + ½ Σ Jm s (s +
+//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of
 //! frame 0; of a first moment h beside the mass + ċ_i · (ω_i × h_i) in T and - g · R_i h_i in V
 
 use crate::formulate::{Arm, Frames, JointState, Motion};
@@ -25,6 +26,12 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
         if let Some(rotor) = link.rotor {
             twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || twice + rotor * (state.qd * state.qd));
         }
+    }
+    for spin in &arm.spins {
+        let rate = spin.of_joints(Quantity::Spin, states, |state| state.qd);
+        let omega = spin.on.map(|link| motions[link].turning.omega);
+        let line = builder.joint(spin.on.map_or(1, |link| link + 1));
+        twice = line.within(Quantity::KineticEnergy, || twice + spin.twice_energy(rate, omega));
     }
     let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
     let energy = builder.joint(motions.len()).within(Quantity::KineticEnergy, || twice * half);

@@ -7,16 +7,37 @@
 //! ends on, none of them does (R. Featherstone, "Efficient factorization of the joint-space inertia matrix for branched
 //! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less.
 
+use crate::coordinates::Coordinates;
 use crate::ir::{Builder, Name, Quantity, Symbol};
+
+/// Whose mass matrix is solved by.
+pub(crate) struct System<'a> {
+    /// Rows and columns of the matrix.
+    pub(crate) coordinates: &'a Coordinates,
+    /// The links that carry the joints.
+    parents: Vec<Option<usize>>,
+}
+
+impl<'a> System<'a> {
+    pub(crate) fn new(coordinates: &'a Coordinates, parents: impl Iterator<Item = Option<usize>>) -> Self {
+        Self { coordinates, parents: parents.collect() }
+    }
+
+    /// Whether the matrix has an element there, whatever the numbers of the robot are.
+    fn has_element(&self, row: usize, column: usize) -> bool {
+        self.coordinates.meet(&self.parents, [row, column])
+    }
+}
 
 /// The solution of M x = b; row i of `upper` holds the elements (i, i) to (i, n) of M.
 pub(crate) fn solved<'s>(
     builder: &'s Builder,
-    parents: &[Option<usize>],
+    system: &System<'_>,
     upper: &[Vec<Symbol<'s>>],
     b: &[Symbol<'s>],
 ) -> Vec<Symbol<'s>> {
-    let x = Factors::of(builder, parents, upper).solved(0, b, |quantity, index| Name::scalar(quantity, index + 1));
+    let x = Factors::of(builder, system, upper)
+        .solved(0, b, |quantity, index| Name::scalar(quantity, system.coordinates.joints()[index] + 1));
     x.into_iter().flatten().collect()
 }
 
@@ -32,15 +53,15 @@ pub(crate) struct Factors<'s> {
 }
 
 impl<'s> Factors<'s> {
-    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix. `parents` are the links that carry the
-    /// joints.
-    pub(crate) fn of(builder: &'s Builder, parents: &[Option<usize>], upper: &[Vec<Symbol<'s>>]) -> Self {
+    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix.
+    pub(crate) fn of(builder: &'s Builder, system: &System<'_>, upper: &[Vec<Symbol<'s>>]) -> Self {
         let dof = upper.len();
-        let order = elimination_order(parents);
-        let between = |quantity, row: usize, column: usize| Name::indexed(quantity, order[row] + 1, order[column] + 1);
+        let order = elimination_order(dof, |row, column| system.has_element(row, column));
+        let joint = |index: usize| system.coordinates.joints()[order[index]] + 1;
+        let between = |quantity, row: usize, column: usize| Name::indexed(quantity, joint(row), joint(column));
         let element = |row: usize, column: usize| between(Quantity::LowerFactor, row, column);
         let scaled = |row: usize, column: usize| between(Quantity::ScaledFactor, row, column);
-        let of_joint = |quantity, index: usize| Name::scalar(quantity, order[index] + 1);
+        let of_joint = |quantity, index: usize| Name::scalar(quantity, joint(index));
         let given = |row: usize, column: usize| element_of(upper, order[row], order[column]);
         let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
         let mut rows: Vec<Vec<(Symbol<'s>, Symbol<'s>)>> = vec![Vec::new(); dof];
@@ -106,21 +127,18 @@ fn element_of<'s>(upper: &[Vec<Symbol<'s>>], row: usize, column: usize) -> Symbo
     upper[row.min(column)][row.max(column) - row.min(column)]
 }
 
-/// The order of the joints, or the reverse where fewer elements of L are not zero.
-fn elimination_order(parents: &[Option<usize>]) -> Vec<usize> {
-    let outward: Vec<usize> = (0..parents.len()).collect();
+/// The order of the coordinates, or the reverse where fewer elements of L are not zero. `has_element` tells whether the
+/// matrix has an element there.
+fn elimination_order(dof: usize, has_element: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    let outward: Vec<usize> = (0..dof).collect();
     let inward: Vec<usize> = outward.iter().rev().copied().collect();
-    if elements_of_factor(parents, &inward) < elements_of_factor(parents, &outward) { inward } else { outward }
+    let elements = |order: &[usize]| elements_of_factor(order, &has_element);
+    if elements(&inward) < elements(&outward) { inward } else { outward }
 }
 
-/// How many elements of L below the diagonal are not zero when joints are eliminated in this order. An element of M is
-/// not zero where one joint moves the other.
-fn elements_of_factor(parents: &[Option<usize>], order: &[usize]) -> usize {
-    let moves = |joint: usize, other: usize| {
-        std::iter::successors(Some(other), |&link| parents[link]).any(|link| link == joint)
-    };
-    let is_element = |row: usize, column: usize| moves(row, column) || moves(column, row);
-    let row = |&row: &usize| order.iter().map(|&column| is_element(row, column)).collect();
+/// How many elements of L below the diagonal are not zero when coordinates are eliminated in this order.
+fn elements_of_factor(order: &[usize], has_element: impl Fn(usize, usize) -> bool) -> usize {
+    let row = |&row: &usize| order.iter().map(|&column| has_element(row, column)).collect();
     let mut is_there: Vec<Vec<bool>> = order.iter().map(row).collect();
     let mut count = 0;
     for column in 0..order.len() {
@@ -143,16 +161,86 @@ fn within<'s>(builder: &'s Builder, name: Name, value: &dyn Fn() -> Symbol<'s>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::function::Function;
+    use crate::ir::{Embedding, Policy};
+
+    /// The elements of a mass matrix whose joints these links carry.
+    fn elements(parents: &[Option<usize>]) -> impl Fn(usize, usize) -> bool {
+        let coordinates = Coordinates::of_free_joints(parents.len());
+        let parents = parents.to_vec();
+        move |row, column| coordinates.meet(&parents, [row, column])
+    }
 
     #[test]
     fn joints_of_a_tree_are_eliminated_from_its_ends_on() {
         // a torso with two arms of two joints: each joint keeps its elements with those that move it
-        let torso = [None, Some(0), Some(1), Some(0), Some(3)];
-        assert_eq!(elements_of_factor(&torso, &[4, 3, 2, 1, 0]), 6);
-        assert_eq!(elements_of_factor(&torso, &[0, 1, 2, 3, 4]), 10, "the torso couples both arms");
-        assert_eq!(elimination_order(&torso), [4, 3, 2, 1, 0]);
+        let torso = elements(&[None, Some(0), Some(1), Some(0), Some(3)]);
+        assert_eq!(elements_of_factor(&[4, 3, 2, 1, 0], &torso), 6);
+        assert_eq!(elements_of_factor(&[0, 1, 2, 3, 4], &torso), 10, "the torso couples both arms");
+        assert_eq!(elimination_order(5, &torso), [4, 3, 2, 1, 0]);
         // nothing fills in a chain, nor where branches meet at the base alone
-        assert_eq!(elimination_order(&[None, Some(0), Some(1)]), [0, 1, 2]);
-        assert_eq!(elimination_order(&[None, Some(0), None, Some(2)]), [0, 1, 2, 3]);
+        assert_eq!(elimination_order(3, elements(&[None, Some(0), Some(1)])), [0, 1, 2]);
+        assert_eq!(elimination_order(4, elements(&[None, Some(0), None, Some(2)])), [0, 1, 2, 3]);
+    }
+
+    /// Branches with their numbers of joints, on one link or on the base.
+    fn branches(parents: &mut Vec<Option<usize>>, on: Option<usize>, lengths: &[usize]) {
+        for length in lengths {
+            let first = parents.len();
+            parents.extend((first..first + length).map(|joint| if joint == first { on } else { Some(joint - 1) }));
+        }
+    }
+
+    /// Products and sums of L and D where every element of M that is not zero is an argument.
+    fn operations(parents: &[Option<usize>]) -> usize {
+        let function = Function::ForwardDynamics;
+        let mut builder = Builder::untraced(Policy::Value, Embedding::default(), function);
+        let moves = |joint: usize, other: usize| {
+            std::iter::successors(Some(other), |&link| parents[link]).any(|link| link == joint)
+        };
+        let element = |row: usize, column: usize| {
+            // any argument that no other element has
+            let name = Name::scalar(Quantity::Position, row * parents.len() + column + 1);
+            if moves(row, column) { builder.argument(name) } else { builder.zero() }
+        };
+        let dof = parents.len();
+        let upper: Vec<Vec<_>> = (0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect();
+        let coordinates = Coordinates::of_free_joints(dof);
+        let system = System::new(&coordinates, parents.iter().copied());
+        let Factors { rows, inverses, .. } = Factors::of(&builder, &system, &upper);
+        let outputs =
+            rows.iter().flatten().map(|(l, _)| l.at).chain(inverses.iter().map(|inverse| inverse.at)).collect();
+        let graph = builder.graph.get_mut();
+        graph.outputs = outputs;
+        graph.cost(&mut Vec::new()).total()
+    }
+
+    /// The counts of Featherstone's LᵀDL: for a joint that d joints carry, d products for L, and d (d + 1) / 2 products
+    /// and as many sums for the elements that are left.
+    #[test]
+    fn factors_of_a_tree_take_no_more_operations_than_its_elements_ask() {
+        let mut hyq = Vec::new();
+        branches(&mut hyq, None, &[3; 4]);
+        let mut allegro = Vec::new();
+        branches(&mut allegro, None, &[4; 4]);
+        // torso, then two arms and a neck on it, then two legs
+        let mut atlas = Vec::new();
+        branches(&mut atlas, None, &[3]);
+        branches(&mut atlas, Some(2), &[7, 1, 7]);
+        branches(&mut atlas, None, &[6, 6]);
+        // two legs, waist, two arms on it
+        let mut g1 = Vec::new();
+        branches(&mut g1, None, &[6, 6, 3]);
+        branches(&mut g1, Some(14), &[7, 7]);
+        for (name, parents, asked) in
+            [("hyq", hyq, 44), ("allegro", allegro, 104), ("atlas", atlas, 924), ("g1", g1, 909)]
+        {
+            let carriers = |joint: usize| std::iter::successors(parents[joint], |&link| parents[link]).count();
+            let least: usize = (0..parents.len()).map(carriers).map(|d| d + d * (d + 1)).sum();
+            let counted = operations(&parents);
+            println!("{name:8} {counted} operations of LDLᵀ, {least} by the elements that are not zero");
+            assert_eq!(counted, least, "{name}");
+            assert!(counted <= asked, "{name}");
+        }
     }
 }

@@ -12,15 +12,19 @@ pub(crate) mod momentum;
 pub(crate) mod payload;
 pub(crate) mod regressor;
 pub(crate) mod seven_steps;
+pub(crate) mod spin;
 
 pub(crate) use arm::{Arm, Link, Mount};
 pub(crate) use joint::{Joint, JointState, Wrench};
 pub(crate) use kinematics::{Frame, Frames};
 pub(crate) use payload::{AtTip, Payload};
 pub(crate) use seven_steps::{Load, Motion, Turning};
+pub(crate) use spin::Spin;
 
 use rne_model::Robot;
 
+use crate::coordinates::{Coordinates, scaled};
+use crate::formulate::ldlt::System;
 use crate::function::{Argument, Function};
 use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
@@ -37,11 +41,14 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         | Function::BiasTorques
         | Function::InverseDynamicsOnMovingBase
         | Function::GravityTorquesWithPayload
-        | Function::BiasTorquesWithPayload => derivation.torques(),
-        Function::MassMatrix | Function::MassMatrixWithPayload => mass_matrix(&derivation.upper_half()),
+        | Function::BiasTorquesWithPayload
+        | Function::InverseDynamicsWithWrenches => derivation.torques(),
+        Function::MassMatrix | Function::MassMatrixWithPayload => {
+            mass_matrix(derivation.coordinates(), &derivation.upper_half())
+        }
         Function::CoriolisMatrix => derivation.coriolis_matrix(),
-        Function::ForwardDynamics | Function::ForwardDynamicsWithPayload => {
-            forward_dynamics(builder, &derivation.parents(), &derivation.upper_half(), derivation.tau())
+        Function::ForwardDynamics | Function::ForwardDynamicsWithPayload | Function::ForwardDynamicsWithWrenches => {
+            forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), derivation.tau())
         }
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
@@ -54,12 +61,12 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
         Function::Regressor => derivation.regressor(),
         Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
-            derivatives(builder, &derivation.tau())
+            derivatives(builder, derivation.coordinates(), &derivation.tau())
         }
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
-        Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.parents(), &derivation.upper_half()),
+        Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
@@ -80,8 +87,9 @@ struct Derivation<'s, 'r> {
 impl<'s, 'r> Derivation<'s, 'r> {
     fn new(builder: &'s Builder, robot: &'r Robot, function: Function) -> Self {
         let arm = Arm::new(builder, robot);
-        let dof = robot.dof();
-        let of_joint = |quantity, joint| builder.argument(Name::scalar(quantity, joint));
+        let joints = robot.joints.len();
+        let turn_of = |quantity, joint| builder.argument(Name::scalar(quantity, joint + 1));
+        let of_joint = |quantity, joint| arm.coordinates.of_joint(builder, quantity, joint);
         let vector =
             |quantity, joint| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))));
         let given = |argument, quantity, joint, otherwise| {
@@ -89,18 +97,24 @@ impl<'s, 'r> Derivation<'s, 'r> {
         };
         let state = |joint| JointState {
             q: of_joint(Quantity::Position, joint),
-            turn: function
-                .takes(Argument::Sines)
-                .then(|| (of_joint(Quantity::Sine, joint), of_joint(Quantity::Cosine, joint))),
+            // the sine of a part of an angle is no function of that of the angle
+            turn: (function.takes(Argument::Sines) && arm.coordinates.has(joint))
+                .then(|| (turn_of(Quantity::Sine, joint), turn_of(Quantity::Cosine, joint))),
             qd: given(Argument::Rates, Quantity::Rate, joint, Cause::AtRest),
             qdd: given(Argument::Accelerations, Quantity::RateDot, joint, Cause::NoAcceleration),
         };
-        let states = (1..=dof).map(state).collect();
-        let tip = if let Some(payload) = Payload::argument(builder, dof) {
+        let states = (0..joints).map(state).collect();
+        let tip = if let Some(payload) = Payload::argument(builder, joints) {
             AtTip::Payload(payload)
         } else if function.takes(Argument::Wrench) {
-            let [force, moment] = [Quantity::JointForce, Quantity::JointMoment].map(|part| vector(part, dof + 1));
+            let [force, moment] = [Quantity::JointForce, Quantity::JointMoment].map(|part| vector(part, joints + 1));
             AtTip::Wrench(Wrench { force, moment })
+        } else if function.takes(Argument::Wrenches) {
+            let wrench = |tip| {
+                let [fx, fy, fz, nx, ny, nz] = Name::of_tip(tip).map(|name| builder.argument(name));
+                Wrench { force: Vector([fx, fy, fz]), moment: Vector([nx, ny, nz]) }
+            };
+            AtTip::Wrenches((1..=arm.tips.len()).map(wrench).collect())
         } else {
             AtTip::Nothing
         };
@@ -123,7 +137,23 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     /// The torques of the seven steps.
     fn tau(&self) -> Vec<Symbol<'s>> {
-        self.loads().into_iter().map(|load| load.torque).collect()
+        let of_joints: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
+        self.coordinates().torques(&of_joints)
+    }
+
+    const fn coordinates(&self) -> &Coordinates {
+        &self.arm.coordinates
+    }
+
+    /// One number for each coordinate, from one for each joint.
+    fn gathered(&self, quantity: Quantity, of_joints: &[Symbol<'s>]) -> Outputs<'s> {
+        by_joint(self.coordinates(), quantity, self.coordinates().torques(of_joints))
+    }
+
+    /// Vectors of the joints, one for each coordinate.
+    fn columns(&self, of_joints: &[Vector<'s>]) -> Vec<Vector<'s>> {
+        let times = |column: Vector<'s>, ratio| column.map(|_, x| scaled(x, ratio));
+        self.coordinates().gathered(of_joints, |a, b| a + b, times)
     }
 
     /// The vector from each joint to the centre of mass of its link, in the axes of the link.
@@ -142,22 +172,30 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn torques(&self) -> Outputs<'s> {
-        by_joint(Quantity::Torque, self.tau())
+        by_joint(self.coordinates(), Quantity::Torque, self.tau())
     }
 
-    /// The links that carry the joints.
-    fn parents(&self) -> Vec<Option<usize>> {
-        self.arm.links.iter().map(|link| link.parent).collect()
+    /// The coordinates and links of a mass matrix that is solved by.
+    fn system(&self) -> System<'_> {
+        System::new(self.coordinates(), self.arm.links.iter().map(|link| link.parent))
     }
 
     /// The upper half of M.
     fn upper_half(&self) -> Vec<Vec<Symbol<'s>>> {
-        mass_matrix::upper_half(&self.arm, &self.states, &self.tip)
+        // no force changes the mass matrix
+        let tip = if let AtTip::Payload(_) = self.tip { &self.tip } else { &AtTip::Nothing };
+        let of_joints = mass_matrix::upper_half(&self.arm, &self.states, tip);
+        self.coordinates().upper_half(self.builder, of_joints)
     }
 
     fn coriolis_matrix(&self) -> Outputs<'s> {
         let torques = self.tau();
-        coriolis_matrix(self.builder, &torques, self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5))
+        coriolis_matrix(
+            self.builder,
+            self.coordinates(),
+            &torques,
+            self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5),
+        )
     }
 
     fn tip_pose(&self) -> Outputs<'s> {
@@ -165,12 +203,15 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn link_poses(&self) -> Outputs<'s> {
-        self.frames().links.iter().enumerate().flat_map(|(index, frame)| pose(index + 1, frame)).collect()
+        let frames = self.frames().links;
+        self.coordinates().joints().iter().flat_map(|&joint| pose(joint + 1, &frames[joint])).collect()
     }
 
     fn jacobian(&self) -> Outputs<'s> {
         let columns = kinematics::jacobian(&self.arm, &self.frames());
-        let [linear, angular] = [0, 1].map(|half| columns.iter().map(|column| column[half]).collect::<Vec<_>>());
+        let of_joints = |half: usize| columns.iter().map(|column| column[half]).collect::<Vec<_>>();
+        let [linear, angular] = [0, 1].map(|half| self.columns(&of_joints(half)));
+        let by_row = |quantity, columns| by_row(self.coordinates(), quantity, columns);
         [by_row(Quantity::JacobianLinear, &linear), by_row(Quantity::JacobianAngular, &angular)].concat()
     }
 
@@ -184,9 +225,9 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn wrench_torques(&self) -> Outputs<'s> {
         let torques = match &self.tip {
             AtTip::Wrench(wrench) => kinematics::wrench_torques(&self.arm, &self.frames(), wrench),
-            AtTip::Nothing | AtTip::Payload(_) => Vec::new(),
+            AtTip::Nothing | AtTip::Wrenches(_) | AtTip::Payload(_) => Vec::new(),
         };
-        by_joint(Quantity::Torque, torques)
+        self.gathered(Quantity::Torque, &torques)
     }
 
     fn kinetic_energy(&self) -> Outputs<'s> {
@@ -207,7 +248,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     fn centre_of_mass_jacobian(&self) -> Outputs<'s> {
         let columns = centre_of_mass::jacobian(&self.arm, &self.frames_from_base(), &self.centres());
-        by_row(Quantity::JacobianLinear, &columns)
+        by_row(self.coordinates(), Quantity::JacobianLinear, &self.columns(&columns))
     }
 
     fn regressor(&self) -> Outputs<'s> {
@@ -224,38 +265,50 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     fn joint_wrenches(&self) -> Outputs<'s> {
         let wrenches = self.loads().into_iter().enumerate();
-        let named = wrenches.flat_map(|(index, Load { wrench: Wrench { force, moment }, .. })| {
-            let parts = [(Quantity::JointForce, force), (Quantity::JointMoment, moment)];
-            parts.into_iter().flat_map(move |(part, vector)| components(Name::scalar(part, index + 1), vector))
-        });
+        let named = wrenches.filter(|(index, _)| self.coordinates().has(*index)).flat_map(
+            |(index, Load { wrench: Wrench { force, moment }, .. })| {
+                let parent = self.robot.parent(index).map_or(0, |parent| parent + 1);
+                let parts = [(Quantity::JointForce, force), (Quantity::JointMoment, moment)];
+                parts.into_iter().flat_map(move |(part, vector)| {
+                    components(Name::indexed(part, index + 1, Name::index_of_parent(index + 1, parent)), vector)
+                })
+            },
+        );
         named.collect()
     }
 
     fn momentum_and_rate(&self) -> Outputs<'s> {
         let [momenta, rates] =
             momentum::momentum_and_rate(&self.arm, &self.states, &self.motions(), &self.base, &self.tip);
-        [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
+        [self.gathered(Quantity::Momentum, &momenta), self.gathered(Quantity::MomentumRate, &rates)].concat()
     }
 
     fn actuator_torques(&self) -> Outputs<'s> {
-        by_joint(Quantity::ActuatorTorque, actuation::torques(self.builder, self.robot, &self.states))
+        self.gathered(Quantity::ActuatorTorque, &actuation::torques(self.builder, self.robot, &self.states))
     }
 }
 
 /// M by its upper half: row i of `upper` holds the elements (i, i) to (i, n).
-pub(crate) fn mass_matrix<'s>(upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
+pub(crate) fn mass_matrix<'s>(coordinates: &Coordinates, upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
+    let joints = coordinates.joints();
     square(upper.len(), |row, column| {
         let (row, column) = (row.min(column), row.max(column));
-        (torque_by(row, WithRespectTo::RateDot(column + 1)), upper[row][column - row])
+        coordinates.named(torque_by(joints[row], WithRespectTo::RateDot(joints[column] + 1)), upper[row][column - row])
     })
 }
 
 /// ½ ∂(bias torques)/∂q̇
-pub(crate) fn coriolis_matrix<'s>(builder: &'s Builder, torques: &[Symbol<'s>], half: Symbol<'s>) -> Outputs<'s> {
-    let columns = builder.derivatives(torques, (1..=torques.len()).map(WithRespectTo::Rate));
+pub(crate) fn coriolis_matrix<'s>(
+    builder: &'s Builder,
+    coordinates: &Coordinates,
+    torques: &[Symbol<'s>],
+    half: Symbol<'s>,
+) -> Outputs<'s> {
+    let joints = coordinates.joints();
+    let columns = builder.derivatives(torques, joints.iter().map(|joint| WithRespectTo::Rate(joint + 1)));
     square(torques.len(), |row, column| {
-        let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
-        let line = builder.joint(row + 1);
+        let name = Name::indexed(Quantity::CoriolisElement, joints[row] + 1, joints[column] + 1);
+        let line = builder.joint(joints[row] + 1);
         (name, builder.name(name, line.within(Quantity::CoriolisElement, || columns[column][row] * half)))
     })
 }
@@ -263,23 +316,26 @@ pub(crate) fn coriolis_matrix<'s>(builder: &'s Builder, torques: &[Symbol<'s>], 
 /// M⁻¹ (τ - bias)
 pub(crate) fn forward_dynamics<'s>(
     builder: &'s Builder,
-    parents: &[Option<usize>],
+    system: &System<'_>,
     upper: &[Vec<Symbol<'s>>],
     bias: Vec<Symbol<'s>>,
 ) -> Outputs<'s> {
-    let rest = |(index, torque): (usize, Symbol<'s>)| {
-        let applied = builder.argument(Name::scalar(Quantity::AppliedTorque, index + 1));
-        builder.joint(index + 1).within(Quantity::Reduced, || applied - torque)
+    let rest = |(&joint, torque): (&usize, Symbol<'s>)| {
+        let applied = system.coordinates.applied(builder, joint);
+        builder.joint(joint + 1).within(Quantity::Reduced, || applied - torque)
     };
-    let rest: Vec<_> = bias.into_iter().enumerate().map(rest).collect();
-    by_joint(Quantity::RateDot, ldlt::solved(builder, parents, upper, &rest))
+    let rest: Vec<_> = system.coordinates.joints().iter().zip(bias).map(rest).collect();
+    by_joint(system.coordinates, Quantity::RateDot, ldlt::solved(builder, system, upper, &rest))
 }
 
 /// ∂τ/∂q, then ∂τ/∂q̇
-pub(crate) fn derivatives<'s>(builder: &'s Builder, torques: &[Symbol<'s>]) -> Outputs<'s> {
+pub(crate) fn derivatives<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Outputs<'s> {
+    let joints = coordinates.joints();
     let by = |kind: fn(usize) -> WithRespectTo| {
-        let columns = builder.derivatives(torques, (1..=torques.len()).map(kind));
-        square(torques.len(), |row, column| (torque_by(row, kind(column + 1)), columns[column][row]))
+        let columns = builder.derivatives(torques, joints.iter().map(|joint| kind(joint + 1)));
+        square(torques.len(), |row, column| {
+            coordinates.named(torque_by(joints[row], kind(joints[column] + 1)), columns[column][row])
+        })
     };
     [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
 }
@@ -293,12 +349,13 @@ pub(crate) fn torque_by(row: usize, by: WithRespectTo) -> Name {
 /// of `upper` holds the elements (i, i) to (i, n) of M.
 pub(crate) fn inverse_mass_matrix<'s>(
     builder: &'s Builder,
-    parents: &[Option<usize>],
+    system: &System<'_>,
     upper: &[Vec<Symbol<'s>>],
 ) -> Outputs<'s> {
-    let factors = ldlt::Factors::of(builder, parents, upper);
+    let factors = ldlt::Factors::of(builder, system, upper);
+    let joints = system.coordinates.joints();
     let (zero, one) = (builder.constant(0.0, Cause::Arithmetic), builder.constant(1.0, Cause::Arithmetic));
-    let name = |quantity, row: usize, column: usize| Name::indexed(quantity, row + 1, column + 1);
+    let name = |quantity, row: usize, column: usize| Name::indexed(quantity, joints[row] + 1, joints[column] + 1);
     let columns: Vec<Vec<Option<Symbol<'s>>>> = (0..upper.len())
         .map(|column| {
             let unit: Vec<_> = (0..upper.len()).map(|row| if row == column { one } else { zero }).collect();
@@ -320,10 +377,10 @@ pub(crate) fn square<'s>(dof: usize, element: impl Fn(usize, usize) -> (Name, Sy
         .collect()
 }
 
-/// One result for each joint.
-pub(crate) fn by_joint(quantity: Quantity, numbers: Vec<Symbol<'_>>) -> Outputs<'_> {
-    let numbers = numbers.into_iter().enumerate();
-    numbers.map(|(index, number)| (Name::scalar(quantity, index + 1), number)).collect()
+/// One result for each coordinate.
+pub(crate) fn by_joint<'s>(coordinates: &Coordinates, quantity: Quantity, numbers: Vec<Symbol<'s>>) -> Outputs<'s> {
+    let numbers = coordinates.joints().iter().zip(numbers);
+    numbers.map(|(joint, number)| coordinates.named(Name::scalar(quantity, joint + 1), number)).collect()
 }
 
 /// The components of the vector with this name.
@@ -331,11 +388,13 @@ fn components(name: Name, vector: Vector<'_>) -> [(Name, Symbol<'_>); 3] {
     Axis::ALL.map(|axis| (Name { component: Component::Vector(axis), ..name }, vector.0[axis as usize]))
 }
 
-/// Vectors of the joints as the columns of a matrix, by rows.
-fn by_row<'s>(quantity: Quantity, columns: &[Vector<'s>]) -> Outputs<'s> {
+/// Vectors of the coordinates as the columns of a matrix, by rows.
+fn by_row<'s>(coordinates: &Coordinates, quantity: Quantity, columns: &[Vector<'s>]) -> Outputs<'s> {
     let row = |axis: Axis| {
-        let columns = columns.iter().enumerate();
-        columns.map(move |(index, column)| (Name::vector(quantity, index + 1, axis), column.0[axis as usize]))
+        let columns = coordinates.joints().iter().zip(columns);
+        columns.map(move |(joint, column)| {
+            coordinates.named(Name::vector(quantity, joint + 1, axis), column.0[axis as usize])
+        })
     };
     Axis::ALL.into_iter().flat_map(row).collect()
 }

@@ -20,13 +20,14 @@
 //!
 //! ∂T/∂q_i is (V_i × S_i) · h_i: of all that T depends on, q_i turns the velocity that comes from the parent, and
 //! nothing else. j̇_i = R_iᵀ (ċ_p + ω_p × r_i) is the velocity of the joint's point. A first moment h beside the mass
-//! adds h_i to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i.
+//! adds h_i to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. A rotor of the list `motors` adds Jm s a to L of its carrier
+//! c, and n (Jm s + Jm a · ω_c) to p of each joint with which it turns.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::seven_steps::with;
 use crate::formulate::{Arm, AtTip, Joint, JointState, Motion, Payload};
-use crate::ir::{Name, Quantity, Symbol, Vector};
+use crate::ir::{Quantity, Symbol, Vector};
 
 /// A link and everything that it carries as one body, about its joint, in its axes or in the axes of its parent.
 #[derive(Clone, Copy)]
@@ -52,10 +53,14 @@ pub(crate) fn momentum_and_rate<'s>(
     if let (AtTip::Payload(payload), Some(link), Some(motion)) = (tip, arm.tip_link, arm.at_tip(motions)) {
         carried[link].push(of_payload(arm, payload, link, motion));
     }
+    let spins: Vec<_> =
+        arm.spins.iter().map(|spin| (spin, spin.of_joints(Quantity::Spin, states, |state| state.qd))).collect();
     let (mut momenta, mut rates) = (Vec::with_capacity(motions.len()), Vec::with_capacity(motions.len()));
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
         let Joint { lines: line, link, .. } = joint;
-        let body = body(&joint, motion, &carried[joint.index]);
+        let on_link = spins.iter().filter(|(spin, _)| spin.on == Some(joint.index));
+        let of_spins: Vec<_> = on_link.map(|(spin, rate)| spin.momentum(*rate)).collect();
+        let body = body(&joint, motion, &of_spins, &carried[joint.index]);
         let parent = link.parent.map_or(base, |parent| &motions[parent]);
 
         let momentum = line.scalar(Quantity::Momentum, || {
@@ -63,10 +68,15 @@ pub(crate) fn momentum_and_rate<'s>(
                 Revolute => body.angular.z(),
                 Prismatic => body.linear.z(),
             };
-            link.rotor.map_or(momentum, |rotor| momentum + rotor * joint.state.qd)
+            let momentum = link.rotor.map_or(momentum, |rotor| momentum + rotor * joint.state.qd);
+            let resistances = spins.iter().filter_map(|(spin, rate)| {
+                let carrier = spin.on.map_or(base, |link| &motions[link]);
+                spin.resistance(joint.index, *rate, carrier.turning.omega)
+            });
+            resistances.fold(momentum, |momentum, resistance| momentum + resistance)
         });
         let rate = line.scalar(Quantity::MomentumRate, || {
-            let applied = line.builder.argument(Name::scalar(Quantity::AppliedTorque, joint.index + 1));
+            let applied = arm.coordinates.applied(line.builder, joint.index);
             applied + of_motion(&joint, &body, motion, parent) + of_gravity(&joint, &body, motion)
         });
         momenta.push(momentum);
@@ -104,7 +114,12 @@ fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Mo
 }
 
 /// Link i with everything that it carries, as one body.
-fn body<'s>(joint: &Joint<'_, 's>, motion: &Motion<'s>, carries: &[Carried<'s>]) -> Carried<'s> {
+fn body<'s>(
+    joint: &Joint<'_, 's>,
+    motion: &Motion<'s>,
+    of_spins: &[Vector<'s>],
+    carries: &[Carried<'s>],
+) -> Carried<'s> {
     let Joint { lines: line, link, .. } = *joint;
     let Motion { d, c_dot, .. } = *motion;
     let omega = motion.turning.omega;
@@ -125,6 +140,7 @@ fn body<'s>(joint: &Joint<'_, 's>, motion: &Motion<'s>, carries: &[Carried<'s>])
     let angular = line.vector(Quantity::AngularMomentumBehind, || {
         let own = link.inertia * omega;
         let own = link.first_moment.map_or(own, |h| own + h.cross(c_dot));
+        let own = of_spins.iter().fold(own, |own, momentum| own + *momentum);
         with(with(own, sum(|k| k.angular)) + d.cross(linear), sum(|k| k.r.cross(k.linear)))
     });
     Carried { mass, first_moment, linear, angular, r: link.mount.r }

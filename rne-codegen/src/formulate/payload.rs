@@ -64,8 +64,9 @@ impl<'s> Payload<'s> {
         let angular_momentum = line.vector(Quantity::AngularMomentum, || inertia * omega);
         let inertia_moment =
             line.vector(Quantity::InertiaMoment, || inertia * omega_dot + omega.cross(angular_momentum));
-        let force = line.vector(Quantity::JointForce, || (c_ddot - gravity) * mass);
-        let moment = line.vector(Quantity::JointMoment, || inertia_moment + com.cross(force));
+        let at_tip = line.behind(arm.tip_link);
+        let force = at_tip.vector(Quantity::JointForce, || (c_ddot - gravity) * mass);
+        let moment = at_tip.vector(Quantity::JointMoment, || inertia_moment + com.cross(force));
         Wrench { force, moment }
     }
 
@@ -89,23 +90,25 @@ impl<'s> Payload<'s> {
 }
 
 /// The load of the last link at the tip.
-#[derive(Clone, Copy)]
 pub(crate) enum AtTip<'s> {
     /// The tip is free.
     Nothing,
     /// A wrench, which the last link exerts on the environment.
     Wrench(Wrench<'s>),
+    /// A wrench at each tip.
+    Wrenches(Vec<Wrench<'s>>),
     /// A payload.
     Payload(Payload<'s>),
 }
 
 impl<'s> AtTip<'s> {
-    /// The wrench that the last link exerts, in tip axes.
-    pub(crate) fn wrench(&self, arm: &Arm<'s>, last: Option<&Motion<'s>>) -> Wrench<'s> {
-        match (self, last) {
-            (Self::Wrench(wrench), _) => *wrench,
-            (Self::Payload(payload), Some(last)) => payload.wrench(arm, last),
-            _ => Wrench::of_free_tip(arm.builder),
+    /// The wrench that the link of each tip exerts there, in tip axes.
+    pub(crate) fn wrenches(&self, arm: &Arm<'s>, motions: &[Motion<'s>]) -> Vec<Wrench<'s>> {
+        match (self, arm.at_tip(motions)) {
+            (Self::Wrench(wrench), _) => vec![*wrench],
+            (Self::Wrenches(wrenches), _) => wrenches.clone(),
+            (Self::Payload(payload), Some(last)) => vec![payload.wrench(arm, last)],
+            _ => arm.tips.iter().map(|_| Wrench::of_free_tip(arm.builder)).collect(),
         }
     }
 }

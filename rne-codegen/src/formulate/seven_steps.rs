@@ -10,7 +10,7 @@
 //! as in a set of base parameters: its terms are written separately, because no real body has them.
 
 use crate::formulate::arm::identity;
-use crate::formulate::{Arm, AtTip, Joint, JointState, Mount, Wrench};
+use crate::formulate::{Arm, AtTip, Joint, JointState, Mount, Spin, Wrench};
 use crate::ir::{Builder, Cause, JointLines, Matrix, Quantity, Symbol, Vector};
 
 /// How a link turns, in its frame: what steps 1 and 2 find.
@@ -88,7 +88,7 @@ pub(crate) fn inverse_dynamics<'s>(
     tip: &AtTip<'s>,
 ) -> Vec<Load<'s>> {
     let motions = forward(arm, states, base);
-    backward(arm, states, &motions, &tip.wrench(arm, arm.at_tip(&motions)))
+    backward(arm, states, (base, &motions), &tip.wrenches(arm, &motions))
 }
 
 /// Steps 1 and 2: how link i turns.
@@ -145,12 +145,20 @@ pub(crate) fn forward<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: &Motio
 pub(crate) fn backward<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
-    motions: &[Motion<'s>],
-    tip: &Wrench<'s>,
+    (base, motions): (&Motion<'s>, &[Motion<'s>]),
+    at_tips: &[Wrench<'s>],
 ) -> Vec<Load<'s>> {
+    // of each rotor: s and ṡ
+    let spinning = |spin: &Spin<'s>| {
+        let rate = spin.of_joints(Quantity::Spin, states, |state| state.qd);
+        [rate, spin.of_joints(Quantity::SpinDot, states, |state| state.qdd)]
+    };
+    let spins: Vec<_> = arm.spins.iter().map(|spin| (spin, spinning(spin))).collect();
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
-    if let Some(link) = arm.tip_link {
-        carried[link].push(tip.carried(arm.builder.joint(link + 1), arm.tip.rotation, &arm.tip));
+    for (&(link, tip), wrench) in arm.tips.iter().zip(at_tips) {
+        if let Some(link) = link {
+            carried[link].push(wrench.carried(arm.builder.joint(link + 1), tip.rotation, &tip));
+        }
     }
     let mut loads = Vec::with_capacity(motions.len());
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
@@ -168,13 +176,18 @@ pub(crate) fn backward<'s>(
         let angular_momentum = line.vector(Quantity::AngularMomentum, || link.inertia * omega);
         let inertia_moment = line.vector(Quantity::InertiaMoment, || {
             let moment = link.inertia * omega_dot + omega.cross(angular_momentum);
-            with(moment, link.first_moment.map(|h| h.cross(c_ddot)))
+            let moment = with(moment, link.first_moment.map(|h| h.cross(c_ddot)));
+            let on_link = spins.iter().filter(|(spin, _)| spin.on == Some(joint.index));
+            on_link.fold(moment, |moment, (spin, [rate, rate_dot])| {
+                moment + (spin.momentum(*rate_dot) + omega.cross(spin.momentum(*rate)))
+            })
         });
-        let force = line.vector(Quantity::JointForce, || {
+        let at_joint = line.behind(link.parent);
+        let force = at_joint.vector(Quantity::JointForce, || {
             let own = with((c_ddot - gravity) * link.mass, of_moment);
             with(own, carries.iter().map(|k| k.wrench.force).reduce(|sum, force| sum + force))
         });
-        let moment = line.vector(Quantity::JointMoment, || {
+        let moment = at_joint.vector(Quantity::JointMoment, || {
             let of_joints = carries.iter().map(|k| k.wrench.moment).reduce(|sum, moment| sum + moment);
             let moments = with(inertia_moment, of_joints) + d.cross(force);
             let of_levers = carries.iter().map(|k| k.r.cross(k.wrench.force)).reduce(|sum, moment| sum + moment);
@@ -184,9 +197,15 @@ pub(crate) fn backward<'s>(
         let wrench = Wrench { force, moment };
 
         // 7   τ_i = e · n_{p,i} (prismatic: e · f_{p,i})      with the rotor, if that belongs to the arm: + G² Jm q̈_i
-        let torque = line.scalar(Quantity::Torque, || {
+        // rotors of the list `motors`, which turn on links: [`super::spin`] has their terms in steps 6 and 7
+        let torque = line.scalar(arm.coordinates.torque(joint.index).quantity, || {
             let torque = joint.actuator(&wrench);
-            link.rotor.map_or(torque, |rotor| torque + rotor * joint.state.qdd)
+            let torque = link.rotor.map_or(torque, |rotor| torque + rotor * joint.state.qdd);
+            let resistances = spins.iter().filter_map(|(spin, [_, rate_dot])| {
+                let carrier = spin.on.map_or(base, |link| &motions[link]);
+                spin.resistance(joint.index, *rate_dot, carrier.turning.omega_dot)
+            });
+            resistances.fold(torque, |torque, resistance| torque + resistance)
         });
 
         loads.push(Load { wrench, torque });

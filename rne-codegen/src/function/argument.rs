@@ -24,6 +24,8 @@ pub enum Argument {
     Payload,
     /// Motion of the base, and gravity.
     Base,
+    /// Force and moment at each tip.
+    Wrenches,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -33,7 +35,7 @@ pub struct ArgumentPart {
     pub argument: Argument,
     /// The name of the array in emitted code and at run time: `q`, `qd`, `force`, ….
     pub name: &'static str,
-    /// How many numbers it has for a state.
+    /// How many numbers it has for a state, or for a tip.
     pub length: Length,
     /// The quantity that its numbers are.
     pub quantity: Quantity,
@@ -64,6 +66,9 @@ macro_rules! argument_parts {
             "Acceleration of the base, gravity not included, m/s²: three elements.";
         base_gravity: Base, Fixed(3), Gravity,
             "Acceleration of gravity, m/s², pointing down: three elements.";
+        wrenches: Wrenches, Fixed(6), TipForce,
+            "Force, N, and moment, N m, that the robot exerts at each tip, in axes of the tip: six elements for each \
+             tip.";
     } };
 }
 
@@ -89,10 +94,17 @@ impl Argument {
         PARTS.iter().filter(move |part| part.argument == self)
     }
 
-    /// Numbers that it has for a state of an arm with `dof` joints.
+    /// Whether it has a row of numbers for each tip.
     #[must_use]
-    pub fn elements(self, dof: usize) -> usize {
-        self.parts().map(|part| part.length.of(dof)).sum()
+    pub const fn is_of_each_tip(self) -> bool {
+        matches!(self, Self::Wrenches)
+    }
+
+    /// Numbers that it has for a state of an arm with `dof` joints and `tips` tips.
+    #[must_use]
+    pub fn elements(self, dof: usize, tips: usize) -> usize {
+        let of_one: usize = self.parts().map(|part| part.length.of(dof)).sum();
+        if self.is_of_each_tip() { tips * of_one } else { of_one }
     }
 }
 

@@ -34,6 +34,8 @@ named! {
         Actuation = "Actuation",
         /// The arm with a payload that is known when the program runs.
         PayloadDynamics = "PayloadDynamics",
+        /// The arm with a wrench at each named tip.
+        TipWrenches = "TipWrenches",
     }
 }
 

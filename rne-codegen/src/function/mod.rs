@@ -155,6 +155,12 @@ impl Function {
         self.entry().own.iter().find(|own| own.quantity == quantity)
     }
 
+    /// Whether it returns numbers of every link, also of those whose joints follow others.
+    #[must_use]
+    pub const fn is_of_every_link(self) -> bool {
+        matches!(self, Self::Regressor)
+    }
+
     /// Whether it has a reduced form, whose graph can be rewritten.
     #[must_use]
     pub const fn can_be_rewritten(self) -> bool {

@@ -147,6 +147,18 @@ macro_rules! functions {
                 "Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes.",
                 "force (N), moment (N m): as in inverse_dynamics_with_wrench. tau: its torques minus those of \
                  inverse_dynamics.";
+            InverseDynamicsWithWrenches = inverse_dynamics_with_wrenches(
+                q: Positions, qd: Rates, qdd: Accelerations, wrenches: Wrenches
+            ) -> Vector:
+                "Torques when the robot exerts a force and a moment at each of its tips, in axes of the tip.",
+                "wrenches[k]: force (N), then moment (N m), exerted BY the robot ON its environment, about the origin \
+                 of tip k. The tips are the frames of the list tips of the robot file, in its order; without the list, \
+                 the tip frame. tau: τ_free + Σ Jₖᵀ wₖ.";
+            ForwardDynamicsWithWrenches = forward_dynamics_with_wrenches(
+                q: Positions, qd: Rates, tau: Torques, wrenches: Wrenches
+            ) -> Vector:
+                "Accelerations for positions `q`, velocities `qd`, torques `tau` and a wrench at each tip.",
+                "wrenches: as in inverse_dynamics_with_wrenches. qdd: as in forward_dynamics.";
         }
     };
 }
@@ -462,6 +474,8 @@ pub(crate) const TABLE: &[Entry] = &[
         ..MOMENTUM_AND_RATE
     },
     Entry { output: "tau", ..Entry::of(Function::WrenchTorques, Capability::Kinematics) },
+    Entry { ..Entry::torques(Function::InverseDynamicsWithWrenches, Capability::TipWrenches) },
+    Entry { function: Function::ForwardDynamicsWithWrenches, capability: Capability::TipWrenches, ..FORWARD_DYNAMICS },
 ];
 
 /// Entries stand in the order of the variants, and none lacks what C and listings say.

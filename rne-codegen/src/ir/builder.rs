@@ -375,6 +375,11 @@ impl<'s> JointLines<'s> {
         Self { carried, ..self }
     }
 
+    /// The same lines, for quantities between the link of the joint and its parent; `None` is the base.
+    pub(crate) fn behind(self, parent: Option<usize>) -> Self {
+        self.carrying(Name::index_of_parent(self.named, parent.map_or(0, |parent| parent + 1)))
+    }
+
     /// A number of the table.
     pub(crate) fn entry(&self, quantity: Quantity, value: f64) -> Symbol<'s> {
         self.builder.entry(Name::scalar(quantity, self.named), value)

@@ -1,5 +1,7 @@
 //! The cost of a graph: the operations of its results.
 
+use std::ops::Add;
+
 use super::{Graph, Op, Ref, mark_live};
 
 /// Products, sums and angles of a graph.
@@ -27,6 +29,14 @@ impl Cost {
     #[must_use]
     pub const fn weight(&self) -> usize {
         self.total() + Self::ANGLE * self.sincos
+    }
+}
+
+impl Add for Cost {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { mul: self.mul + other.mul, add: self.add + other.add, sincos: self.sincos + other.sincos }
     }
 }
 

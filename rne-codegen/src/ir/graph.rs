@@ -15,8 +15,8 @@ use std::collections::HashMap;
 use hashbrown::HashTable;
 
 use super::{
-    Embedding, ExactAngle, Input, Node, Number, Op, Ref, Residue, SamplePoint, numbers::Numbers, numbers::canonical,
-    numbers::key,
+    Embedding, ExactAngle, Input, Node, Number, Op, Ref, Residue, SamplePoint, composed, numbers::Numbers,
+    numbers::canonical, numbers::key,
 };
 
 /// The rule by which the constructors of a graph fold.
@@ -176,10 +176,12 @@ impl Graph {
             Op::Constant(_) => self
                 .turn(angle.magnitude())
                 .map_or((Residue::ZERO, Residue::ONE), |turn| (turn.sin.residue, turn.cos.residue)),
-            Op::Sum(a, b) => {
-                let ((s, c), (sine, cosine)) = (self.turn_image(a, point), self.turn_image(b, point));
-                (s * cosine + c * sine, c * cosine - s * sine)
-            }
+            Op::Sum(a, b) => composed(self.turn_image(a, point), self.turn_image(b, point)),
+            Op::Product(a, b) => match (self.op(a), self.op(b)) {
+                (Op::Input(input), Op::Constant(_)) => point.turn_times(input.index(), self.residue(b)),
+                (Op::Constant(_), Op::Input(input)) => point.turn_times(input.index(), self.residue(a)),
+                _ => (Residue::ZERO, Residue::ZERO),
+            },
             _ => (Residue::ZERO, Residue::ZERO),
         };
         (sine.signed(angle.is_negative()), cosine)

@@ -39,7 +39,7 @@ pub(crate) use number::{Embedding, ExactAngle, Number, square};
 pub(crate) use numbers::{Numbers, Source};
 pub(crate) use operators::operators;
 pub use residue::Residue;
-pub(crate) use sample_point::SamplePoint;
+pub(crate) use sample_point::{SamplePoint, composed};
 pub(crate) use symbol::{Matrix, Symbol, Vector, by_quarters};
 pub(crate) use trace::{Birth, Definition, Trace, Traced};
 pub(crate) use value_numbering::number_values;

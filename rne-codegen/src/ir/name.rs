@@ -14,7 +14,8 @@ pub struct Name {
     /// The component of the quantity.
     pub component: Component,
     /// Further indices, from 1; 0 for no index: the column of a matrix whose row is the joint, the first joint of a
-    /// group, link and parameter of the regressor, which coefficient of friction, which acceleration of the tip.
+    /// group, link and parameter of the regressor, which coefficient of friction, which acceleration of the tip. Of
+    /// what one link exerts on another: one more than the number of the first link, if that is not the link before.
     pub indices: [usize; 2],
     /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
     pub part: usize,
@@ -71,6 +72,14 @@ impl Name {
         ]
     }
 
+    /// The names of the numbers of the wrench at a tip, counted from 1: force x, y, z, moment x, y, z.
+    pub(crate) fn of_tip(tip: usize) -> [Self; 6] {
+        let [force, moment] =
+            [Quantity::TipForce, Quantity::TipMoment].map(|part| Axis::ALL.map(|axis| Self::vector(part, tip, axis)));
+        let ([fx, fy, fz], [nx, ny, nz]) = (force, moment);
+        [fx, fy, fz, nx, ny, nz]
+    }
+
     /// A component of a vector.
     #[must_use]
     pub const fn vector(quantity: Quantity, joint: usize, axis: Axis) -> Self {
@@ -86,6 +95,12 @@ impl Name {
     #[must_use]
     pub const fn matrix(quantity: Quantity, joint: usize, row: Axis, column: Axis) -> Self {
         Self { component: Component::Matrix(row, column), ..Self::scalar(quantity, joint) }
+    }
+
+    /// The index by which a quantity between two links names the first one, `parent`; both count from 1, and 0 is the
+    /// base. The link before needs no index.
+    pub(crate) const fn index_of_parent(joint: usize, parent: usize) -> usize {
+        if parent + 1 == joint { 0 } else { parent + 1 }
     }
 
     /// The number of a quantity that another index counts beside the joint.
@@ -116,7 +131,11 @@ impl fmt::Display for Name {
                 write!(f, "{}_{}", indices[0], self.joint)?;
                 indices[0] = 0;
             }
-            Indices::Links => write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?,
+            Indices::Links => {
+                let parent = if indices[0] > 0 { indices[0] } else { self.joint };
+                write!(f, "{}_{}", parent.saturating_sub(1), self.joint)?;
+                indices[0] = 0;
+            }
             _ => write!(f, "{}", self.joint)?,
         }
         match self.component {

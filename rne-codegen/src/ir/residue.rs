@@ -48,6 +48,12 @@ impl Residue {
         }
     }
 
+    /// The integer of which it is the image, if that is one below 2⁶⁰ and not negative.
+    pub(crate) fn to_integer(self) -> Option<u64> {
+        let [first, second] = self.0;
+        (first == second && first < 1 << 60).then_some(first)
+    }
+
     /// The image, negated if `negative`.
     pub(crate) fn signed(self, negative: bool) -> Self {
         if negative { -self } else { self }

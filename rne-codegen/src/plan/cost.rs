@@ -6,11 +6,15 @@ use crate::CompileError;
 use crate::formulate::Outputs;
 use crate::formulation::Formulation;
 use crate::function::{Argument, Function};
-use crate::ir::{Builder, Cost, Graph, Number, Policy, Ref, number_values};
+use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
+use crate::plan::branches::{self, BaseBranch};
 use crate::plan::{OriginShift, Plan, Scale};
 use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
 use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
+
+/// Counted plans that are remembered, per branch of the base.
+const MOST_KNOWN: usize = 100_000;
 
 /// A table and the choices that it offers.
 #[derive(Clone, Debug)]
@@ -46,6 +50,11 @@ pub struct OpenJoint {
     pub is_twisted: bool,
     /// The rules that give different slides of the origin.
     pub origin_shifts: Vec<OriginShift>,
+    /// The joints that it carries, and itself, counted from 0, where it is one of several on the base: these can have
+    /// scales of their own.
+    pub scaled: Vec<usize>,
+    /// The joints in the same place of branches that look alike, counted from 0, and this one.
+    pub alike: Vec<usize>,
 }
 
 impl OpenChoices {
@@ -59,6 +68,8 @@ impl OpenChoices {
 /// Counts plans of one robot, as many as a search wants.
 pub(crate) struct Evaluator {
     frames: Vec<FramedRobot>,
+    /// Per choice of frames, the branches of the base.
+    branches: Vec<Vec<BaseBranch>>,
     builder: Builder,
     numbered: Graph,
     live: Vec<bool>,
@@ -97,18 +108,6 @@ impl FramedRobot {
             .then(|| parameters(&self.joint_frames, &self.offers, plan))?
     }
 
-    /// The results of the builder's function under a plan.
-    fn outputs<'s>(
-        &self,
-        builder: &'s Builder,
-        plan: &Plan,
-        parameters: &Parameters,
-        algorithm: Algorithm,
-    ) -> Option<Outputs<'s>> {
-        let expressed_in = algorithm.expressed_in();
-        algorithm::write(&Arm { builder, expressed_in, joint_frames: &self.joint_frames, plan, parameters }, algorithm)
-    }
-
     /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
     pub(crate) fn written(&self, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Formulation> {
         if plan.gyrostat && function.takes(Argument::Payload) {
@@ -117,18 +116,28 @@ impl FramedRobot {
         }
         let parameters = self.parameters(plan)?;
         let builder = Builder::traced(Policy::Value, self.joint_frames.embedding, function);
-        let (names, outputs) = self
-            .outputs(&builder, plan, &parameters, algorithm)?
+        let (names, outputs) = outputs(&builder, &self.joint_frames, plan, &parameters, algorithm)?
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
         let mut traced = builder.finish(outputs);
         // a number of the plan means what it is called, or nothing, wherever it is first used
         traced.trace.forget_births_of_leaves(&traced.graph);
-        let [length, force] = [parameters.lambda, parameters.mu].map(Number::to_f64);
-        let scales = Some(Scales { length, force }).filter(|scales| *scales != Scales::default());
+        let scales = Scales::of(&self.joint_frames.rows, &parameters);
         Some(Formulation { names, traced: traced.numbered(), scales })
     }
+}
+
+/// The results of the builder's function under a plan.
+fn outputs<'s>(
+    builder: &'s Builder,
+    joint_frames: &JointFrames,
+    plan: &Plan,
+    parameters: &Parameters,
+    algorithm: Algorithm,
+) -> Option<Outputs<'s>> {
+    let expressed_in = algorithm.expressed_in();
+    algorithm::write(&Arm { builder, expressed_in, joint_frames, plan, parameters }, algorithm)
 }
 
 impl Formulation {
@@ -149,6 +158,7 @@ impl Evaluator {
         let frames = frames(robot);
         let embedding = frames.first().map(|frame| frame.joint_frames.embedding).unwrap_or_default();
         Self {
+            branches: frames.iter().map(|frame| BaseBranch::of(&frame.joint_frames)).collect(),
             frames,
             builder: Builder::untraced(Policy::Value, embedding, function),
             numbered: Graph::new(Policy::Numbered, embedding),
@@ -167,9 +177,15 @@ impl Evaluator {
             is_parallel: is_parallel(rows, index),
             is_twisted: row.alpha.quarters().is_none(),
             origin_shifts: shifts.iter().map(|(rule, _)| *rule).collect(),
+            scaled: branches::scaled(rows, index),
+            alike: Vec::new(),
         });
+        let mut joints: Vec<OpenJoint> = joints.collect();
+        for (joint, alike) in branches::alike(rows, &joints).into_iter().enumerate() {
+            joints[joint].alike = alike;
+        }
         OpenChoices {
-            joints: joints.collect(),
+            joints,
             lengths: offers.lengths.clone(),
             gyrostat: offers.gyrostat,
             turned_last_frame: has(|frames| frames.turned_last),
@@ -179,16 +195,51 @@ impl Evaluator {
 
     /// The cost of a plan; `None` when it does not apply to the robot.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
-        self.cost_of(plan, Algorithm::Rnea)
+        let place = self.frames.iter().position(|frame| frame.is_of(plan))?;
+        if self.branches[place].is_empty() {
+            return self.cost_of(plan, Algorithm::Rnea);
+        }
+        let parameters = self.frames[place].parameters(plan)?;
+        let mut branches = std::mem::take(&mut self.branches[place]);
+        let costs = branches.iter_mut().map(|branch| {
+            let parameters = branch.parameters(&parameters);
+            let scales = [parameters.lambda[0], parameters.mu[0]].map(|scale| scale.residue);
+            let key = (branch.plan(plan), scales);
+            if let Some(known) = branch.known.get(&key) {
+                return *known;
+            }
+            let cost = self.counted(&branch.joint_frames, &key.0, &parameters, Algorithm::Rnea);
+            if branch.known.len() > MOST_KNOWN {
+                branch.known.clear();
+            }
+            branch.known.insert(key, cost);
+            cost
+        });
+        let sum = costs.collect::<Vec<_>>().into_iter().try_fold(Cost::default(), |sum, cost| Some(sum + cost?));
+        self.branches[place] = branches;
+        sum
     }
 
     /// The cost of a plan when the function is written in one of its ways.
     pub(crate) fn cost_of(&mut self, plan: &Plan, algorithm: Algorithm) -> Option<Cost> {
-        let Self { frames, builder, numbered, live, map } = self;
-        let frame = frames.iter().find(|frame| frame.is_of(plan))?;
-        let parameters = frame.parameters(plan)?;
-        builder.restart(frame.joint_frames.embedding);
-        let outputs = frame.outputs(builder, plan, &parameters, algorithm)?;
+        let place = self.frames.iter().position(|frame| frame.is_of(plan))?;
+        let parameters = self.frames[place].parameters(plan)?;
+        let frames = std::mem::take(&mut self.frames);
+        let cost = self.counted(&frames[place].joint_frames, plan, &parameters, algorithm);
+        self.frames = frames;
+        cost
+    }
+
+    fn counted(
+        &mut self,
+        joint_frames: &JointFrames,
+        plan: &Plan,
+        parameters: &Parameters,
+        algorithm: Algorithm,
+    ) -> Option<Cost> {
+        let Self { builder, numbered, live, map, .. } = self;
+        builder.restart(joint_frames.embedding);
+        let outputs = outputs(builder, joint_frames, plan, parameters, algorithm)?;
         let outputs: Vec<Ref> = outputs.into_iter().map(|(_, symbol)| symbol.at).collect();
         let graph = builder.graph.get_mut();
         graph.outputs = outputs;

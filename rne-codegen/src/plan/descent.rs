@@ -35,7 +35,7 @@ impl<'v> Descent<'v> {
     #[must_use]
     pub fn new(robot: &Robot, without: &[Trick]) -> Self {
         let mut evaluator = Evaluator::new(robot, Function::InverseDynamics);
-        let plan = without.iter().fold(Plan::new(robot.dof()), |plan, trick| trick.left_out_of(&plan));
+        let plan = without.iter().fold(Plan::new(robot.joints.len()), |plan, trick| trick.left_out_of(&plan));
         // the plain plan applies to every robot
         let best = (evaluator.cost(&plan).unwrap_or_default(), plan);
         let (open, without) = (evaluator.open_choices(), without.to_vec());

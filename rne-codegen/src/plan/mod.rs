@@ -1,6 +1,7 @@
 //! Plans: which choices the reduced form makes for a robot, what they cost, and the short search of a build that finds
 //! no plan file. The crate `rne-search` has the long search and the plan files.
 
+mod branches;
 mod cost;
 mod descent;
 mod graph_text;

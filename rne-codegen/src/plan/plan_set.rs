@@ -7,7 +7,7 @@ use rne_model::Robot;
 use crate::function::{Argument, Function};
 use crate::plan::cost::Evaluator;
 use crate::plan::descent::default_plan;
-use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Rewritten, Scale};
+use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Rewritten};
 use crate::reduced::Algorithm;
 use crate::refusal::LeftOut;
 
@@ -34,7 +34,7 @@ impl PlanSet {
     /// No choice made.
     #[must_use]
     pub fn none(robot: &Robot) -> Self {
-        Self { maker: Maker::Build, ..Self::from(Plan::new(robot.dof())) }
+        Self { maker: Maker::Build, ..Self::from(Plan::new(robot.joints.len())) }
     }
 
     /// The choices of a build that has no plan file: the same on every machine.
@@ -72,12 +72,11 @@ impl PlanSet {
         if algorithms.len() < 2 {
             return first;
         }
-        let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
+        let plain = Plan { joints: Plan::new(robot.joints.len()).joints, ..self.plan.clone() };
         let mut evaluator = Evaluator::new(robot, function);
         let plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
         if function.takes(Argument::Payload) {
-            let unscaled = Plan { length_scale: Scale::Default, force_scale: Scale::Default, ..self.plan.clone() };
-            let plans = [&plans[..], &[unscaled]].concat();
+            let plans = [&plans[..], &[self.plan.clone().unscaled()]].concat();
             return with_payload(&mut evaluator, &plans, &algorithms).unwrap_or(first);
         }
         let candidates = algorithms.iter().flat_map(|algorithm| plans.iter().map(|plan| (plan.clone(), *algorithm)));
@@ -91,7 +90,7 @@ impl PlanSet {
 const FOR_A_PAYLOAD: [fn(&mut Plan); 6] = [
     // the payload would be turned with it
     |plan| plan.turned_last_frame = false,
-    |plan| (plan.length_scale, plan.force_scale) = (Scale::Default, Scale::Default),
+    |plan| *plan = plan.clone().unscaled(),
     |plan| of_last(plan, |last| last.switches.axis_column = !last.switches.axis_column),
     |plan| of_last(plan, |last| last.origin_shift = OriginShift::MinusD),
     |plan| of_last(plan, |last| last.switches.first_moment_unturned = !last.switches.first_moment_unturned),

@@ -225,6 +225,83 @@ fn prismatic_links_are_carried_and_last_frames_turned() {
     }
 }
 
+/// A torso with two arms of two joints, and two legs of three beside it; nothing folds.
+fn two_arms_and_two_legs() -> Robot {
+    const TWISTS_AND_LENGTHS: [(f64, f64); 7] =
+        [(0.3, 0.1), (0.7, 0.15), (-0.4, 0.2), (0.2, 0.25), (1.1, 0.3), (-0.6, 0.35), (0.5, 0.4)];
+    let joints = [
+        (0, "base"),
+        (1, "0"),
+        (2, "1"),
+        (3, "2"),
+        (2, "1"),
+        (3, "4"),
+        (4, "base"),
+        (5, "6"),
+        (6, "7"),
+        (4, "base"),
+        (5, "9"),
+        (6, "10"),
+    ];
+    let row = |(index, (like, parent)): (usize, (usize, &str))| {
+        let parent = if parent == "base" { parent.to_owned() } else { format!("j{parent}") };
+        let (twist, length) = TWISTS_AND_LENGTHS[like];
+        format!(
+            "{{name: j{index}, parent: {parent}, type: revolute, dh: {{theta: 0, d: {length}, a: 0.{index}1, \
+             alpha: {twist}}}, link: {{mass: 1{length}, com: [0.03, -0.02, {length}], inertia: {{xx: 0.05, yy: 0.06, \
+             zz: 0.07, xy: 0.003, xz: -0.004, yz: 0.002}}}}}}"
+        )
+    };
+    let rows: Vec<String> = joints.into_iter().enumerate().map(row).collect();
+    let yaml = format!(
+        "{{format: 2, name: two_arms_and_two_legs, source: test, tool: {{on: j11}}, convention: modified, \
+         gravity: [0, 0, -9.81], joints: [{}]}}",
+        rows.join(",\n")
+    );
+    Reader::new("tree").trees().read(&yaml).unwrap_or_else(|report| panic!("{report}")).robot
+}
+
+#[test]
+fn branches_of_the_base_are_counted_one_by_one() {
+    let robot = two_arms_and_two_legs();
+    let mut evaluator = Evaluator::new(&robot, Function::InverseDynamics);
+    let open = evaluator.open_choices();
+    let alike = |index: usize| open.joints[index].alike.as_slice();
+    assert_eq!([0, 2, 3, 6, 11].map(alike), [&[0][..], &[2, 4], &[3, 5], &[6, 9], &[8, 11]]);
+    assert_eq!(open.joints[6].scaled, [6, 7, 8]);
+    assert!(open.joints[7].scaled.is_empty());
+
+    let mut plan = Plan::new(robot.dof());
+    let mut check = |plan: &Plan| {
+        let cost = evaluator.cost(plan).expect("it fits");
+        assert_eq!(Some(cost), evaluator.cost_of(plan, Algorithm::Rnea), "{:#?}", plan.choices());
+        for function in Function::TORQUES {
+            assert!(is_identical(&robot, &unproved(&robot, plan, function).unwrap()), "{function}");
+        }
+        cost.total()
+    };
+    let plain = check(&plan);
+    plan.length_scale = Scale::A(2);
+    let one_scale = check(&plan);
+    for joint in [6, 9] {
+        plan.joints[joint].length_scale = Scale::A(joint + 2);
+    }
+    let scale_per_branch = check(&plan);
+    assert!(scale_per_branch < one_scale && one_scale < plain, "{scale_per_branch} {one_scale} {plain}");
+    let scales = drawn(&robot, &plan, Function::InverseDynamics).unwrap().scales;
+    assert_eq!(scales.iter().map(|of| of.behind).collect::<Vec<_>>(), [Some(1), Some(7), Some(10)]);
+
+    let mut changed = plan.clone();
+    changed.joints[6].switches.second_moment_unturned = true;
+    changed.joints[3].moment = Moment::Inertia;
+    let followed = changed.clone().followed(&plan, alike);
+    assert!(followed.joints[9].switches.second_moment_unturned && followed.joints[5].moment == Moment::Inertia);
+    check(&followed);
+    // only a joint on the base has scales
+    changed.joints[7].force_scale = Scale::One;
+    assert_eq!(evaluator.cost(&changed), None);
+}
+
 /// An arm in which nothing folds.
 fn dense(dof: usize) -> Robot {
     let mut robot = robot("dense7");

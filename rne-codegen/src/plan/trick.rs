@@ -1,7 +1,7 @@
 //! The ideas that make the reduced form small, each with a name, so that a reader can leave one out.
 
 use crate::named::named;
-use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Scale, Side};
+use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Side};
 
 named! {
     /// A simplification of the reduced form. The section numbers refer to `docs/reduced-form.md`.
@@ -76,7 +76,7 @@ impl Trick {
             Self::Gyrostat => plan.gyrostat = false,
             Self::LastFrame => plan.turned_last_frame = false,
             Self::CarriedPrismatics => plan.carried_prismatics = false,
-            Self::Scales => (plan.length_scale, plan.force_scale) = (Scale::Default, Scale::Default),
+            Self::Scales => plan = plan.unscaled(),
             _ => {}
         }
         for joint in &mut plan.joints {

@@ -111,7 +111,7 @@ impl<'s> Articulated<'s> {
         let builder = arm.builder;
         let row = &arm.rows()[index];
         let rate = arm.rate(index);
-        let torque = builder.torque(index);
+        let torque = arm.joint_frames.coordinates.applied(builder, index);
         let torque = if row.reversed { -torque } else { torque };
         let zeros = builder.no_vector();
         let omega = station.before.omega;

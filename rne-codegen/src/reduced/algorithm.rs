@@ -2,7 +2,8 @@
 
 use rne_model::Robot;
 
-use crate::formulate::{self, Outputs, by_joint, square, torque_by};
+use crate::formulate::ldlt::System;
+use crate::formulate::{self, Outputs, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::torques;
@@ -60,7 +61,8 @@ impl Algorithm {
             Function::InverseDynamics
             | Function::InverseDynamicsWithWrench
             | Function::InverseDynamicsFromSinCos
-            | Function::BiasTorques => &[Algorithm::Rnea],
+            | Function::BiasTorques
+            | Function::InverseDynamicsWithWrenches => &[Algorithm::Rnea],
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload]
             }
@@ -68,11 +70,12 @@ impl Algorithm {
             Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
             Function::GravityTorquesWithPayload => &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS],
             Function::MassMatrix | Function::InverseMassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
-            // where the first moments behind the joints are gathered
-            Function::MomentumAndRate | Function::MomentumAndRateWithPayload => &[BY_GROUPS, BY_JOINTS],
-            Function::MassMatrixWithPayload | Function::InverseDynamicsDerivativesWithPayload => {
-                &[BY_GROUPS, BY_JOINTS]
-            }
+            // the momentum, where the first moments behind the joints are gathered
+            Function::MomentumAndRate
+            | Function::MomentumAndRateWithPayload
+            | Function::MassMatrixWithPayload
+            | Function::InverseDynamicsDerivativesWithPayload
+            | Function::ForwardDynamicsWithWrenches => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -103,16 +106,17 @@ impl Algorithm {
     }
 
     /// The ways of a function that are worth counting for a robot. Those that write the recursion anew for every joint
-    /// grow faster than composite bodies, and lose long before `MANY`. Articulated bodies are those of links alone.
+    /// grow faster than composite bodies, and lose long before `MANY`. Articulated bodies are those of links
+    /// alone, each with a joint that moves freely.
     pub(crate) fn of_robot(function: Function, robot: &Robot) -> Vec<Self> {
         const MANY: usize = 10;
         let is_worth = |algorithm: Self| match algorithm {
-            Self::UnitColumns => robot.dof() < MANY,
+            Self::UnitColumns => robot.joints.len() < MANY,
             Self::Rnea if matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives) => {
-                robot.dof() < MANY
+                robot.joints.len() < MANY
             }
             Self::Rnea | Self::UnturnedPayload | Self::Crba(_) => true,
-            Self::Aba(_) => !robot.has_rotors(),
+            Self::Aba(_) => !robot.has_rotors() && !robot.has_couplings() && !robot.has_spinning_rotors(),
         };
         Self::of(function).iter().copied().filter(|&algorithm| is_worth(algorithm)).collect()
     }
@@ -143,9 +147,13 @@ impl Algorithm {
 /// what has no reduced recursion.
 pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outputs<'s>> {
     let builder = arm.builder;
-    let dof = arm.rows().len();
-    let upper_half = || mass_matrix(arm, algorithm);
-    let parents: Vec<_> = arm.rows().iter().map(|row| row.parent).collect();
+    let coordinates = &arm.joint_frames.coordinates;
+    let joints = coordinates.joints();
+    let upper_half = || coordinates.upper_half(builder, mass_matrix(arm, algorithm));
+    let system = || System::new(coordinates, arm.rows().iter().map(|row| row.parent));
+    let by_joint = |quantity, of_joints: Vec<Symbol<'s>>| {
+        formulate::by_joint(coordinates, quantity, coordinates.torques(&of_joints))
+    };
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function, algorithm) {
         (Function::GravityTorques | Function::GravityTorquesWithPayload, Algorithm::Crba(_)) => {
@@ -155,35 +163,47 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             let [momenta, rates] = momentum::momentum_and_rate(arm);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
-        (Function::MassMatrix | Function::MassMatrixWithPayload, _) => formulate::mass_matrix(&upper_half()),
-        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &parents, &upper_half()),
+        (Function::MassMatrix | Function::MassMatrixWithPayload, _) => {
+            formulate::mass_matrix(coordinates, &upper_half())
+        }
+        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &system(), &upper_half()),
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
             by_joint(Quantity::RateDot, aba::forward_dynamics(arm))
         }
-        (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, _) => {
-            formulate::forward_dynamics(builder, &parents, &upper_half(), recursion(arm, algorithm))
+        (
+            Function::ForwardDynamics | Function::ForwardDynamicsWithPayload | Function::ForwardDynamicsWithWrenches,
+            _,
+        ) => {
+            let (upper, bias) = (upper_half(), coordinates.torques(&recursion(arm, algorithm)));
+            formulate::forward_dynamics(builder, &system(), &upper, bias)
         }
         (
             Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload,
             Algorithm::Crba(_),
         ) => {
             let found = sensitivity(arm, Number::integer(2));
-            let by = |kind: fn(usize) -> WithRespectTo, matrix: &[Vec<Symbol<'s>>]| {
-                square(dof, |row, column| named(torque_by(row, kind(column + 1)), matrix[row][column]))
+            let by = |kind: fn(usize) -> WithRespectTo, of_joints: &[Vec<Symbol<'s>>]| {
+                let matrix = coordinates.matrix(of_joints);
+                square(joints.len(), |row, column| {
+                    named(torque_by(joints[row], kind(joints[column] + 1)), matrix[row][column])
+                })
             };
             [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
         }
         (Function::CoriolisMatrix, Algorithm::Crba(_)) => {
-            let found = sensitivity(arm, Number::ONE);
-            square(dof, |row, column| {
-                named(Name::indexed(Quantity::CoriolisElement, row + 1, column + 1), found.by_rate[row][column])
+            let found = coordinates.matrix(&sensitivity(arm, Number::ONE).by_rate);
+            square(joints.len(), |row, column| {
+                let name = Name::indexed(Quantity::CoriolisElement, joints[row] + 1, joints[column] + 1);
+                named(name, found[row][column])
             })
         }
-        (Function::InverseDynamicsDerivatives, _) => formulate::derivatives(builder, &recursion(arm, algorithm)),
+        (Function::InverseDynamicsDerivatives, _) => {
+            formulate::derivatives(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
+        }
         (Function::CoriolisMatrix, _) => {
-            let torques = recursion(arm, algorithm);
+            let torques = coordinates.torques(&recursion(arm, algorithm));
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
-            formulate::coriolis_matrix(builder, &torques, half)
+            formulate::coriolis_matrix(builder, coordinates, &torques, half)
         }
         (
             Function::InverseDynamics
@@ -193,7 +213,8 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             | Function::GravityTorques
             | Function::BiasTorques
             | Function::GravityTorquesWithPayload
-            | Function::BiasTorquesWithPayload,
+            | Function::BiasTorquesWithPayload
+            | Function::InverseDynamicsWithWrenches,
             algorithm,
         ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
         // `Algorithm::of` matches them all

@@ -6,7 +6,8 @@ use crate::function::Argument;
 use crate::ir::{
     Axis, Builder, ExactAngle, Moving, Name, Number, Quantity, Symbol, Vector, WithRespectTo, by_quarters,
 };
-use crate::reduced::{Arm, JointFrame, Triple};
+use crate::reduced::joint_frames::Tip;
+use crate::reduced::{Arm, JointFrames, Triple};
 
 /// The name of what belongs to a group of joints, or to a single one.
 fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {
@@ -16,8 +17,13 @@ fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> N
 /// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the
 /// others, and a constant. It is counted with the sign of the first joint; right angles are left to the sine and
 /// cosine.
-fn angle<'s>(builder: &'s Builder, rows: &[JointFrame], first: usize, last: usize) -> (Symbol<'s>, QuarterTurns) {
-    let position = |at: usize| builder.argument(Name::scalar(Quantity::Position, at + 1));
+fn angle<'s>(
+    builder: &'s Builder,
+    JointFrames { rows, coordinates, .. }: &JointFrames,
+    first: usize,
+    last: usize,
+) -> (Symbol<'s>, QuarterTurns) {
+    let position = |at: usize| coordinates.of_joint(builder, Quantity::Position, at);
     let theta = |at: usize| rows[first..=at].iter().fold(ExactAngle::NONE, |turn, row| turn.then(row.theta));
     let reversed = rows[first].reversed;
     let mut sum = position(first);
@@ -64,19 +70,14 @@ impl Builder {
         value
     }
 
-    /// τ of an actuator.
-    pub(crate) fn torque(&self, joint: usize) -> Symbol<'_> {
-        self.argument(Name::scalar(Quantity::AppliedTorque, joint + 1))
-    }
-
     /// Sine and cosine of the variable part of a turn, and the right angles that are left.
     pub(crate) fn turned(
         &self,
-        rows: &[JointFrame],
+        joint_frames: &JointFrames,
         first: usize,
         last: usize,
     ) -> ((Symbol<'_>, Symbol<'_>), QuarterTurns) {
-        let (angle, quarters) = angle(self, rows, first, last);
+        let (angle, quarters) = angle(self, joint_frames, first, last);
         let (s, c) = self.sine_and_cosine(angle);
         let name = |group, single, x| self.name(group_name(group, single, first, last), x);
         ((name(Quantity::GroupSine, Quantity::Sine, s), name(Quantity::GroupCosine, Quantity::Cosine, c)), quarters)
@@ -87,7 +88,7 @@ impl Builder {
 impl<'s> Arm<'_, 's> {
     /// An argument of a joint in the direction of its row.
     fn of_joint(&self, quantity: Quantity, joint: usize) -> Symbol<'s> {
-        self.builder.argument(Name::scalar(quantity, joint + 1)).signed(self.rows()[joint].reversed)
+        self.joint_frames.coordinates.of_joint(self.builder, quantity, joint).signed(self.rows()[joint].reversed)
     }
 
     /// q of a prismatic joint.
@@ -115,11 +116,22 @@ impl<'s> Arm<'_, 's> {
         }
     }
 
-    /// Force and moment at the tip, if the function has them.
-    pub(crate) fn wrench(&self) -> Option<(Vector<'s>, Vector<'s>)> {
-        let (builder, tip) = (self.builder, self.rows().len() + 1);
-        let vector = |quantity| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, tip, axis))));
-        builder.function.takes(Argument::Wrench).then(|| (vector(Quantity::JointForce), vector(Quantity::JointMoment)))
+    /// Force and moment at each tip where the function has them.
+    pub(crate) fn wrenches(&self) -> Vec<(&Tip, [Vector<'s>; 2])> {
+        let (builder, tips) = (self.builder, &self.joint_frames.tips);
+        let vector =
+            |joint, quantity| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))));
+        if builder.function.takes(Argument::Wrench) {
+            let parts = [Quantity::JointForce, Quantity::JointMoment];
+            return vec![(&tips[0], parts.map(|part| vector(self.rows().len() + 1, part)))];
+        }
+        if !builder.function.takes(Argument::Wrenches) {
+            return Vec::new();
+        }
+        // the tip frame stands first, before the list `tips`
+        let named = if tips.len() == 1 { &tips[..] } else { &tips[1..] };
+        let parts = [Quantity::TipForce, Quantity::TipMoment];
+        named.iter().enumerate().map(|(index, tip)| (tip, parts.map(|part| vector(index + 1, part)))).collect()
     }
 
     /// The turn by the summed angle of joints `first` to `last`.
@@ -130,18 +142,26 @@ impl<'s> Arm<'_, 's> {
         }
         // an angle does not change with what else is derived or accelerated
         builder.by(None, || {
-            let ((s, c), quarters) = builder.turned(rows, first, last);
+            let ((s, c), quarters) = builder.turned(self.joint_frames, first, last);
             let (s, c) = by_quarters((s.signed(rows[first].reversed), c), quarters);
             SymbolicTurn { s, c }
         })
     }
 
-    /// The turn from sines and cosines that are arguments, by the addition theorem.
+    /// The turn from sines and cosines that are arguments, by the addition theorem. The turn of a joint that follows
+    /// others is that of its position.
     fn given_turn(&self, first: usize, last: usize) -> SymbolicTurn<'s> {
         let theta = self.rows()[first..=last].iter().fold(ExactAngle::NONE, |turn, row| turn.then(row.theta));
         (first..=last).fold(self.builder.fixed_turn(theta), |SymbolicTurn { s, c }, joint| {
-            let sine = self.of_joint(Quantity::Sine, joint);
-            let cosine = self.builder.argument(Name::scalar(Quantity::Cosine, joint + 1));
+            let coordinates = &self.joint_frames.coordinates;
+            let (sine, cosine) = if coordinates.has(joint) {
+                let [sine, cosine] = [Quantity::Sine, Quantity::Cosine]
+                    .map(|quantity| self.builder.argument(Name::scalar(quantity, joint + 1)));
+                (sine, cosine)
+            } else {
+                self.builder.sine_and_cosine(coordinates.of_joint(self.builder, Quantity::Position, joint))
+            };
+            let sine = sine.signed(self.rows()[joint].reversed);
             SymbolicTurn { s: s * cosine + c * sine, c: c * cosine - s * sine }
         })
     }

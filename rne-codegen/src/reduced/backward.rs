@@ -10,11 +10,13 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Axis, Builder, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::forward::plus;
+use crate::reduced::gyrostats::{of_other_joints, resistance};
 use crate::reduced::inward::full;
+use crate::reduced::joint_frames::Tip;
 use crate::reduced::regrouping::is_parallel;
 use crate::reduced::{
-    Arm, Gradient, JointFrame, JointPlan, Load, Moment, Motion, Moved, PseudoInertia, ScaledTwist, Side, SymbolicTurn,
-    Wrench,
+    Arm, Gradient, JointFrame, JointPlan, Load, Moment, Motion, Moved, Parameters, PseudoInertia, ScaledTwist, Side,
+    SymbolicTurn, Wrench,
 };
 
 /// The wrench that a link exerts on its parent, about the origin of its frame.
@@ -45,14 +47,15 @@ pub(crate) struct Carried<'s> {
 /// The way back, base to tip.
 pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Carried<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
-    let tip = tip_wrench(arm);
+    let tips = tip_wrenches(arm);
     let mut found = Vec::with_capacity(rows.len());
     let mut children: Vec<Child<'s>> = Vec::new();
     for index in (0..rows.len()).rev() {
         let link = &moved[index];
         builder.at(Quantity::ReducedForce, index + 1);
-        let carries_tip = index == arm.joint_frames.tip.on;
-        let tip = tip.filter(|_| carries_tip);
+        let carries_tip = index == arm.joint_frames.tip().on;
+        let at_tips = tips.iter().filter(|(on, _)| *on == index).map(|(_, wrench)| *wrench);
+        let tip = at_tips.reduce(Wrench::plus);
         let nothing = Wrench::zero(builder);
         let ((torque, next), own, unturned) = if arm.is_spin(index) {
             (spin(arm, index, link, tip), nothing, nothing)
@@ -60,6 +63,10 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
             let payload = payload.filter(|_| carries_tip);
             let (own, unturned) = own_wrench(arm, index, link, payload);
             let own = tip.map_or(own, |tip| own.plus(tip));
+            let own = rows[index]
+                .gyrostats
+                .iter()
+                .fold(own, |own, gyrostat| Wrench { moment: own.moment + gyrostat.moment(arm, link.own.omega), ..own });
             let carried = children.iter().filter(|child| rows[child.of].parent == Some(index));
             let (own, unturned) = carried
                 .fold((own, unturned), |(own, unturned), child| with_child(arm, index, link, *child, own, unturned));
@@ -73,8 +80,11 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
         };
         builder.at(Quantity::Torque, index + 1);
         let torque = torque + arm.rate_dot(index).times(arm.joint_frames.rotors[index]);
+        let of_rotors = resistance(arm, index, |link| moved[link].own.omega_dot);
+        let more = [of_other_joints(arm, index), of_rotors].into_iter().flatten();
+        let torque = more.fold(torque, |torque, more| torque + more);
         let torque = if rows[index].reversed { -torque } else { torque };
-        builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
+        builder.name(arm.joint_frames.coordinates.torque(index), torque);
         found.push(Carried { torque, own, unturned });
         children.extend(next);
     }
@@ -82,17 +92,18 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
     found
 }
 
-/// The wrench that the last link exerts at the tip, about the origin of its frame and in its axes.
-fn tip_wrench<'s>(arm: &Arm<'_, 's>) -> Option<Wrench<'s>> {
+/// The wrench that the link of each tip exerts there, about the origin of its frame and in its axes; with the link.
+fn tip_wrenches<'s>(arm: &Arm<'_, 's>) -> Vec<(usize, Wrench<'s>)> {
     let builder = arm.builder;
-    let (force, moment) = arm.wrench()?;
-    let tip = &arm.joint_frames.tip;
-    let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
-    let origin_shift = arm.parameters.origin_shifts[tip.on];
-    let [x, y, z] = tip.translation;
-    let wrench =
-        Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - origin_shift]));
-    Some(Wrench { force: wrench.force.times(arm.parameters.mu), ..wrench })
+    let at_origin = |(tip, [force, moment]): (&Tip, [Vector<'s>; 2])| {
+        let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
+        let origin_shift = arm.parameters.origin_shifts[tip.on];
+        let [x, y, z] = tip.translation;
+        let wrench =
+            Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - origin_shift]));
+        (tip.on, Wrench { force: wrench.force.times(arm.parameters.mu[tip.on]), ..wrench })
+    };
+    arm.wrenches().into_iter().map(at_origin).collect()
 }
 
 /// A last link that is a sphere without mass: it keeps its spin, and q itself is not needed (section 5.6).
@@ -107,7 +118,7 @@ fn spin<'s>(
     let (momentum, rate_dot) = (arm.rate(index).times(c), arm.rate_dot(index).times(c));
     let ([wx, wy, _], [_, _, dz]) = (link.own.omega.0, link.own.omega_dot.0);
     let torque = dz.times(c) + rate_dot;
-    let (offset, d) = arm.lengths(index, length_inward(arm));
+    let (offset, d) = arm.lengths(index, length_inward(arm, index));
     let spin = Wrench {
         force: builder.no_vector(),
         moment: link.twist.of(Vector([wy * momentum, -(wx * momentum), rate_dot])),
@@ -122,8 +133,8 @@ fn spin<'s>(
 }
 
 /// 1/μ: lengths of the way back.
-fn length_inward(arm: &Arm<'_, '_>) -> Number {
-    arm.parameters.mu.inverse().unwrap_or(Number::ONE)
+fn length_inward(arm: &Arm<'_, '_>, index: usize) -> Number {
+    arm.parameters.mu[index].inverse().unwrap_or(Number::ONE)
 }
 
 /// F and N of the link itself: the part in its frame, and the part in frame N.
@@ -141,9 +152,9 @@ fn own_wrench<'s>(
     let (mut own, mut unturned) = (Wrench::zero(builder), Wrench::zero(builder));
     let h = builder.vector(matter.h);
     if on.first_moment_unturned && is_revolute {
-        unturned = first_moment(arm, &link.unturned, matter, link.group_turn.about_z(h));
+        unturned = first_moment(arm, index, &link.unturned, link.group_turn.about_z(h));
     } else {
-        own = first_moment(arm, &link.own, matter, h);
+        own = first_moment(arm, index, &link.own, h);
     }
     if let Some(load) = payload {
         // second moments of both at once
@@ -160,10 +171,11 @@ fn own_wrench<'s>(
 }
 
 /// F = m a + U h and h × a.
-fn first_moment<'s>(arm: &Arm<'_, 's>, motion: &Motion<'s>, matter: &PseudoInertia, h: Vector<'s>) -> Wrench<'s> {
-    let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
+fn first_moment<'s>(arm: &Arm<'_, 's>, index: usize, motion: &Motion<'s>, h: Vector<'s>) -> Wrench<'s> {
+    let Parameters { links, lambda, mu, .. } = arm.parameters;
+    let (lambda, mu) = (lambda[index], mu[index]);
     let per_length = lambda.inverse().unwrap_or(Number::ONE);
-    let mass = arm.builder.number(matter.mass * mu * per_length);
+    let mass = arm.builder.number(links[index].mass * mu * per_length);
     Wrench {
         force: motion.acceleration * mass + motion.gradient.of(h.times(mu)),
         moment: h.times(per_length).cross(motion.acceleration),
@@ -268,7 +280,7 @@ fn turn<'s>(
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
     let JointPlan { inward_offset, switches: on, .. } = arm.plan.joints[index];
-    let (offset, d) = arm.lengths(index, length_inward(arm));
+    let (offset, d) = arm.lengths(index, length_inward(arm, index));
     let parallel = is_parallel(rows, index);
     builder.name_vector(Quantity::ReducedForce, joint, own.force);
     builder.name_vector(Quantity::ReducedMoment, joint, own.moment);
@@ -310,7 +322,7 @@ fn origin_shift<'s>(
     let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
-    let per_force = length_inward(arm);
+    let per_force = length_inward(arm, index);
     let (offset, d) = arm.lengths(index, per_force);
     builder.name_vector(Quantity::ReducedForce, joint, wrench.force);
     builder.name_vector(Quantity::ReducedMoment, joint, wrench.moment);

@@ -39,8 +39,50 @@ pub struct JointPlan {
     pub inward_offset: Side,
     /// The moment of the link (section 3.3).
     pub moment: Moment,
+    /// λ of a joint on the base and of all that it carries is one over this; with both scales by default, λ and μ are
+    /// those of the arm (section 3.5). Other joints have no scales.
+    pub length_scale: Scale,
+    /// μ of a joint on the base and of all that it carries is one over this.
+    pub force_scale: Scale,
     /// Everything that is on or off.
     pub switches: Switches,
+}
+
+impl JointPlan {
+    /// Makes the choices that another joint has changed, from one plan to another.
+    pub fn follow(&mut self, from: &Self, to: &Self) {
+        fn put<T: Copy + PartialEq>(choice: &mut T, from: T, to: T) {
+            if from != to {
+                *choice = to;
+            }
+        }
+        put(&mut self.targets, from.targets, to.targets);
+        put(&mut self.origin_shift, from.origin_shift, to.origin_shift);
+        put(&mut self.outward_offset, from.outward_offset, to.outward_offset);
+        put(&mut self.inward_offset, from.inward_offset, to.inward_offset);
+        put(&mut self.moment, from.moment, to.moment);
+        put(&mut self.length_scale, from.length_scale, to.length_scale);
+        put(&mut self.force_scale, from.force_scale, to.force_scale);
+        for (place, (old, new)) in from.switches.list().iter().zip(to.switches.list()).enumerate() {
+            if let Some(on) = self.switches.at(place) {
+                put(on, old.1, new.1);
+            }
+        }
+    }
+}
+
+impl Plan {
+    /// The change from a plan to this one, made at every joint that is `alike`: for each joint, those that follow it.
+    #[must_use]
+    pub fn followed<'a>(mut self, from: &Self, alike: impl Fn(usize) -> &'a [usize]) -> Self {
+        let to = self.joints.clone();
+        for (index, (before, after)) in from.joints.iter().zip(&to).enumerate().filter(|(_, (a, b))| a != b) {
+            for &other in alike(index) {
+                self.joints[other].follow(before, after);
+            }
+        }
+        self
+    }
 }
 
 macro_rules! switches {
@@ -296,6 +338,8 @@ impl Plan {
                 (joint.outward_offset != plain.outward_offset, format!("outward offset at {}", joint.outward_offset)),
                 (joint.inward_offset != plain.inward_offset, format!("inward offset at {}", joint.inward_offset)),
                 (joint.moment != plain.moment, format!("moment {}", joint.moment)),
+                (joint.length_scale != plain.length_scale, format!("lengths behind it in {}", joint.length_scale)),
+                (joint.force_scale != plain.force_scale, format!("forces behind it by {}", joint.force_scale)),
             ]
             .into_iter()
             .filter(|(made, _)| *made)
@@ -307,6 +351,15 @@ impl Plan {
             }
         }
         lines
+    }
+
+    /// The plan without scales.
+    pub(crate) fn unscaled(mut self) -> Self {
+        (self.length_scale, self.force_scale) = (Scale::Default, Scale::Default);
+        for joint in &mut self.joints {
+            (joint.length_scale, joint.force_scale) = (Scale::Default, Scale::Default);
+        }
+        self
     }
 
     pub(crate) fn frames(&self) -> FrameChoice {

@@ -122,7 +122,7 @@ impl<'s> Inward<'s> for Composite<'s> {
 }
 
 /// The column of M of a joint, counted from 0.
-type Column<'s> = (usize, Wrench<'s>);
+pub(crate) type Column<'s> = (usize, Wrench<'s>);
 
 impl<'s> Inward<'s> for Column<'s> {
     fn turned(self, turn: Turned<'s>) -> Self {
@@ -176,8 +176,14 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
             Prismatic => u.dot(wrench.force),
         };
         let mut load = loads.take(index);
+        for column in row.gyrostats.iter().flat_map(|gyrostat| gyrostat.columns(arm)) {
+            gather(&mut load.own.columns, column);
+        }
         for (column, wrench) in load.own.columns.iter().chain(&load.unturned.columns) {
-            matrix[index][*column] = along(wrench);
+            let element = along(wrench);
+            // a rotor that turns with a joint, on a link that this joint moves
+            let element = if *column == index { element + element } else { element };
+            add(&mut matrix, index, *column, element);
         }
         let turn = (row.kind == Revolute).then(|| arm.turn_of_group(index));
         let in_axes = load.with_link(own);
@@ -187,8 +193,8 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
             Revolute => whole.turning(builder),
             Prismatic => whole.sliding(u),
         };
-        matrix[index][index] = along(&column);
-        columns.push((index, column));
+        add(&mut matrix, index, index, along(&column));
+        gather(&mut columns, (index, column));
         let carried = Carried { behind: Some(whole), columns };
         if row.kind == Revolute {
             name(builder, index + 1, &carried);
@@ -197,13 +203,32 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
             loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
     }
+    let coupled = |row: usize, column: usize| {
+        let found = arm.joint_frames.coupled.iter().find(|(i, j, _)| (*i, *j) == (row, column));
+        found.map(|(.., element)| *element)
+    };
     let element = |row: usize, column: usize| {
         let element = matrix[row][column].signed(rows[row].reversed != rows[column].reversed);
-        let element = if row == column { element + builder.number(arm.joint_frames.rotors[row]) } else { element };
+        let constant = if row == column { Some(arm.joint_frames.rotors[row]) } else { coupled(row, column) };
+        let element = constant.map_or(element, |constant| element + builder.number(constant));
         builder.name(torque_by(row, WithRespectTo::RateDot(column + 1)), element);
         element
     };
     (0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect()
+}
+
+/// Adds to an element of the upper half of a symmetric matrix.
+fn add<'s>(matrix: &mut [Vec<Symbol<'s>>], row: usize, column: usize, element: Symbol<'s>) {
+    let place = &mut matrix[row.min(column)][row.max(column)];
+    *place = if place.is_zero() { element } else { *place + element };
+}
+
+/// Adds a column to that of the same joint, if there is one.
+fn gather<'s>(columns: &mut Vec<Column<'s>>, (joint, wrench): Column<'s>) {
+    match columns.iter_mut().find(|(other, _)| *other == joint) {
+        Some((_, known)) => *known = known.plus(wrench),
+        None => columns.push((joint, wrench)),
+    }
 }
 
 /// Gravity torques from the first moments of the composite bodies only: τ = (h × a)_z.
@@ -260,7 +285,7 @@ pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
             loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
         torques[index] = torque.signed(row.reversed);
-        builder.name(Name::scalar(Quantity::Torque, index + 1), torques[index]);
+        builder.name(arm.joint_frames.coordinates.torque(index), torques[index]);
     }
     torques
 }

@@ -173,7 +173,6 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
 
 /// The motion of all links.
 pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
-    let lambda = arm.parameters.lambda;
     let zeros = arm.builder.no_vector();
     let mut moved: Vec<Moved<'s>> = Vec::with_capacity(arm.rows().len());
     for (index, row) in arm.rows().iter().enumerate() {
@@ -182,7 +181,9 @@ pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
             None => Motion {
                 omega: zeros,
                 omega_dot: zeros,
-                acceleration: arm.builder.vector(arm.joint_frames.gravity[index].map(|g| -(g * lambda))),
+                acceleration: arm
+                    .builder
+                    .vector(arm.joint_frames.gravity[index].map(|g| -(g * arm.parameters.lambda[index]))),
                 gradient: Gradient::new(zeros, zeros),
             },
         };
@@ -255,7 +256,7 @@ fn revolute<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[Mo
     if arm.is_spin(index) {
         return link.spin(before);
     }
-    let (offset, d) = arm.lengths(index, arm.parameters.lambda);
+    let (offset, d) = arm.lengths(index, arm.parameters.lambda[index]);
     let to_parent = link.plan.outward_offset == Side::Parent;
     let p = if to_parent { plus(offset, link.row.along_axis(d)) } else { offset };
 
@@ -409,7 +410,7 @@ fn prismatic<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[M
     let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
     let row = &rows[index];
-    let lambda = arm.parameters.lambda;
+    let lambda = arm.parameters.lambda[index];
     let (offset, d) = arm.lengths(index, lambda);
     let (twist, turn) = (Twist::new(builder, row), builder.fixed_turn(row.theta));
     let (qd, qdd) = (arm.rate(index).times(lambda), arm.rate_dot(index).times(lambda));

@@ -7,11 +7,13 @@
 //! joints, its frame is turned about its axis so that the first of them needs no other row; those of the others begin
 //! with one more constant turn Rz(γ) (section 15).
 
-use rne_model::{Convention, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Row, Transform};
+use rne_model::{Convention, FixedFrame, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Row, Transform};
 
+use crate::coordinates::Coordinates;
 use crate::ir::{Embedding, ExactAngle, Number};
+use crate::reduced::gyrostats::put_rotors;
 use crate::reduced::link_parameters::{about_x, about_z, apply, compose, transpose};
-use crate::reduced::{IDENTITY, PseudoInertia, Square, Triple};
+use crate::reduced::{Gyrostat, IDENTITY, PseudoInertia, Square, Triple};
 
 /// One joint and the link that it moves.
 #[derive(Clone, Debug)]
@@ -36,6 +38,8 @@ pub(crate) struct JointFrame {
     /// A prismatic link in the axes of the revolute link before it: it turns nothing.
     pub(crate) carried: bool,
     pub(crate) matter: PseudoInertia,
+    /// The rotors on the link that are not part of its matter.
+    pub(crate) gyrostats: Vec<Gyrostat>,
 }
 
 /// The tip frame in the frame of the link that carries it: rotation and translation.
@@ -51,11 +55,16 @@ pub(crate) struct Tip {
 #[derive(Clone, Debug)]
 pub(crate) struct JointFrames {
     pub(crate) rows: Vec<JointFrame>,
+    pub(crate) coordinates: Coordinates,
     /// Acceleration of gravity in the frame of each joint on the base, at rest; zero for the other joints.
     pub(crate) gravity: Vec<Triple>,
-    pub(crate) tip: Tip,
-    /// G² Jm of the rotors that belong to the arm; zero for the others.
+    /// The tip frame, then those of the list `tips`.
+    pub(crate) tips: Vec<Tip>,
+    /// Constants on the diagonal of M, for each joint: G² Jm of a rotor that belongs to the arm, and the constant part
+    /// of those in the list `motors`.
     pub(crate) rotors: Vec<Number>,
+    /// The constants above the diagonal of M, by row and column.
+    pub(crate) coupled: Vec<(usize, usize, Number)>,
     /// How the numbers of the file were read.
     pub(crate) embedding: Embedding,
     /// Sines and cosines of the constant angles of the file, none negative.
@@ -76,6 +85,12 @@ impl JointFrame {
     pub(crate) fn twist(&self) -> Square {
         let twist = about_x(self.alpha);
         if self.gamma == ExactAngle::NONE { twist } else { compose(&about_z(self.gamma), &twist) }
+    }
+
+    /// Turns the link in its frame: every point r becomes R r.
+    fn turn_link(&mut self, rotation: &Square) {
+        self.matter = self.matter.turned(rotation);
+        self.gyrostats.iter_mut().for_each(|gyrostat| gyrostat.axis = apply(rotation, gyrostat.axis));
     }
 
     /// d along the axis, in the axes of the parent.
@@ -196,9 +211,9 @@ impl JointFrames {
             Convention::Modified => written(&robot.joints[index].row),
             Convention::Standard => robot.parent(index).map_or(none, |parent| written(&robot.joints[parent].row)),
         };
-        let mut rows = Vec::with_capacity(robot.dof());
+        let mut rows = Vec::with_capacity(robot.joints.len());
         for (index, joint) in robot.joints.iter().enumerate() {
-            let row = &joint.row;
+            let row = &joint.row_with_offset();
             let (alpha, a) = before(index);
             let com = row.link.com.map(decimal);
             let body = PseudoInertia::of_body(decimal(row.link.mass), com, embedding.inertia(joint), half);
@@ -226,31 +241,38 @@ impl JointFrames {
                 axis: IDENTITY[2],
                 carried: false,
                 matter,
+                gyrostats: Vec::new(),
             };
             rows.push(match joint.branch {
                 Some(branch) => row.beginning_at(&branch.placement, robot.convention, embedding)?,
                 None => row,
             });
         }
-        let (rotation, translation) = pose(&robot.tool, embedding);
-        let mut tip = Tip { on: robot.tip().on?, rotation, translation };
-        if robot.convention == Convention::Standard {
+        let placed = |frame: &FixedFrame| {
+            let (rotation, translation) = pose(&frame.placement, embedding);
+            let tip = Tip { on: frame.on?, rotation, translation };
+            if robot.convention != Convention::Standard {
+                return Some(tip);
+            }
             // twist and length of the row lead from the frame on its joint to the link frame
             let (alpha, a) = written(&robot.joints[tip.on].row);
             let turn = about_x(alpha);
             let [x, y, z] = apply(&turn, tip.translation);
-            tip = Tip { rotation: compose(&turn, &tip.rotation), translation: [x + a, y, z], ..tip };
-        }
-        let of_tip = written(&robot.joints[tip.on].row).0;
+            Some(Tip { rotation: compose(&turn, &tip.rotation), translation: [x + a, y, z], ..tip })
+        };
+        let named = robot.tips.iter().map(|&tip| &robot.frames[tip].fixed);
+        let tips = [&robot.tip()].into_iter().chain(named).map(placed).collect::<Option<Vec<_>>>()?;
+        let of_tip = written(&robot.joints[tips[0].on].row).0;
         let turns = rows.iter().flat_map(|row: &JointFrame| [row.alpha, row.theta]).chain([of_tip]);
         let known = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
         let rotor = |motor: Motor| decimal(motor.gear_ratio) * decimal(motor.gear_ratio) * decimal(motor.inertia);
         let of_arm = |joint: &Joint| joint.motor.filter(|_| robot.rotors).map(rotor).unwrap_or_default();
-        let rotors = robot.joints.iter().map(of_arm).collect();
+        let mut rotors: Vec<Number> = robot.joints.iter().map(of_arm).collect();
+        let coupled = put_rotors(robot, embedding, &mut rows, &mut rotors)?;
         let gravity = robot.gravity.map(decimal);
         let of_base = |row: &JointFrame| if row.parent.is_none() { gravity } else { Triple::default() };
         let gravity = rows.iter().map(of_base).collect();
-        Some(Self { rows, gravity, tip, rotors, embedding, known })
+        Some(Self { rows, coordinates: Coordinates::of(robot), gravity, tips, rotors, coupled, embedding, known })
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
@@ -271,7 +293,7 @@ impl JointFrames {
             if row.reversed {
                 row.theta = row.theta.back();
                 row.d = -row.d;
-                row.matter = row.matter.turned(&flip);
+                row.turn_link(&flip);
             }
             if row.alpha == ExactAngle::NONE && row.gamma != ExactAngle::NONE {
                 // both turns are about one axis
@@ -279,9 +301,8 @@ impl JointFrames {
                 row.gamma = ExactAngle::NONE;
             }
         }
-        if self.rows[self.tip.on].reversed {
-            self.turn_tip(&flip);
-        }
+        let is_reversed: Vec<bool> = self.rows.iter().map(|row| row.reversed).collect();
+        self.turn_tips(|on| is_reversed[on], &flip);
     }
 
     /// Turns the frame of each link about its axis, so that the first row on it begins without a turn.
@@ -295,7 +316,7 @@ impl JointFrames {
             let back = about_z(gamma.back());
             let row = &mut self.rows[index];
             row.theta = row.theta.then(gamma);
-            row.matter = row.matter.turned(&back);
+            row.turn_link(&back);
             for carried in self.rows.iter_mut().filter(|row| row.parent == Some(index)) {
                 carried.offset = apply(&back, carried.offset);
                 if carried.alpha == ExactAngle::NONE {
@@ -305,9 +326,7 @@ impl JointFrames {
                 }
             }
             self.rows[first].gamma = ExactAngle::NONE;
-            if self.tip.on == index {
-                self.turn_tip(&back);
-            }
+            self.turn_tips(|on| on == index, &back);
         }
     }
 
@@ -338,16 +357,22 @@ impl JointFrames {
         if last.kind == JointKind::Revolute && last.theta.quarters() != Some(QuarterTurns::Zero) {
             let rotation = about_z(last.theta);
             last.theta = ExactAngle::NONE;
-            last.matter = last.matter.turned(&rotation);
-            if self.tip.on == end {
-                self.turn_tip(&rotation);
-            }
+            last.turn_link(&rotation);
+            self.turn_tips(|on| on == end, &rotation);
         }
     }
 
-    fn turn_tip(&mut self, rotation: &Square) {
-        self.tip.rotation = compose(rotation, &self.tip.rotation);
-        self.tip.translation = apply(rotation, self.tip.translation);
+    /// Turns the frames of the links that `is_turned` says, and so what is known of tips on them.
+    fn turn_tips(&mut self, is_turned: impl Fn(usize) -> bool, rotation: &Square) {
+        for tip in self.tips.iter_mut().filter(|tip| is_turned(tip.on)) {
+            tip.rotation = compose(rotation, &tip.rotation);
+            tip.translation = apply(rotation, tip.translation);
+        }
+    }
+
+    /// The tip frame.
+    pub(crate) fn tip(&self) -> &Tip {
+        &self.tips[0]
     }
 
     /// Turns the last frame of each branch by φ = atan2(h_y, h_x), where that gains something; false when it does
@@ -379,10 +404,8 @@ impl JointFrames {
         let phi = direction(y, x, embedding)?;
         let back = about_z(phi.back());
         last.theta = last.theta.then(phi);
-        last.matter = last.matter.turned(&back);
-        if self.tip.on == end {
-            self.turn_tip(&back);
-        }
+        last.turn_link(&back);
+        self.turn_tips(|on| on == end, &back);
         Some(true)
     }
 
@@ -405,17 +428,16 @@ impl JointFrames {
     fn carry_behind(&mut self, first: usize, end: usize) -> bool {
         // from the axes of the revolute link to those of each link behind it
         let mut axes = IDENTITY;
-        for row in &mut self.rows[first + 1..end] {
+        for index in first + 1..end {
+            let row = &mut self.rows[index];
             row.offset = apply(&axes, row.offset);
             axes = compose(&axes, &row.rotation());
             row.axis = apply(&axes, IDENTITY[2]);
-            row.matter = row.matter.turned(&axes);
+            row.turn_link(&axes);
             (row.alpha, row.theta, row.carried) = (ExactAngle::NONE, ExactAngle::NONE, true);
+            self.turn_tips(|on| on == index, &axes);
         }
-        let Some(next) = self.rows.get_mut(end) else {
-            self.turn_tip(&axes);
-            return true;
-        };
+        let Some(next) = self.rows.get_mut(end) else { return true };
         next.offset = apply(&axes, next.offset);
         let Some([before, twist, after]) =
             decomposed(&compose(&axes, &about_x(next.alpha)), self.embedding, &self.known)
@@ -427,13 +449,14 @@ impl JointFrames {
         let back = about_z(before.back());
         next.offset = apply(&back, next.offset);
         for (index, row) in self.rows[first..end].iter_mut().enumerate() {
-            row.matter = row.matter.turned(&back);
+            row.turn_link(&back);
             if index > 0 {
                 row.offset = apply(&back, row.offset);
                 row.axis = apply(&back, row.axis);
             }
         }
         self.rows[first].theta = self.rows[first].theta.then(before);
+        self.turn_tips(|on| (first..end).contains(&on), &back);
         true
     }
 }

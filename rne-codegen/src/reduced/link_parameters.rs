@@ -55,6 +55,16 @@ impl PseudoInertia {
         Self { h: [0, 1, 2].map(|i| self.h[i] + moment[i]), s, ..self }
     }
 
+    /// No matter, but an inertia about an axis through the origin: J = inertia · a aᵀ.
+    pub(crate) fn about(axis: Triple, inertia: Number, half: Number) -> Self {
+        let trace = sum(axis.into_iter().map(|x| x * x)) * inertia * half;
+        let s = square(|i, j| {
+            let own = -(axis[i] * axis[j] * inertia);
+            if i == j { own + trace } else { own }
+        });
+        Self { s, ..Self::default() }
+    }
+
     pub(crate) fn get(&self, entry: Entry) -> Number {
         match entry {
             Entry::Mass => self.mass,

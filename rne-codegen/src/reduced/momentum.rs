@@ -30,7 +30,8 @@ pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
     });
     let rates = carried.iter().zip(&moved).zip(gravity).enumerate().map(|(index, ((carried, link), gravity))| {
         builder.at(Quantity::MomentumRate, index + 1);
-        let rate = builder.torque(index) + of_motion(arm, index, link, carried) - gravity;
+        let rate =
+            arm.joint_frames.coordinates.applied(builder, index) + of_motion(arm, index, link, carried) - gravity;
         builder.name(Name::scalar(Quantity::MomentumRate, index + 1), rate)
     });
     let rates = rates.collect();
@@ -44,7 +45,7 @@ fn of_motion<'s>(arm: &Arm<'_, 's>, index: usize, link: &Moved<'s>, carried: &Ca
     if arm.is_spin(index) {
         return arm.builder.zero();
     }
-    let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
+    let (lambda, mu) = (arm.parameters.lambda[index], arm.parameters.mu[index]);
     let per_length = mu.inverse().unwrap_or(Number::ONE);
     let per_both = (lambda * mu).inverse().unwrap_or(Number::ONE);
     let found = match row.kind {

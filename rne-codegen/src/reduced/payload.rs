@@ -23,12 +23,12 @@ pub(crate) struct Load<'s> {
 impl<'s> Arm<'_, 's> {
     /// The payload of the function that is being written, on the link of the tip.
     pub(crate) fn payload_on(&self, index: usize) -> Option<Payload<'s>> {
-        (index == self.joint_frames.tip.on).then(|| Payload::argument(self.builder, self.rows().len())).flatten()
+        (index == self.joint_frames.tip().on).then(|| Payload::argument(self.builder, self.rows().len())).flatten()
     }
 
     /// The payload as the recursion takes it.
     pub(crate) fn load(&self, unturned: bool) -> Option<Load<'s>> {
-        let payload = self.payload_on(self.joint_frames.tip.on)?;
+        let payload = self.payload_on(self.joint_frames.tip().on)?;
         Some(Load { payload, unturned })
     }
 }
@@ -37,7 +37,7 @@ impl<'s> Payload<'s> {
     /// R, and r: from the origin of the last frame to the centre of mass, in its axes.
     fn on_link(&self, arm: &Arm<'_, 's>) -> (Matrix<'s>, Vector<'s>) {
         let builder = arm.builder;
-        let tip = &arm.joint_frames.tip;
+        let tip = arm.joint_frames.tip();
         let rotation = Matrix(tip.rotation.map(|row| builder.vector(row)));
         let origin_shift = arm.parameters.origin_shifts[tip.on];
         let [x, y, z] = tip.translation;
@@ -84,7 +84,8 @@ impl<'s> Load<'s> {
         } else {
             (r, inertia, &link.own)
         };
-        let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
+        let on = arm.joint_frames.tip().on;
+        let (lambda, mu) = (arm.parameters.lambda[on], arm.parameters.mu[on]);
         let per = |scale: Number| scale.inverse().unwrap_or(Number::ONE);
         let point = motion.acceleration + motion.gradient.of(r.times(lambda));
         let force = point * mass.times(mu * per(lambda));

@@ -25,10 +25,10 @@ pub(crate) struct Parameters {
     pub(crate) origin_shifts: Vec<Number>,
     /// I_zz of a last link that is a spinning sphere without mass.
     pub(crate) sphere: Option<Number>,
-    /// λ: lengths of the outward pass are multiplied by it.
-    pub(crate) lambda: Number,
-    /// μ: forces are multiplied by it.
-    pub(crate) mu: Number,
+    /// λ per joint: lengths of the outward pass are multiplied by it. All that one joint of the base carries has one.
+    pub(crate) lambda: Vec<Number>,
+    /// μ per joint: forces are multiplied by it.
+    pub(crate) mu: Vec<Number>,
 }
 
 /// The choices that a table offers, and the size of the arm.
@@ -108,7 +108,7 @@ pub(crate) fn parameters(joint_frames: &JointFrames, offers: &Offers, plan: &Pla
         plan.joints.iter().enumerate().map(|(index, joint)| offers.origin_shift(index, joint.origin_shift));
     let origin_shifts: Vec<Number> = origin_shifts.collect::<Option<_>>()?;
     let (links, sphere) = regrouped(joint_frames, &origin_shifts, plan, offers)?;
-    let (lambda, mu) = scales(joint_frames, &links, plan)?;
+    let (lambda, mu) = scales(joint_frames, &links, plan)?.into_iter().unzip();
     Some(Parameters { links, origin_shifts, sphere, lambda, mu })
 }
 
@@ -242,7 +242,7 @@ fn has_sphere(joint_frames: &JointFrames) -> bool {
     let Some(row) = joint_frames.rows.last().filter(|row| row.parent.is_some()) else { return false };
     let PseudoInertia { h, s, .. } = row.matter;
     let vanish = [s[0][0] - s[1][1], s[0][1], s[0][2], s[1][2], h[0], h[1]];
-    row.kind == Revolute && vanish.iter().all(|x| x.is_zero())
+    row.kind == Revolute && row.gyrostats.is_empty() && vanish.iter().all(|x| x.is_zero())
 }
 
 /// The slide by a rule, from the links of the plain gauge.
@@ -289,24 +289,42 @@ fn length_of(rows: &[JointFrame], scale: Scale) -> Option<Number> {
     }
 }
 
-/// λ and μ; `None` outside their bounds.
-fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> Option<(Number, Number)> {
+/// λ and μ of each joint, those of the arm or those of the joint on the base that carries it; `None` outside their
+/// bounds, or where another joint has its own.
+fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> Option<Vec<(Number, Number)>> {
+    let rows = &joint_frames.rows;
+    let of_arm = scale(rows, links, plan.length_scale, plan.force_scale)?;
+    let mut scales: Vec<(Number, Number)> = Vec::with_capacity(rows.len());
+    for (row, joint) in rows.iter().zip(&plan.joints) {
+        let is_plain = (joint.length_scale, joint.force_scale) == (Scale::Default, Scale::Default);
+        scales.push(match row.parent {
+            Some(parent) if is_plain => scales[parent],
+            None if is_plain => of_arm,
+            None => scale(rows, links, joint.length_scale, joint.force_scale)?,
+            Some(_) => return None,
+        });
+    }
+    Some(scales)
+}
+
+/// λ and μ by two choices; `None` outside their bounds.
+fn scale(rows: &[JointFrame], links: &[PseudoInertia], lengths: Scale, forces: Scale) -> Option<(Number, Number)> {
     let first_moment = |link: usize, axis: usize| Some(links.get(link.checked_sub(1)?)?.h.get(axis)?.abs());
-    let lambda = match plan.length_scale {
+    let lambda = match lengths {
         Scale::Default | Scale::One => Number::ONE,
         // |h| / λ = 1 in the moments
         Scale::FirstMoment(link, axis) => first_moment(link, axis)?,
         Scale::Mass(_) => return None,
-        scale => length_of(&joint_frames.rows, scale)?.abs().inverse()?,
+        scale => length_of(rows, scale)?.abs().inverse()?,
     };
-    let mu = match plan.force_scale {
+    let mu = match forces {
         Scale::Default => lambda.inverse()?,
         Scale::One => Number::ONE,
         // μ |h| = 1 in the forces
         Scale::FirstMoment(link, axis) => first_moment(link, axis)?.inverse()?,
         // m μ / λ = 1
         Scale::Mass(link) => lambda * links.get(link.checked_sub(1)?)?.mass.abs().inverse()?,
-        scale => length_of(&joint_frames.rows, scale)?.abs(),
+        scale => length_of(rows, scale)?.abs(),
     };
     let within = |scale: Number| SCALES.contains(&scale.to_f64());
     (within(lambda) && within(mu)).then_some((lambda, mu))

@@ -29,7 +29,9 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::ir::{Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
 use crate::reduced::inward::{Carried, Loads, full};
-use crate::reduced::{Arm, Body, Composite, Gradient, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench};
+use crate::reduced::{
+    Arm, Body, Composite, Gradient, Gyrostat, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench,
+};
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
 pub(crate) struct Sensitivity<'s> {
@@ -102,6 +104,20 @@ impl<'s> Body<'s> for Behind<'s> {
 impl<'s> Behind<'s> {
     fn around(&self) -> Symbol<'s> {
         self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
+    }
+
+    /// With a rotor on the link: of its angular momentum Jm s a the moment ∫ r vᵀ dm has half, as what turns
+    /// it is antisymmetric.
+    fn with_rotor(self, arm: &Arm<'_, 's>, gyrostat: &Gyrostat, carrier: &Motion<'s>, factor: Number) -> Self {
+        let half = Number::integer(2).inverse().unwrap_or_default();
+        let [x, y, z] = arm.builder.vector(gyrostat.axis).0;
+        let rate = gyrostat.of_joints(arm, |joint| arm.rate(joint)).times(factor * half);
+        let ([x, y, z], zero) = ([x * rate, y * rate, z * rate], arm.builder.zero());
+        let turning = [[zero, z, -y], [-z, zero, x], [y, -x, zero]];
+        let moment = square(|i, j| self.moment[i][j] + turning[i][j]);
+        let Wrench { force, moment: of_wrench } = self.wrench;
+        let wrench = Wrench { force, moment: of_wrench + gyrostat.moment(arm, carrier.omega) };
+        Self { moment, wrench, ..self }
     }
 
     /// 2 Ω × velocity, for a doubled velocity.
@@ -196,15 +212,22 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
         let own = own(Composite::of_link(arm, index, &matter(arm, index)), &station.own);
+        let own = row.gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, &station.own, factor));
         // everything in frame N of this joint
         let (mut load, turn) = (loads.take(index), (row.kind == Revolute).then_some(station.turn));
+        for column in row.gyrostats.iter().flat_map(|gyrostat| columns_of(arm, gyrostat, &station.own)) {
+            gather(&mut load.own.columns, column);
+        }
         let behind = load.whole(load.with_link(own), turn);
         let mut columns = load.columns(turn);
         behind.body.name(builder, index + 1);
-        columns.push(column(arm, index, station, &behind));
+        let column = column(arm, index, station, &behind);
         for column in &columns {
             meet(arm, index, station, column, &mut found);
+            meet_back(arm, index, column, &mut found);
         }
+        meet(arm, index, station, &column, &mut found);
+        gather(&mut columns, column);
         if let Some(parent) = row.parent {
             let carried = Carried { behind: Some(behind), columns };
             loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
@@ -285,6 +308,33 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion
         stations.push(JointMotion { before, unturned, own, turn });
     }
     stations
+}
+
+/// The columns of the joints with which a rotor turns, by what moves its carrier.
+fn columns_of<'s>(arm: &Arm<'_, 's>, gyrostat: &Gyrostat, carrier: &Motion<'s>) -> impl Iterator<Item = Column<'s>> {
+    let half = Number::integer(2).inverse().unwrap_or_default();
+    let nothing = Wrench::zero(arm.builder);
+    let omega = carrier.twice_omega.times(half);
+    gyrostat.columns(arm).map(move |(joint, unit)| {
+        let turned = omega.cross(unit.moment);
+        Column { joint, unit, spin: turned, by_position: nothing, by_rate: Wrench { moment: turned, ..nothing } }
+    })
+}
+
+/// Adds a column to that of the same joint, if there is one.
+fn gather<'s>(columns: &mut Vec<Column<'s>>, column: Column<'s>) {
+    match columns.iter_mut().find(|other| other.joint == column.joint) {
+        Some(known) => {
+            *known = Column {
+                joint: known.joint,
+                unit: known.unit.plus(column.unit),
+                spin: known.spin + column.spin,
+                by_position: known.by_position.plus(column.by_position),
+                by_rate: known.by_rate.plus(column.by_rate),
+            }
+        }
+        None => columns.push(column),
+    }
 }
 
 /// The contribution of a link alone, in its axes.
@@ -388,7 +438,7 @@ fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>, behind
     }
 }
 
-/// The elements of joint `index` with that of a column, which is farther out or the same.
+/// The derivatives of the torque of a column's joint by that of joint `index`.
 fn meet<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -400,16 +450,23 @@ fn meet<'s>(
     let twists = twists(arm, index, station);
     let Wrench { force, moment } = column.unit;
     let spin = if row.kind == Revolute { column.spin.0[2] } else { arm.builder.zero() };
-    found.by_position[column.joint][index] =
-        moment.dot(twists.angular) + force.dot(twists.linear) + column.spin.dot(twists.deflection);
-    found.by_rate[column.joint][index] = moment.dot(twists.rate_angular) + force.dot(twists.rate_linear) + spin;
-    if column.joint == index {
-        return;
-    }
+    let by_position = moment.dot(twists.angular) + force.dot(twists.linear) + column.spin.dot(twists.deflection);
+    add(&mut found.by_position[column.joint][index], by_position);
+    let by_rate = moment.dot(twists.rate_angular) + force.dot(twists.rate_linear) + spin;
+    add(&mut found.by_rate[column.joint][index], by_rate);
+}
+
+/// The derivatives of the torque of joint `index` by the joint of a column from farther out, or from a rotor.
+fn meet_back<'s>(arm: &Arm<'_, 's>, index: usize, column: &Column<'s>, found: &mut Sensitivity<'s>) {
+    let row = &arm.rows()[index];
     let along = |wrench: &Wrench<'s>| match row.kind {
         Revolute => wrench.moment.0[2],
         Prismatic => arm.builder.vector(row.axis).dot(wrench.force),
     };
-    found.by_position[index][column.joint] = along(&column.by_position);
-    found.by_rate[index][column.joint] = along(&column.by_rate);
+    add(&mut found.by_position[index][column.joint], along(&column.by_position));
+    add(&mut found.by_rate[index][column.joint], along(&column.by_rate));
+}
+
+fn add<'s>(place: &mut Symbol<'s>, element: Symbol<'s>) {
+    *place = if place.is_zero() { element } else { *place + element };
 }

@@ -1,10 +1,10 @@
-//! Joints that are locked, and joints that follow other joints (`mimic`).
+//! Joints that are locked, and joints that follow other joints (`mimic`, and `coupling` of URDF+).
 
-use rne_model::{Report, one_line};
+use rne_model::{Coupling, Report, one_line};
 
-use super::{Walk, lock};
+use super::{Chain, Walk, lock};
 use crate::source::quoted;
-use crate::urdf::Mimic;
+use crate::urdf::{Gear, Mimic};
 
 impl Walk<'_> {
     /// The position at which a joint is held, if it is held. One that follows a held one is held by it.
@@ -94,4 +94,80 @@ impl Walk<'_> {
             format!("the joint {name} follows {leader}, which moves; no link after it has mass, so rne locks it")
         });
     }
+
+    /// Keeps how a joint of a whole robot follows another one: `place` is its own in the chain. One that follows a held
+    /// joint is refused, because it does not move.
+    pub(super) fn look_at_coupling(&mut self, index: usize, place: usize) -> Result<(), Report> {
+        self.places.insert(index, place);
+        let joint = &self.urdf.joints[index];
+        if !self.selection.whole {
+            return Ok(());
+        }
+        if let Some(gear) = self.urdf.gears.iter().find(|gear| gear.joint == index) {
+            return self.look_at_gear(gear, place);
+        }
+        let Some(mimic) = joint.mimic.as_ref() else { return Ok(()) };
+        let (mimics, leader) = self.follows(index)?;
+        let (ratio, offset) = mimics
+            .iter()
+            .fold((1.0, 0.0), |(ratio, offset), mimic| (ratio * mimic.multiplier, offset + ratio * mimic.offset));
+        if ratio == 0.0 || !self.moving.contains(&leader) {
+            let why = if ratio == 0.0 { "with multiplier 0" } else { "which is locked" };
+            let [name, leader] = [&joint.name, &mimic.joint].map(|name| quoted(name));
+            let message = format!("the joint {name} follows {leader}, {why}, so it does not move");
+            let help = "lock this joint".to_owned();
+            return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
+        }
+        if joint.friction != [0.0; 2] {
+            let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| one_line(name));
+            self.told.remarks.push(format!(
+                "the joint {name} follows {leader}; its friction is left out, because a joint that follows has no motor"
+            ));
+        }
+        self.coupled.push(Coupled { place, follows: vec![(leader, ratio)], offset });
+        Ok(())
+    }
+
+    /// Keeps how a joint follows others by gears. It must follow joints that move and follow none.
+    fn look_at_gear(&mut self, gear: &Gear, place: usize) -> Result<(), Report> {
+        let joints = &self.urdf.joints;
+        let follows =
+            |joint: usize| joints[joint].mimic.is_some() || self.urdf.gears.iter().any(|other| other.joint == joint);
+        let name = quoted(&joints[gear.joint].name);
+        if joints[gear.joint].mimic.is_some() {
+            let message = format!("the joint {name} follows others twice, by `mimic` and by a coupling");
+            return Err(self.urdf.source.error(&gear.span, message, "delete one of both".to_owned()));
+        }
+        if let Some(&(followed, _)) =
+            gear.follows.iter().find(|(joint, _)| follows(*joint) || !self.moving.contains(joint))
+        {
+            let why = if follows(followed) { "follows others itself" } else { "is locked" };
+            let message = format!("the joint {name} follows {}, which {why}", quoted(&joints[followed].name));
+            let help = "lock this joint, or let it follow joints that move".to_owned();
+            return Err(self.urdf.source.error_with(&gear.span, message, help, &lock(&joints[gear.joint].name)));
+        }
+        self.coupled.push(Coupled { place, follows: gear.follows.clone(), offset: 0.0 });
+        Ok(())
+    }
+
+    /// Gives the joints of the chain that follow another one their couplings.
+    pub(super) fn couple(&self, chain: &mut Chain) {
+        for Coupled { place, follows, offset } in &self.coupled {
+            let placed = |&(joint, ratio): &(usize, f64)| Some((*self.places.get(&joint)?, ratio));
+            let mut follows: Vec<(usize, f64)> = follows.iter().filter_map(placed).collect();
+            follows.sort_by_key(|(joint, _)| *joint);
+            if !follows.is_empty() {
+                chain.joints[*place].coupling = Some(Coupling { follows, offset: *offset });
+            }
+        }
+    }
+}
+
+/// A joint that follows another one.
+pub(super) struct Coupled {
+    /// Its place in the chain.
+    place: usize,
+    /// The joints of the URDF that it follows, which follow none, and the ratios.
+    follows: Vec<(usize, f64)>,
+    offset: f64,
 }

@@ -12,6 +12,7 @@ mod chain;
 mod followers;
 mod frames;
 mod geometry;
+mod whole;
 
 pub(crate) const GRAVITY: f64 = 9.81;
 pub(crate) const BOTH: [Convention; 2] = [Convention::Standard, Convention::Modified];

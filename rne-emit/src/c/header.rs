@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Name, Program, Quantity, Record};
+use rne_codegen::{Argument, Name, Program, Quantity, Record};
+use rne_model::JointIdentifier;
 
 use super::signature::{fields, head, parameters_type, record_type, records};
-use super::{ConstantTooLarge, File, comment, joint_functions, observer};
+use super::{ConstantTooLarge, File, comment, joint_functions, motors, observer};
 use crate::evidence::{evidence, refusals};
 use crate::heading::Heading;
 use crate::parameters::{self, Parameter};
@@ -31,6 +32,10 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
     let _ = writeln!(text, "\n#ifndef {upper}_H\n#define {upper}_H\n");
     text.push_str("#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
     let _ = writeln!(text, "/// Number of joints.\n#define {upper}_DOF {}u", file.robot.dof());
+    if file.additions.names {
+        text.push_str(&joints(file, &upper));
+    }
+    text.push_str(&tips(file, &upper));
     text.push_str(&limits(file, &upper));
     text.push_str(&parameters(file, &upper)?);
     for (record, parts) in records(file) {
@@ -55,6 +60,7 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
     }
     text.push_str(&observer::declarations(file));
     text.push_str(&joint_functions::declarations(file));
+    text.push_str(&motors::declarations(file));
     text.push_str("\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
     Ok(text)
 }
@@ -98,6 +104,30 @@ fn initialiser(name: &str, numbers: &[String]) -> String {
     format!("{start} \\\n{lines}}}\n")
 }
 
+/// The index of each joint by its name.
+fn joints(file: &File, upper: &str) -> String {
+    let mut text = "\n/// Indices of the joints in arrays, by their names.\nenum {\n".to_owned();
+    for (index, joint) in file.robot.independent_joints().enumerate() {
+        let JointIdentifier { upper_case, .. } = JointIdentifier::of(&joint.name, index);
+        let name = inert::c_comment(&joint.name);
+        let _ = writeln!(text, "    /// {name}\n    {upper}_JOINT_{upper_case} = {index},");
+    }
+    text + "};\n\n"
+}
+
+/// The index of each tip by its name, where a function takes a wrench at each.
+fn tips(file: &File, upper: &str) -> String {
+    if !file.programs.iter().any(|program| program.function.takes(Argument::Wrenches)) {
+        return String::new();
+    }
+    let mut text = "/// Indices of the tips in arrays of wrenches, by their names.\nenum {\n".to_owned();
+    for (index, name) in file.robot.tip_names().into_iter().enumerate() {
+        let JointIdentifier { upper_case, .. } = JointIdentifier::of(name, index);
+        let _ = writeln!(text, "    /// {name}\n    {upper}_TIP_{upper_case} = {index},");
+    }
+    text + "};\n\n"
+}
+
 /// The limits of the joints as initialisers of arrays; a limit that no joint has is left out.
 fn limits(file: &File, upper: &str) -> String {
     let precision = file.precision;
@@ -105,7 +135,7 @@ fn limits(file: &File, upper: &str) -> String {
         Precision::Single => f64::from(f32::MAX),
         Precision::Double => f64::MAX,
     };
-    let limits = || file.robot.joints.iter().map(|joint| joint.limits);
+    let limits = || file.robot.independent_joints().map(|joint| joint.limits);
     let kinds: [(&str, &str, f64, Vec<Option<f64>>); 4] = [
         (
             "POSITION_LOWER",

@@ -49,9 +49,8 @@ impl JointFriction {
     /// # Errors
     /// When no joint has friction, or that of one cannot be computed from its speed alone.
     pub fn of(robot: &Robot) -> Result<Vec<Self>, NoFriction> {
-        let frictions = robot.joints.iter().enumerate();
-        let frictions: Vec<Self> =
-            frictions.map(|(index, joint)| Self::of_joint(robot, index, joint)).collect::<Result<_, _>>()?;
+        let frictions = robot.coordinates().map(|index| Self::of_joint(robot, index, &robot.joints[index]));
+        let frictions: Vec<Self> = frictions.collect::<Result<_, _>>()?;
         if frictions.iter().all(|friction| friction.viscous == 0.0 && friction.odd == 0.0) {
             return Err(NoFriction::Nowhere);
         }
@@ -291,7 +290,7 @@ fn limits(file: &File) -> String {
         Precision::Double => ("0x8000000000000000u", "0x7ff0000000000000u", 63),
     };
     let (mut arguments, mut results) = (String::new(), String::new());
-    for (index, joint) in file.robot.joints.iter().enumerate() {
+    for (index, joint) in file.robot.independent_joints().enumerate() {
         let tau = format!("tau{}", index + 1);
         let _ = writeln!(arguments, "    const {real} {tau} = tau[{index}];");
         // a limit that the type cannot hold limits no number of it

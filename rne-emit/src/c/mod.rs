@@ -2,6 +2,7 @@
 
 mod header;
 mod joint_functions;
+mod motors;
 mod observer;
 mod prefix;
 mod signature;
@@ -86,6 +87,10 @@ pub struct Additions<'a> {
     pub friction: Option<&'a [JointFriction]>,
     /// Whether there is a function `limit_torques`, which keeps torques within the effort limits.
     pub limits: bool,
+    /// Whether the header has a constant for the index of each joint: [`JointIdentifier`](rne_model::JointIdentifier)
+    /// says its name. Two joints with one identifier give a header that does not compile;
+    /// [`Checked::identifiers`](rne_model::Checked::identifiers) is the error then.
+    pub names: bool,
 }
 
 /// The code of [`c_code`], with additions.

@@ -18,6 +18,11 @@ pub(crate) fn inputs(program: &Program) -> Vec<ArgumentArray> {
     arrays
 }
 
+/// Lengths or places in square brackets.
+pub(crate) fn subscript(numbers: &[usize]) -> String {
+    numbers.iter().fold(String::new(), |text, number| text + &format!("[{number}]"))
+}
+
 /// The name of an argument array in C, whose library has functions `sin` and `cos`.
 pub(crate) fn array_name(name: &'static str) -> &'static str {
     match name {
@@ -33,7 +38,7 @@ pub(super) fn head(file: &File, program: &Program) -> String {
     let layout = program.function.layout(program.dof);
     let mut arguments: Vec<String> = inputs(program)
         .iter()
-        .map(|ArgumentArray { name, elements }| format!("const {real} {name}[{}]", elements.len()))
+        .map(|array| format!("const {real} {}{}", array.name, subscript(&array.lengths())))
         .collect();
     if parameters::are_used(program) {
         arguments.push(format!("const {} *parameters", parameters_type(file)));

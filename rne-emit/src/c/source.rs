@@ -5,8 +5,8 @@ use std::fmt::Write;
 use rne_codegen::{ArgumentArray, Layout, Program};
 
 use super::header::columns;
-use super::signature::{head, inputs, places};
-use super::{ConstantTooLarge, File, joint_functions, observer};
+use super::signature::{head, inputs, places, subscript};
+use super::{ConstantTooLarge, File, joint_functions, motors, observer};
 use crate::expression::line;
 use crate::line_breaks::statement;
 use crate::listing::{Line, Selection, listing};
@@ -26,7 +26,8 @@ pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
         text.push_str("#include <stdint.h>\n\n");
     }
     text.push_str("// Names, for link or joint i and axis x, in frame i at joint i, fixed to link i:\n//\n");
-    let names: Vec<_> = legend(file.programs).into_iter().map(|(name, meaning)| [name, meaning.to_owned()]).collect();
+    let names: Vec<_> =
+        legend(file.robot, file.programs).into_iter().map(|(name, meaning)| [name, meaning.to_owned()]).collect();
     text.push_str(&columns(&names));
     if file.turns() {
         let [float, double] = SIN_COS;
@@ -44,6 +45,7 @@ pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     }
     text.push_str(&observer::definitions(file));
     text.push_str(&joint_functions::definitions(file)?);
+    text.push_str(&motors::definitions(file)?);
     Ok(text)
 }
 
@@ -92,13 +94,15 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
 fn arguments(file: &File, program: &Program) -> String {
     let declaration = file.syntax().declaration();
     let mut text = String::new();
-    for ArgumentArray { name: array, elements } in inputs(program) {
+    for argument in inputs(program) {
+        let ArgumentArray { name: array, elements, .. } = &argument;
         if elements.iter().all(Option::is_none) {
             let _ = writeln!(text, "    (void){array};");
         }
         for (index, name) in elements.iter().enumerate() {
             if let Some(name) = name {
-                let _ = writeln!(text, "    {declaration} {name} = {array}[{index}];");
+                let place = subscript(&argument.places(index));
+                let _ = writeln!(text, "    {declaration} {name} = {array}{place};");
             }
         }
     }

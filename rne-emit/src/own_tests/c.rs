@@ -136,7 +136,8 @@ impl Tests<'_> {
             .iter()
             .map(|input| {
                 let other = others.iter().find(|(name, _)| *name == input.name);
-                other.map_or_else(|| format!("{}[state]", array(input.name)), |(_, other)| (*other).to_owned())
+                let rows = input.row.map_or_else(String::new, |row| format!("(const {real} (*)[{row}])"));
+                other.map_or_else(|| format!("{rows}{}[state]", array(input.name)), |(_, other)| (*other).to_owned())
             })
             .collect();
         if parameters::are_used(program) {
@@ -216,7 +217,7 @@ impl Tests<'_> {
 
     /// The function that compares limited torques: above, below and within the limits of each joint.
     fn limits(&self) -> (String, String) {
-        let efforts = || self.robot.joints.iter().map(|joint| joint.limits.effort);
+        let efforts = || self.robot.independent_joints().map(|joint| joint.limits.effort);
         let parts = [2.0, -2.0, 0.5];
         let given: Vec<Vec<f64>> =
             parts.iter().map(|part| efforts().map(|effort| part * effort.unwrap_or(1.0)).collect()).collect();

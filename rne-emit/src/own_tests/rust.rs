@@ -151,7 +151,13 @@ impl Tests<'_> {
             .map(|array| {
                 let other = others.iter().find(|(name, _)| *name == array.name);
                 other.map_or_else(
-                    || format!("&state.{}.map(Number)", array.name),
+                    || match array.row {
+                        Some(row) => format!(
+                            "&core::array::from_fn(|i| core::array::from_fn(|j| Number(state.{}[{row} * i + j])))",
+                            array.name
+                        ),
+                        None => format!("&state.{}.map(Number)", array.name),
+                    },
                     |(_, it)| format!("&{it}.map(Number)"),
                 )
             })

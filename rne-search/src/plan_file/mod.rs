@@ -14,7 +14,7 @@ use rne_codegen::Remedy;
 use rne_codegen::plan::{Accuracy, Cost, Plan, PlanSet, Rewritten, divides_by_zero};
 use rne_codegen::{Algorithm, CompileError, Function, Program};
 use rne_model::document::{self, Content, Node, Style};
-use rne_model::{Convention, JointKind, Report, Robot};
+use rne_model::{Convention, FixedFrame, JointKind, Report, Robot};
 
 use self::shapes::Mistake;
 
@@ -93,8 +93,23 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
         if row.link.has_first_moment() {
             numbers.extend(row.link.first_moment);
         }
+        // rows that begin where the row before ends have none, and plans of chains are older than this
+        if let Some(FixedFrame { on, placement }) = joint.branch {
+            #[allow(clippy::cast_precision_loss)] // joints are few
+            numbers.push(on.map_or(-1.0, |on| on as f64));
+            numbers.extend(placement.xyz);
+            numbers.extend(placement.rpy.map(|angle| angle.radians));
+        }
         numbers.extend(inertia.rows().into_iter().flatten());
         numbers.extend(row.link.inertia.rows().into_iter().flatten());
+    }
+    // plans of robots without rotors on links are older than this
+    for (rotor, turns) in robot.spinning_rotors() {
+        #[allow(clippy::cast_precision_loss)] // joints are few
+        let number = |joint: usize| joint as f64;
+        numbers.extend(rotor.axis);
+        numbers.extend([rotor.on.map_or(-1.0, number), rotor.inertia]);
+        numbers.extend(turns.iter().flat_map(|&(joint, n)| [number(joint), n]));
     }
     // FNV-1a; -0 is 0
     let bytes = numbers.iter().flat_map(|x| (x + 0.0).to_bits().to_le_bytes());
@@ -141,8 +156,9 @@ impl PlanFile {
             rewritten.filter_map(|(function, of)| Some((vec!["rewritten", function.name()], of.plan.as_ref()?)));
         for (mut keys, plan) in std::iter::once((vec!["reduced"], &self.reduced.plan)).chain(rewritten) {
             let count = plan.joints.len();
-            if count != robot.dof() {
-                let message = format!("this plan has {count} joints, but `{}` has {}", robot.name, robot.dof());
+            let joints = robot.joints.len();
+            if count != joints {
+                let message = format!("this plan has {count} joints, but `{}` has {joints}", robot.name);
                 keys.extend(["plan", "joints"]);
                 return Err(Mistake::new(place(root, &keys), message));
             }

@@ -129,7 +129,8 @@ fn plan(node: &Node) -> Result<Plan, Mistake> {
 }
 
 fn joint(node: &Node) -> Result<JointPlan, Mistake> {
-    let keys = ["targets", "origin_shift", "outward_offset", "inward_offset", "moment", "on"];
+    let keys =
+        ["targets", "origin_shift", "outward_offset", "inward_offset", "moment", "length_scale", "force_scale", "on"];
     let joint = Fields::open(node, "a joint", &keys)?;
     let target = |node: &Node| word(node, "target", &named(&RegroupingTarget::ALL, RegroupingTarget::name));
     let shift = |node: &Node| word(node, "origin shift", &named(&OriginShift::ALL, OriginShift::name));
@@ -145,6 +146,8 @@ fn joint(node: &Node) -> Result<JointPlan, Mistake> {
         outward_offset: joint.optional("outward_offset", side)?,
         inward_offset: joint.optional("inward_offset", inward)?,
         moment: joint.optional("moment", moment)?,
+        length_scale: joint.optional("length_scale", parsed)?,
+        force_scale: joint.optional("force_scale", parsed)?,
         switches: joint.optional("on", switches)?,
     })
 }
@@ -225,7 +228,9 @@ fn written_plan(plan: &Plan) -> Value {
 }
 
 fn written_joint(joint: &JointPlan) -> Value {
-    let JointPlan { targets, origin_shift, outward_offset, inward_offset, moment, switches } = joint;
+    let JointPlan { targets, origin_shift, outward_offset, inward_offset, moment, switches, .. } = joint;
+    let JointPlan { length_scale, force_scale, .. } = joint;
+    let scale = |scale: &Scale| Value::Text(scale.to_string());
     let on = |switches: &Switches| {
         Value::List(switches.list().into_iter().filter(|(_, on)| *on).map(|(switch, _)| name(switch)).collect())
     };
@@ -235,6 +240,8 @@ fn written_joint(joint: &JointPlan) -> Value {
         chosen("outward_offset", outward_offset, |side| name(side.name())),
         chosen("inward_offset", inward_offset, |side| name(side.name())),
         chosen("moment", moment, |moment| name(moment.name())),
+        chosen("length_scale", length_scale, scale),
+        chosen("force_scale", force_scale, scale),
         chosen("on", switches, on),
     ];
     Value::Mapping(entries.into_iter().flatten().collect())

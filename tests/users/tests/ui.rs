@@ -17,7 +17,7 @@ fn mistakes_and_their_messages() {
 }
 
 /// File, and what the one message has in it.
-const BY_RUSTC: [(&str, &[&str]); 6] = [
+const BY_RUSTC: [(&str, &[&str]); 10] = [
     ("array_length", &["error[E0308]", "array_length.rs:8:49", "size of 2", "size of 3"]),
     (
         "batch_alone",
@@ -34,13 +34,34 @@ const BY_RUSTC: [(&str, &[&str]); 6] = [
         &["error[E0277]", "field_of_text.rs:6:5", "`String` cannot be a run-time parameter", "`#[robot(skip)]`"],
     ),
     (
-        "rows_of_arrays",
+        "frame_unknown",
         &[
-            "error[E0277]",
-            "rows_of_arrays.rs:10:9",
-            "`[f64; 7]` is not a number of a state",
-            "`Array::Rows(states.as_flattened())`",
+            "error[E0080]",
+            "`join1` is not a frame of the robot two: ",
+            "each joint names its link frame: `joint1`, `joint2`; did you mean `joint1`?",
+            "frame_unknown.rs:9:",
         ],
+    ),
+    (
+        "joint_missing",
+        &[
+            "error[E0080]",
+            "`joint1` is a joint of the robot, but is not in the list; the joints of two are `joint1`, `joint2`",
+            "joint_missing.rs:7:27",
+        ],
+    ),
+    ("joint_twice", &["error[E0080]", "`joint1` is in the list twice; the joints of two are", "joint_twice.rs:7:27"]),
+    (
+        "joint_unknown",
+        &[
+            "error[E0080]",
+            "`elbow` in the list is not a joint of the robot; the joints of two are",
+            "joint_unknown.rs:7:27",
+        ],
+    ),
+    (
+        "rows_of_arrays",
+        &["error[E0277]", "rows_of_arrays.rs:10:9", "`[f64; 7]` is not a number of a state", "`.q(&states)`"],
     ),
     ("without_the_trait", &["error[E0599]", "without_the_trait.rs:6:29", "`inverse_dynamics`", "InverseDynamics"]),
 ];

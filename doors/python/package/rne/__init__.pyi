@@ -1,6 +1,6 @@
 """Dynamics of robot arms: any Denavit-Hartenberg table or URDF, compiled when it is read."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, TypedDict
 
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 Floats = NDArray[np.floating[Any]]
+Joints = ArrayLike | Mapping[str, ArrayLike]
 Parameters = ArrayLike | Mapping[str, ArrayLike] | None
 Form = Literal["reduced", "seven_steps"]
 Convention = Literal["standard", "modified"]
@@ -41,7 +42,8 @@ class Diagnosis(TypedDict):
 class Arm:
     """An arm whose functions are compiled when they are first called.
 
-    Arguments have the shape (n,) for one state or (N, n) for many, a single row standing for all.
+    Arguments have the shape (n,) for one state or (N, n) for many, a single row standing for all. Arguments with a
+    number per joint may be dicts of joint name → number or array (N,).
     """
 
     @property
@@ -50,6 +52,10 @@ class Arm:
     def dof(self) -> int: ...
     @property
     def joints(self) -> list[str]: ...
+    @property
+    def followers(self) -> dict[str, tuple[dict[str, float], float]]: ...
+    @property
+    def tips(self) -> list[str]: ...
     @property
     def convention(self) -> Convention: ...
     @property
@@ -72,172 +78,184 @@ class Arm:
     def held(self) -> dict[str, float]: ...
     @property
     def parameters(self) -> list[str]: ...
+    def order(self, names: Iterable[str], extra: bool = ...) -> NDArray[np.intp]:
+        """The place of each joint of the arm in a list of joint names of another program, an integer array of shape (n,)."""
     # <!-- begin: stubs, of the list of functions; written by: RNE_WRITE_DOCUMENTS=1 cargo test --test documents -->
     def inverse_dynamics(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip."""
     def inverse_dynamics_with_wrench(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, wrench: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, wrench: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes."""
     def inverse_dynamics_with_payload(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, payload: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes."""
     def inverse_dynamics_from_sin_cos(
-        self, sin: ArrayLike, cos: ArrayLike, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        self, sin: Joints, cos: Joints, q: Joints, qd: Joints, qdd: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone."""
     def gravity_torques(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques that hold the arm still against gravity, τ(q, 0, 0)."""
     def bias_torques(
-        self, q: ArrayLike, qd: ArrayLike, *,
+        self, q: Joints, qd: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Coriolis, centrifugal and gravity torques, τ(q, q̇, 0)."""
     def mass_matrix(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest."""
     def coriolis_matrix(
-        self, q: ArrayLike, qd: ArrayLike, *,
+        self, q: Joints, qd: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇."""
     def forward_dynamics(
-        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *,
+        self, q: Joints, qd: Joints, tau: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip."""
     def forward_kinematics(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The tip in the world, base and tool included."""
     def pose(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The tip in the world, base and tool included."""
     def link_poses(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The frame of every row of the table in the world."""
     def jacobian(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones."""
     def jacobian_rate_times_velocity(
-        self, q: ArrayLike, qd: ArrayLike, *,
+        self, q: Joints, qd: Joints, *,
         frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular."""
     def kinetic_energy(
-        self, q: ArrayLike, qd: ArrayLike, *,
+        self, q: Joints, qd: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats | float:
         """Kinetic energy, J."""
     def potential_energy(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats | float:
         """Potential energy in gravity, J; zero where a mass is at the origin of frame 0."""
     def centre_of_mass(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The centre of mass of all links in the world, base included."""
     def centre_of_mass_jacobian(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The Jacobian of the centre of mass in world axes: its velocity per joint velocity."""
     def regressor(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)."""
     def inverse_dynamics_derivatives(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i."""
     def joint_wrenches(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i."""
     def momentum_and_rate(
-        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *,
+        self, q: Joints, qd: Joints, tau: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """The momentum of the joints, M(q) q̇, and the rate it would have without external torques."""
     def inverse_dynamics_on_moving_base(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, *,
         base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
         base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques on a base that moves as told, under gravity as told, with a free tip."""
     def actuator_torques(
-        self, qd: ArrayLike, qdd: ArrayLike, *,
+        self, qd: Joints, qdd: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """What rotors behind gears and friction add to the torques."""
     def inverse_mass_matrix(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The inverse of the mass matrix, M(q)⁻¹, symmetric: column j holds the accelerations for τ = e_j."""
     def gravity_torques_with_payload(
-        self, q: ArrayLike, payload: ArrayLike, *,
+        self, q: Joints, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques that hold the arm and a payload at its tip still against gravity."""
     def bias_torques_with_payload(
-        self, q: ArrayLike, qd: ArrayLike, payload: ArrayLike, *,
+        self, q: Joints, qd: Joints, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Coriolis, centrifugal and gravity torques of the arm with a payload at its tip."""
     def mass_matrix_with_payload(
-        self, q: ArrayLike, payload: ArrayLike, *,
+        self, q: Joints, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The mass matrix of the arm with a payload at its tip, symmetric."""
     def forward_dynamics_with_payload(
-        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, payload: ArrayLike, *,
+        self, q: Joints, qd: Joints, tau: Joints, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations for positions `q`, velocities `qd` and torques `tau` with a payload at the tip."""
     def inverse_dynamics_derivatives_with_payload(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, payload: ArrayLike, *,
+        self, q: Joints, qd: Joints, qdd: Joints, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_payload`; row i is torque i."""
     def momentum_and_rate_with_payload(
-        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, payload: ArrayLike, *,
+        self, q: Joints, qd: Joints, tau: Joints, payload: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """The momentum of the joints with a payload at the tip, and its rate without external torques."""
     def wrench_torques(
-        self, q: ArrayLike, wrench: ArrayLike, *,
+        self, q: Joints, wrench: ArrayLike, *,
         frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes."""
+    def inverse_dynamics_with_wrenches(
+        self, q: Joints, qd: Joints, qdd: Joints, wrenches: ArrayLike | dict[str, ArrayLike], *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques when the robot exerts a force and a moment at each of its tips, in axes of the tip."""
+    def forward_dynamics_with_wrenches(
+        self, q: Joints, qd: Joints, tau: Joints, wrenches: ArrayLike | dict[str, ArrayLike], *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Accelerations for positions `q`, velocities `qd`, torques `tau` and a wrench at each tip."""
     # <!-- end -->
     def rollout(
-        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, step: float, *,
+        self, q: Joints, qd: Joints, tau: Joints, step: float, *,
         friction: bool | float | None = ..., limits: bool | str | Sequence[str] | None = ...,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
@@ -247,13 +265,13 @@ class Arm:
     ) -> Floats:
         """How far the tip or a frame is from a target pose, in world axes."""
     def operational_space_inertia(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The operational-space inertia (J M⁻¹ Jᵀ)⁻¹ at the tip or at a frame, symmetric (Khatib, 1987)."""
     def dynamically_consistent_inverse(
-        self, q: ArrayLike, *,
+        self, q: Joints, *,
         frame: str | None = ..., rows: Sequence[int] | None = ..., payload: ArrayLike | None = ...,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
@@ -291,9 +309,10 @@ def load(
     *,
     tip: str | None = ...,
     base: str | None = ...,
+    whole: bool = ...,
     lock: Mapping[str, float] | None = ...,
     lock_others: bool = ...,
-    convention: Convention = ...,
+    convention: Convention | None = ...,
     snap: bool = ...,
     keep_unphysical: bool = ...,
     run_time: Sequence[str] = ...,

@@ -43,7 +43,7 @@ fn rewritten_graphs_are_the_seven_steps() {
         // the last one first: that is the one whose value has changed
         for graph in graphs.into_iter().rev() {
             let written = Traced { graph, trace: Trace::default() }.told_by(&plain);
-            let rewritten = Formulation { names: names.clone(), traced: written, scales };
+            let rewritten = Formulation { names: names.clone(), traced: written, scales: scales.clone() };
             must_be_identical(&robot, &plan, &lowered(&robot, function, rewritten));
         }
     }

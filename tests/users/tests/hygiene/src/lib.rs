@@ -12,7 +12,7 @@ use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Opt
 use ::dynamics::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumObserver, MovingBase,
-    Regressor,
+    Regressor, TipWrenches,
 };
 
 /// Seven joints, with limits.
@@ -70,7 +70,22 @@ where
 ")]
 pub struct Slides;
 
-/// The same in the reduced form, of an arm that carries something.
+/// A tree with two tips and a body.
+#[derive(InverseDynamics, MassMatrix, TipWrenches, Clone, Copy, Debug)]
+#[robot(path = "../../../../../docs/dual_arm.yaml", crate = ::dynamics)]
+pub struct DualArm;
+
+/// A joint that follows another one.
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Clone, Copy, Debug)]
+#[robot(path = "../../../../../docs/gripper.yaml", crate = ::dynamics, form = "reduced")]
+pub struct Gripper;
+
+/// Motors that turn with several joints.
+#[derive(InverseDynamics, Clone, Copy, Debug)]
+#[robot(path = "../../../../../robots/trees/wam7_coupled.yaml", crate = ::dynamics)]
+pub struct Wam;
+
+/// The reduced form of an arm that carries something.
 #[derive(
     InverseDynamics,
     MassMatrix,

@@ -1,14 +1,21 @@
-//! The result of `rne watch` as JSON.
+//! Events and trends as data for other programs, as `rne watch --json` and Python give them: docs/watch.md lists the
+//! keys.
 
 use rne_identify::JointError;
 use rne_logs::UtcTime;
 use rne_model::Robot;
-use rne_watch::{Baseline, Candidate, Cause, Event, Report, Statistic, Trend, unit};
 use serde::Serialize;
 
-/// The result for a log as JSON.
-#[derive(Serialize)]
-pub(crate) struct Reply {
+use crate::baseline::Baseline;
+use crate::candidate::Candidate;
+use crate::event::{Cause, Event, unit};
+use crate::report::Report;
+use crate::selection::Statistic;
+use crate::trend::Trend;
+
+/// The result for a log, for a format that serde writes. Numbers that are not finite are missing.
+#[derive(Debug, Serialize)]
+pub struct WatchReply {
     robot: String,
     log: String,
     /// The logs or the file of the baseline.
@@ -21,8 +28,8 @@ pub(crate) struct Reply {
     joints: Vec<OfJoint>,
 }
 
-#[derive(Serialize)]
-pub(crate) struct OfEvent {
+#[derive(Debug, Serialize)]
+struct OfEvent {
     cause: &'static str,
     joint: Option<usize>,
     name: Option<String>,
@@ -53,7 +60,7 @@ pub(crate) struct OfEvent {
     rivals: Vec<&'static str>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfParameter {
     cause: &'static str,
     joint: Option<usize>,
@@ -68,7 +75,7 @@ struct OfParameter {
     watched: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfJoint {
     joint: usize,
     name: String,
@@ -85,7 +92,7 @@ fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
-pub(crate) fn name(robot: &Robot, joint: Option<usize>) -> Option<String> {
+fn name(robot: &Robot, joint: Option<usize>) -> Option<String> {
     joint.map(|joint| robot.joints[joint].name.clone())
 }
 
@@ -123,8 +130,10 @@ impl OfEvent {
     }
 }
 
-impl Reply {
-    pub(crate) fn of(
+impl WatchReply {
+    /// The reply on a log with the name `log`, whose baseline is called `words`.
+    #[must_use]
+    pub fn of(
         robot: &Robot,
         log: String,
         read_to: f64,
@@ -167,9 +176,9 @@ impl Reply {
     }
 }
 
-/// A trend as JSON.
-#[derive(Serialize)]
-pub(crate) struct TrendReply {
+/// A trend, for a format that serde writes. Numbers that are not finite are missing.
+#[derive(Debug, Serialize)]
+pub struct TrendReply {
     robot: String,
     baseline: String,
     logs: Vec<OfRow>,
@@ -177,13 +186,13 @@ pub(crate) struct TrendReply {
 }
 
 /// A log that cannot be compared.
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfLeftOut {
     log: String,
     reason: String,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfRow {
     log: String,
     events: Vec<OfEvent>,
@@ -192,7 +201,7 @@ struct OfRow {
     joints: Vec<OfFriction>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfFriction {
     joint: usize,
     name: String,
@@ -205,7 +214,9 @@ struct OfFriction {
 }
 
 impl TrendReply {
-    pub(crate) fn of(robot: &Robot, words: &str, trend: &Trend, events: &[Vec<Event>]) -> Self {
+    /// The reply on a trend with the events of each log, whose baseline is called `words`.
+    #[must_use]
+    pub fn of(robot: &Robot, words: &str, trend: &Trend, events: &[Vec<Event>]) -> Self {
         let rows = trend.rows.iter().zip(events).map(|(row, events)| {
             let joints = row.friction.iter().zip(&row.residual).enumerate();
             let joints = joints.map(|(joint, (of, residual))| OfFriction {

@@ -1,28 +1,49 @@
-//! An identification as JSON: docs/identify.md lists the keys.
+//! An identification as data for other programs, as `rne identify --json` and Python give it: docs/identify.md lists
+//! the keys.
 
-use rne_identify::{Doubt, Evidence, Identification, JointError, JointReport, JointVerdict, Verdict};
-use rne_model::{FrictionTransition, Joint, Robot};
+use rne_logs::Motion;
+use rne_model::{FrictionTransition, Joint, JointKind, Robot};
 use serde::Serialize;
 
-/// A part of the logs.
-#[derive(Clone, Copy, Default, Serialize)]
-pub(crate) struct Extent {
-    /// Times of the first and the last state, s.
-    pub(crate) from: Option<f64>,
-    pub(crate) until: Option<f64>,
-    pub(crate) states: u64,
+use crate::identification::{Identification, JointReport};
+use crate::prediction::JointError;
+use crate::verdict::{Doubt, Evidence, Excited, JointVerdict, Verdict};
+
+/// The part of the logs on which a robot was judged.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct JudgedPart {
+    /// Time of the first state, s.
+    pub from: Option<f64>,
+    /// Time of the last state, s.
+    pub until: Option<f64>,
+    /// Number of states.
+    pub states: u64,
     /// Duration of the motions together, s.
-    pub(crate) duration: f64,
+    pub duration: f64,
 }
 
-#[derive(Serialize)]
-pub(crate) struct Reply {
+impl JudgedPart {
+    /// Adds a motion.
+    pub fn add(&mut self, motion: &Motion) {
+        if let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) {
+            self.from.get_or_insert(*first);
+            self.until = Some(*last);
+            self.states += motion.len() as u64;
+            self.duration += last - first;
+        }
+    }
+}
+
+/// An identification with all numbers of the verdict, for a format that serde writes. Numbers that are not finite are
+/// missing.
+#[derive(Debug, Serialize)]
+pub struct IdentificationReply {
     robot: String,
     logs: Vec<String>,
     states: u64,
     duration: f64,
     cutoff: f64,
-    held_out: Option<Extent>,
+    held_out: Option<JudgedPart>,
     verdict: OfVerdict,
     joints: Vec<OfJoint>,
     base_parameters: Vec<OfBase>,
@@ -30,7 +51,7 @@ pub(crate) struct Reply {
     delay: Option<Measured>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfVerdict {
     errors_on: &'static str,
     limit: f64,
@@ -45,7 +66,7 @@ struct OfVerdict {
     not_excited_offset: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfJoint {
     joint: usize,
     name: String,
@@ -58,7 +79,7 @@ struct OfJoint {
     rotor: Option<f64>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfError {
     error: Option<f64>,
     unfiltered: Option<f64>,
@@ -68,7 +89,7 @@ struct OfError {
     states: u64,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 #[serde(tag = "reason", rename_all = "snake_case")]
 enum OfDoubt {
     Unexplained,
@@ -79,18 +100,17 @@ enum OfDoubt {
     FrictionNotExcited,
     WithoutFriction,
     HeldOutErrorGrown { factor: Option<f64> },
-    Other,
 }
 
 /// A number with its standard deviation.
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct Measured {
     value: f64,
     deviation: f64,
     unit: &'static str,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfBase {
     name: String,
     combination: String,
@@ -102,7 +122,7 @@ struct OfBase {
     excited: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct OfFriction {
     joint: usize,
     name: String,
@@ -115,14 +135,15 @@ struct OfFriction {
     transition_displacement: Option<f64>,
 }
 
-impl Reply {
+impl IdentificationReply {
     /// The reply on an identified model.
-    pub(crate) fn of(
+    #[must_use]
+    pub fn of(
         found: &Identification,
         verdict: &Verdict,
         logs: Vec<String>,
         cutoff: f64,
-        held_out: Option<Extent>,
+        held_out: Option<JudgedPart>,
     ) -> Self {
         let bases = found.structure.parameters().bases.iter().zip(&found.bases);
         let base_parameters = bases.map(|(base, report)| OfBase {
@@ -155,7 +176,8 @@ impl Reply {
     }
 
     /// The reply on a robot file that was judged on logs.
-    pub(crate) fn of_file(robot: &Robot, verdict: &Verdict, logs: Vec<String>, cutoff: f64, judged: Extent) -> Self {
+    #[must_use]
+    pub fn of_file(robot: &Robot, verdict: &Verdict, logs: Vec<String>, cutoff: f64, judged: JudgedPart) -> Self {
         Self {
             robot: robot.name.clone(),
             logs,
@@ -188,16 +210,16 @@ impl OfVerdict {
             errors_on: match verdict.evidence {
                 Evidence::HeldOut => "held_out",
                 Evidence::Judged => "judged",
-                _ => "fitted",
+                Evidence::Fitted => "fitted",
             },
             limit: Verdict::limit(),
             predicted: named(true),
             not_predicted: named(false),
             base_parameters: excited.map(|excited| excited.base_parameters),
-            excited_base_parameters: excited.map(rne_identify::Excited::known_parameters),
+            excited_base_parameters: excited.map(Excited::known_parameters),
             not_excited_base_parameters: not_excited.map(|base| base.name.clone()).collect(),
             frictions: excited.map(|excited| excited.frictions),
-            excited_frictions: excited.map(rne_identify::Excited::known_frictions),
+            excited_frictions: excited.map(Excited::known_frictions),
             not_excited_friction: unknown.map(|joint| robot.joints[*joint].name.clone()).collect(),
             not_excited_offset: offsets.map(|joint| robot.joints[*joint].name.clone()).collect(),
         }
@@ -224,7 +246,8 @@ fn joints(robot: &Robot, verdict: &Verdict) -> Vec<OfJoint> {
     each.map(joint).collect()
 }
 
-fn finite(number: f64) -> Option<f64> {
+/// A number; none of one that is not finite.
+pub(crate) fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
@@ -257,7 +280,6 @@ impl OfDoubt {
             Doubt::FrictionNotExcited => Self::FrictionNotExcited,
             Doubt::WithoutFriction => Self::WithoutFriction,
             Doubt::Grown(factor) => Self::HeldOutErrorGrown { factor: finite(*factor) },
-            _ => Self::Other,
         }
     }
 }
@@ -268,8 +290,8 @@ fn friction(found: &Identification) -> Vec<OfFriction> {
         let [viscous, forward, backward] = report.friction?;
         let effort = joint.row.kind.effort_unit();
         let rate = match joint.row.kind {
-            rne_model::JointKind::Revolute => "N m s/rad",
-            rne_model::JointKind::Prismatic => "N s/m",
+            JointKind::Revolute => "N m s/rad",
+            JointKind::Prismatic => "N s/m",
         };
         let measured = |(value, deviation): (f64, f64), unit| Measured { value, deviation, unit };
         let (speed, displacement) = match report.transition {

@@ -1,0 +1,88 @@
+"""Numbers by name: dicts of joints or of run-time parameters, and lists of joints in another order."""
+
+import numpy
+
+from .columns import views
+
+
+def in_order(values, names, argument, kind):
+    """The values of a dict, each a number or an array (N,), as an array (n,) or (N, n) in the order of the names.
+
+    Messages call the dict `argument`, and its keys names of a `kind`.
+    """
+    known = ", ".join(names)
+    for name in values:
+        if name not in names:
+            raise ValueError(f"`{argument}`: there is no {kind} `{name}`; this arm has {known}")
+    for name in names:
+        if name not in values:
+            raise ValueError(f"`{argument}`: the value of `{name}` is missing; this arm has {known}")
+    values = [values[name] for name in names]
+    if all(isinstance(value, (int, float)) for value in values):
+        return values
+    for at, (name, value) in enumerate(zip(names, values)):
+        column = views(value, 1, argument)
+        if column is not None:
+            (value,) = column
+        array = numpy.ma.asanyarray(value)
+        if array.dtype.kind not in "fiub" or array.ndim > 1:
+            raise TypeError(f"`{argument}`: `{name}` is no real number and no array (N,) of real numbers")
+        if numpy.ma.is_masked(array):
+            raise ValueError(f"`{argument}`, `{name}`: there are masked elements, which are not numbers: drop or fill them before")
+        if not isinstance(value, (int, float)):
+            values[at] = numpy.asarray(value)
+    lengths = {len(value) for value in values if numpy.ndim(value)}
+    if len(lengths - {1}) > 1:
+        raise ValueError(f"`{argument}`: arrays have {' and '.join(map(str, sorted(lengths)))} states")
+    dtype = numpy.result_type(*values)
+    return numpy.stack(numpy.broadcast_arrays(*values), axis=-1).astype(dtype)
+
+
+def of_tips(wrenches, tips, argument):
+    """Wrenches by tip, a dict or an array (tips, 6) or (N, tips, 6), as an array of 6 numbers per tip, one after the other."""
+    known = ", ".join(tips)
+    if isinstance(wrenches, dict):
+        for name in wrenches:
+            if name not in tips:
+                raise ValueError(f"`{argument}`: there is no tip `{name}`; this arm has {known}")
+        wrenches = [wrenches.get(name, [0.0] * 6) for name in tips]
+        follows = not any(hasattr(wrench, "dtype") for wrench in wrenches)
+        arrays = [numpy.ma.asanyarray(wrench) for wrench in wrenches]
+        if any(array.ndim not in (1, 2) or array.shape[-1] != 6 for array in arrays):
+            raise ValueError(f"`{argument}`: a wrench has the shape (6,) or (N, 6): force, then moment")
+        lengths = {len(array) for array in arrays if array.ndim == 2} - {1}
+        if len(lengths) > 1:
+            raise ValueError(f"`{argument}`: arrays have {' and '.join(map(str, sorted(lengths)))} states")
+        # what is left out has no precision of its own
+        dtype = numpy.result_type(*(w if hasattr(w, "dtype") else 0.0 for w in wrenches))
+        array = numpy.ma.stack(numpy.broadcast_arrays(*arrays, subok=True), axis=-2).astype(dtype)
+    else:
+        follows = not hasattr(wrenches, "dtype")
+        array = numpy.ma.asanyarray(wrenches)
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"`{argument}` is not an array of real numbers")
+    if numpy.ma.is_masked(array):
+        raise ValueError(f"`{argument}`: there are masked elements, which are not numbers: drop or fill them before")
+    if array.ndim not in (2, 3) or array.shape[-2:] != (len(tips), 6):
+        raise ValueError(
+            f"`{argument}` has the shape {array.shape}, not ({len(tips)}, 6) or (N, {len(tips)}, 6); the tips of this arm are {known}"
+        )
+    flat = numpy.asarray(array).reshape(*array.shape[:-2], 6 * len(tips))
+    return flat.tolist() if follows else flat
+
+
+def order(joints, names, extra):
+    """The place of each joint in a list of names, as an array of integers (n,)."""
+    if isinstance(names, str):
+        raise TypeError(f"`names` is the text {names!r}; write a list of names")
+    names = list(names)
+    known = ", ".join(joints)
+    for name in names:
+        if name not in joints and not extra:
+            raise ValueError(f"`names`: there is no joint `{name}`; this arm has {known}; extra=True allows other names")
+    for joint in joints:
+        if joint not in names:
+            raise ValueError(f"`names`: the joint `{joint}` is missing; this arm has {known}")
+        if names.count(joint) > 1:
+            raise ValueError(f"`names`: the joint `{joint}` is there twice")
+    return numpy.array([names.index(joint) for joint in joints], dtype=numpy.intp)

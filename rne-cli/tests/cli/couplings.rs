@@ -1,0 +1,70 @@
+//! Robots some of whose joints follow others.
+
+use crate::call::{fails, fine, folder, rne};
+use crate::certify::has_tools;
+
+const GRIPPER: &str = "docs/gripper.yaml";
+
+#[test]
+fn arrays_have_no_element_for_a_follower() {
+    let state = ["--q", "0.1,0.2,0.01", "--qd", "1,2,3", "--qdd", "1,1,1"];
+    let text = fine(&[&["eval", GRIPPER][..], &state].concat());
+    assert!(text.contains("finger_a") && !text.contains("finger_b"), "{text}");
+    let matrix = fine(&["eval", GRIPPER, "--function", "mass_matrix", "--q", "0,0,0"]);
+    assert!(matrix.contains("0.200000"), "one coordinate moves both fingers\n{matrix}");
+    let names = ["--q needs 3 numbers, not 4", "shoulder, elbow, finger_a"];
+    fails(2, &["eval", GRIPPER, "--q", "0,0,0,0"], &names);
+}
+
+#[test]
+fn code_and_tables_tell_what_follows() {
+    let shown = fine(&["show", GRIPPER, "--joint", "3", "--step", "7"]);
+    assert!(shown.contains("finger_b follows: q4 = 1 q3") && shown.contains("τ3 = e · f2,3 + e · f2,4"), "{shown}");
+    for language in ["rust", "c"] {
+        let code = fine(&["emit", GRIPPER, "--lang", language, "--form", "reduced"]);
+        assert!(code.contains("finger_b follows: q4 = 1 q3"), "{code}");
+        assert!(code.contains(if language == "c" { "qd[3]" } else { "qd: &[T; 3]" }), "{code}");
+    }
+    let counted = fine(&["ops", GRIPPER]);
+    assert!(counted.contains("forward_dynamics") && !counted.contains("regressor"), "{counted}");
+}
+
+#[test]
+fn a_file_of_states_and_a_plot_have_no_column_for_a_follower() {
+    let file = folder("couplings").join("states.csv");
+    let header = "t,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3";
+    let row = "0.3,-0.8,0.01,0.5,-0.7,0.3,1,2,-0.5";
+    std::fs::write(&file, format!("{header}\n0,{row}\n0.1,{row}\n0.2,{row}\n")).expect("written");
+    let file = file.to_str().expect("UTF-8");
+    let state = ["--q", "0.3,-0.8,0.01", "--qd", "0.5,-0.7,0.3", "--qdd", "1,2,-0.5", "--json"];
+    let one: serde_json::Value = serde_json::from_str(&fine(&[&["eval", GRIPPER][..], &state].concat())).expect("JSON");
+    let expected: Vec<f64> =
+        one["result"].as_array().expect("torques").iter().map(|tau| tau.as_f64().expect("a number")).collect();
+    let many = rne(&["eval", GRIPPER, "--states", file]).out;
+    let plotted = fine(&["plot", GRIPPER, "--trajectory", file, "--csv"]);
+    for (text, skipped) in [(many, 0), (plotted, 1)] {
+        let line = text.lines().nth(2).expect("a second state");
+        let cells: Vec<f64> =
+            line.split(',').skip(skipped).take(3).map(|cell| cell.parse().expect("a number")).collect();
+        assert!(cells.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{text} {expected:?}");
+        assert!(!text.contains("finger_b"), "{text}");
+    }
+}
+
+#[test]
+fn a_gripper_is_certified() {
+    if !has_tools() {
+        return;
+    }
+    let file = folder("couplings_certified").join("gripper.md");
+    let file = file.to_str().expect("UTF-8");
+    fine(&["certify", GRIPPER, "--cc", "arm-none-eabi-gcc", "-o", file]);
+    let text = std::fs::read_to_string(file).expect("a certificate");
+    assert!(text.contains("gripper") && text.contains("instructions"), "{text}");
+}
+
+#[test]
+fn what_takes_no_followers_says_so() {
+    fails(2, &["eval", GRIPPER, "--function", "regressor", "--q", "0,0,0"], &["`finger_b` follows other joints"]);
+    fails(1, &["excite", GRIPPER], &["docs/gripper.yaml:32:3", "joints that follow others are not supported here"]);
+}

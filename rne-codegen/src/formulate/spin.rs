@@ -1,0 +1,90 @@
+//! Rotors of the list `motors`: each turns on a link, about an axis that is fixed to that link.
+//!
+//! ```text
+//! s = Σ n q̇, ṡ = Σ n q̈       spin relative to the link c that carries the rotor, about the axis a; Jm its inertia
+//! n_c  + Jm ṡ a + ω_c × Jm s a     moment that accelerates the carrier with its rotor
+//! τ_j  + n (Jm ṡ + Jm a · ω̇_c)     torque of each joint with which it turns
+//! T    + ½ Jm s (s + 2 a · ω_c)    kinetic energy
+//! ```
+//!
+//! The mass and inertia of the carrier include the rotor held still.
+
+use rne_model::{Convention, Robot};
+
+use crate::coordinates::scaled;
+use crate::formulate::JointState;
+use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
+
+/// A rotor that turns on a link.
+pub(crate) struct Spin<'s> {
+    /// The link that carries it, counted from 0; `None` for the base.
+    pub(crate) on: Option<usize>,
+    /// a, in the axes of form P of the carrier.
+    axis: Vector<'s>,
+    inertia: Symbol<'s>,
+    /// The joints with which it turns, counted from 0, and n.
+    turns: Vec<(usize, f64)>,
+    /// Tells it from other rotors.
+    number: usize,
+}
+
+impl<'s> Spin<'s> {
+    /// The rotors of a robot. `twists` are the turns Rx(α) of its rows.
+    pub(crate) fn all(builder: &'s Builder, robot: &Robot, twists: &[Matrix<'s>]) -> Vec<Self> {
+        let mut spins = Vec::new();
+        for (rotor, turns) in robot.spinning_rotors() {
+            let number = spins.len() + 1;
+            let axis = Vector(rotor.axis.map(|x| builder.constant(x, Cause::Arithmetic)));
+            let axis = match (robot.convention, rotor.on) {
+                (Convention::Standard, Some(link)) => twists[link] * axis,
+                _ => axis,
+            };
+            let name = name(Quantity::SpinInertia, turns, number);
+            let inertia = builder.name(name, builder.constant(rotor.inertia, Cause::Arithmetic));
+            spins.push(Self { on: rotor.on, axis, inertia, turns: turns.to_vec(), number });
+        }
+        spins
+    }
+
+    /// Σ n x, of rates or accelerations x of the joints, under the name of `quantity`.
+    pub(crate) fn of_joints(
+        &self,
+        quantity: Quantity,
+        states: &[JointState<'s>],
+        of_joint: fn(&JointState<'s>) -> Symbol<'s>,
+    ) -> Symbol<'s> {
+        let builder = self.inertia.builder;
+        let line = builder.joint(self.turns.first().map_or(0, |(joint, _)| joint + 1));
+        line.within(quantity, || {
+            let terms = self.turns.iter().map(|&(joint, n)| scaled(of_joint(&states[joint]), n));
+            let sum = terms.reduce(|sum, term| sum + term).unwrap_or_else(|| builder.zero());
+            builder.name(name(quantity, &self.turns, self.number), sum)
+        })
+    }
+
+    /// Jm x a, of a spin or its acceleration x.
+    pub(crate) fn momentum(&self, spin: Symbol<'s>) -> Vector<'s> {
+        self.axis * (self.inertia * spin)
+    }
+
+    /// n (Jm x + Jm a · y) where the rotor turns with a joint, of its spin x and the angular velocity y of its carrier,
+    /// or the accelerations of both.
+    pub(crate) fn resistance(&self, joint: usize, spin: Symbol<'s>, carrier: Vector<'s>) -> Option<Symbol<'s>> {
+        let (_, n) = *self.turns.iter().find(|(other, _)| *other == joint)?;
+        Some(scaled(self.inertia * spin + self.inertia * self.axis.dot(carrier), n))
+    }
+
+    /// Jm s (s + 2 a · ω)
+    pub(crate) fn twice_energy(&self, spin: Symbol<'s>, carrier: Option<Vector<'s>>) -> Symbol<'s> {
+        let whole = carrier.map_or(spin, |omega| {
+            let along = self.axis.dot(omega);
+            (spin + along) + along
+        });
+        (self.inertia * spin) * whole
+    }
+}
+
+/// The name of a quantity of a rotor: the first joint with which it turns, and the number of the rotor.
+fn name(quantity: Quantity, turns: &[(usize, f64)], number: usize) -> Name {
+    Name::indexed(quantity, turns.first().map_or(0, |(joint, _)| joint + 1), number)
+}

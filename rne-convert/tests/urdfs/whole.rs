@@ -1,0 +1,191 @@
+//! A whole URDF as a tree.
+
+use super::*;
+
+/// A waist that carries two arms of one joint, whose axes are in other directions, and a lamp on a fixed link. The left
+/// arm has a gripper of two fingers that slide; the joint of the second one may follow the first.
+fn torso(second_finger: &str) -> String {
+    let arm = |name: &str, side: &str, axis: &str| {
+        joint(name, "continuous", ("torso", name), &format!("xyz=\"0.1 {side} 0.4\" rpy=\"0.3 0 0.2\""), axis)
+    };
+    robot(&[
+        bare(&["base", "tool0"]),
+        link("torso", 10.0, "0 0 0.2", [0.3, 0.3, 0.2]),
+        link("lamp", 0.5, "0 0 0.05", [0.001; 3]),
+        link("left", 2.0, "0.2 0 0", [0.003, 0.03, 0.03]),
+        link("right", 2.0, "0.2 0 0", [0.003, 0.03, 0.03]),
+        link("finger_a", 0.1, "0 0.01 0", [1e-5; 3]),
+        link("finger_b", 0.1, "0 -0.01 0", [1e-5; 3]),
+        joint(
+            "waist",
+            "revolute",
+            ("base", "torso"),
+            "xyz=\"0 0 0.5\"",
+            "<axis xyz=\"0 0 1\"/><limit lower=\"-2\" upper=\"1\" effort=\"9\" velocity=\"3\"/>",
+        ),
+        joint("to_lamp", "fixed", ("torso", "lamp"), "xyz=\"0 0 0.6\"", ""),
+        arm("left", "0.2", "<axis xyz=\"0 1 0\"/>"),
+        joint(
+            "a",
+            "prismatic",
+            ("left", "finger_a"),
+            "xyz=\"0.4 0 0\"",
+            "<axis xyz=\"0 1 0\"/><limit lower=\"0\" upper=\"0.04\" effort=\"9\" velocity=\"3\"/>",
+        ),
+        joint("b", "prismatic", ("left", "finger_b"), "xyz=\"0.4 0 0\"", second_finger),
+        arm("right", "-0.2", "<axis xyz=\"0 0.6 0.8\"/>"),
+        joint("to_tool", "fixed", ("right", "tool0"), "xyz=\"0.4 0 0\"", ""),
+    ])
+}
+
+const FREE: &str = "<axis xyz=\"0 -1 0\"/><limit lower=\"0\" upper=\"0.04\" effort=\"9\" velocity=\"3\"/>";
+
+fn options() -> Options {
+    let selection = Selection { whole: true, ..Selection::default() };
+    Options { selection, convention: Convention::Modified, snap: false, ..Options::default() }
+}
+
+/// The comparison of the import is with Newton-Euler in the frames of the URDF's links.
+#[test]
+fn every_joint_is_a_row_below_its_parent() {
+    let Imported { robot, text, account, .. } = Urdf::read("torso.urdf", &torso(FREE))
+        .and_then(|urdf| urdf.import(&options()))
+        .unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(Reader::new("written").trees().read(&text).unwrap().robot, robot, "reading gives the robot");
+    let rounding = account.rounding;
+    assert!(rounding.torque < 1e-14 && rounding.position < 1e-14 && rounding.rotation < 1e-14, "{rounding:?}");
+    let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(names, ["waist", "left", "a", "b", "right"], "branch by branch");
+    let parents: Vec<_> = (0..5).map(|joint| robot.parent(joint)).collect();
+    assert_eq!(parents, [None, Some(0), Some(1), Some(1), Some(0)]);
+    // frame 0 is the base
+    assert_eq!((robot.gravity, robot.base), ([0.0, 0.0, -GRAVITY], rne_model::Transform::IDENTITY));
+    assert_eq!(robot.joints[0].limits.position, Some((-2.0, 1.0)));
+    assert_eq!(robot.joints[0].row.link.mass, 10.5, "the lamp is part of the torso");
+    assert_eq!(account.lumped, [("waist".to_owned(), vec!["torso".to_owned(), "lamp".to_owned()])]);
+    // the tip that is called so, and the others in a note
+    assert_eq!(robot.tip().on, Some(4));
+    assert!(account.remarks.iter().any(|remark| remark.contains("the tip is `tool0`")), "{:?}", account.remarks);
+    // the first joint on a link continues its frame, the second begins elsewhere
+    assert!(robot.joints[1].branch.is_none() && robot.joints[2].branch.is_none(), "{text}");
+    assert!(
+        text.contains("  - name: right\n    parent: waist\n    type: revolute\n    dh: {gamma: 0, b: 0.658"),
+        "{text}"
+    );
+    assert!(text.contains("  - name: b\n    parent: left\n    type: prismatic\n    dh: {theta: 0, "), "{text}");
+}
+
+#[test]
+fn the_tip_may_be_any_moved_link() {
+    let selection = Selection { tip: Some("finger_b".to_owned()), ..options().selection };
+    let urdf = Urdf::read("torso.urdf", &torso(FREE)).unwrap();
+    let robot = urdf.import(&Options { selection, ..options() }).unwrap().robot;
+    assert_eq!(robot.tip().on, Some(3));
+    let selection = Selection { tip: Some("base".to_owned()), ..options().selection };
+    let message = refused(&torso(FREE), &Options { selection, ..options() });
+    assert!(message.contains("no movable joint moves the tip `base`"), "{message}");
+}
+
+#[test]
+fn a_tree_that_no_table_has_is_refused_with_what_to_do() {
+    let message = refused(&torso(FREE), &Options { convention: Convention::Standard, ..options() });
+    assert!(message.contains("`modified`"), "{message}");
+    let ball = torso(FREE).replace("name=\"right\" type=\"continuous\"", "name=\"right\" type=\"planar\"");
+    let message = refused(&ball, &options());
+    assert!(message.contains("more than one freedom") && message.contains("`right`"), "{message}");
+}
+
+/// A follower becomes a coupling; the torques are those of the free tree, projected: the finger that is followed moves
+/// both, and the reaction on the arm is that of two fingers.
+#[test]
+fn followers_become_couplings() {
+    let with = |mimic: &str| torso(&format!("{FREE}{mimic}"));
+    let import = |text: &str, selection: Selection| {
+        Urdf::read("torso.urdf", text).and_then(|urdf| urdf.import(&Options { selection, ..options() }))
+    };
+    let whole = || options().selection;
+    let text = with("<mimic joint=\"a\" multiplier=\"-0.5\" offset=\"0.01\"/>");
+    let Imported { robot, text, account, .. } = import(&text, whole()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(account.rounding.torque < 1e-14, "{:?}", account.rounding);
+    assert!(text.contains("couplings:\n  - {joint: b, follows: {a: -0.5}, offset: 0.01}\n"), "{text}");
+    let read = Reader::new("written").trees().couplings().read(&text).unwrap().robot;
+    assert_eq!(read, robot, "reading gives the robot");
+    assert_eq!((robot.dof(), robot.joints.len()), (4, 5));
+    let mut free = robot.clone();
+    free.joints[3].coupling = None;
+    let [coupled, free] = [&robot, &free].map(rne_runtime::DynArm::from_robot);
+    let all = |[waist, left, a, right]: [f64; 4], offset: f64| [waist, left, a, -0.5 * a + offset, right];
+    let (q, qd, qdd) = ([0.3, -0.7, 0.02, 1.1], [1.0, -2.0, 0.5, 0.7], [3.0, 2.0, -1.0, 0.4]);
+    let found = coupled.inverse_dynamics(&q, &qd, &qdd).unwrap();
+    let torques = free.inverse_dynamics(&all(q, 0.01), &all(qd, 0.0), &all(qdd, 0.0)).unwrap();
+    let expected = [torques[0], torques[1], torques[2] - 0.5 * torques[3], torques[4]];
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+    // over a follower, a joint follows what that follows
+    let chain = with("<mimic joint=\"a\"/>").replace(
+        "<joint name=\"right\" type=\"continuous\">",
+        "<joint name=\"right\" type=\"continuous\"><mimic joint=\"b\" multiplier=\"3\" offset=\"1\"/>",
+    );
+    let text = import(&chain, whole()).unwrap_or_else(|e| panic!("{e}")).text;
+    assert!(text.contains("{joint: right, follows: {a: 3}, offset: 1}"), "{text}");
+    // held, or following what is held
+    let lock = |name: &str| Selection { lock: vec![(name.to_owned(), 0.01)], ..whole() };
+    let held = import(&with("<mimic joint=\"a\"/>"), lock("b")).unwrap();
+    assert_eq!((held.robot.dof(), &held.account.held[0].0), (4, &"b".to_owned()));
+    let message = import(&with("<mimic joint=\"a\"/>"), lock("a")).unwrap_err().to_string();
+    assert!(message.contains("`b` follows `a`, which is locked"), "{message}");
+    let others = Selection { lock_others: true, ..whole() };
+    assert_eq!(import(&with("<mimic joint=\"a\"/>"), others).unwrap().robot.joints.len(), 5, "others are locked");
+}
+
+fn imported(text: &str, options: &Options) -> rne_model::Robot {
+    let imported = Urdf::read("torso.urdf", text).and_then(|urdf| urdf.import(options));
+    imported.unwrap_or_else(|report| panic!("{report}")).robot
+}
+
+/// URDF+: from the link that carries both, what moves the successor is what moves the predecessor, times the ratio.
+#[test]
+fn gears_couple_joints() {
+    let coupling = |predecessor: &str, successor: &str, ratio: &str| {
+        format!(
+            "<coupling name=\"gear\"><predecessor link=\"{predecessor}\"/><successor link=\"{successor}\"/>{ratio}\
+             </coupling></robot>"
+        )
+    };
+    let with = |gear: &str| torso(FREE).replace("</robot>", gear);
+    let six = "<ratio value=\"-6\"/>";
+    let follows = |gear: &str| {
+        let robot = imported(&with(gear), &options());
+        let follower = |joint: &rne_model::Joint| Some((joint.name.clone(), joint.coupling.clone()?.follows));
+        robot.joints.iter().filter_map(follower).collect::<Vec<_>>()
+    };
+    assert_eq!(follows(&coupling("finger_a", "finger_b", six)), [("b".to_owned(), vec![(2, -6.0)])]);
+    // `finger_a` is moved by `left` and `a` against the torso, which carries `right`
+    assert_eq!(follows(&coupling("finger_a", "right", six)), [("right".to_owned(), vec![(1, -6.0), (2, -6.0)])]);
+    // `b` and `left` together turn as `right` does: `b` is -6 q5 - q2
+    assert_eq!(follows(&coupling("right", "finger_b", six)), [("b".to_owned(), vec![(1, -1.0), (4, -6.0)])]);
+    for (gear, words) in [
+        (coupling("finger", "right", six), "the link `finger`, which does not exist"),
+        (coupling("finger_a", "lamp", six), "no joint moves the successor"),
+        (coupling("finger_a", "right", ""), "no ratio other than zero"),
+        ("<coupling/></robot>".to_owned(), "no element `predecessor`"),
+        (
+            coupling("finger_a", "finger_b", six).replace("</robot>", &coupling("finger_b", "right", six)),
+            "the joint `right` follows `b`, which follows others itself",
+        ),
+        ("<loop name=\"l\" type=\"revolute\"/></robot>".to_owned(), "the robot has a closed loop"),
+    ] {
+        let said = refused(&with(&gear), &options());
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn joints_before_the_base_are_held_by_name() {
+    let selection = Selection { base: Some("torso".to_owned()), ..options().selection };
+    let said = refused(&torso(FREE), &Options { selection: selection.clone(), ..options() });
+    assert!(said.contains("movable joints that do not come after the base `torso`: `waist`"), "{said}");
+    let locked = Selection { lock_others: true, ..selection };
+    assert_eq!(imported(&torso(FREE), &Options { selection: locked, ..options() }).dof(), 4);
+}

@@ -1,0 +1,182 @@
+//! Couplings: joints that follow others, such as the second finger of a gripper.
+
+use crate::angle::LARGEST_ANGLE;
+use crate::decode::{Context, read_mapping, text};
+use crate::diagnostic::Diagnostic;
+use crate::document::{self, Content, Node};
+use crate::frame::joint_names;
+use crate::source::quoted;
+use crate::tree::needs_format_2;
+use crate::varying::fixed;
+use crate::{Drive, Entry, Joint};
+
+/// How a joint follows others: its position is Σ ratio · q + offset, with the positions q of the joints that it
+/// follows. Such a joint, a follower, is not among the coordinates of the robot: q, q̇, q̈ and τ have no element for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coupling {
+    /// The joints that it follows, counted from 0, in the order of the rows, and the ratio of each: rad/rad, m/m, m/rad
+    /// or rad/m. None of them is a follower, and no ratio is zero.
+    pub follows: Vec<(usize, f64)>,
+    /// The position of the joint where those that it follows are at 0, rad or m.
+    pub offset: f64,
+}
+
+/// Magnitudes of ratios: squares of larger ones, times an inertia, are no numbers of single precision.
+const LEAST_RATIO: f64 = 1e-6;
+const LARGEST_RATIO: f64 = 1e6;
+
+/// An entry of the list `couplings`.
+struct Written {
+    joint: usize,
+    coupling: Coupling,
+}
+
+/// Reads the list `couplings` of a file whose root is `root`, and gives each follower its coupling.
+pub(crate) fn couplings(cx: &Context, root: &Node, format: u32, joints: &mut [Joint]) -> Option<()> {
+    let Some(node) = root.get("couplings") else { return Some(()) };
+    if format == 1 {
+        return cx.refuse(needs_format_2("couplings", node));
+    }
+    let Content::Sequence(items) = &node.content else {
+        let message = format!("found {} where a list of couplings is needed", node.described());
+        let help = "begin each coupling with a dash, such as `- {joint: finger_b, follows: {finger_a: 1}}`";
+        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of couplings is needed").help(help));
+    };
+    let names = joint_names(root);
+    let written: Vec<_> = items.iter().map(|item| coupling(cx, item, &names, joints)).collect();
+    let written = written.into_iter().collect::<Option<Vec<_>>>()?;
+    let mut valid = true;
+    let mut refused = |mistake: Diagnostic| {
+        valid = false;
+        cx.report(mistake);
+    };
+    for (index, (item, Written { joint, coupling })) in items.iter().zip(&written).enumerate() {
+        let (name, place) = (quoted(&names[*joint]), item.get("joint").unwrap_or(item).span.clone());
+        if written[..index].iter().any(|other| other.joint == *joint) {
+            let help = "write all joints that it follows in one entry, such as `follows: {a: 1, b: -1}`";
+            let message = format!("{name} has a coupling already; a joint has at most one");
+            refused(Diagnostic::error(place, message).label("a second coupling").help(help));
+        } else if let Some((followed, _)) =
+            coupling.follows.iter().find(|(followed, _)| written.iter().any(|other| other.joint == *followed))
+        {
+            let message = if followed == joint {
+                format!("the joint {name} follows itself")
+            } else {
+                let followed = quoted(&names[*followed]);
+                format!("{name} follows {followed}, which follows other joints itself")
+            };
+            let place = item.get("follows").unwrap_or(item).span.clone();
+            let help = "name joints that follow no other, and multiply the ratios";
+            refused(Diagnostic::error(place, message).label("must be an independent joint").help(help));
+        }
+        if joints[*joint].motor.is_some() {
+            let help = "delete `motor`, or write its numbers at a joint that the follower follows";
+            let message = format!("the joint {name} has a `motor`, but it follows other joints, which move it");
+            refused(Diagnostic::error(item.head(), message).label("a follower has no motor").help(help));
+        }
+        let varies = cx.run_time.borrow().entries.iter().any(|(entry, _)| *entry == Entry::D(*joint));
+        if coupling.offset != 0.0 && varies {
+            let message = format!("`d` of the joint {name} varies at run time, and its coupling has an `offset`");
+            refused(Diagnostic::error(item.head(), message).help("add the offset to `d`, and delete `offset`"));
+        }
+    }
+    valid.then(|| {
+        for Written { joint, coupling } in written {
+            joints[joint].coupling = Some(coupling);
+        }
+    })
+}
+
+fn coupling(cx: &Context, node: &Node, names: &[String], joints: &[Joint]) -> Option<Written> {
+    const EXAMPLE: &str = "write the joints that it follows and their ratios, such as `follows: {finger_a: 1}`";
+    read_mapping!(cx, node, "a coupling", {
+        joint: required "joint" |cx, node| {
+            let name = text(cx, node)?;
+            named(cx, &name, node.span.clone(), names, "joint")
+        },
+        follows: required "follows" |cx, node| ratios(cx, node, names, "follows", EXAMPLE),
+        offset: or(0.0) "offset" |cx, node| {
+            let offset = fixed("the offset")(cx, node)?;
+            if offset.abs() < LARGEST_ANGLE {
+                return Some(offset);
+            }
+            let help = "write the offset in rad, less full turns, or in m";
+            let message = format!("the offset is {offset:e}");
+            cx.refuse(Diagnostic::error(node.span.clone(), message).label("too large").help(help))
+        },
+    });
+    let mut follows = follows;
+    follows.sort_by_key(|(joint, _)| *joint);
+    // a name of a joint that could not be read has no joint
+    (joint < joints.len()).then_some(Written { joint, coupling: Coupling { follows, offset } })
+}
+
+/// The joints that the value of `key` names, with their ratios, in the order of the file.
+pub(crate) fn ratios(
+    cx: &Context,
+    node: &Node,
+    names: &[String],
+    key: &'static str,
+    example: &'static str,
+) -> Option<Vec<(usize, f64)>> {
+    let entries = match &node.content {
+        Content::Mapping(entries) if !entries.is_empty() => entries,
+        _ => {
+            let message = format!("found {} where a mapping from joints to ratios is needed", node.described());
+            return cx.refuse(Diagnostic::error(node.head(), message).help(example));
+        }
+    };
+    let entry = |document::Entry { key: name, key_span, value }: &document::Entry| {
+        let joint = named(cx, name, key_span.clone(), names, key);
+        let ratio = fixed("the ratio")(cx, value)?;
+        if ratio == 0.0 {
+            let message = format!("the ratio {} is zero; a joint with ratio 0 has no effect here", quoted(name));
+            return cx.refuse(Diagnostic::error(value.span.clone(), message).help("delete the entry"));
+        }
+        if !(LEAST_RATIO..=LARGEST_RATIO).contains(&ratio.abs()) {
+            let message = format!("the ratio {} is {ratio:e}", quoted(name));
+            let help = "a ratio is between 1e-6 and 1e6, or between -1e6 and -1e-6; check the units";
+            return cx.refuse(Diagnostic::error(value.span.clone(), message).label("no gear has it").help(help));
+        }
+        Some((joint?, ratio))
+    };
+    let all: Vec<_> = entries.iter().map(entry).collect();
+    all.into_iter().collect()
+}
+
+/// The joint with this name, counted from 0.
+pub(crate) fn named(
+    cx: &Context,
+    name: &str,
+    span: std::ops::Range<usize>,
+    names: &[String],
+    key: &str,
+) -> Option<usize> {
+    if let Some(joint) = names.iter().position(|joint| joint == name) {
+        return Some(joint);
+    }
+    let meant = cx.did_you_mean(name, names.iter().map(String::as_str));
+    let listed = names.iter().take(12).map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
+    let rest = if names.len() > 12 { ", and the other joints of the file" } else { "" };
+    let message =
+        format!("`{key}` names {}, which is no joint of this file; its joints are {listed}{rest}", quoted(name));
+    let help = meant.map(|meant| format!("did you mean {}?", quoted(meant)));
+    cx.refuse(Diagnostic::error(span, message).label("no such joint").maybe_help(help))
+}
+
+/// Refuses couplings and the list `motors` for a function that takes robots without them.
+pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], drives: &[Drive]) {
+    if joints.iter().any(|joint| joint.coupling.is_some()) {
+        let place = root.get("couplings").or_else(|| root.get("loops")).unwrap_or(root).head();
+        let message = "the robot has couplings, and joints that follow others are not supported here";
+        let help = "the section Couplings of docs/robot-file.md lists the commands, derives and types that take \
+                    couplings";
+        cx.report(Diagnostic::error(place, message).label("couplings").help(help));
+    }
+    if !drives.is_empty() {
+        let place = root.get("motors").unwrap_or(root).head();
+        let message = "the robot has a list `motors`, which is not supported here";
+        let help = "the section Motors of docs/robot-file.md lists the commands, derives and types that take it";
+        cx.report(Diagnostic::error(place, message).label("motors").help(help));
+    }
+}

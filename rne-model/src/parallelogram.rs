@@ -1,0 +1,366 @@
+//! Parallelograms: closed loops of four parallel axes whose opposite sides have equal lengths. Opposite sides stay
+//! parallel, so the dependent joints follow the others linearly, and the loop becomes couplings.
+//!
+//! The loop is a quadrangle of axes: V0 at the link from which both ways to the cut joint begin, V1 at the second joint
+//! of the first way, V2 at the cut joint, V3 at the second joint of the other way. Where that way has one joint, V3 is
+//! its axis and the side V3 V0 belongs to the link that carries it. Where both ways have two joints, their first axes
+//! are one line, as in palletisers: the loop has two freedoms then. The angle of a side in the plane is the sum of the
+//! positions of the joints that turn it, counted about one direction, and its angle where all positions are 0.
+
+use crate::coupling::named;
+use crate::decode::{Context, choice, read_mapping, text};
+use crate::diagnostic::Diagnostic;
+use crate::document::{Content, Node};
+use crate::frame::joint_names;
+use crate::robot::parent;
+use crate::schema::end_of_loop;
+use crate::source::{quoted, six_digits};
+use crate::tree::needs_format_2;
+use crate::{Convention, Coupling, Entry, FixedFrame, Joint, JointKind, Transform};
+
+/// Lengths that differ by less than this part of the longer one, and directions by less than this, are equal: tables
+/// have six digits.
+const TOLERANCE: f64 = 1e-6;
+
+/// A loop of a file.
+struct Loop {
+    between: [FixedFrame; 2],
+    dependent: [usize; 2],
+}
+
+/// Reads the list `loops` of a file whose root is `root`, and gives the dependent joints their couplings.
+pub(crate) fn loops(
+    cx: &Context,
+    root: &Node,
+    (format, convention): (u32, Convention),
+    joints: &mut [Joint],
+) -> Option<()> {
+    let Some(node) = root.get("loops") else { return Some(()) };
+    if format == 1 {
+        return cx.refuse(needs_format_2("loops", node));
+    }
+    let Content::Sequence(items) = &node.content else {
+        let message = format!("found {} where a list of loops is needed", node.described());
+        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of loops is needed"));
+    };
+    let names = joint_names(root);
+    for item in items {
+        let it = closed_loop(cx, item, &names)?;
+        let on_ways = it.between.iter().flat_map(|end| way(joints, end.on)).collect::<Vec<_>>();
+        let is_length = |entry: &Entry| matches!(entry, Entry::A(joint) | Entry::D(joint) if on_ways.contains(joint));
+        if cx.run_time.borrow().entries.iter().any(|(entry, _)| is_length(entry)) {
+            let message = "a length of the loop varies at run time; the lengths of a parallelogram must be fixed";
+            return cx.refuse(Diagnostic::error(item.head(), message).label("varies at run time"));
+        }
+        let couplings = match couplings(&it, convention, joints) {
+            Ok(couplings) => couplings,
+            Err(message) => {
+                let place = item.get("between").unwrap_or(item).head();
+                let help = "the section Parallelograms of docs/robot-file.md says what a loop must be";
+                return cx.refuse(Diagnostic::error(place, message).label("no parallelogram").help(help));
+            }
+        };
+        for (joint, coupling) in couplings {
+            let taken = match &joints[joint] {
+                Joint { coupling: Some(_), .. } => "follows other joints already",
+                Joint { motor: Some(_), .. } => "has a `motor`, but the loop moves it",
+                _ => {
+                    joints[joint].coupling = Some(coupling);
+                    continue;
+                }
+            };
+            let message = format!("the dependent joint {} {taken}", quoted(&names[joint]));
+            let place = item.get("dependent").unwrap_or(item).head();
+            return cx.refuse(Diagnostic::error(place, message).help("name other dependent joints of the loop"));
+        }
+    }
+    Some(())
+}
+
+fn closed_loop(cx: &Context, node: &Node, names: &[String]) -> Option<Loop> {
+    read_mapping!(cx, node, "a loop", {
+        _name: optional "name" text,
+        _kind: required "kind" |cx, node| choice(cx, node, "kind", &[("parallelogram", ())]),
+        _cut: required "cut" |cx, node| choice(cx, node, "cut joint", &[("revolute", ())]),
+        between: required "between" |cx, node| pair(cx, node, "two places", |cx, node| end_of_loop(cx, node, names)),
+        dependent: required "dependent" |cx, node| pair(cx, node, "two joints", |cx, node| {
+            let name = text(cx, node)?;
+            named(cx, &name, node.span.clone(), names, "dependent")
+        }),
+    });
+    Some(Loop { between, dependent })
+}
+
+fn pair<T>(cx: &Context, node: &Node, what: &str, read: impl Fn(&Context, &Node) -> Option<T>) -> Option<[T; 2]> {
+    match &node.content {
+        Content::Sequence(items) if items.len() == 2 => {
+            let [one, other] = [&items[0], &items[1]].map(|item| read(cx, item));
+            Some([one?, other?])
+        }
+        _ => {
+            let message = format!("found {} where a list of {what} is needed", node.described());
+            cx.refuse(Diagnostic::error(node.head(), message).label(what.to_owned()))
+        }
+    }
+}
+
+/// The couplings of the dependent joints, or why the loop is no parallelogram.
+fn couplings(it: &Loop, convention: Convention, joints: &[Joint]) -> Result<[(usize, Coupling); 2], String> {
+    let ways = it.between.map(|end| way(joints, end.on));
+    let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
+    let name = |joint: usize| quoted(&joints[joint].name);
+    let (mut first, mut other) = (&ways[0][shared..], &ways[1][shared..]);
+    let mut ends = it.between;
+    if other.len() > first.len() {
+        (first, other, ends) = (other, first, [ends[1], ends[0]]);
+    }
+    let (&[a, b], (c, d)) = (
+        match first {
+            [a, b] => &[*a, *b],
+            _ => return Err(wrong_count(first.len(), other.len())),
+        },
+        match other {
+            [d] => (None, *d),
+            [c, d] => (Some(*c), *d),
+            _ => return Err(wrong_count(first.len(), other.len())),
+        },
+    );
+    let all: Vec<usize> = first.iter().chain(other).copied().collect();
+    if let Some(&slides) = all.iter().find(|&&joint| joints[joint].row.kind == JointKind::Prismatic) {
+        return Err(format!(
+            "the joint {} of the loop is prismatic; a parallelogram has revolute joints",
+            name(slides)
+        ));
+    }
+    let axis = |joint: usize| joint_axis(joints, convention, joint);
+    let z = axis(a).rotation_z();
+    let mut signs = Vec::new();
+    for &joint in &all {
+        let cosine = dot(axis(joint).rotation_z(), z);
+        if 1.0 - cosine.abs() > TOLERANCE * TOLERANCE {
+            return Err(format!("the axes of the joints {} and {} are not parallel", name(a), name(joint)));
+        }
+        signs.push((joint, cosine.signum()));
+    }
+    let cut = ends.map(|end| link_pose(joints, convention, end.on).then(&Pose::of(&end.placement)));
+    if cut.iter().any(|cut| 1.0 - dot(cut.rotation_z(), z).abs() > TOLERANCE * TOLERANCE) {
+        return Err(format!(
+            "the axis of the cut joint, z of `between`, is not parallel to that of the joint {}",
+            name(a)
+        ));
+    }
+    // sides from axis to axis, each on its link, where all positions are 0: V0 V1, V1 V2; V3 V2, V0 V3
+    let between = |from: [f64; 3], to: [f64; 3]| [0, 1, 2].map(|i| to[i] - from[i]);
+    let [first_end, other_end] = cut.map(|cut| cut.translation);
+    let sides = [
+        between(axis(a).translation, axis(b).translation),
+        between(axis(b).translation, first_end),
+        between(axis(d).translation, other_end),
+        between(axis(a).translation, axis(d).translation),
+    ];
+    if let Some(c) = c {
+        let apart = in_plane(between(axis(a).translation, axis(c).translation), z);
+        if length(apart) > TOLERANCE * length(sides[0]) {
+            return Err(format!(
+                "the axes of the joints {} and {} must be one line, because both ways to the cut joint have two joints",
+                name(a),
+                name(c)
+            ));
+        }
+    }
+    let lengths = sides.map(|side| length(in_plane(side, z)));
+    for (one, opposite) in [(0, 2), (1, 3)] {
+        let [one, opposite] = [lengths[one], lengths[opposite]];
+        if (one - opposite).abs() > TOLERANCE * one.max(opposite) || one == 0.0 {
+            return Err(format!(
+                "opposite sides of the loop are {} m and {} m long; they must be equal and not 0",
+                six_digits(one),
+                six_digits(opposite)
+            ));
+        }
+    }
+    // along the axes the ways must end at one height
+    let heights = [[sides[0], sides[1]], [sides[3], sides[2]]].map(|way| dot(way[0], z) + dot(way[1], z));
+    let apart = (heights[0] - heights[1]).abs();
+    if apart > TOLERANCE * lengths[0].max(lengths[1]) {
+        return Err(format!(
+            "the two places of `between` are {} m apart along the axis of the cut joint",
+            six_digits(apart)
+        ));
+    }
+    let sign = |joint: usize| signs.iter().find(|(other, _)| *other == joint).map_or(0.0, |(_, sign)| *sign);
+    // the angle of V1 V2 less that of V0 V3, and of V3 V2 less that of V0 V1: factors of the joints, and a constant
+    let angle = |side: usize, than: usize| turn(sides[than], sides[side], z);
+    let mut terms = [vec![(a, sign(a)), (b, sign(b))], vec![(d, sign(d)), (a, -sign(a))]];
+    if let Some(c) = c {
+        terms[0].push((c, -sign(c)));
+        terms[1].push((c, sign(c)));
+    }
+    solved(it.dependent, &terms, [angle(1, 3), angle(2, 0)])
+        .map(|solutions| solutions.map(|(joint, coupling)| (joint, without_followers(coupling, joints))))
+        .ok_or_else(|| {
+            let listed = all.iter().map(|&joint| name(joint)).collect::<Vec<_>>().join(", ");
+            format!("the joints of the loop are {listed}; `dependent` must name two of them that the others determine")
+        })
+}
+
+fn wrong_count(first: usize, other: usize) -> String {
+    format!(
+        "the ways to the cut joint have {first} and {other} joints of their own; a parallelogram has 2 and 1, or 2 and \
+         2"
+    )
+}
+
+/// The two dependent joints from Σ coefficient · q + constant = 0, twice.
+fn solved(
+    dependent: [usize; 2],
+    terms: &[Vec<(usize, f64)>; 2],
+    constants: [f64; 2],
+) -> Option<[(usize, Coupling); 2]> {
+    let coefficient = |row: usize, joint: usize| -> f64 {
+        terms[row].iter().filter(|(other, _)| *other == joint).map(|(_, factor)| factor).sum()
+    };
+    let [[p, q], [r, s]] = [0, 1].map(|row| dependent.map(|joint| coefficient(row, joint)));
+    let determinant = p * s - q * r;
+    if determinant == 0.0 {
+        return None;
+    }
+    let inverse = [[s / determinant, -q / determinant], [-r / determinant, p / determinant]];
+    let mut others: Vec<usize> = terms.iter().flatten().map(|(joint, _)| *joint).collect();
+    others.sort_unstable();
+    others.dedup();
+    others.retain(|joint| !dependent.contains(joint));
+    Some([0, 1].map(|row| {
+        let [one, other] = inverse[row];
+        let ratio = |&joint: &usize| (joint, -(one * coefficient(0, joint) + other * coefficient(1, joint)));
+        let follows = others.iter().map(ratio).filter(|(_, ratio)| *ratio != 0.0).collect();
+        let offset = -(one * constants[0] + other * constants[1]);
+        (dependent[row], Coupling { follows, offset: offset + 0.0 })
+    }))
+}
+
+/// The coupling by joints that follow no other.
+fn without_followers(coupling: Coupling, joints: &[Joint]) -> Coupling {
+    let mut found = Coupling { follows: Vec::new(), offset: coupling.offset };
+    let mut add = |joint: usize, ratio: f64| match found.follows.iter_mut().find(|(known, _)| *known == joint) {
+        Some((_, sum)) => *sum += ratio,
+        None => found.follows.push((joint, ratio)),
+    };
+    let mut offset = coupling.offset;
+    for (joint, ratio) in coupling.follows {
+        match &joints[joint].coupling {
+            None => add(joint, ratio),
+            Some(of) => {
+                offset += ratio * of.offset;
+                of.follows.iter().for_each(|(joint, inner)| add(*joint, ratio * inner));
+            }
+        }
+    }
+    found.offset = offset;
+    found.follows.retain(|(_, ratio)| *ratio != 0.0);
+    found.follows.sort_by_key(|(joint, _)| *joint);
+    found
+}
+
+/// The joints that move a link, base first.
+fn way(joints: &[Joint], on: Option<usize>) -> Vec<usize> {
+    let mut way: Vec<usize> = std::iter::successors(on, |&joint| parent(joints, joint)).collect();
+    way.reverse();
+    way
+}
+
+/// A rotation, by rows, and a translation.
+#[derive(Clone, Copy)]
+struct Pose {
+    rotation: [[f64; 3]; 3],
+    translation: [f64; 3],
+}
+
+impl Pose {
+    const IDENTITY: Self =
+        Self { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation: [0.0; 3] };
+
+    /// A turn about an axis of the frame.
+    fn turn(axis: usize, sin: f64, cos: f64) -> Self {
+        let mut pose = Self::IDENTITY;
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        (pose.rotation[i][i], pose.rotation[i][j]) = (cos, -sin);
+        (pose.rotation[j][i], pose.rotation[j][j]) = (sin, cos);
+        pose
+    }
+
+    fn shift(translation: [f64; 3]) -> Self {
+        Self { translation, ..Self::IDENTITY }
+    }
+
+    fn of(transform: &Transform) -> Self {
+        let turn = |axis: usize| Self::turn(axis, transform.rpy[axis].sin, transform.rpy[axis].cos);
+        Self::shift(transform.xyz).then(&turn(2)).then(&turn(1)).then(&turn(0))
+    }
+
+    fn then(&self, next: &Self) -> Self {
+        let product = |row: [f64; 3], column: usize| (0..3).map(|k| row[k] * next.rotation[k][column]).sum();
+        Self {
+            rotation: self.rotation.map(|row| [0, 1, 2].map(|column| product(row, column))),
+            translation: [0, 1, 2].map(|i| self.translation[i] + dot(self.rotation[i], next.translation)),
+        }
+    }
+
+    fn rotation_z(&self) -> [f64; 3] {
+        self.rotation.map(|row| row[2])
+    }
+}
+
+/// The frame at a joint, z along its axis, in frame 0, where all positions are 0.
+fn joint_axis(joints: &[Joint], convention: Convention, joint: usize) -> Pose {
+    let of_parent = link_pose(joints, convention, parent(joints, joint));
+    let begins = joints[joint].branch.map_or(Pose::IDENTITY, |branch| Pose::of(&branch.placement));
+    let (dh, start) = (&joints[joint].row.dh, of_parent.then(&begins));
+    match convention {
+        Convention::Standard => start,
+        Convention::Modified => {
+            start.then(&Pose::turn(0, dh.alpha.sin, dh.alpha.cos)).then(&Pose::shift([dh.a, 0.0, 0.0]))
+        }
+    }
+}
+
+/// The frame of a link, in frame 0, where all positions are 0.
+fn link_pose(joints: &[Joint], convention: Convention, link: Option<usize>) -> Pose {
+    let Some(link) = link else { return Pose::IDENTITY };
+    let dh = &joints[link].row.dh;
+    let screw = Pose::turn(2, dh.theta.sin, dh.theta.cos).then(&Pose::shift([0.0, 0.0, dh.d]));
+    let pose = joint_axis(joints, convention, link).then(&screw);
+    match convention {
+        Convention::Standard => {
+            pose.then(&Pose::shift([dh.a, 0.0, 0.0])).then(&Pose::turn(0, dh.alpha.sin, dh.alpha.cos))
+        }
+        Convention::Modified => pose,
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+/// The part of a vector across z.
+fn in_plane(v: [f64; 3], z: [f64; 3]) -> [f64; 3] {
+    let along = dot(v, z);
+    [0, 1, 2].map(|i| v[i] - along * z[i])
+}
+
+/// The angle about z from one vector to another, rad: a multiple of π/2 is exact.
+fn turn(from: [f64; 3], to: [f64; 3], z: [f64; 3]) -> f64 {
+    let [from, to] = [from, to].map(|v| in_plane(v, z));
+    let cross = [1, 2, 0].map(|i: usize| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        from[j] * to[k] - from[k] * to[j]
+    });
+    // component i of the product stands at i - 1
+    let angle = dot([cross[2], cross[0], cross[1]], z).atan2(dot(from, to));
+    let right = crate::angle::nearest_right_angle(angle);
+    if (angle - right).abs() < 1e-12 { right + 0.0 } else { angle }
+}

@@ -1,0 +1,12 @@
+use rne::InverseDynamics;
+
+#[derive(InverseDynamics)]
+#[robot(path = "../robots/two.yaml")]
+struct Two;
+
+const ORDER: [usize; 2] = Two::order(["joint2", "elbow", "joint1"]);
+
+fn main() {
+    let [tau, _] = Two.gravity_torques(&ORDER.map(|place| place as f64));
+    println!("{tau}");
+}
