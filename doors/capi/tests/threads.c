@@ -26,7 +26,7 @@ static void *work(void *place) {
       if (call % 50 == 0 && rne_evaluate(arm, id, inputs, 3, mine[function], 0) != RNE_STATUS_WRONG_SIZE) return "room";
     }
   }
-  return strstr(rne_last_error(), "memory that you gave") ? NULL : "the words of another thread";
+  return strstr(rne_last_error(), "0 were given") ? NULL : "the words of another thread";
 }
 
 int main(void) {
