@@ -56,16 +56,17 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
             let message = format!("the joint {} follows others twice", quoted(&urdf.joints[joint].name));
             return Err(equality.refused(message, "delete one of the equalities".to_owned()));
         }
-        let reference = |joint: usize| urdf.joints[joint].reference;
+        let reference = |joint: usize| decimal(urdf.joints[joint].reference);
+        let start = reference(joint) + decimal(*start);
         match leader.filter(|_| *ratio != 0.0) {
             Some(leader) => {
-                let offset = reference(joint) + start - ratio * reference(leader);
+                let offset = (start - decimal(*ratio) * reference(leader)).to_f64();
                 let name = urdf.joints[leader].name.clone();
                 urdf.joints[joint].mimic =
                     Some(Mimic { joint: name, leader: Some(leader), multiplier: *ratio, offset });
             }
             None => {
-                let position = reference(joint) + start;
+                let position = start.to_f64();
                 left_out.add("joints that an equality holds are fixed", &urdf.joints[joint].name);
                 hold(urdf, joint, position);
             }

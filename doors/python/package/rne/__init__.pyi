@@ -322,6 +322,12 @@ def load(
 ) -> Arm:
     """Return the arm of a robot file (YAML), a URDF, the text of either, or the name of a built-in robot."""
 
+def from_mujoco(model: Any, **options: Any) -> Arm:
+    """The arm of a compiled MuJoCo model, an `mujoco.MjModel`."""
+
+def from_pinocchio(model: Any, **options: Any) -> Arm:
+    """The arm of a Pinocchio model, a `pinocchio.Model`."""
+
 def pose_log(pose: ArrayLike) -> Floats:
     """The logarithm of a pose: the constant twist that leads from the world to it in one unit of time."""
 def payload(mass: float, com: ArrayLike = ..., inertia: ArrayLike | None = ...) -> Floats:
