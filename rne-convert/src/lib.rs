@@ -30,6 +30,7 @@ mod selection;
 mod snap;
 mod source;
 mod table;
+mod transmission;
 mod urdf;
 
 pub use comparison::Difference;

@@ -9,6 +9,7 @@ use rne_model::{Inertia, Limits, Report};
 use crate::mjcf;
 use crate::scan::{Seen, root_name, scan};
 use crate::source::{Source, names, quoted};
+use crate::transmission::{self, Transmission};
 
 /// A robot as its URDF or its MJCF file describes it. [`Urdf::read`] has checked that its links are one tree.
 #[derive(Clone, Debug)]
@@ -175,6 +176,8 @@ impl Urdf {
         urdf.take_joints(&scanned.joints)?;
         urdf.find_root()?;
         urdf.take_gears(&scanned.couplings)?;
+        let transmissions = transmission::read(&urdf.source)?;
+        urdf.take_transmissions(transmissions);
         Ok(urdf)
     }
 
@@ -382,6 +385,30 @@ impl Urdf {
             self.gears.push(Gear { span: seen.span.clone(), joint, follows });
         }
         Ok(())
+    }
+
+    /// Gives joints the gears and rotors of their transmissions.
+    fn take_transmissions(&mut self, transmissions: Vec<Transmission>) {
+        let mut known = BTreeSet::new();
+        for Transmission { name, joints, actuators, ratio, rotor_inertia } in transmissions {
+            let (ratio, rotor_inertia) = (ratio.unwrap_or(1.0), rotor_inertia.unwrap_or(0.0));
+            if [ratio, rotor_inertia] == [1.0, 0.0] {
+                continue;
+            }
+            let joint = match (&joints[..], actuators) {
+                ([joint], 0 | 1) => self.joints.iter().position(|known| known.name == *joint),
+                _ => None,
+            };
+            let movable = joint.filter(|&joint| self.joints[joint].kind.has_one_freedom() && known.insert(joint));
+            let Some(joint) = movable else {
+                self.remarks.push(format!(
+                    "the transmission {} is left out: rne takes one of a motor and a joint that moves",
+                    quoted(&name)
+                ));
+                continue;
+            };
+            (self.joints[joint].gear_ratio, self.joints[joint].rotor_inertia) = (ratio, rotor_inertia);
+        }
     }
 
     /// The joints from a link to the root.

@@ -17,9 +17,12 @@ fn file(name: &str) -> String {
 }
 
 fn import(name: &str, options: &Options) -> Imported {
-    let file = file(name);
-    let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
-    let imported = Urdf::read(&file, &text).and_then(|urdf| urdf.import(options));
+    import_file(&file(name), options)
+}
+
+fn import_file(file: &str, options: &Options) -> Imported {
+    let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+    let imported = Urdf::read(file, &text).and_then(|urdf| urdf.import(options));
     let imported = imported.unwrap_or_else(|report| panic!("{report}"));
     let read = Reader::new("written").trees().couplings().read(&imported.text);
     assert_eq!(read.unwrap_or_else(|report| panic!("{report}")).robot, imported.robot, "reading gives the robot");
@@ -27,9 +30,9 @@ fn import(name: &str, options: &Options) -> Imported {
     imported
 }
 
-/// The torques of MuJoCo at the states of a file.
+/// The torques of MuJoCo at the states of the file beside an MJCF file.
 fn assert_golden(name: &str, robot: &Robot) {
-    let golden = fs::read_to_string(Path::new(&file(name)).with_extension("csv")).expect("a golden file");
+    let golden = fs::read_to_string(Path::new(name).with_extension("csv")).expect("a golden file");
     let mut lines = golden.lines();
     let names: Vec<&str> = lines.next().expect("names").split(',').collect();
     let free = robot.joints.iter().filter(|joint| joint.coupling.is_none());
@@ -53,8 +56,26 @@ fn assert_golden(name: &str, robot: &Robot) {
 #[test]
 fn torques_are_those_of_mujoco() {
     for name in ["classes", "geoms", "gripper", "g1_29dof"] {
-        assert_golden(name, &import(name, &whole()).robot);
+        assert_golden(&file(name), &import(name, &whole()).robot);
     }
+}
+
+/// The models that `cargo xtask urdf --mjcf DIR` saves.
+#[test]
+#[ignore = "needs a folder of models, which MuJoCo writes"]
+fn torques_are_those_of_mujoco_in_a_folder() {
+    let folder = std::env::var("RNE_MJCF").expect("RNE_MJCF");
+    let mut seen = 0;
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_some_and(|extension| extension == "xml") {
+            let file = path.to_str().expect("Unicode");
+            assert_golden(file, &import_file(file, &Options { keep_unphysical: true, ..whole() }).robot);
+            println!("{file}");
+            seen += 1;
+        }
+    }
+    assert!(seen >= 20, "{seen} models");
 }
 
 #[test]

@@ -130,7 +130,7 @@ impl<'a> Bodies<'a> {
         self.contents(element, Pose::identity(), self.childclass(element, class)?, &mut contents)?;
         let place = frame * pose(body)?;
         let link = self.joints(parent, place, &name, element, &contents)?;
-        let inertial = inertial::read(self.settings, &name, element, &contents)?;
+        let inertial = inertial::read(self.settings, &name, (element, place), &contents)?;
         self.urdf.links[link] = Link { mass: inertial.mass, xyz: inertial.com, ..self.urdf.links[link].clone() };
         (self.urdf.links[link].rpy, self.urdf.links[link].inertia) = (inertial.rpy, inertial.inertia);
         self.below(link, &contents)

@@ -7,6 +7,7 @@ use super::compiler::FromGeoms;
 use super::element::Element;
 use super::geom;
 use super::settings::{Classed, Settings};
+use crate::geometry::Pose;
 use crate::source::quoted;
 
 /// Mass, kg; centre of mass, m; the axes of the tensor, rad; the tensor about the centre of mass in these axes, kg m².
@@ -18,8 +19,13 @@ pub(super) struct Inertial {
     pub(super) inertia: Inertia,
 }
 
-/// The inertia of a body, as MuJoCo's compiler has it.
-pub(super) fn read(settings: &Settings, name: &str, body: &Element, contents: &[Content]) -> Result<Inertial, Report> {
+/// The inertia of a body at `place` in its parent, as MuJoCo's compiler has it.
+pub(super) fn read(
+    settings: &Settings,
+    name: &str,
+    (body, place): (&Element, Pose),
+    contents: &[Content],
+) -> Result<Inertial, Report> {
     let written = contents.iter().filter(|content| content.element.name == "inertial").collect::<Vec<_>>();
     if let Some(second) = written.get(1) {
         return Err(settings.source.error(&second.element.span, "a second `inertial` in one `body`", None));
@@ -33,7 +39,11 @@ pub(super) fn read(settings: &Settings, name: &str, body: &Element, contents: &[
     let inertial = match (of_geoms, written.first()) {
         (Some(inertial), _) => inertial,
         (None, Some(content)) => explicit(settings.plain(content.element), name, content)?,
-        (None, None) => Inertial::default(),
+        // what the least mass gives to such a body, MuJoCo puts at the numbers of its `pos` in its own frame
+        (None, None) => {
+            let (com, rpy) = placed(place);
+            Inertial { com, rpy, ..Inertial::default() }
+        }
     };
     adjusted(settings, name, body, inertial)
 }

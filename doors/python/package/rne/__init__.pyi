@@ -320,7 +320,7 @@ def load(
     form: Form = ...,
     rotors: bool = ...,
 ) -> Arm:
-    """Return the arm of a robot file (YAML), a URDF, the text of either, or the name of a built-in robot."""
+    """Return the arm of a robot file (YAML), a URDF, an MJCF file, the text of one, or of a built-in robot."""
 
 def from_mujoco(model: Any, **options: Any) -> Arm:
     """The arm of a compiled MuJoCo model, an `mujoco.MjModel`."""
