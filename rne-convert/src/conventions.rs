@@ -61,7 +61,7 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
         let end = parent.map_or_else(Pose::identity, |parent| ends[parent]) * branch;
         let (before, after) = match robot.convention {
             Convention::Standard => (end, screw),
-            Convention::Modified => (screw, Pose::identity()),
+            Convention::Modified => (end * screw, Pose::identity()),
         };
         joints.push(ChainJoint {
             name: joint.name.clone(),

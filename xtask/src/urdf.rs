@@ -58,7 +58,9 @@ impl Urdf {
         };
         if !can_import() {
             if !self.install {
-                return Err(Missing::error("there is no Pinocchio, or no MuJoCo; `cargo xtask urdf --install` gets both"));
+                return Err(Missing::error(
+                    "there is no Pinocchio, or no MuJoCo; `cargo xtask urdf --install` gets both",
+                ));
             }
             if !machine::has("python3") {
                 return Err(Missing::error("there is no python3"));

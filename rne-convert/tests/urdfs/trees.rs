@@ -85,7 +85,9 @@ joints:
      dh: {theta: 0.4, d: 0.1, a: 0.2, alpha: 1}, link: {mass: 1, com: [0.1, 0, 0]}}
   - {name: slave, parent: left, type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: 0}, link: {mass: 1, com: [0.1, 0, 0]}}
 frames: [{name: eye, on: left, xyz: [0.1, 0, 0], rpy: [0, 0, 1]}]
-bodies: [{name: camera, on: left, xyz: [0, 0, 0.1], mass: 0.5, com: [0.01, 0, 0], inertia: {xx: 0.001, yy: 0.001, zz: 0.001}}]
+bodies:
+  - {name: camera, on: left, at: {xyz: [0, 0, 0.1], rpy: [0, 0, 1]}, mass: 0.5, com: [0.01, 0, 0],
+     inertia: {xx: 0.001, yy: 0.001, zz: 0.001}}
 couplings: [{joint: slave, follows: {left: -0.5}, offset: 0.25}]
 motors: [{name: shoulder, turns: {left: 20}, rotor: {axis: [0, 0, 1], on: waist, inertia: 1e-4}}]
 ";
