@@ -17,7 +17,9 @@ fn file(name: &str) -> String {
 }
 
 fn import(name: &str, options: &Options) -> Imported {
-    import_file(&file(name), options)
+    let imported = import_file(&file(name), options);
+    assert!(imported.account.rounding.torque < 1e-12, "{:?}", imported.account.rounding);
+    imported
 }
 
 fn import_file(file: &str, options: &Options) -> Imported {
@@ -26,7 +28,6 @@ fn import_file(file: &str, options: &Options) -> Imported {
     let imported = imported.unwrap_or_else(|report| panic!("{report}"));
     let read = Reader::new("written").trees().couplings().read(&imported.text);
     assert_eq!(read.unwrap_or_else(|report| panic!("{report}")).robot, imported.robot, "reading gives the robot");
-    assert!(imported.account.rounding.torque < 1e-12, "{:?}", imported.account.rounding);
     imported
 }
 
@@ -157,6 +158,7 @@ fn every_mistake_has_its_message_and_its_place() {
         ("0 0 1", "0 0", 4, "it must be 3 numbers"),
         ("diaginertia=\"1 1 1\"", "", 4, "lacks `diaginertia`"),
         ("diaginertia", "fullinertia=\"1 1 1 0 0 0\" diaginertia", 4, "two inertias"),
+        ("diaginertia=\"1 1 1\"", "fullinertia=\"1 1 1 2 0 0\"", 5, "no body has a negative one"),
         ("diaginertia", "quat=\"0 0 0 0\" diaginertia", 4, "it has no direction"),
         ("diaginertia", "quat=\"1 0 0 0\" euler=\"0 0 0\" diaginertia", 4, "several orientations"),
         ("<joint name=\"j\"/>", "<joint name=\"j\" axis=\"0 0 0\"/>", 5, "has no direction"),

@@ -86,7 +86,7 @@ fn adjusted(settings: &Settings, name: &str, body: &Element, mut inertial: Inert
     inertial.mass = inertial.mass.max(mass);
     let Inertia { xx, yy, zz, xy, xz, yz } = inertial.inertia;
     let moments = inertial.inertia.principal_moments().unwrap_or_default();
-    if moments[0] < least {
+    if least > 0.0 && moments[0] < least {
         if [xy, xz, yz] != [0.0; 3] {
             let message = format!("`boundinertia` changes the body {}, whose tensor is not diagonal", quoted(name));
             let help = "write the tensor of this body as `diaginertia` and `quat`".to_owned();

@@ -25,9 +25,10 @@ fn free(robot: &Robot) -> Vec<&str> {
     free.map(|joint| joint.name.as_str()).collect()
 }
 
-/// Torques, tip and followers of the URDF are those of the robot, joint by joint.
+/// Torques, tip and followers of the URDF are those of the robot without the motors of its list, joint by joint.
 fn assert_same(robot: &Robot) {
     let other = again(robot);
+    let robot = &Robot { drives: Vec::new(), ..robot.clone() };
     let places: Vec<usize> = free(&other)
         .iter()
         .map(|name| free(robot).iter().position(|known| known == name).unwrap_or_else(|| panic!("{name}")))
