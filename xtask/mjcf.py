@@ -1,11 +1,11 @@
 """The torques of MuJoCo, for the tests of the import of MJCF files.
 
 Usage: python mjcf.py FOLDER         writes the torques beside each MJCF file of the folder
-       python mjcf.py FOLDER TARGET  saves each URDF and MJCF file of the folder as MJCF, with the torques, in another one
+       python mjcf.py FOLDER TARGET  saves each URDF and MJCF file of the folder as MJCF, with the torques, in TARGET
 
 `cargo xtask urdf --mjcf FOLDER` calls the second one and then the test that reads the target. MuJoCo reads each URDF
-without its meshes. A free joint stands still. Joints that follow others do so: their torques act on the joints that they
-follow. Rotors are included.
+without its meshes. A free joint stands still. Joints that follow others do so: their torques act on the joints that
+they follow. Rotors are included.
 """
 
 import pathlib

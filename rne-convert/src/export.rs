@@ -76,9 +76,9 @@ impl fmt::Display for NoUrdf {
 
 impl Error for NoUrdf {}
 
-/// The URDF of a robot, an arm or a tree. Its root link `world` carries the link `base`, which is frame 0; joint i moves
-/// the link `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool. Named
-/// frames and bodies are links, which fixed joints attach. A joint that follows another one has a `mimic`.
+/// The URDF of a robot, an arm or a tree. Its root link `world` carries the link `base`, which is frame 0; joint i
+/// moves the link `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
+/// Named frames and bodies are links, which fixed joints attach. A joint that follows another one has a `mimic`.
 ///
 /// The friction of a motor is written as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
 /// both directions.
@@ -215,8 +215,8 @@ fn of_motors(robot: &Robot) -> Vec<String> {
     if !robot.drives.is_empty() {
         let names: Vec<String> = robot.drives.iter().map(|drive| one_line(&drive.name)).collect();
         remarks.push(format!(
-            "these motors of the list `motors` are left out, with their rotors: {}; a URDF has no place for motors that \
-             turn with several joints, and for rotors that spin on a link",
+            "these motors of the list `motors` are left out, with their rotors: {}; a URDF has no place for motors \
+             that turn with several joints, and for rotors that spin on a link",
             names.join(", ")
         ));
     }

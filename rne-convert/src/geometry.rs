@@ -210,7 +210,7 @@ impl Rotation {
         Some(Self::about(Vector::decimal(axis).direction()?, radians))
     }
 
-    /// Of a quaternion (w, x, y, z) of any length, which is not zero.
+    /// The rotation of a quaternion (w, x, y, z) of any length, which is not zero.
     pub(crate) fn quaternion(quaternion: [f64; 4]) -> Option<Self> {
         let [w, x, y, z] = quaternion.map(decimal);
         let square = w * w + x * x + y * y + z * z;

@@ -29,7 +29,8 @@ pub struct Options {
     pub snap: bool,
     /// Whether bodies are kept whose inertia is not positive semidefinite.
     pub keep_unphysical: bool,
-    /// The acceleration of gravity in the axes of the root link, m/s². An MJCF file says its own, which is taken instead.
+    /// The acceleration of gravity in the axes of the root link, m/s². An MJCF file says its own, which is taken
+    /// instead.
     pub gravity: [f64; 3],
     /// Whether the links of the chain, and the links that are fixed to them, become named frames.
     pub frames: bool,

@@ -2,7 +2,7 @@
 //!
 //! Bodies, joints and inertias are read, with the values of their classes, as MuJoCo's XML reference defines them
 //! (<https://mujoco.readthedocs.io/en/stable/XMLreference.html>). What is not a matter of inverse dynamics, such as
-//! meshes, contacts and sensors, is passed over. A body is a link whose frame is that of the body; of several joints of
+//! meshes, contacts and sensors, is ignored. A body is a link whose frame is that of the body; of several joints of
 //! a body, each but the last one moves a link without mass.
 
 mod actuator;
@@ -25,7 +25,7 @@ use self::settings::Settings;
 use crate::source::{Source, names};
 use crate::urdf::Urdf;
 
-/// Things that a robot file does not have, in words, and the names of what has them.
+/// Parts of a model that a robot file cannot describe, in words, and the names of the elements that have them.
 #[derive(Default)]
 struct LeftOut(BTreeMap<&'static str, Vec<String>>);
 

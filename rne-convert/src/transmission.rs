@@ -1,7 +1,7 @@
 //! Elements `transmission` of a URDF: gears and rotors of joints.
 //!
 //! Read are `mechanicalReduction` of ros_control, as a text, and `rotor_inertia` and `gear_ratio` of Drake, as
-//! attributes `value`, with or without the prefix `drake:`. Everything else that a transmission has is passed over.
+//! attributes `value`, with or without the prefix `drake:`. Everything else in a transmission is ignored.
 
 use std::ops::Range;
 

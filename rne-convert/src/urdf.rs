@@ -152,8 +152,9 @@ pub(crate) struct Joint {
 }
 
 impl Urdf {
-    /// Reads the text of a URDF, or of an MJCF file, whose root element is `mujoco`. `file` is what messages call it, its
-    /// path; files that an MJCF file includes are read from its folder. The robot file keeps its name without folders.
+    /// Reads the text of a URDF, or of an MJCF file, whose root element is `mujoco`. `file` is what messages call it,
+    /// its path; files that an MJCF file includes are read from its folder. The robot file keeps its name without
+    /// folders.
     ///
     /// # Errors
     ///

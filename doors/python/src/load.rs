@@ -31,7 +31,7 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// ----------
 /// source : str or os.PathLike
 ///     Path of a robot file, a URDF or an MJCF file, or its text, or the name of a built-in robot. A plan file beside a
-///     robot file is honoured. What is said of a URDF below holds for an MJCF file, too.
+///     robot file is honoured. The words on a URDF below hold for an MJCF file, too.
 /// tip, base : str, optional
 ///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
 /// whole : bool

@@ -78,15 +78,18 @@ def test_mujoco_couples():
 URDF = """<robot name="r"><link name="base"/>
 {links}
 <joint name="a" type="revolute"><origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6"/><parent link="base"/><child link="l1"/>
-<axis xyz="1 2 3"/><limit lower="-2" upper="1" effort="7" velocity="3"/><dynamics damping="0.5" friction="0.25"/></joint>
+<axis xyz="1 2 3"/><limit lower="-2" upper="1" effort="7" velocity="3"/>
+<dynamics damping="0.5" friction="0.25"/></joint>
 <joint name="b" type="prismatic"><origin xyz="0.3 0 0.1" rpy="1 0 2"/><parent link="l1"/><child link="l2"/>
 <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="7" velocity="3"/></joint>
 <joint name="c" type="revolute"><origin xyz="0.2 0 0"/><parent link="l2"/><child link="l3"/><axis xyz="0 -1 0.1"/>
 <limit lower="-2" upper="1" effort="7" velocity="3"/></joint>
-<joint name="d" type="continuous"><origin xyz="0 0.2 0"/><parent link="l2"/><child link="l4"/><axis xyz="0 0 1"/></joint>
+<joint name="d" type="continuous"><origin xyz="0 0.2 0"/><parent link="l2"/><child link="l4"/>
+<axis xyz="0 0 1"/></joint>
 <joint name="e" type="revolute"><origin xyz="0 0.2 0"/><parent link="l4"/><child link="l5"/><axis xyz="0 -1 0.1"/>
 <mimic joint="c" multiplier="-2" offset="0.3"/><limit lower="-9" upper="9" effort="7" velocity="3"/></joint>
-<joint name="to_hand" type="fixed"><origin xyz="0 0 0.1"/><parent link="l5"/><child link="hand"/></joint><link name="hand"/>
+<joint name="to_hand" type="fixed"><origin xyz="0 0 0.1"/><parent link="l5"/><child link="hand"/></joint>
+<link name="hand"/>
 </robot>"""
 LINK = (
     "<link name='l{0}'><inertial><origin xyz='0.1 0.0{0} -0.03' rpy='0.1 0 0.2'/><mass value='{0}'/>"

@@ -25,14 +25,14 @@ pub(super) struct Compiler {
     pub(super) total_mass: Option<f64>,
 }
 
-/// Whose inertias are those of their geoms.
+/// The bodies whose inertia is that of their geoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FromGeoms {
-    /// Of no body.
+    /// No body.
     Never,
-    /// Of bodies without `inertial`.
+    /// Bodies without `inertial`.
     Missing,
-    /// Of all bodies with geoms.
+    /// All bodies with geoms.
     Always,
 }
 

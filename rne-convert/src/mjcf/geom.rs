@@ -14,7 +14,7 @@ use crate::source::quoted;
 /// Density of a geom that says none, kg/m³.
 const DENSITY: f64 = 1000.0;
 
-/// What the geoms of a body add up to; `None` without geoms in the groups of the compiler.
+/// The sum of the geoms of a body; `None` without geoms in the groups of the compiler.
 pub(super) fn inertial(settings: &Settings, name: &str, contents: &[Content]) -> Result<Option<Inertial>, Report> {
     let mut body = Body::NONE;
     let mut number = 0;

@@ -10,10 +10,10 @@ use crate::geometry::Rotation;
 use crate::scan::LARGEST;
 use crate::source::{Source, names, quoted};
 
-/// Elements of a class that are read, and what the class calls them: all actuators share their values.
+/// Actuators that share the values of a class, whatever their element is.
 const ACTUATORS: [&str; 4] = ["general", "motor", "position", "velocity"];
 
-/// What is said beside the bodies: settings and classes.
+/// Settings and classes of the file.
 pub(super) struct Settings<'a> {
     pub(super) source: &'a Source,
     pub(super) compiler: Compiler,

@@ -77,19 +77,20 @@ source: by hand
 convention: standard
 gravity: [0, 0, -9.81]
 base: {xyz: [0.1, 0.2, 0.3], rpy: [0, 0, 0.5]}
-tool: {on: slave, xyz: [0.1, 0.2, 0.3], rpy: [0.3, 0.2, 0.1]}
+tool: {on: follower, xyz: [0.1, 0.2, 0.3], rpy: [0.3, 0.2, 0.1]}
 joints:
   - {name: waist, type: revolute, dh: {theta: 0, d: 0.3, a: 0.1, alpha: pi/2},
      link: {mass: 2, com: [0, 0.1, 0], inertia: {xx: 0.1, yy: 0.2, zz: 0.15}}}
   - {name: left, type: revolute, dh: {theta: 0.1, d: 0, a: 0.2, alpha: 0.3}, link: {mass: 1, com: [0.1, 0, 0]}}
   - {name: right, parent: waist, at: {xyz: [0, 0.2, -0.1], rpy: [0.1, 0.2, 0.3]}, type: prismatic,
      dh: {theta: 0.4, d: 0.1, a: 0.2, alpha: 1}, link: {mass: 1, com: [0.1, 0, 0]}}
-  - {name: slave, parent: left, type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: 0}, link: {mass: 1, com: [0.1, 0, 0]}}
+  - {name: follower, parent: left, type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: 0},
+     link: {mass: 1, com: [0.1, 0, 0]}}
 frames: [{name: eye, on: left, xyz: [0.1, 0, 0], rpy: [0, 0, 1]}]
 bodies:
   - {name: camera, on: left, at: {xyz: [0, 0, 0.1], rpy: [0, 0, 1]}, mass: 0.5, com: [0.01, 0, 0],
      inertia: {xx: 0.001, yy: 0.001, zz: 0.001}}
-couplings: [{joint: slave, follows: {left: -0.5}, offset: 0.25}]
+couplings: [{joint: follower, follows: {left: -0.5}, offset: 0.25}]
 motors: [{name: shoulder, turns: {left: 20}, rotor: {axis: [0, 0, 1], on: waist, inertia: 1e-4}}]
 ";
 
@@ -108,5 +109,5 @@ fn a_urdf_has_followers_frames_and_bodies_of_a_tree() {
 fn a_joint_that_follows_two_has_no_urdf() {
     let text = TREE.replace("follows: {left: -0.5}", "follows: {left: -0.5, waist: 1}");
     let said = rne_convert::export(&read(&text)).expect_err("two leaders").to_string();
-    assert!(said.contains("slave follows waist and left, and a URDF cannot say this"), "{said}");
+    assert!(said.contains("follower follows waist and left, and a URDF cannot say this"), "{said}");
 }

@@ -5,9 +5,9 @@
 >>> arm.inverse_dynamics([0, 0.8, -0.4, 0, 0.5, 0], [0.1] * 6, [0] * 6).shape
 (6,)
 
-`rne.load` reads a robot file, a URDF or an MJCF file; `rne.from_mujoco` and `rne.from_pinocchio` take models in memory;
-`rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one state or `(N, n)` for many; units are SI: rad,
-m, N m, N, kg. Torques are what the actuators must deliver.
+`rne.load` reads a robot file, a URDF or an MJCF file; `rne.from_mujoco` and `rne.from_pinocchio` take models in
+memory; `rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one state or `(N, n)` for many; units are
+SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
 
 `rne.log`, `rne.identify`, `rne.identify_payload`, `rne.watch` and `rne.excite` are about logs: docs/python.md.
 """

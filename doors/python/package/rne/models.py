@@ -17,7 +17,7 @@ def from_mujoco(model, **options):
     follows another one by an equality has its torque at that one, and no place in q.
 
     model: the compiled model, without joints that float or turn as balls.
-    options: those of `rne.load`; `whole` is true and `snap` is false unless given.
+    options: those of `rne.load`; here `whole` is true and `snap` is false by default.
 
     Raises ValueError where a body floats, and `RobotFileError` where a robot file cannot describe the model, such as a
     closed loop.
@@ -94,7 +94,7 @@ def from_pinocchio(model, **options):
     `armature` in them. A joint that follows another one has its torque at that one, and no place in q.
 
     model: joints that turn or slide about one axis; a model that was built without a free-flyer.
-    options: those of `rne.load`; `whole` is true and `snap` is false unless given.
+    options: those of `rne.load`; here `whole` is true and `snap` is false by default.
 
     Raises ValueError where a joint has more than one freedom.
     """
