@@ -3,6 +3,7 @@
 //! Read are `mechanicalReduction` of ros_control, as a text, and `rotor_inertia` and `gear_ratio` of Drake, as
 //! attributes `value`, with or without the prefix `drake:`. Everything else in a transmission is ignored.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use quick_xml::Reader;
@@ -83,7 +84,7 @@ fn element(
         let attribute =
             tag.attributes().with_checks(false).flatten().find(|known| known.key.as_ref() == key.as_bytes())?;
         let value = String::from_utf8_lossy(&attribute.value).into_owned();
-        Some(quick_xml::escape::unescape(&value).map_or(value.clone(), |value| value.into_owned()))
+        Some(quick_xml::escape::unescape(&value).map_or_else(|_| value.clone(), Cow::into_owned))
     };
     if (name, open) == ("transmission", &["robot".to_owned()][..]) {
         let name = attribute("name").unwrap_or_default();

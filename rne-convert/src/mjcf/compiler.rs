@@ -17,7 +17,7 @@ pub(super) struct Compiler {
     pub(super) inertia_from_geoms: FromGeoms,
     /// Groups of geoms that count for inertias.
     pub(super) groups: [f64; 2],
-    /// Whether inertias that no body has become three times their mean.
+    /// Whether a tensor that no body can have becomes the mean of its moments about every axis.
     pub(super) balances: bool,
     /// Least mass and principal moment of a body.
     pub(super) least: [f64; 2],

@@ -58,18 +58,14 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
         }
         let reference = |joint: usize| decimal(urdf.joints[joint].reference);
         let start = reference(joint) + decimal(*start);
-        match leader.filter(|_| *ratio != 0.0) {
-            Some(leader) => {
-                let offset = (start - decimal(*ratio) * reference(leader)).to_f64();
-                let name = urdf.joints[leader].name.clone();
-                urdf.joints[joint].mimic =
-                    Some(Mimic { joint: name, leader: Some(leader), multiplier: *ratio, offset });
-            }
-            None => {
-                let position = start.to_f64();
-                left_out.add("joints that an equality holds are fixed", &urdf.joints[joint].name);
-                hold(urdf, joint, position);
-            }
+        if let Some(leader) = leader.filter(|_| *ratio != 0.0) {
+            let offset = (start - decimal(*ratio) * reference(leader)).to_f64();
+            let name = urdf.joints[leader].name.clone();
+            urdf.joints[joint].mimic = Some(Mimic { joint: name, leader: Some(leader), multiplier: *ratio, offset });
+        } else {
+            let position = start.to_f64();
+            left_out.add("joints that an equality holds are fixed", &urdf.joints[joint].name);
+            hold(urdf, joint, position);
         }
     }
     Ok(())
