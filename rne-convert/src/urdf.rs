@@ -205,7 +205,7 @@ impl Urdf {
         self.links.iter().filter(|link| self.is_end(link)).map(|link| link.name.as_str()).collect()
     }
 
-    /// Whether an arm may end with a link: it carries nothing but marks, and is none.
+    /// Whether an arm may end with a link: it carries nothing but marks, and is not a mark itself.
     pub(crate) fn is_end(&self, link: &Link) -> bool {
         let is_mark = |&joint: &usize| self.links[self.joints[joint].child].is_site;
         !link.is_site && link.children.iter().all(is_mark)
