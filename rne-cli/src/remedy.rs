@@ -15,7 +15,7 @@ pub(crate) fn worded(report: &Report) -> Report {
         Some(match remedy {
             Remedy::ImportUrdf { file } => {
                 let file = file.as_deref().unwrap_or("FILE");
-                format!("`rne import {file} -o robot.yaml` converts a URDF to a robot file")
+                format!("`rne import {file} -o robot.yaml` converts a URDF or MJCF file to a robot file")
             }
             Remedy::NameTip => "name the tip with --tip LINK".to_owned(),
             Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE locks `{joint}` at this value"),

@@ -99,7 +99,7 @@ pub(crate) fn extract(
 ) -> Result<(Chain, Extracted), Report> {
     let base = match &selection.base {
         Some(name) => link(urdf, name, "base")?,
-        None => urdf.root,
+        None => urdf.base,
     };
     let End { link: end, others } = tip(urdf, base, selection)?;
     let path = path(urdf, base, end)?;
@@ -335,9 +335,12 @@ impl Walk<'_> {
         let axis = self.axis(joint);
         let [viscous, friction] = joint.friction;
         // a follower has no motor: what moves it is that of the joint that it follows
-        let motor = (joint.friction != [0.0; 2] && joint.mimic.is_none()).then_some(Motor {
-            inertia: 0.0,
-            gear_ratio: 1.0,
+        let (inertia, gear_ratio) = (joint.rotor_inertia, joint.gear_ratio);
+        let (viscous, friction) = (viscous / (gear_ratio * gear_ratio), friction / gear_ratio.abs());
+        let has_motor = joint.friction != [0.0; 2] || [inertia, gear_ratio] != [0.0, 1.0];
+        let motor = (has_motor && joint.mimic.is_none()).then_some(Motor {
+            inertia,
+            gear_ratio,
             viscous,
             coulomb: [friction, 0.0 - friction],
         });

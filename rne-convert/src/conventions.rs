@@ -48,23 +48,25 @@ pub fn convert(robot: &Robot, convention: Convention) -> Result<Converted, Repor
     Ok(Converted { remarks: remarks(&checked.robot, &table), robot: checked.robot, text, rounding })
 }
 
-/// The chain of a table: the frame of each link stands on its joint, z along the axis.
+/// The chain or the tree of a table: the frame of each link stands on its joint, z along the axis.
 pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let rows: Vec<&Row> = robot.rows().collect();
     let mut joints = Vec::with_capacity(rows.len());
-    let mut ends = Vec::with_capacity(rows.len());
-    // What the row before leaves for the next joint: the end of its link.
-    let mut end = Pose::identity();
-    for (joint, row) in robot.joints.iter().zip(&rows) {
+    // What a row leaves for the next joint: the end of its link.
+    let mut ends: Vec<Pose> = Vec::with_capacity(rows.len());
+    for (index, (joint, row)) in robot.joints.iter().zip(&rows).enumerate() {
         let screw = screw_x(row);
+        let parent = robot.parent(index);
+        let branch = joint.branch.map_or_else(Pose::identity, |branch| placement(&branch.placement));
+        let end = parent.map_or_else(Pose::identity, |parent| ends[parent]) * branch;
         let (before, after) = match robot.convention {
             Convention::Standard => (end, screw),
-            Convention::Modified => (screw, Pose::identity()),
+            Convention::Modified => (end * screw, Pose::identity()),
         };
         joints.push(ChainJoint {
             name: joint.name.clone(),
             is_prismatic: row.kind == JointKind::Prismatic,
-            parent: joints.len().checked_sub(1),
+            parent,
             place: before * screw_z(row),
             axis: Vector::unit(2),
             body: Body::of_link(&row.link).seen_from(after),
@@ -75,7 +77,6 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
             coulomb_displacement: joint.coulomb_displacement,
         });
         ends.push(after);
-        end = after;
     }
     let frames = robot.frames.iter().map(|Frame { name, fixed }| ChainFrame {
         name: name.clone(),
@@ -84,8 +85,9 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
     });
     let frames = frames.collect();
     let base = placement(&robot.base);
-    let tip = end * placement(&robot.tool);
-    let tip_on = joints.len().saturating_sub(1);
+    let tip = robot.tip();
+    let tip_on = tip.on.unwrap_or(0);
+    let tip = ends.get(tip_on).copied().unwrap_or_else(Pose::identity) * placement(&tip.placement);
     Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip_on, tip, frames }
 }
 

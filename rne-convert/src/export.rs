@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt::{self, Write as _};
 
-use rne_model::{Joint, Motor, Robot, exact_digits, one_line};
+use rne_model::{Coupling, Frame, Joint, Motor, Robot, exact_digits, one_line};
 
 use crate::body::Body;
 use crate::chain::{Chain, ChainFrame, ChainJoint};
@@ -34,6 +34,13 @@ pub enum NoUrdf {
         /// The joint that moves it.
         joint: String,
     },
+    /// A joint follows several others.
+    SeveralLeaders {
+        /// The joint that follows.
+        joint: String,
+        /// The joints that it follows.
+        leaders: Vec<String>,
+    },
     /// A number is larger than an import takes.
     TooLarge {
         /// The quantity of the number.
@@ -52,6 +59,12 @@ impl fmt::Display for NoUrdf {
                  because it stores the mass of a link and its centre; give the link its `mass`",
                 one_line(joint)
             ),
+            Self::SeveralLeaders { joint, leaders } => write!(
+                f,
+                "the joint {} follows {}, and a URDF cannot say this: a `mimic` follows one joint",
+                one_line(joint),
+                leaders.iter().map(|leader| one_line(leader)).collect::<Vec<_>>().join(" and ")
+            ),
             Self::TooLarge { what, number } => write!(
                 f,
                 "{what} would be {number:e}, but an import refuses numbers of a URDF above {LARGEST:e}; check the \
@@ -63,20 +76,23 @@ impl fmt::Display for NoUrdf {
 
 impl Error for NoUrdf {}
 
-/// The URDF of a robot. Its root link `world` carries the link `base`, which is frame 0; joint i moves the link
-/// `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
+/// The URDF of a robot, an arm or a tree. Its root link `world` carries the link `base`, which is frame 0; joint i
+/// moves the link `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
+/// Named frames and bodies are links, which fixed joints attach. A joint that follows another one has a `mimic`.
 ///
 /// The friction of a motor is written as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
 /// both directions.
 ///
 /// # Errors
 ///
-/// When a link has a first moment and no mass, or a number is larger than an import takes.
+/// When a link has a first moment and no mass, when a joint follows several others, or when a number is larger than an
+/// import takes.
 pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     if let Some(index) = robot.rows().position(|row| row.link.has_first_moment()) {
         return Err(NoUrdf::NoMass { link: index + 1, joint: robot.joints[index].name.clone() });
     }
-    let chain = of_robot(robot);
+    let bare = &without_bodies(robot);
+    let chain = of_robot(bare);
     refuse_too_large(&chain)?;
     // Gravity in frame 0 is rounded: what that leaves in the axes of the world is nothing.
     let gravity = (chain.base.rotation * chain.gravity).to_f64().map(|g| if g.abs() < 1e-14 { 0.0 } else { g });
@@ -100,22 +116,49 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     let _ = writeln!(text, "<robot name=\"{}\">\n  <link name=\"world\"/>\n  <link name=\"base\"/>", robot.name);
     fixed(&mut text, "world_to_base", ("world", "base"), chain.base);
     let mut names = Names::default();
-    let mut parent = "base".to_owned();
+    let carrier = |on: Option<usize>| on.map_or_else(|| "base".to_owned(), |joint| format!("link_{}", joint + 1));
+    let joints: Vec<String> = chain.joints.iter().map(|joint| names.unique(&joint.name)).collect();
     for (index, joint) in chain.joints.iter().enumerate() {
         let child = format!("link_{}", index + 1);
         link(&mut text, &child, &joint.body);
-        movable(&mut text, &names.unique(&joint.name), joint, (&parent, &child));
-        parent = child;
+        let mimic = mimic(joint, &chain, &joints)?;
+        movable(&mut text, &joints[index], joint, (&carrier(joint.parent), &child), &mimic);
     }
     text.push_str("  <link name=\"tip\"/>\n");
-    fixed(&mut text, "to_tip", (&parent, "tip"), chain.tip);
-    for frame in as_links(&chain, robot) {
-        let carrier = frame.on.map_or_else(|| "base".to_owned(), |joint| format!("link_{}", joint + 1));
-        let _ = writeln!(text, "  <link name=\"{}\"/>", frame.name);
-        fixed(&mut text, &names.unique(&format!("to_{}", frame.name)), (&carrier, &frame.name), frame.place);
+    fixed(&mut text, "to_tip", (&carrier(Some(chain.tip_on)), "tip"), chain.tip);
+    for (index, frame) in as_links(&chain, bare).into_iter().enumerate() {
+        let body = index.checked_sub(robot.frames.len()).map(|body| &robot.bodies.list[body].matter);
+        match body {
+            Some(matter) => link(&mut text, &frame.name, &Body::of_link(matter)),
+            None => {
+                let _ = writeln!(text, "  <link name=\"{}\"/>", frame.name);
+            }
+        }
+        let joint = names.unique(&format!("to_{}", frame.name));
+        fixed(&mut text, &joint, (&carrier(frame.on), &frame.name), frame.place);
     }
     text.push_str("</robot>\n");
     Ok(Exported { text, gravity, remarks })
+}
+
+/// The robot with links that have no bodies, whose frames follow its own ones.
+fn without_bodies(robot: &Robot) -> Robot {
+    let names: Vec<&str> = robot.bodies.list.iter().map(|body| body.name.as_str()).collect();
+    let mut bare = robot.without_bodies(&names).unwrap_or_else(|_| robot.clone());
+    bare.frames.extend(robot.bodies.list.iter().map(|body| Frame { name: body.name.clone(), fixed: body.fixed }));
+    bare
+}
+
+/// The element by which a joint follows another one; empty where it follows none.
+fn mimic(joint: &ChainJoint, chain: &Chain, names: &[String]) -> Result<String, NoUrdf> {
+    let Some(Coupling { follows, offset }) = &joint.coupling else { return Ok(String::new()) };
+    let [(leader, ratio)] = follows[..] else {
+        let leaders = follows.iter().map(|(leader, _)| chain.joints[*leader].name.clone()).collect();
+        return Err(NoUrdf::SeveralLeaders { joint: joint.name.clone(), leaders });
+    };
+    let [ratio, offset] = [ratio, *offset].map(exact_digits);
+    let leader = &names[leader];
+    Ok(format!("    <mimic joint=\"{leader}\" multiplier=\"{ratio}\" offset=\"{offset}\"/>\n"))
 }
 
 /// The named frames as links, whose names differ from those of the other links.
@@ -168,6 +211,14 @@ fn of_motors(robot: &Robot) -> Vec<String> {
         let and =
             if motors().any(|(_, motor)| Friction::of(&motor).is_some()) { ", except their friction" } else { "" };
         remarks.push(format!("motors are left out{and}: a URDF has no place for gears and rotors"));
+    }
+    if !robot.drives.is_empty() {
+        let names: Vec<String> = robot.drives.iter().map(|drive| one_line(&drive.name)).collect();
+        remarks.push(format!(
+            "these motors of the list `motors` are left out, with their rotors: {}; a URDF has no place for motors \
+             that turn with several joints, and for rotors that spin on a link",
+            names.join(", ")
+        ));
     }
     let named = |is_so: fn(&Motor) -> bool| {
         let names: Vec<String> = motors().filter(|(_, motor)| is_so(motor)).map(|(name, _)| name).collect();
@@ -264,7 +315,7 @@ fn fixed(text: &mut String, name: &str, (parent, child): (&str, &str), pose: Pos
     );
 }
 
-fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (&str, &str)) {
+fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (&str, &str), mimic: &str) {
     let limits = joint.limits;
     let kind = match (joint.is_prismatic, limits.position) {
         (true, _) => "prismatic",
@@ -285,7 +336,7 @@ fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (
         text,
         "  <joint name=\"{name}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    \
          <child link=\"{child}\"/>\n    {}\n    <axis xyz=\"0 0 1\"/>\n    \
-         <limit {position}effort=\"{}\" velocity=\"{}\"/>\n{dynamics}  </joint>",
+         <limit {position}effort=\"{}\" velocity=\"{}\"/>\n{dynamics}{mimic}  </joint>",
         origin(joint.place),
         exact_digits(limits.effort.unwrap_or(0.0)),
         exact_digits(limits.velocity.unwrap_or(0.0))

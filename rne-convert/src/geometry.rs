@@ -179,7 +179,7 @@ impl Rotation {
     }
 
     /// About y.
-    fn y(radians: f64) -> Self {
+    pub(crate) fn y(radians: f64) -> Self {
         let (s, c) = sin_cos(radians);
         let zero = Double::new(0.0);
         Self { columns: [Vector([c, zero, -s]), Vector::unit(1), Vector([s, zero, c])] }
@@ -203,6 +203,44 @@ impl Rotation {
         let rest = Double::new(1.0) - c;
         let turned = |v: Vector| v * c + axis.cross(v) * s + axis * (axis.dot(v) * rest);
         Self { columns: [0, 1, 2].map(|i| turned(Vector::unit(i))) }
+    }
+
+    /// About an axis of any length, which is not zero.
+    pub(crate) fn about_axis(axis: [f64; 3], radians: f64) -> Option<Self> {
+        Some(Self::about(Vector::decimal(axis).direction()?, radians))
+    }
+
+    /// The rotation of a quaternion (w, x, y, z) of any length, which is not zero.
+    pub(crate) fn quaternion(quaternion: [f64; 4]) -> Option<Self> {
+        let [w, x, y, z] = quaternion.map(decimal);
+        let square = w * w + x * x + y * y + z * z;
+        if square.to_f64() < f64::MIN_POSITIVE {
+            return None;
+        }
+        let s = Double::new(2.0) / square;
+        let one = Double::new(1.0);
+        Some(Self {
+            columns: [
+                Vector([one - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)]),
+                Vector([s * (x * y - w * z), one - s * (x * x + z * z), s * (y * z + w * x)]),
+                Vector([s * (x * z + w * y), s * (y * z - w * x), one - s * (x * x + y * y)]),
+            ],
+        })
+    }
+
+    /// The frame whose x axis is `x` and whose y axis is the part of `y` across it.
+    pub(crate) fn of_xy(x: [f64; 3], y: [f64; 3]) -> Option<Self> {
+        let x = Vector::decimal(x).direction()?;
+        let y = Vector::decimal(y).direction()?.across(x).direction()?;
+        Some(Self { columns: [x, y, x.cross(y)] })
+    }
+
+    /// The smallest turn of z to a direction; half a turn is about x.
+    pub(crate) fn to_z(direction: [f64; 3]) -> Option<Self> {
+        let (z, direction) = (Vector::unit(2), Vector::decimal(direction).direction()?);
+        let cross = z.cross(direction);
+        let axis = cross.direction().unwrap_or(Vector::unit(0));
+        Some(Self::about(axis, atan2(cross.norm(), z.dot(direction))))
     }
 
     /// The frame whose z axis is `z` and whose x axis is `x`, both of length 1 and perpendicular.

@@ -29,7 +29,8 @@ pub struct Options {
     pub snap: bool,
     /// Whether bodies are kept whose inertia is not positive semidefinite.
     pub keep_unphysical: bool,
-    /// The acceleration of gravity in the axes of the root link, m/s².
+    /// The acceleration of gravity in the axes of the root link, m/s². An MJCF file says its own, which is taken
+    /// instead.
     pub gravity: [f64; 3],
     /// Whether the links of the chain, and the links that are fixed to them, become named frames.
     pub frames: bool,
@@ -120,7 +121,9 @@ impl Urdf {
     /// An error with its place in the URDF: a name that is not there, a tip that must be named, movable
     /// joints off the chain that nobody holds, joints that no row of a table can say, bodies that are none.
     pub fn import(&self, options: &Options) -> Result<Imported, Report> {
-        let (chain, mut told) = extract(self, &options.selection, options.gravity, options.snap)?;
+        let gravity = self.gravity.unwrap_or(options.gravity);
+        let (chain, mut told) = extract(self, &options.selection, gravity, options.snap)?;
+        told.remarks.splice(0..0, self.remarks.iter().cloned());
         if options.selection.whole && options.convention == Convention::Standard {
             let message = "a tree is written with modified rows, which may begin at gamma and b";
             let help = "choose the convention `modified`";
@@ -154,7 +157,7 @@ impl Urdf {
         let change = if told.snapped.is_empty() {
             None
         } else {
-            let (raw, _) = extract(self, &options.selection, options.gravity, false)?;
+            let (raw, _) = extract(self, &options.selection, gravity, false)?;
             Some(Difference::of_chains(&Dynamics::of(&raw), &exact))
         };
         robot.notes = notes(&told, change.as_ref());
@@ -319,8 +322,7 @@ impl Urdf {
                 ));
             }
             if let Some(length) = xyz.into_iter().find(|length| length.abs() > FAR) {
-                remarks
-                    .push(format!("{what} {name} has an origin that is {length} m away: lengths in a URDF are metres"));
+                remarks.push(format!("{what} {name} has an origin that is {length} m away: lengths are in metres"));
             }
         }
         remarks
@@ -343,7 +345,7 @@ fn base_remark(link: &str, frames: &[(String, String)], start: Transform) -> Opt
         format!("which is at [{x}, {y}, {z}] m in the axes of this link{turned}")
     };
     Some(format!(
-        "the base link {} of the URDF is the frame {}; `base` in a robot file is frame 0 of the table, {place}",
+        "the base link {} of the file is the frame {}; `base` in a robot file is frame 0 of the table, {place}",
         quoted(link),
         quoted(name)
     ))
@@ -380,7 +382,7 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
         link.mass != 0.0 || link.inertia != Inertia::default() || link.has_first_moment()
     };
     if !robot.joints.iter().any(has_mass) {
-        remarks.push("no link has mass: the URDF has no inertial data".to_owned());
+        remarks.push("no link has mass: the file has no inertial data".to_owned());
     }
     remarks
 }

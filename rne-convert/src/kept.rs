@@ -19,7 +19,7 @@ const MOST: usize = 32;
 const MOST_BYTES: usize = 32 << 20;
 
 /// All that decides an import. Meshes and other files that a URDF names are never opened, and a document type, by which
-/// XML includes others, is refused: a text is all of it.
+/// XML includes others, is refused: a text is all of it. What includes others is not kept.
 #[derive(Debug, PartialEq, Eq)]
 struct Content {
     /// The name of the file, which is written into the robot file and into reports.
@@ -42,7 +42,11 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>
     if let Some(imported) = known(&KEPT.lock().unwrap_or_else(PoisonError::into_inner)) {
         return Ok(imported);
     }
-    let imported = Arc::new(Urdf::read(file, text)?.import(options)?);
+    let urdf = Urdf::read(file, text)?;
+    let imported = Arc::new(urdf.import(options)?);
+    if !urdf.source.included.is_empty() {
+        return Ok(imported);
+    }
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     // another thread may have made it meanwhile: one for all
     if let Some(imported) = known(&kept) {

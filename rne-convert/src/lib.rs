@@ -1,9 +1,10 @@
 //! Other descriptions of an arm into a Denavit-Hartenberg table, and back.
 //!
-//! Strings in, data out: nothing here prints, and only [`Description::open`] opens a file, in one order for every door.
-//! [`Urdf::import`] makes a robot file of a chain of a URDF, [`convert()`] writes a table in the other convention,
-//! [`export()`] writes it as a URDF, [`robot_file::write`] is the writer of robot files. [`import()`] is for programs
-//! that read one URDF many times: it keeps what it made.
+//! Strings in, data out: nothing here prints, and only [`Description::open`] opens a file, in one order for every door,
+//! and [`Urdf::read`] those that an MJCF file includes. [`Urdf::import`] makes a robot file of a chain of a URDF or of
+//! an MJCF file, [`convert()`] writes a table in the other convention, [`export()`] writes it as a URDF,
+//! [`robot_file::write`] is the writer of robot files. [`import()`] is for programs that read one URDF many times: it
+//! keeps what it made.
 //!
 //! Numbers are turned in twice the precision and rounded once. So a length that is 0.4318 in the URDF is 0.4318 in the
 //! table, and what is zero on paper is zero: the compiler folds it away.
@@ -21,6 +22,7 @@ mod frames;
 mod geometry;
 mod import;
 mod kept;
+mod mjcf;
 mod payload;
 pub mod robot_file;
 mod scan;
@@ -28,6 +30,7 @@ mod selection;
 mod snap;
 mod source;
 mod table;
+mod transmission;
 mod urdf;
 
 pub use comparison::Difference;

@@ -158,12 +158,26 @@ fn passed_over(list: &[(&str, &'static [&'static str])], name: &str) -> &'static
     list.iter().find(|(of, _)| *of == name).map_or(&[], |(_, known)| known)
 }
 
+/// The name of the root element of a text, as far as it is XML.
+pub(crate) fn root_name(text: &str) -> Option<String> {
+    let mut reader = Reader::from_str(text);
+    loop {
+        match reader.read_event() {
+            Ok(Event::Start(tag) | Event::Empty(tag)) => {
+                return Some(String::from_utf8_lossy(tag.name().as_ref()).into_owned());
+            }
+            Ok(Event::Eof) | Err(_) => return None,
+            Ok(_) => {}
+        }
+    }
+}
+
 /// Reads the text once.
 pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
     let bytes = source.text.len();
     if bytes > MAX_BYTES {
         let message = format!("the URDF has {bytes} bytes; rne reads at most {MAX_BYTES}");
-        return Err(Source { file: source.file.clone(), text: String::new() }.error(&(0..0), message, None));
+        return Err(Source::new(&source.file, "").error(&(0..0), message, None));
     }
     let mut scanner =
         Scanner { source, scanned: Scanned::default(), kinds: HashMap::new(), open: Vec::new(), has_robot: false };

@@ -147,7 +147,7 @@ fn leaves(urdf: &Urdf, base: usize) -> Vec<(usize, usize)> {
     let mut open = vec![(base, 0)];
     while let Some((link, joints)) = open.pop() {
         let children = &urdf.links[link].children;
-        if children.is_empty() {
+        if urdf.is_end(&urdf.links[link]) {
             leaves.push((link, joints));
         }
         let below = |&joint: &usize| {

@@ -7,13 +7,20 @@ use std::path::Path;
 use rne_model::{Remedy, Report};
 
 /// A text and what messages call it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Source {
     pub(crate) file: String,
+    /// The text of the file, and after it those of the files that it includes.
     pub(crate) text: String,
+    /// The included files: where the text of each begins, and what messages call it.
+    pub(crate) included: Vec<(usize, String)>,
 }
 
 impl Source {
+    pub(crate) fn new(file: &str, text: &str) -> Self {
+        Self { file: file.to_owned(), text: text.to_owned(), included: Vec::new() }
+    }
+
     /// The name of the file without its folders: where they are matters to messages alone.
     pub(crate) fn file_name(&self) -> &str {
         Path::new(&self.file).file_name().and_then(OsStr::to_str).unwrap_or(&self.file)
@@ -32,7 +39,13 @@ impl Source {
         help: impl Into<Option<String>>,
     ) -> Report {
         let help: Option<String> = help.into();
-        Report::of_error(&self.file, &self.text, span.clone(), message, help.as_deref())
+        let next = self.included.partition_point(|(start, _)| *start <= span.start);
+        let (start, file) =
+            next.checked_sub(1).map_or((0, &self.file), |at| (self.included[at].0, &self.included[at].1));
+        let end = self.included.get(next).map_or(self.text.len(), |(start, _)| *start);
+        let text = self.text.get(start..end).unwrap_or_default();
+        let within = |at: usize| at.saturating_sub(start).min(text.len());
+        Report::of_error(file, text, within(span.start)..within(span.end), message, help.as_deref())
     }
 }
 

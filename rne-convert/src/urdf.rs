@@ -1,14 +1,17 @@
-//! A URDF as a tree of links and joints, whose every number is finite and whose every name is known.
+//! A URDF as a tree of links and joints, whose every number is finite and whose every name is known. An MJCF file
+//! becomes the same tree.
 
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use rne_model::{Inertia, Limits, Report};
 
-use crate::scan::{Seen, scan};
+use crate::mjcf;
+use crate::scan::{Seen, root_name, scan};
 use crate::source::{Source, names, quoted};
+use crate::transmission::{self, Transmission};
 
-/// A robot as its URDF describes it. [`Urdf::read`] has checked that its links are one tree.
+/// A robot as its URDF or its MJCF file describes it. [`Urdf::read`] has checked that its links are one tree.
 #[derive(Clone, Debug)]
 pub struct Urdf {
     pub(crate) source: Source,
@@ -21,6 +24,12 @@ pub struct Urdf {
     pub(crate) gears: Vec<Gear>,
     /// The link that no joint moves.
     pub(crate) root: usize,
+    /// The link at the base of an arm that names none: the root, or the body of an MJCF file that floats.
+    pub(crate) base: usize,
+    /// The acceleration of gravity in the axes of the root, m/s², where the file says it.
+    pub(crate) gravity: Option<[f64; 3]>,
+    /// Remarks on what the file has and a robot file has not, in sentences.
+    pub(crate) remarks: Vec<String>,
     /// Kinds of elements and attributes that are not known, in words.
     pub(crate) unknown: Vec<String>,
     /// The unknown elements beside links and joints.
@@ -41,6 +50,8 @@ pub(crate) struct Link {
     pub(crate) rpy: [f64; 3],
     /// About the centre of mass, in the axes of `rpy`.
     pub(crate) inertia: Inertia,
+    /// Whether it is a mark on another link, and no end of an arm: a site of an MJCF file.
+    pub(crate) is_site: bool,
     /// The joint that moves it.
     pub(crate) parent: Option<usize>,
     /// The joints whose parent it is.
@@ -130,12 +141,19 @@ pub(crate) struct Joint {
     /// As written: not of length 1.
     pub(crate) axis: [f64; 3],
     pub(crate) limits: Limits,
-    /// Viscous and Coulomb friction, N m s/rad and N m, or N s/m and N.
+    /// Viscous and Coulomb friction at the joint, N m s/rad and N m, or N s/m and N.
     pub(crate) friction: [f64; 2],
+    /// Inertia of the rotor about its own axis, kg m², or its mass, kg.
+    pub(crate) rotor_inertia: f64,
+    /// Motor angle by joint angle.
+    pub(crate) gear_ratio: f64,
+    /// The position at which the links are where the file has them, rad or m: `ref` of an MJCF file.
+    pub(crate) reference: f64,
 }
 
 impl Urdf {
-    /// Reads the text of a URDF; `file` is what messages call it, its path. The robot file keeps its name without
+    /// Reads the text of a URDF, or of an MJCF file, whose root element is `mujoco`. `file` is what messages call it,
+    /// its path; files that an MJCF file includes are read from its folder. The robot file keeps its name without
     /// folders.
     ///
     /// # Errors
@@ -144,29 +162,53 @@ impl Urdf {
     /// number, a name that is there twice or not at all, links that are not one tree.
     pub fn read(file: &str, text: &str) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-        let source = Source { file: file.to_owned(), text: text.to_owned() };
+        let source = Source::new(file, text);
+        if root_name(text).is_some_and(|name| name == "mujoco") {
+            return mjcf::read(source);
+        }
         let scanned = scan(&source)?;
         let mut urdf = Self {
-            source,
             name: scanned.robot.text("robot", "name").unwrap_or_default().to_owned(),
-            links: Vec::new(),
-            joints: Vec::new(),
-            gears: Vec::new(),
-            root: 0,
             unknown: scanned.unknown.clone(),
             beside: scanned.robot.unknown.clone(),
+            ..Self::empty(source)
         };
         urdf.take_links(&scanned.links)?;
         urdf.take_joints(&scanned.joints)?;
         urdf.find_root()?;
         urdf.take_gears(&scanned.couplings)?;
+        let transmissions = transmission::read(&urdf.source)?;
+        urdf.take_transmissions(transmissions);
         Ok(urdf)
+    }
+
+    /// A robot without links.
+    pub(crate) fn empty(source: Source) -> Self {
+        Self {
+            source,
+            name: String::new(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            gears: Vec::new(),
+            root: 0,
+            base: 0,
+            gravity: None,
+            remarks: Vec::new(),
+            unknown: Vec::new(),
+            beside: BTreeSet::new(),
+        }
     }
 
     /// The names of the links that carry no other: where an arm may end.
     #[must_use]
     pub fn leaves(&self) -> Vec<&str> {
-        self.links.iter().filter(|link| link.children.is_empty()).map(|link| link.name.as_str()).collect()
+        self.links.iter().filter(|link| self.is_end(link)).map(|link| link.name.as_str()).collect()
+    }
+
+    /// Whether an arm may end with a link: it carries nothing but marks, and is not a mark itself.
+    pub(crate) fn is_end(&self, link: &Link) -> bool {
+        let is_mark = |&joint: &usize| self.links[self.joints[joint].child].is_site;
+        !link.is_site && link.children.iter().all(is_mark)
     }
 
     fn take_links(&mut self, links: &[Seen]) -> Result<(), Report> {
@@ -191,8 +233,6 @@ impl Urdf {
             }
             let inertia = |attribute| seen.number("inertia", attribute).unwrap_or(0.0);
             self.links.push(Link {
-                name: name.to_owned(),
-                span: span.clone(),
                 unknown: seen.unknown.clone(),
                 mass,
                 xyz: seen.vector("origin", "xyz").unwrap_or_default(),
@@ -205,8 +245,7 @@ impl Urdf {
                     xz: inertia("ixz"),
                     yz: inertia("iyz"),
                 },
-                parent: None,
-                children: Vec::new(),
+                ..Link::new(name.to_owned(), span.clone())
             });
         }
         Ok(())
@@ -303,7 +342,7 @@ impl Urdf {
                 "connect all links with joints to one tree".to_owned(),
             ));
         }
-        self.root = root;
+        (self.root, self.base) = (root, root);
         Ok(())
     }
 
@@ -349,6 +388,30 @@ impl Urdf {
         Ok(())
     }
 
+    /// Gives joints the gears and rotors of their transmissions.
+    fn take_transmissions(&mut self, transmissions: Vec<Transmission>) {
+        let mut known = BTreeSet::new();
+        for Transmission { name, joints, actuators, ratio, rotor_inertia } in transmissions {
+            let (ratio, rotor_inertia) = (ratio.unwrap_or(1.0), rotor_inertia.unwrap_or(0.0));
+            if [ratio, rotor_inertia] == [1.0, 0.0] {
+                continue;
+            }
+            let joint = match (&joints[..], actuators) {
+                ([joint], 0 | 1) => self.joints.iter().position(|known| known.name == *joint),
+                _ => None,
+            };
+            let movable = joint.filter(|&joint| self.joints[joint].kind.has_one_freedom() && known.insert(joint));
+            let Some(joint) = movable else {
+                self.remarks.push(format!(
+                    "the transmission {} is left out: rne takes one of a motor and a joint that moves",
+                    quoted(&name)
+                ));
+                continue;
+            };
+            (self.joints[joint].gear_ratio, self.joints[joint].rotor_inertia) = (ratio, rotor_inertia);
+        }
+    }
+
     /// The joints from a link to the root.
     fn to_root(&self, link: usize) -> Vec<usize> {
         let parent = |joint: &usize| self.links[self.joints[*joint].parent].parent;
@@ -361,7 +424,49 @@ impl Urdf {
     }
 }
 
+impl Link {
+    /// A link without mass and joints.
+    pub(crate) fn new(name: String, span: Range<usize>) -> Self {
+        Self {
+            name,
+            span,
+            unknown: BTreeSet::new(),
+            mass: 0.0,
+            xyz: [0.0; 3],
+            rpy: [0.0; 3],
+            inertia: Inertia::default(),
+            is_site: false,
+            parent: None,
+            children: Vec::new(),
+        }
+    }
+}
+
 impl Joint {
+    /// A joint without name, limits and friction, between links that are still to be named.
+    pub(crate) fn new(kind: Kind, span: Range<usize>) -> Self {
+        Self {
+            name: String::new(),
+            span,
+            unknown: BTreeSet::new(),
+            has_axis: true,
+            crossed: None,
+            negative: Vec::new(),
+            kind,
+            mimic: None,
+            parent: 0,
+            child: 0,
+            xyz: [0.0; 3],
+            rpy: [0.0; 3],
+            axis: [1.0, 0.0, 0.0],
+            limits: Limits::default(),
+            friction: [0.0; 2],
+            rotor_inertia: 0.0,
+            gear_ratio: 1.0,
+            reference: 0.0,
+        }
+    }
+
     /// A joint between two links, as its elements say.
     fn of(seen: &Seen, parent: usize, child: usize) -> Self {
         let kind = seen.text("joint", "type").and_then(Kind::of).unwrap_or(Kind::Fixed);
@@ -378,7 +483,6 @@ impl Joint {
         });
         Self {
             name: seen.text("joint", "name").unwrap_or_default().to_owned(),
-            span: seen.span.clone(),
             unknown: seen.unknown.clone(),
             has_axis: seen.elements.contains("axis"),
             negative: ["effort", "velocity"]
@@ -387,7 +491,6 @@ impl Joint {
                 .filter(|(_, value)| *value < 0.0)
                 .collect(),
             crossed: (lower > upper && kind != Kind::Continuous).then_some((lower, upper)),
-            kind,
             mimic,
             parent,
             child,
@@ -400,6 +503,7 @@ impl Joint {
                 effort: positive(number("limit", "effort")),
             },
             friction: [number("dynamics", "damping"), number("dynamics", "friction")],
+            ..Self::new(kind, seen.span.clone())
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Robot files made of URDFs against Pinocchio, which reads the same URDF.
+//! Robot files made of URDFs and MJCF files against Pinocchio and MuJoCo, which read the same files.
 
 use std::path::PathBuf;
 
@@ -9,14 +9,15 @@ use xshell::cmd;
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// Packages that are installed: Pinocchio, and arms as URDF.
-const PACKAGES: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
+/// Packages that are installed: Pinocchio, MuJoCo, and arms as URDF.
+const PACKAGES: [&str; 4] = ["pin==4.1.0", "mujoco==4.0.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
 
 /// Imports real arms and compares them with Pinocchio
 ///
 /// Torques, mass matrix and tip of at least 12 arms of packages, in both conventions: to 1e-10 without snapping, and
 /// with it by no more than the import tells. `xtask/urdf.py` has the arms and the comparison. With a folder of URDFs of
-/// trees: all functions that Pinocchio has, of the whole robots that `xtask/trees.py` names, to 1e-12.
+/// trees: all functions that Pinocchio has, of the whole robots that `xtask/trees.py` names, to 1e-12. With --mjcf: the
+/// torques of MuJoCo, of the MJCF files and URDFs in a folder, to 1e-9; MuJoCo saves each URDF as MJCF.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; Pinocchio and the arms are fetched into target/urdf/venv.
@@ -25,12 +26,16 @@ Examples:
   cargo xtask urdf              with what is installed there
   cargo xtask urdf --install    install it first
   cargo xtask urdf --trees DIR  whole robots of the URDFs in a folder
+  cargo xtask urdf --mjcf DIR   whole robots as MJCF, beside MuJoCo
   cargo xtask urdf --trees DIR --write
                                 also write the files of tests/functions/trees")]
 pub(crate) struct Urdf {
     /// Compare whole robots of the URDFs in this folder instead
     #[arg(long, value_name = "DIR")]
     trees: Option<PathBuf>,
+    /// Compare the MJCF files and URDFs in this folder with MuJoCo instead
+    #[arg(long, value_name = "DIR", conflicts_with = "trees")]
+    mjcf: Option<PathBuf>,
     /// Write the robot files and the values of those trees whose licence allows it to tests/functions/trees
     #[arg(long, requires = "trees")]
     write: bool,
@@ -46,12 +51,16 @@ impl Urdf {
         let venv = target.join("urdf/venv");
         let python = venv.join("bin/python");
         let can_import = || {
-            let found = cmd!(shell, "{python} -c 'import pinocchio, numpy'").quiet().ignore_stdout().ignore_stderr();
+            let packages = if self.mjcf.is_some() { "mujoco, pinocchio, numpy" } else { "pinocchio, numpy" };
+            let import = format!("import {packages}");
+            let found = cmd!(shell, "{python} -c {import}").quiet().ignore_stdout().ignore_stderr();
             python.exists() && found.run().is_ok()
         };
         if !can_import() {
             if !self.install {
-                return Err(Missing::error("there is no Pinocchio; `cargo xtask urdf --install` gets it"));
+                return Err(Missing::error(
+                    "there is no Pinocchio, or no MuJoCo; `cargo xtask urdf --install` gets both",
+                ));
             }
             if !machine::has("python3") {
                 return Err(Missing::error("there is no python3"));
@@ -66,6 +75,14 @@ impl Urdf {
             if install.quiet().ignore_stderr().run().is_err() && !can_import() {
                 return Err(Missing::error("Pinocchio and its arms cannot be fetched"));
             }
+        }
+        if let Some(folder) = &self.mjcf {
+            let models = target.join("urdf/mjcf");
+            shell.remove_path(&models)?;
+            shell.create_dir(&models)?;
+            cmd!(shell, "{python} xtask/mjcf.py {folder} {models}").quiet().run()?;
+            let test = cmd!(shell, "cargo test --quiet --package rne-convert --test mjcf -- --ignored");
+            return Ok(Verdict::from(machine::without_flags(test).env("RNE_MJCF", models).quiet().run().is_ok()));
         }
         machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
         let rne = target.join("debug/rne");

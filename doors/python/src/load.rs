@@ -1,4 +1,4 @@
-//! An arm from a robot file, a URDF, their texts, or the box.
+//! An arm from a robot file, a URDF, an MJCF file, their texts, or the box.
 
 use std::collections::BTreeMap;
 use std::ffi::CString;
@@ -25,13 +25,13 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
     Arm::of(py, Origin::default().shipped(file))
 }
 
-/// Read an arm or a tree: a robot file (YAML), a URDF, or the text of either.
+/// Read an arm or a tree: a robot file (YAML), a URDF, an MJCF file, or the text of one.
 ///
 /// Parameters
 /// ----------
 /// source : str or os.PathLike
-///     Path of a robot file or a URDF, or its text, or the name of a built-in robot. A plan file beside a robot file is
-///     honoured.
+///     Path of a robot file, a URDF or an MJCF file, or its text, or the name of a built-in robot. A plan file beside a
+///     robot file is honoured. The words on a URDF below hold for an MJCF file, too.
 /// tip, base : str, optional
 ///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
 /// whole : bool

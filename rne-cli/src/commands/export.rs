@@ -16,11 +16,14 @@ use crate::outcome::{Failure, Outcome};
 Examples:
   rne export robots/ur5.yaml --urdf -o ur5.urdf
   rne export puma560 --urdf
+  rne export baxter --urdf -o baxter.urdf        a tree, as any robot
 
 The links of the URDF are `world`, `base` (frame 0), `link_1` … and `tip`. The
-frame of a link is on the axis of its joint. rne writes the friction of a motor
-as friction of its joint: G² B and |G| Tc. A URDF cannot store gravity, so a
-note reports a gravity that is not [0, 0, -9.81] in `world`.")]
+frame of a link is on the axis of its joint. Named frames and bodies are links.
+A joint that follows another one gets a `mimic`; a URDF has none for a joint
+that follows several. rne writes the friction of a motor as friction of its
+joint: G² B and |G| Tc. A URDF cannot store gravity, so a note reports a
+gravity that is not [0, 0, -9.81] in `world`, and motors that are left out.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`; - is standard input
     #[arg(value_name = "FILE")]
@@ -33,7 +36,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Coupled)?;
     let exported = rne_convert::export(&robot)
         .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
     let mut remark = String::new();

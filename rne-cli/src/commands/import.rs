@@ -1,4 +1,4 @@
-//! `rne import`: a robot file of an arm in a URDF, and an account of what was done.
+//! `rne import`: a robot file of an arm in a URDF or an MJCF file, and an account of what was done.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
 use crate::values::choice::{convention, robot_name};
 
-/// Convert an arm in a URDF to a robot file
+/// Convert an arm in a URDF, or in an MJCF file of MuJoCo, to a robot file
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -24,6 +24,7 @@ Examples:
   rne import puma.urdf --convention modified     to the terminal
   rne import puma.urdf --name puma -o puma.yaml
   rne import quadruped.urdf --whole -o quadruped.yaml
+  rne import scene.xml --tip hand -o arm.yaml    MJCF: bodies are the links
 
 For an arm with several ends: --base torso_lift_link --tip arm_tool_link. For a
 URDF with joints outside the arm: --lock torso_lift_joint=0.1 --lock-others.
@@ -34,13 +35,13 @@ Without -o rne writes the robot file to standard output and its report to
 standard error.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
-    /// URDF file; - is standard input
+    /// URDF file, or MJCF file, whose root element is mujoco; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Fixed link at the base of the arm [default: the root link]
+    /// Fixed link at the base of the arm [default: the root link, or the body that floats]
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
-    /// Last link of the arm [default: the last link, if the URDF has only one end]
+    /// Last link of the arm [default: the last link, if the file has only one end]
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
     /// Convert the whole robot after the base, a tree of links, and not one arm; --tip then says where the tip is
@@ -64,7 +65,7 @@ pub(crate) struct Arguments {
     /// Accept inertias that no physical body can have
     #[arg(long)]
     keep_unphysical: bool,
-    /// Name of the robot [default: the name in the URDF]
+    /// Name of the robot [default: the name in the file]
     #[arg(long, value_parser = robot_name)]
     name: Option<String>,
     #[command(flatten)]

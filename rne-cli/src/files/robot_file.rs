@@ -102,16 +102,16 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
         // the options that the help names are those of `rne import`
         let mut failure = Failure::from(&report);
         failure.text = format!(
-            "{}\n\n{name} is a URDF. `{TYPED}rne import {name} -o FILE.yaml{TYPED:#}` and its options write a robot \
-             file of one arm; give that file to this command",
+            "{}\n\n{name} is a URDF or an MJCF file. `{TYPED}rne import {name} -o FILE.yaml{TYPED:#}` and its options \
+             write a robot file of one arm; give that file to this command",
             failure.text.trim_end()
         );
         failure
     })?;
     let Account { base, tip, .. } = &imported.account;
     remark(format_args!(
-        "{TITLE}note{TITLE:#}: {name} is a URDF, and the arm is from {base} to {tip}\n      {TYPED}rne import \
-         {name}{TYPED:#} prints its robot file and every assumption\n"
+        "{TITLE}note{TITLE:#}: {name} is a URDF or an MJCF file, and the arm is from {base} to {tip}\n      \
+         {TYPED}rne import {name}{TYPED:#} prints its robot file and every assumption\n"
     ));
     Ok(imported.text.clone())
 }

@@ -121,7 +121,7 @@ fn every_command_takes_a_urdf_with_one_arm() {
     for command in [&["eval", "--q", "1,1,1,1,1,1"][..], &["ops"], &["emit"], &["show", "--joint", "2"]] {
         let [of_urdf, of_yaml] = [&urdf, &yaml].map(|file| rne(&[command, &[file.as_str()]].concat()));
         assert_eq!((of_urdf.status, &of_urdf.out), (0, &of_yaml.out), "{command:?}: {of_urdf:?}");
-        assert!(of_urdf.err.contains("is a URDF, and the arm is from world to "), "{of_urdf:?}");
+        assert!(of_urdf.err.contains("is a URDF or an MJCF file, and the arm is from world to "), "{of_urdf:?}");
         assert!(of_urdf.err.contains(&format!("rne import {urdf}")), "{of_urdf:?}");
     }
     let checked = rne(&["check", &urdf]);

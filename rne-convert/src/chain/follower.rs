@@ -1,6 +1,6 @@
 //! Joints that are locked, and joints that follow other joints (`mimic`, and `coupling` of URDF+).
 
-use rne_model::{Coupling, Report, one_line};
+use rne_model::{Coupling, Motor, Report, one_line};
 
 use super::{Chain, Walk, lock};
 use crate::source::quoted;
@@ -124,7 +124,8 @@ impl Walk<'_> {
                 "the joint {name} follows {leader}; its friction is left out, because a joint that follows has no motor"
             ));
         }
-        self.coupled.push(Coupled { place, follows: vec![(leader, ratio)], offset });
+        let rotor = joint.rotor_inertia * joint.gear_ratio * joint.gear_ratio;
+        self.coupled.push(Coupled { place, follows: vec![(leader, ratio)], offset, rotor });
         Ok(())
     }
 
@@ -146,16 +147,21 @@ impl Walk<'_> {
             let help = "lock this joint, or let it follow joints that move".to_owned();
             return Err(self.urdf.source.error_with(&gear.span, message, help, &lock(&joints[gear.joint].name)));
         }
-        self.coupled.push(Coupled { place, follows: gear.follows.clone(), offset: 0.0 });
+        self.coupled.push(Coupled { place, follows: gear.follows.clone(), offset: 0.0, rotor: 0.0 });
         Ok(())
     }
 
     /// Gives the joints of the chain that follow another one their couplings.
     pub(super) fn couple(&self, chain: &mut Chain) {
-        for Coupled { place, follows, offset } in &self.coupled {
+        for Coupled { place, follows, offset, rotor } in &self.coupled {
             let placed = |&(joint, ratio): &(usize, f64)| Some((*self.places.get(&joint)?, ratio));
             let mut follows: Vec<(usize, f64)> = follows.iter().filter_map(placed).collect();
             follows.sort_by_key(|(joint, _)| *joint);
+            // the rotor of a follower turns with the joint that it follows: that is a larger rotor there
+            if let ([(leader, ratio)], true) = (&follows[..], *rotor != 0.0) {
+                let motor = chain.joints[*leader].motor.get_or_insert(NO_MOTOR);
+                motor.inertia += ratio * ratio * rotor / (motor.gear_ratio * motor.gear_ratio);
+            }
             if !follows.is_empty() {
                 chain.joints[*place].coupling = Some(Coupling { follows, offset: *offset });
             }
@@ -170,4 +176,9 @@ pub(super) struct Coupled {
     /// The joints of the URDF that it follows, which follow none, and the ratios.
     follows: Vec<(usize, f64)>,
     offset: f64,
+    /// The inertia of its rotor at the joint.
+    rotor: f64,
 }
+
+/// A motor without rotor, gear and friction.
+const NO_MOTOR: Motor = Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.0, coulomb: [0.0; 2] };

@@ -79,7 +79,7 @@ fn a_note_names_the_frame_of_the_base_link() {
     let [ours] = remarks_on_base(&arm()).try_into().expect("one note");
     assert!(
         ours.starts_with(
-            "the base link `base` of the URDF is the frame `base_frame`; `base` in a robot file is frame 0 of the \
+            "the base link `base` of the file is the frame `base_frame`; `base` in a robot file is frame 0 of the \
              table, which is at ["
         ),
         "{ours}"
@@ -87,7 +87,7 @@ fn a_note_names_the_frame_of_the_base_link() {
     // the link keeps its name, and frame 0 is elsewhere, on the first axis
     let renamed = arm().replace("\"base\"", "\"base_link\"");
     let [ours] = remarks_on_base(&renamed).try_into().expect("one note");
-    assert!(ours.contains("`base_link` of the URDF is the frame `base_link`;"), "{ours}");
+    assert!(ours.contains("`base_link` of the file is the frame `base_link`;"), "{ours}");
     let one = |base: &str, xyz: &str| {
         robot(&[
             link("a", 1.0, "0 0 0", [0.1; 3]),

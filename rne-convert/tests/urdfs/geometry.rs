@@ -83,7 +83,7 @@ fn nearly_parallel_axes_are_told_or_snapped() {
 fn other_units_are_told() {
     for (origin, told) in [
         ("xyz=\"0.4 0.1 0\" rpy=\"90 0 0\"", "has the angle 90 rad in its rpy, more than a turn: 90° is 1.5708 rad"),
-        ("xyz=\"400 100 0\" rpy=\"1.5 0 0\"", "has an origin that is 400 m away: lengths in a URDF are metres"),
+        ("xyz=\"400 100 0\" rpy=\"1.5 0 0\"", "has an origin that is 400 m away: lengths are in metres"),
     ] {
         let remarks = plain(&planar(origin)).account.remarks;
         assert!(remarks.iter().any(|remark| remark.contains(told)), "{remarks:?}");

@@ -12,6 +12,8 @@ mod chain;
 mod followers;
 mod frames;
 mod geometry;
+mod transmissions;
+mod trees;
 mod whole;
 
 pub(crate) const GRAVITY: f64 = 9.81;

@@ -1,12 +1,13 @@
-"""Dynamics of robot arms: any Denavit-Hartenberg table or URDF, compiled when it is read.
+"""Dynamics of robot arms: any Denavit-Hartenberg table, URDF or MJCF file, compiled when it is read.
 
 >>> import rne
 >>> arm = rne.robots.puma560
 >>> arm.inverse_dynamics([0, 0.8, -0.4, 0, 0.5, 0], [0.1] * 6, [0] * 6).shape
 (6,)
 
-`rne.load` reads a robot file or a URDF, `rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one
-state or `(N, n)` for many; units are SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
+`rne.load` reads a robot file, a URDF or an MJCF file; `rne.from_mujoco` and `rne.from_pinocchio` take models in
+memory; `rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one state or `(N, n)` for many; units are
+SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
 
 `rne.log`, `rne.identify`, `rne.identify_payload`, `rne.watch` and `rne.excite` are about logs: docs/python.md.
 """
@@ -29,6 +30,7 @@ from ._rne import (
 from .excitation import Excitation, excite
 from .identification import Identification, identify
 from .logs import Log, log
+from .models import from_mujoco, from_pinocchio
 from .payloads import IdentifiedPayload, identify_payload
 from .verdicts import Verdict
 from .watching import Baseline, Watch, watch
@@ -46,6 +48,8 @@ __all__ = [
     "Verdict",
     "Watch",
     "excite",
+    "from_mujoco",
+    "from_pinocchio",
     "identify",
     "identify_payload",
     "load",

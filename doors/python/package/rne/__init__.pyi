@@ -320,7 +320,13 @@ def load(
     form: Form = ...,
     rotors: bool = ...,
 ) -> Arm:
-    """Return the arm of a robot file (YAML), a URDF, the text of either, or the name of a built-in robot."""
+    """Return the arm of a robot file (YAML), a URDF, an MJCF file, the text of one, or of a built-in robot."""
+
+def from_mujoco(model: Any, **options: Any) -> Arm:
+    """The arm of a compiled MuJoCo model, an `mujoco.MjModel`."""
+
+def from_pinocchio(model: Any, **options: Any) -> Arm:
+    """The arm of a Pinocchio model, a `pinocchio.Model`."""
 
 def pose_log(pose: ArrayLike) -> Floats:
     """The logarithm of a pose: the constant twist that leads from the world to it in one unit of time."""

@@ -1,0 +1,213 @@
+"""Models of MuJoCo and Pinocchio that are in memory, as arms.
+
+Their arrays are written as an MJCF text with all digits, and `rne.load` reads this text: so there is one import, with
+the same messages, names and options.
+"""
+
+import numpy as np
+
+from ._rne import load
+
+
+def from_mujoco(model, **options):
+    """The arm of a compiled MuJoCo model, an `mujoco.MjModel`.
+
+    Positions are those of `qpos`: zero is where a joint's position is zero, not at its `ref`. The order of the joints
+    is `arm.joints`. `armature` is the rotor of a joint's motor: `rotors=True` has it in the torques. A joint that
+    follows another one by an equality has its torque at that one, and no place in q.
+
+    model: the compiled model, without joints that float or turn as balls.
+    options: those of `rne.load`; here `whole` is true and `snap` is false by default.
+
+    Raises ValueError where a body floats, and `RobotFileError` where a robot file cannot describe the model, such as a
+    closed loop.
+    """
+    import mujoco
+
+    names = [model.body(i).name or f"body_{i}" for i in range(model.nbody)]
+    bodies = [_Body(*parts) for parts in zip(names, model.body_pos, model.body_quat)]
+    for i in range(1, model.nbody):
+        body = bodies[i]
+        bodies[model.body_parentid[i]].parts.append(body)
+        inertia = {"pos": model.body_ipos[i], "quat": model.body_iquat[i], "mass": model.body_mass[i]}
+        body.add("inertial", **inertia, diaginertia=model.body_inertia[i])
+        body.attributes["gravcomp"] = model.body_gravcomp[i]
+    for i in range(model.njnt):
+        name, kind, dof = model.joint(i).name or f"joint_{i}", _KINDS[int(model.jnt_type[i])], model.jnt_dofadr[i]
+        if kind == "free":
+            floats = bodies[model.jnt_bodyid[i]].attributes["name"]
+            raise ValueError(
+                f"the body {floats!r} floats, by the joint {name!r}, but the base of a robot file does not move: "
+                "compile the model without this joint"
+            )
+        values = {"pos": model.jnt_pos[i], "axis": model.jnt_axis[i], "armature": model.dof_armature[dof]}
+        values |= {"damping": model.dof_damping[dof], "frictionloss": model.dof_frictionloss[dof]}
+        values |= {"ref": model.qpos0[model.jnt_qposadr[i]], "stiffness": model.jnt_stiffness[i]}
+        if model.jnt_limited[i]:
+            values |= {"range": model.jnt_range[i], "limited": "true"}
+        if model.jnt_actfrclimited[i]:
+            values |= {"actuatorfrcrange": model.jnt_actfrcrange[i], "actuatorfrclimited": "true"}
+        bodies[model.jnt_bodyid[i]].add("joint", name=name, type=kind, **values)
+    for i in range(model.nsite):
+        if name := model.site(i).name:
+            bodies[model.site_bodyid[i]].add("site", name=name, pos=model.site_pos[i], quat=model.site_quat[i])
+
+    equalities = []
+    words = {int(mujoco.mjtEq.mjEQ_CONNECT): "connect", int(mujoco.mjtEq.mjEQ_WELD): "weld"}
+    for i in np.flatnonzero(model.eq_active0):
+        if int(model.eq_type[i]) != int(mujoco.mjtEq.mjEQ_JOINT):
+            equalities.append(_tag(words.get(int(model.eq_type[i]), "tendon")))
+            continue
+        ends = [model.eq_obj1id[i], model.eq_obj2id[i]]
+        names = {f"joint{k + 1}": model.joint(end).name or f"joint_{end}" for k, end in enumerate(ends) if end >= 0}
+        equalities.append(_tag("joint", **names, polycoef=model.eq_data[i, :5]))
+
+    actuators = []
+    on_joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
+    armature = getattr(model, "actuator_armature", np.zeros(model.nu))  # since MuJoCo 3.4
+    for i in range(model.nu):
+        if int(model.actuator_trntype[i]) not in on_joints:
+            continue
+        joint = model.actuator_trnid[i, 0]
+        values = {"joint": model.joint(joint).name or f"joint_{joint}", "gear": model.actuator_gear[i, :1]}
+        if armature[i] != 0:
+            values["armature"] = armature[i]
+        if model.actuator_forcelimited[i]:
+            values |= {"forcerange": model.actuator_forcerange[i], "forcelimited": "true"}
+        is_motor = model.actuator_gaintype[i] == 0 and model.actuator_biastype[i] == 0
+        if is_motor and model.actuator_gainprm[i, 0] == 1 and model.actuator_ctrllimited[i]:
+            values |= {"ctrlrange": model.actuator_ctrlrange[i], "ctrllimited": "true"}
+        actuators.append(_tag("motor" if is_motor else "general", **values))
+
+    weightless = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
+    gravity = np.zeros(3) if weightless else model.opt.gravity
+    name = model.names[: model.names.index(b"\0")].decode() or "mujoco"
+    return _load(name, gravity, bodies[0], equalities, actuators, options)
+
+
+def from_pinocchio(model, **options):
+    """The arm of a Pinocchio model, a `pinocchio.Model`.
+
+    The order of the joints is `arm.joints`. The position of an unbounded joint, of which Pinocchio has cosine and sine,
+    is its angle. The frames of the model are `arm.frames`, by their names. `armature`, or else `rotorInertia` times the
+    square of `rotorGearRatio`, is the rotor of a joint's motor: `rotors=True` has it in the torques, as Pinocchio has
+    `armature` in them. A joint that follows another one has its torque at that one, and no place in q.
+
+    model: joints that turn or slide about one axis; a model that was built without a free-flyer.
+    options: those of `rne.load`; here `whole` is true and `snap` is false by default.
+
+    Raises ValueError where a joint has more than one freedom.
+    """
+    bodies = [_Body("universe", np.zeros(3), _IDENTITY)]
+    equalities = []
+    mimics = dict(zip(getattr(model, "mimicking_joints", []), getattr(model, "mimicked_joints", [])))
+    for i in range(1, model.njoints):
+        joint, name, placement = model.joints[i], model.names[i], model.jointPlacements[i]
+        body = _Body(name, placement.translation, _quaternion(placement.rotation))
+        bodies[model.parents[i]].parts.append(body)
+        bodies.append(body)
+        inertia = model.inertias[i]
+        moments = inertia.inertia[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)]
+        body.add("inertial", pos=inertia.lever, mass=inertia.mass, fullinertia=moments)
+        motion = np.asarray(joint.createData().S, dtype=float).reshape(6, -1)
+        if motion.shape[1] != 1:
+            kind = joint.shortname()
+            if "FreeFlyer" in kind:
+                raise ValueError(
+                    f"the joint {name!r} is a free-flyer, but the base of a robot file does not move: build the model "
+                    "without it"
+                )
+            raise ValueError(f"the joint {name!r} is a {kind}: a robot file has joints of one freedom")
+        values = {}
+        motion = motion[:, 0]
+        if i in mimics:
+            follower = joint.extract()
+            motion = motion / follower.scaling
+            polynomial = [follower.offset, follower.scaling]
+            equalities.append(_tag("joint", joint1=name, joint2=model.names[mimics[i]], polycoef=polynomial))
+        else:
+            v, q = joint.idx_v, joint.idx_q
+            rotor = model.armature[v] or model.rotorInertia[v] * model.rotorGearRatio[v] ** 2
+            friction = getattr(model, "upperDryFrictionLimit", None)
+            friction = model.friction[v] if friction is None else friction[v]
+            values = {"armature": rotor, "damping": model.damping[v], "frictionloss": friction}
+            low, high = model.lowerPositionLimit[q], model.upperPositionLimit[q]
+            if joint.nq == 1 and np.isfinite([low, high]).all() and low < high:
+                values |= {"range": [low, high], "limited": "true"}
+            effort = getattr(model, "upperEffortLimit", None)
+            effort = model.effortLimit[v] if effort is None else effort[v]
+            if 0 < effort < 1e9:
+                values |= {"actuatorfrcrange": [-effort, effort], "actuatorfrclimited": "true"}
+        slides = bool(motion[:3].any())
+        axis = motion[:3] if slides else motion[3:]
+        body.add("joint", name=name, type="slide" if slides else "hinge", axis=axis, **values)
+    seen = {"universe"}
+    for frame in model.frames:
+        if frame.name not in seen and frame.type.name != "JOINT":
+            seen.add(frame.name)
+            place = frame.placement
+            turn = _quaternion(place.rotation)
+            bodies[frame.parentJoint].add("site", name=frame.name, pos=place.translation, quat=turn)
+    return _load(model.name or "pinocchio", model.gravity.linear, bodies[0], equalities, [], options)
+
+
+# The kinds of joints, in the order of `mujoco.mjtJoint`.
+_KINDS = ("free", "ball", "slide", "hinge")
+_IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+class _Body:
+    """An element `body` that is written."""
+
+    def __init__(self, name, pos, quat):
+        self.attributes = {"name": name, "pos": pos, "quat": quat}
+        self.parts = []
+
+    def add(self, element, **attributes):
+        self.parts.append(_tag(element, **attributes))
+
+    def text(self, element="body"):
+        attributes = self.attributes if element == "body" else {}
+        lines, open_parts = [_tag(element, **attributes)[:-2] + ">"], [(element, iter(self.parts))]
+        while open_parts:
+            name, parts = open_parts[-1]
+            part = next(parts, None)
+            if part is None:
+                lines.append(f"</{name}>")
+                open_parts.pop()
+            elif isinstance(part, str):
+                lines.append(part)
+            else:
+                lines.append(_tag("body", **part.attributes)[:-2] + ">")
+                open_parts.append(("body", iter(part.parts)))
+        return "\n".join(lines)
+
+
+def _tag(element, **attributes):
+    escape = lambda text: str(text).replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    write = lambda value: escape(value) if isinstance(value, str) else " ".join(repr(float(x)) for x in np.ravel(value))
+    return f"<{element}" + "".join(f' {name}="{write(value)}"' for name, value in attributes.items()) + "/>"
+
+
+def _quaternion(rotation):
+    """(w, x, y, z) of a rotation matrix: the largest column of 4 q qᵀ, which loses no digits."""
+    r = np.asarray(rotation)
+    trace = np.trace(r)
+    skew = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
+    products = np.empty((4, 4))
+    products[0, 0], products[0, 1:], products[1:, 0] = 1 + trace, skew, skew
+    products[1:, 1:] = r + r.T + (1 - trace) * np.eye(3)
+    column = products[:, np.argmax(np.diag(products))]
+    return column / np.linalg.norm(column)
+
+
+def _load(name, gravity, world, equalities, actuators, options):
+    lines = [
+        _tag("mujoco", model=name)[:-2] + ">",
+        '<compiler angle="radian" autolimits="false" inertiafromgeom="false"/>',
+        _tag("option", gravity=gravity),
+        world.text("worldbody"),
+        *["<equality>", *equalities, "</equality>", "<actuator>", *actuators, "</actuator>"],
+        "</mujoco>",
+    ]
+    return load("\n".join(lines), **{"whole": True, "snap": False, **options})

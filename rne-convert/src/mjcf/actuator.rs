@@ -1,0 +1,60 @@
+//! Actuators of joints: their limits of force, rotors and damping.
+
+use std::collections::HashMap;
+
+use rne_model::Report;
+
+use super::LeftOut;
+use super::body::effort;
+use super::element::Element;
+use super::settings::Settings;
+use crate::source::quoted;
+use crate::urdf::Urdf;
+
+/// Gives joints what their actuators say. The force at a joint is that of its actuator times the gear.
+pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, urdf: &mut Urdf) -> Result<(), Report> {
+    let joints: HashMap<String, usize> =
+        urdf.joints.iter().enumerate().map(|(index, joint)| (joint.name.clone(), index)).collect();
+    let mut limits: Vec<(usize, Option<(f64, f64)>)> = Vec::new();
+    for element in root.below("actuator") {
+        let actuator = settings.classed(element, 0)?;
+        let Some(name) = actuator.text("joint").or_else(|| actuator.text("jointinparent")) else { continue };
+        let Some(&joint) = joints.get(name) else {
+            let message = format!("the actuator is one of the joint {}, which does not exist", quoted(name));
+            return Err(actuator.refused(message, "there is no such joint in the file".to_owned()));
+        };
+        let gear = actuator.first("gear", 6)?.unwrap_or(1.0);
+        let force = actuator.range("forcerange", "forcelimited")?;
+        // the control of a motor is its force
+        let control = if element.name == "motor" { actuator.range("ctrlrange", "ctrllimited")? } else { None };
+        let narrower = |one: (f64, f64), other: (f64, f64)| (one.0.max(other.0), one.1.min(other.1));
+        let range = match (force, control) {
+            (Some(force), Some(control)) => Some(narrower(force, control)),
+            (force, control) => force.or(control),
+        };
+        limits.push((
+            joint,
+            range.map(|(low, high)| {
+                let (low, high) = (low * gear, high * gear);
+                (low.min(high), low.max(high))
+            }),
+        ));
+        let rotor = actuator.number("armature")?.unwrap_or(0.0);
+        urdf.joints[joint].rotor_inertia += gear * gear * rotor;
+        if actuator.numbers("damping", 1, 3)?.is_some_and(|damping| damping.iter().any(|number| *number != 0.0)) {
+            left_out.add("damping of actuators is left out", name);
+        }
+    }
+    for (joint, range) in &limits {
+        // of several actuators of a joint, none alone limits its torque
+        let is_alone = limits.iter().filter(|(other, _)| other == joint).count() == 1;
+        let Some(range) = range.filter(|_| is_alone) else { continue };
+        let joint = &mut urdf.joints[*joint];
+        let limit = effort(left_out, &joint.name, range);
+        joint.limits.effort = match (joint.limits.effort, limit) {
+            (Some(one), Some(other)) => Some(one.min(other)),
+            (one, other) => one.or(other),
+        };
+    }
+    Ok(())
+}

@@ -1,0 +1,230 @@
+//! MJCF files: torques as MuJoCo computes them, and what is refused.
+
+use std::fs;
+use std::path::Path;
+
+use rne_convert::{Imported, Options, Selection, Urdf};
+use rne_model::{Convention, Reader, Robot};
+use rne_runtime::DynArm;
+
+fn whole() -> Options {
+    let selection = Selection { whole: true, ..Selection::default() };
+    Options { selection, convention: Convention::Modified, snap: false, ..Options::default() }
+}
+
+fn file(name: &str) -> String {
+    format!("{}/tests/mjcf/{name}.xml", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn import(name: &str, options: &Options) -> Imported {
+    let imported = import_file(&file(name), options);
+    assert!(imported.account.rounding.torque < 1e-12, "{:?}", imported.account.rounding);
+    imported
+}
+
+fn import_file(file: &str, options: &Options) -> Imported {
+    let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+    let imported = Urdf::read(file, &text).and_then(|urdf| urdf.import(options));
+    let imported = imported.unwrap_or_else(|report| panic!("{report}"));
+    let read = Reader::new("written").trees().couplings().read(&imported.text);
+    assert_eq!(read.unwrap_or_else(|report| panic!("{report}")).robot, imported.robot, "reading gives the robot");
+    imported
+}
+
+/// The torques of MuJoCo at the states of the file beside an MJCF file.
+fn assert_golden(name: &str, robot: &Robot) {
+    let golden = fs::read_to_string(Path::new(name).with_extension("csv")).expect("a golden file");
+    let mut lines = golden.lines();
+    let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+    let free = robot.joints.iter().filter(|joint| joint.coupling.is_none());
+    assert_eq!(free.map(|joint| joint.name.as_str()).collect::<Vec<_>>(), names, "{name}");
+    let arm = DynArm::from_robot(robot).with_rotors();
+    let mut states = 0;
+    for line in lines {
+        let numbers: Vec<f64> = line.split(',').map(|number| number.parse().expect("a number")).collect();
+        let parts: Vec<&[f64]> = numbers.chunks(names.len()).collect();
+        let [q, qd, qdd, expected] = parts[..] else { panic!("{name}: four lists") };
+        let found = arm.inverse_dynamics(q, qd, qdd).expect("as many joints");
+        let scale = expected.iter().fold(0.0, |largest: f64, torque| largest.max(torque.abs()));
+        for ((found, expected), joint) in found.iter().zip(expected).zip(&names) {
+            assert!((found - expected).abs() < 1e-9 * scale, "{name}, {joint}: {found} {expected}");
+        }
+        states += 1;
+    }
+    assert!(states > 0, "{name}");
+}
+
+#[test]
+fn torques_are_those_of_mujoco() {
+    for name in ["classes", "geoms", "gripper", "g1_29dof"] {
+        assert_golden(&file(name), &import(name, &whole()).robot);
+    }
+}
+
+/// The models that `cargo xtask urdf --mjcf DIR` saves.
+#[test]
+#[ignore = "needs a folder of models, which MuJoCo writes"]
+fn torques_are_those_of_mujoco_in_a_folder() {
+    let folder = std::env::var("RNE_MJCF").expect("RNE_MJCF");
+    let mut seen = 0;
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_some_and(|extension| extension == "xml") {
+            let file = path.to_str().expect("Unicode");
+            assert_golden(file, &import_file(file, &Options { keep_unphysical: true, ..whole() }).robot);
+            println!("{file}");
+            seen += 1;
+        }
+    }
+    assert!(seen >= 20, "{seen} models");
+}
+
+#[test]
+fn what_a_robot_file_has_is_kept() {
+    let Imported { robot, account, .. } = import("classes", &Options { frames: true, ..whole() });
+    let joint = |name: &str| robot.joints.iter().find(|joint| joint.name == name).expect("a joint");
+    let (low, high) = joint("hip_y").limits.position.expect("limits");
+    assert_eq!((low, high), (-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_4), "degrees of a class");
+    assert_eq!(joint("hip_z").limits.position, None, "not limited");
+    assert_eq!(joint("knee").limits.effort, Some(12.0), "control times gear");
+    assert_eq!(joint("hip_x").limits.effort, Some(30.0), "the smaller of two");
+    assert_eq!(joint("slide_x").limits.effort, Some(20.0));
+    let motor = joint("knee").motor.expect("a motor");
+    assert_eq!((motor.inertia, motor.gear_ratio), (0.02 + 16.0 * 0.001, 1.0));
+    assert_eq!((motor.viscous, motor.coulomb), (0.5, [0.3, -0.3]));
+    let frames: Vec<&str> = account.frames.iter().map(|(_, name)| name.as_str()).collect();
+    assert!(frames.contains(&"trunk_site") && frames.contains(&"sole"), "{frames:?}");
+    let told = account.remarks.join("\n");
+    assert!(told.contains("smaller one: `hip_x`"), "{told}");
+    assert!((robot.gravity[0] - 1.0).abs() < 1e-15, "{:?}", robot.gravity);
+}
+
+#[test]
+fn a_floating_base_is_fixed_and_equalities_couple() {
+    let Imported { robot, account, text, .. } = import("gripper", &whole());
+    assert_eq!(account.base, "arm", "the body that floats");
+    let told = account.remarks.join("\n");
+    assert!(told.contains("the body `arm` floats, because it has a free joint"), "{told}");
+    assert!(told.contains("joints that an equality holds are fixed: `held`"), "{told}");
+    assert!(told.contains("equalities that are not active are left out"), "{told}");
+    // right - 0.02 = 0.01 - 0.5 (left - 0.01); wheel = 0.2 + 30 (right - 0.02)
+    assert!(text.contains("{joint: right, follows: {left: -0.5}, offset: 0.035}"), "{text}");
+    assert_eq!(robot.joints.iter().filter(|joint| joint.coupling.is_some()).count(), 2);
+}
+
+/// An arm of a tree is chosen as in a URDF.
+#[test]
+fn one_arm_of_a_tree_is_chosen_by_its_tip() {
+    let selection = Selection { tip: Some("left_rubber_hand".to_owned()), ..Selection::default() };
+    let file = file("g1_29dof");
+    let text = fs::read_to_string(&file).expect("a file");
+    let urdf = Urdf::read(&file, &text).expect("MJCF");
+    let options = Options { selection, ..Options::default() };
+    let said = urdf.import(&options).expect_err("no such body").to_string();
+    assert!(said.contains("there is no link `left_rubber_hand`"), "{said}");
+    let selection =
+        Selection { tip: Some("left_wrist_yaw_link".to_owned()), lock_others: true, ..Selection::default() };
+    let robot = urdf.import(&Options { selection, ..Options::default() }).expect("an arm").robot;
+    assert_eq!(robot.joints.len(), 10, "waist and arm");
+    assert_eq!(robot.joints[9].limits.effort, Some(5.0));
+}
+
+fn with(old: &str, new: &str) -> String {
+    let text = "<mujoco model=\"m\">\n\
+         <compiler angle=\"radian\"/>\n\
+         <worldbody><body name=\"a\">\n\
+         <inertial pos=\"0 0 1\" mass=\"1\" diaginertia=\"1 1 1\"/>\n\
+         <joint name=\"j\"/>\n\
+         </body></worldbody>\n\
+         <equality/>\n\
+         </mujoco>";
+    assert_eq!(text.matches(old).count(), 1, "{old}");
+    text.replace(old, new)
+}
+
+fn refused(text: &str) -> String {
+    let report = Urdf::read("bad.xml", text).and_then(|urdf| urdf.import(&whole()).map(|_| ())).expect_err(text);
+    report.to_string()
+}
+
+#[test]
+fn every_mistake_has_its_message_and_its_place() {
+    for (old, new, line, part) in [
+        ("mass=\"1\"", "mass=\"-1\"", 4, "a mass is zero or positive"),
+        ("mass=\"1\"", "mass=\"one\"", 4, "`mass` of `inertial` is `one`; it must be one number"),
+        ("mass=\"1\"", "mass=\"nan\"", 4, "it must be one number"),
+        ("mass=\"1\"", "mass=\"1e400\"", 4, "it must be one number"),
+        ("mass=\"1\"", "mas=\"1\"", 4, "there is no attribute `mas` of `inertial`"),
+        ("0 0 1", "0 0", 4, "it must be 3 numbers"),
+        ("diaginertia=\"1 1 1\"", "", 4, "lacks `diaginertia`"),
+        ("diaginertia", "fullinertia=\"1 1 1 0 0 0\" diaginertia", 4, "two inertias"),
+        ("diaginertia=\"1 1 1\"", "fullinertia=\"1 1 1 2 0 0\"", 5, "no body has a negative one"),
+        ("diaginertia", "quat=\"0 0 0 0\" diaginertia", 4, "it has no direction"),
+        ("diaginertia", "quat=\"1 0 0 0\" euler=\"0 0 0\" diaginertia", 4, "several orientations"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" axis=\"0 0 0\"/>", 5, "has no direction"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" type=\"screw\"/>", 5, "it must be hinge, slide, ball or free"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" type=\"ball\"/>", 1, "there is no movable joint"),
+        ("<joint name=\"j\"/>", "<joint/><body><joint type=\"ball\"/></body>", 5, "more than one freedom"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\"/><joint name=\"j\"/>", 5, "two elements `joint` with the name `j`"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" class=\"x\"/>", 5, "there is no class `x`"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" armature=\"-1\"/>", 5, "it must not be negative"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" range=\"0 x\"/>", 5, "it must be 2 numbers"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\"/><freejoint/>", 5, "is not free"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\"/><body><freejoint/></body>", 5, "is not free"),
+        ("<joint name=\"j\"/>", "<joint/><body name=\"a\"/>", 5, "two elements `body` with the name `a`"),
+        ("<joint name=\"j\"/>", "<joint/><replicate count=\"2\"/>", 5, "which makes bodies"),
+        ("<joint name=\"j\"/>", "<joint/><body><geom type=\"mesh\" mesh=\"x\"/></body>", 5, "opens no meshes"),
+        ("<joint name=\"j\"/>", "<joint/><body><geom type=\"box\" size=\"1\"/></body>", 5, "needs 3 sizes"),
+        ("<joint name=\"j\"/>", "<joint/><include file=\"no.xml\"/>", 5, "`no.xml` cannot be read"),
+        ("<joint name=\"j\"/>", "<joint/><include/>", 5, "`include` lacks the attribute `file`"),
+        ("radian", "grad", 2, "it must be degree or radian"),
+        ("angle=\"radian\"", "coordinate=\"global\"", 2, "local coordinates only"),
+        ("angle=\"radian\"", "eulerseq=\"xy\"", 2, "three of the letters"),
+        ("<equality/>", "<equality><connect body1=\"a\"/></equality>", 7, "closes a loop"),
+        ("<equality/>", "<equality><weld body1=\"a\"/></equality>", 7, "closes a loop"),
+        ("<equality/>", "<equality><tendon tendon1=\"a\"/></equality>", 7, "closes a loop"),
+        ("<equality/>", "<equality><joint joint1=\"k\"/></equality>", 7, "the joint `k`, which does not exist"),
+        ("<equality/>", "<equality><joint/></equality>", 7, "lacks the attribute `joint1`"),
+        (
+            "<equality/>",
+            "<equality><joint joint1=\"j\" joint2=\"j\" polycoef=\"0 1 2\"/></equality>",
+            7,
+            "a degree above 1",
+        ),
+        ("<equality/>", "<actuator><motor joint=\"k\"/></actuator>", 7, "the joint `k`, which does not exist"),
+        ("<mujoco model=\"m\">", "<!DOCTYPE m><mujoco model=\"m\">", 1, "a document type"),
+        ("</mujoco>", "</mujoco><mujoco/>", 8, "a second element"),
+        ("</body>", "</bodi>", 6, "this is not XML"),
+        ("<body name=\"a\">", "<body name=\"a\" name=\"b\">", 3, "this is not XML"),
+        ("<compiler", "<default><default/></default><compiler", 2, "lacks the attribute `class`"),
+    ] {
+        let message = refused(&with(old, new));
+        assert!(message.contains(part), "{new}: {message}");
+        assert!(message.contains(&format!("bad.xml:{line}:")), "{new}: {message}");
+    }
+    for text in ["<mujoco/>", "<mujoco", "<mujoco>", "<mujoco><worldbody/></mujoco>", "<mujoco>&#0;</mujoco>"] {
+        assert!(refused(text).starts_with("error: "), "{text}");
+    }
+    let deep = format!("<mujoco>{}", "<body>".repeat(100_000));
+    assert!(refused(&deep).contains("more than 256 levels deep"));
+    let circle = with("<equality/>", "<equality><joint joint1=\"j\" joint2=\"j\"/></equality>");
+    assert!(refused(&circle).contains("form a circle"), "{}", refused(&circle));
+}
+
+/// A mistake in an included file is shown there.
+#[test]
+fn an_included_file_has_its_own_lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let main = folder.path().join("main.xml");
+    let text = with("<joint name=\"j\"/>", "<joint/>\n<include file=\"part.xml\"/>");
+    let said = |part: &str| {
+        fs::write(folder.path().join("part.xml"), part).expect("a file");
+        Urdf::read(main.to_str().expect("Unicode"), &text).expect_err(part).to_string()
+    };
+    let message = said("<mujocoinclude>\n<body><joint range=\"1\"/></body>\n</mujocoinclude>");
+    assert!(message.contains("part.xml:2:"), "{message}");
+    let message = said("<mujoco>\n<include file=\"part.xml\"/></mujoco>");
+    assert!(message.contains("is included twice"), "{message}");
+    let message = said("<robot/>");
+    assert!(message.contains("where `mujoco` is needed") && message.contains("part.xml:1:"), "{message}");
+}

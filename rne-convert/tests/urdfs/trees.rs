@@ -1,0 +1,113 @@
+//! Trees as URDFs, and back.
+
+use super::*;
+
+/// The URDF of a robot, imported whole, with the gravity that the export reports.
+fn again(robot: &Robot) -> Robot {
+    let exported = rne_convert::export(robot).unwrap_or_else(|error| panic!("{}: {error}", robot.name));
+    let selection = Selection { whole: true, tip: Some("tip".to_owned()), ..Selection::default() };
+    let options = Options {
+        selection,
+        convention: Convention::Modified,
+        snap: false,
+        keep_unphysical: true,
+        gravity: exported.gravity,
+        ..Options::default()
+    };
+    let urdf = Urdf::read("again.urdf", &exported.text).unwrap_or_else(|report| panic!("{report}"));
+    let imported = urdf.import(&options).unwrap_or_else(|report| panic!("{}: {report}", robot.name));
+    assert!(imported.account.rounding.position < 1e-12, "{}: {:?}", robot.name, imported.account.rounding);
+    imported.robot
+}
+
+fn free(robot: &Robot) -> Vec<&str> {
+    let free = robot.joints.iter().filter(|joint| joint.coupling.is_none());
+    free.map(|joint| joint.name.as_str()).collect()
+}
+
+/// Torques, tip and followers of the URDF are those of the robot without the motors of its list, joint by joint.
+fn assert_same(robot: &Robot) {
+    let other = again(robot);
+    let robot = &Robot { drives: Vec::new(), ..robot.clone() };
+    let places: Vec<usize> = free(&other)
+        .iter()
+        .map(|name| free(robot).iter().position(|known| known == name).unwrap_or_else(|| panic!("{name}")))
+        .collect();
+    assert_eq!(places.len(), robot.dof(), "{}", robot.name);
+    let mut random = fastrand::Rng::with_seed(3);
+    let [one, two] = [robot, &other].map(DynArm::from_robot);
+    for _ in 0..3 {
+        let mut state = || -> Vec<f64> { (0..robot.dof()).map(|_| 2.0 * random.f64() - 1.0).collect() };
+        let states = [state(), state(), state()];
+        let [q, qd, qdd] = states.clone().map(|all| places.iter().map(|&place| all[place]).collect::<Vec<f64>>());
+        let expected = one.inverse_dynamics(&states[0], &states[1], &states[2]).unwrap();
+        let found = two.inverse_dynamics(&q, &qd, &qdd).unwrap();
+        let scale = expected.iter().fold(0.0, |largest: f64, torque| largest.max(torque.abs()));
+        for (found, &place) in found.iter().zip(&places) {
+            assert!((found - expected[place]).abs() < 1e-12 * scale, "{}: {found} {}", robot.name, expected[place]);
+        }
+        let [here, there] = [(&one, &states[0]), (&two, &q)]
+            .map(|(arm, q)| <[f64; 3]>::from(arm.forward_kinematics(q).unwrap().translation_vector()));
+        assert!(here.iter().zip(there).all(|(a, b)| (a - b).abs() < 1e-12), "{}: {here:?} {there:?}", robot.name);
+    }
+}
+
+#[test]
+fn trees_come_back_with_their_torques() {
+    let mut seen = 0;
+    for file in rne_robots::all() {
+        let robot = Reader::new(file.name).trees().couplings().read(file.yaml).unwrap().robot;
+        if robot.is_serial() && !robot.has_couplings() && robot.drives.is_empty() {
+            continue;
+        }
+        assert_same(&robot);
+        seen += 1;
+    }
+    assert!(seen >= 5, "{seen}");
+}
+
+fn read(text: &str) -> Robot {
+    Reader::new("tree").trees().couplings().read(text).unwrap_or_else(|report| panic!("{report}")).robot
+}
+
+const TREE: &str = "
+format: 2
+name: tree
+source: by hand
+convention: standard
+gravity: [0, 0, -9.81]
+base: {xyz: [0.1, 0.2, 0.3], rpy: [0, 0, 0.5]}
+tool: {on: follower, xyz: [0.1, 0.2, 0.3], rpy: [0.3, 0.2, 0.1]}
+joints:
+  - {name: waist, type: revolute, dh: {theta: 0, d: 0.3, a: 0.1, alpha: pi/2},
+     link: {mass: 2, com: [0, 0.1, 0], inertia: {xx: 0.1, yy: 0.2, zz: 0.15}}}
+  - {name: left, type: revolute, dh: {theta: 0.1, d: 0, a: 0.2, alpha: 0.3}, link: {mass: 1, com: [0.1, 0, 0]}}
+  - {name: right, parent: waist, at: {xyz: [0, 0.2, -0.1], rpy: [0.1, 0.2, 0.3]}, type: prismatic,
+     dh: {theta: 0.4, d: 0.1, a: 0.2, alpha: 1}, link: {mass: 1, com: [0.1, 0, 0]}}
+  - {name: follower, parent: left, type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: 0},
+     link: {mass: 1, com: [0.1, 0, 0]}}
+frames: [{name: eye, on: left, xyz: [0.1, 0, 0], rpy: [0, 0, 1]}]
+bodies:
+  - {name: camera, on: left, at: {xyz: [0, 0, 0.1], rpy: [0, 0, 1]}, mass: 0.5, com: [0.01, 0, 0],
+     inertia: {xx: 0.001, yy: 0.001, zz: 0.001}}
+couplings: [{joint: follower, follows: {left: -0.5}, offset: 0.25}]
+motors: [{name: shoulder, turns: {left: 20}, rotor: {axis: [0, 0, 1], on: waist, inertia: 1e-4}}]
+";
+
+#[test]
+fn a_urdf_has_followers_frames_and_bodies_of_a_tree() {
+    let robot = read(TREE);
+    assert_same(&robot);
+    let exported = rne_convert::export(&robot).unwrap();
+    let text = &exported.text;
+    assert!(text.contains("<mimic joint=\"left\" multiplier=\"-0.5\" offset=\"0.25\"/>"), "{text}");
+    assert!(text.contains("<link name=\"eye\"/>") && text.contains("<link name=\"camera\">\n    <inertial>"), "{text}");
+    assert!(exported.remarks.iter().any(|remark| remark.contains("with their rotors: shoulder;")), "{exported:?}");
+}
+
+#[test]
+fn a_joint_that_follows_two_has_no_urdf() {
+    let text = TREE.replace("follows: {left: -0.5}", "follows: {left: -0.5, waist: 1}");
+    let said = rne_convert::export(&read(&text)).expect_err("two leaders").to_string();
+    assert!(said.contains("follower follows waist and left, and a URDF cannot say this"), "{said}");
+}
