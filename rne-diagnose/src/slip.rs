@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use rne_model::{Convention, Inertia, InertiaReference, JointKind, Link, Robot, Transform};
+use rne_model::{Convention, Inertia, InertiaReference, JointKind, Link, Robot, Transform, six_digits};
 
-use crate::computation::Computation;
+use crate::computation::{Computation, WrenchAxes, is_of_lecture};
 use crate::lecture::Misprint;
+use crate::order;
 use crate::typo::Typo;
 
 /// A row for each slip: its word for programs, what it changes, and its documentation.
@@ -70,12 +71,26 @@ slips! {
     WrenchReversed: "wrench_reversed", "wrench", "The wrench is that of the environment on the arm.";
     NoWrench: "no_wrench", "wrench", "The wrench is left out.";
     NoTool: "no_tool", "wrench", "The wrench acts at the last frame instead of the tip.";
+    WrenchInWorld: "wrench_in_world", "axes of the wrench", "The wrench at the tip is in world axes.";
+    WrenchInBase: "wrench_in_base", "axes of the wrench", "The wrench at the tip is in the axes of frame 0.";
+    WrenchAboutWorld: "wrench_about_world", "axes of the wrench",
+        "The wrench is in world axes, and its moment is about the origin of the world.";
     TipOnLastRow: "tip_on_last_row", "wrench", "The link of the last row of a tree carries the tip.";
     TorquesReversed: "torques_reversed", "torques", "The torques are those of the arm on its motors.";
     TorquesFromTheTip: "torques_from_the_tip", "order", "The torques stand from tip to base.";
     TorquesByName: "torques_by_name", "order", "The torques stand in the alphabetical order of the joints.";
     JointsByName: "joints_by_name", "order",
         "Positions, velocities, accelerations and torques stand in the alphabetical order of the joints.";
+    JointsFromTheTip: "joints_from_the_tip", "order",
+        "Positions, velocities, accelerations and torques stand from tip to base.";
+    JointsByLevel: "joints_by_level", "order",
+        "Positions, velocities, accelerations and torques stand by the number of joints from the base: breadth first.";
+    BranchesExchanged(usize, usize): "branches_exchanged", "order",
+        "Two branches of a tree with equally many joints are exchanged in all lists; each is given by its first joint.";
+    JointsExchanged(usize, usize): "joints_exchanged", "order",
+        "Two coordinates are exchanged in all lists; looked for alone, not in pairs.";
+    FollowerReversed(usize): "follower_reversed", "follower",
+        "A joint that follows others, counted from 0, follows them with the other sign.";
     TorquesInNmm: "torques_in_nmm", "unit of torque", "The torques of revolute joints are N mm.";
     RatesExchanged: "rates_exchanged", "rates", "Velocities and accelerations are exchanged.";
     Misprint(Misprint): "misprint", "formula",
@@ -126,24 +141,68 @@ impl Slip {
             Self::TorquesFromTheTip,
             Self::TorquesInNmm,
             Self::RatesExchanged,
+            Self::WrenchInWorld,
+            Self::WrenchAboutWorld,
         ]);
-        if robot.is_serial() {
+        all.extend((!is_unturned(&robot.base)).then_some(Self::WrenchInBase));
+        if is_of_lecture(robot) {
             all.extend(Misprint::IN_TORQUES.map(Self::Misprint));
         } else {
-            // the lecture's formulas are those of a chain, and the order of a chain is that of its links
+            // the lecture's formulas are those of a chain
             all.retain(|slip| *slip != Self::NoFirstSlide);
             all.extend(robot.tip_on.map(|_| Self::TipOnLastRow));
-            if !by_name(robot).is_sorted() {
-                all.extend([Self::TorquesByName, Self::JointsByName]);
-            }
         }
+        all.extend((0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_some()).map(Self::FollowerReversed));
+        if !order::by_name(robot).is_sorted() {
+            all.push(Self::TorquesByName);
+        }
+        all.extend(Self::orders(robot));
         all
+    }
+
+    /// The slips that put all lists into another order, each order once.
+    fn orders(robot: &Robot) -> Vec<Self> {
+        let branches = order::equal_branches(robot).into_iter().map(|[one, other]| Self::BranchesExchanged(one, other));
+        let named = [Self::JointsByName, Self::JointsFromTheTip, Self::JointsByLevel];
+        let mut known = vec![(0..robot.dof()).collect::<Vec<_>>()];
+        let is_new = |slip: &Self| {
+            let order = slip.order(robot);
+            let is_new = !known.contains(&order);
+            known.push(order);
+            is_new
+        };
+        named.into_iter().chain(branches).filter(is_new).collect()
+    }
+
+    /// The slips that are looked for alone, beside [`Typo`]s: two coordinates in each other's place.
+    pub(crate) fn alone(robot: &Robot) -> impl Iterator<Item = Self> {
+        let known: Vec<Vec<usize>> = Self::orders(robot).into_iter().map(|slip| slip.order(robot)).collect();
+        let dof = robot.dof();
+        let pairs = (0..dof).flat_map(move |one| (one + 1..dof).map(move |other| Self::JointsExchanged(one, other)));
+        pairs.filter(move |slip| !known.contains(&slip.order(robot)))
+    }
+
+    /// The coordinate at each place of all lists; those of the file where the slip does not change the order.
+    fn order(self, robot: &Robot) -> Vec<usize> {
+        match self {
+            Self::JointsByName => order::by_name(robot),
+            Self::JointsFromTheTip => (0..robot.dof()).rev().collect(),
+            Self::JointsByLevel => order::by_level(robot),
+            Self::BranchesExchanged(one, other) => order::with_branches_exchanged(robot, [one, other]),
+            Self::JointsExchanged(one, other) => {
+                let mut order: Vec<usize> = (0..robot.dof()).collect();
+                order.swap(one, other);
+                order
+            }
+            _ => (0..robot.dof()).collect(),
+        }
     }
 
     /// Whether both can be made at once. Of joints, formulas and numbers there are several.
     #[must_use]
     pub fn goes_with(self, other: Self) -> bool {
-        let is_one_of_several = matches!(self, Self::JointReversed(_) | Self::Misprint(_) | Self::Typo(_));
+        let is_one_of_several =
+            matches!(self, Self::JointReversed(_) | Self::FollowerReversed(_) | Self::Misprint(_) | Self::Typo(_));
         self.subject() != other.subject() || is_one_of_several && self != other
     }
 
@@ -199,11 +258,22 @@ impl Slip {
             Self::TipOnLastRow => robot.tip_on = None,
             Self::TorquesReversed => of.torque_factor = -1.0,
             Self::TorquesFromTheTip => of.order_of_torques = (0..robot.dof()).rev().collect(),
-            Self::TorquesByName => of.order_of_torques = by_name(robot),
-            Self::JointsByName => {
-                of.order_of_state = by_name(robot);
+            Self::TorquesByName => of.order_of_torques = order::by_name(robot),
+            Self::JointsByName
+            | Self::JointsFromTheTip
+            | Self::JointsByLevel
+            | Self::BranchesExchanged(..)
+            | Self::JointsExchanged(..) => {
+                of.order_of_state = self.order(robot);
                 of.order_of_torques.clone_from(&of.order_of_state);
             }
+            Self::FollowerReversed(joint) => {
+                let coupling = robot.joints.get_mut(joint).and_then(|joint| joint.coupling.as_mut());
+                coupling.into_iter().flat_map(|it| &mut it.follows).for_each(|(_, ratio)| *ratio = -*ratio);
+            }
+            Self::WrenchInWorld => of.wrench_axes = WrenchAxes::World,
+            Self::WrenchInBase => of.wrench_axes = WrenchAxes::Base,
+            Self::WrenchAboutWorld => of.wrench_axes = WrenchAxes::AboutWorld,
             Self::TorquesInNmm => of.moment_factor = 1e3,
             Self::RatesExchanged => of.rates_exchanged = true,
             Self::Misprint(misprint) => of.misprints.push(misprint),
@@ -212,11 +282,9 @@ impl Slip {
     }
 }
 
-/// The joints in the alphabetical order of their names.
-fn by_name(robot: &Robot) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..robot.dof()).collect();
-    order.sort_by_key(|&joint| &robot.joints[joint].name);
-    order
+/// Whether a placement does not turn.
+fn is_unturned(placement: &Transform) -> bool {
+    placement.rpy.iter().all(|angle| angle.radians == 0.0)
 }
 
 fn close(a: &[f64; 3], b: &[f64; 3]) -> bool {
@@ -315,8 +383,7 @@ impl Slip {
             Self::NoOffsets => "the constant `theta` (or `d`) of the joints' rows is left out".to_owned(),
             Self::OffsetsReversed => "the constant `theta` (or `d`) of the joints' rows has the other sign".to_owned(),
             Self::JointReversed(joint) => {
-                let name = robot.joints.get(joint).map_or("", |joint| &joint.name);
-                format!("joint {} ({name}) has the opposite positive direction", joint + 1)
+                format!("joint {} ({}) has the opposite positive direction", joint + 1, name(robot, joint))
             }
             Self::NoVelocities => "the velocities are zero: no Coriolis and centrifugal terms".to_owned(),
             Self::NoAccelerations => "the accelerations are zero: no inertia terms".to_owned(),
@@ -335,6 +402,31 @@ impl Slip {
             Self::JointsByName => {
                 "positions, velocities, accelerations and torques are listed in the alphabetical order of the joints"
                     .to_owned()
+            }
+            Self::JointsFromTheTip => {
+                "positions, velocities, accelerations and torques are listed from the last joint to the first".to_owned()
+            }
+            Self::JointsByLevel => {
+                "positions, velocities, accelerations and torques are listed breadth first: by the number of joints \
+                 from the base"
+                    .to_owned()
+            }
+            Self::BranchesExchanged(one, other) => {
+                let [one, other] = [one, other].map(|joint| robot.joints.get(joint).map_or("", |joint| &joint.name));
+                format!("the branches that begin with {one} and {other} are exchanged in all lists")
+            }
+            Self::JointsExchanged(one, other) => {
+                let [one, other] = [one, other].map(|joint| name(robot, joint));
+                format!("the joints {one} and {other} are exchanged in all lists")
+            }
+            Self::FollowerReversed(joint) => {
+                let follower = robot.joints.get(joint).map_or("", |joint| &joint.name);
+                format!("the joint {follower} follows {} with the other sign", followed(robot, joint))
+            }
+            Self::WrenchInWorld => "the wrench at the tip is in world axes".to_owned(),
+            Self::WrenchInBase => "the wrench at the tip is in the axes of frame 0".to_owned(),
+            Self::WrenchAboutWorld => {
+                "the wrench is in world axes, and its moment is about the origin of the world".to_owned()
             }
             Self::TorquesInNmm => "the torques of revolute joints are in N mm".to_owned(),
             Self::RatesExchanged => "velocities and accelerations are exchanged".to_owned(),
@@ -400,8 +492,24 @@ impl Slip {
             }
             Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
             Self::TorquesFromTheTip if robot.is_serial() => "lists run from base to tip".to_owned(),
-            Self::TorquesFromTheTip | Self::TorquesByName | Self::JointsByName => {
-                let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+            Self::WrenchInWorld | Self::WrenchInBase | Self::WrenchAboutWorld => {
+                "the wrench is in the axes of the tip frame, and its moment is about the origin of that frame".to_owned()
+            }
+            Self::FollowerReversed(joint) => {
+                let coupling = robot.joints.get(joint).and_then(|joint| joint.coupling.as_ref());
+                let ratios = coupling.into_iter().flat_map(|it| &it.follows).map(|(joint, ratio)| {
+                    format!("{}: {}", robot.joints[*joint].name, six_digits(*ratio))
+                });
+                format!("`follows: {{{}}}`", ratios.collect::<Vec<_>>().join(", "))
+            }
+            Self::TorquesFromTheTip
+            | Self::TorquesByName
+            | Self::JointsByName
+            | Self::JointsFromTheTip
+            | Self::JointsByLevel
+            | Self::BranchesExchanged(..)
+            | Self::JointsExchanged(..) => {
+                let names: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
                 format!("lists are in the order of the rows of the file: {}", names.join(", "))
             }
             Self::TorquesInNmm => "N m for a revolute joint, N for a prismatic joint".to_owned(),
@@ -410,6 +518,18 @@ impl Slip {
             Self::Typo(typo) => typo.right(robot),
         }
     }
+}
+
+/// The name of the joint of a coordinate, counted from 0.
+fn name(robot: &Robot, coordinate: usize) -> &str {
+    robot.independent_joint(coordinate).map_or("", |joint| &joint.name)
+}
+
+/// The joints that a joint follows, in words.
+fn followed(robot: &Robot, joint: usize) -> String {
+    let coupling = robot.joints.get(joint).and_then(|joint| joint.coupling.as_ref());
+    let names = coupling.into_iter().flat_map(|it| &it.follows).map(|(joint, _)| robot.joints[*joint].name.as_str());
+    names.collect::<Vec<_>>().join(" and ")
 }
 
 fn reference(robot: &Robot) -> InertiaReference {

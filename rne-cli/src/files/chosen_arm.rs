@@ -103,7 +103,7 @@ pub(crate) struct Carried {
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub(crate) payload: Option<List>,
     /// Frame or joint that carries --payload, not the tip
-    #[arg(long, value_name = "NAME", requires = "payload", hide = true)]
+    #[arg(long, value_name = "NAME", requires = "payload")]
     pub(crate) payload_on: Option<String>,
 }
 
