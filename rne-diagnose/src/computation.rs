@@ -129,7 +129,12 @@ impl Computation {
     }
 
     /// The wrench at the tip in its axes, from one as this computation understands it.
-    pub(crate) fn in_tip_axes(&self, arm: &DynArm, q: &[f64], wrench: &Wrench<f64>) -> Result<Wrench<f64>, WrongLength> {
+    pub(crate) fn in_tip_axes(
+        &self,
+        arm: &DynArm,
+        q: &[f64],
+        wrench: &Wrench<f64>,
+    ) -> Result<Wrench<f64>, WrongLength> {
         if self.wrench_axes == WrenchAxes::Tip {
             return Ok(*wrench);
         }

@@ -152,7 +152,9 @@ impl Slip {
             all.retain(|slip| *slip != Self::NoFirstSlide);
             all.extend(robot.tip_on.map(|_| Self::TipOnLastRow));
         }
-        all.extend((0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_some()).map(Self::FollowerReversed));
+        all.extend(
+            (0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_some()).map(Self::FollowerReversed),
+        );
         if !order::by_name(robot).is_sorted() {
             all.push(Self::TorquesByName);
         }
@@ -404,7 +406,8 @@ impl Slip {
                     .to_owned()
             }
             Self::JointsFromTheTip => {
-                "positions, velocities, accelerations and torques are listed from the last joint to the first".to_owned()
+                "positions, velocities, accelerations and torques are listed from the last joint to the first"
+                    .to_owned()
             }
             Self::JointsByLevel => {
                 "positions, velocities, accelerations and torques are listed breadth first: by the number of joints \
@@ -493,13 +496,15 @@ impl Slip {
             Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
             Self::TorquesFromTheTip if robot.is_serial() => "lists run from base to tip".to_owned(),
             Self::WrenchInWorld | Self::WrenchInBase | Self::WrenchAboutWorld => {
-                "the wrench is in the axes of the tip frame, and its moment is about the origin of that frame".to_owned()
+                "the wrench is in the axes of the tip frame, and its moment is about the origin of that frame"
+                    .to_owned()
             }
             Self::FollowerReversed(joint) => {
                 let coupling = robot.joints.get(joint).and_then(|joint| joint.coupling.as_ref());
-                let ratios = coupling.into_iter().flat_map(|it| &it.follows).map(|(joint, ratio)| {
-                    format!("{}: {}", robot.joints[*joint].name, six_digits(*ratio))
-                });
+                let ratios = coupling
+                    .into_iter()
+                    .flat_map(|it| &it.follows)
+                    .map(|(joint, ratio)| format!("{}: {}", robot.joints[*joint].name, six_digits(*ratio)));
                 format!("`follows: {{{}}}`", ratios.collect::<Vec<_>>().join(", "))
             }
             Self::TorquesFromTheTip

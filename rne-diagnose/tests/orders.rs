@@ -89,8 +89,7 @@ fn a_wrench_in_other_axes_is_named() {
             [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
         };
         let torques = |at: &Observation, about_world: bool| {
-            let (pose, Wrench { force, mut moment }) =
-                (arm.forward_kinematics(&at.q).unwrap(), at.wrench.unwrap());
+            let (pose, Wrench { force, mut moment }) = (arm.forward_kinematics(&at.q).unwrap(), at.wrench.unwrap());
             if about_world {
                 let lever = cross(pose.translation, force);
                 (0..3).for_each(|axis| moment[axis] -= lever[axis]);
@@ -114,9 +113,8 @@ fn a_wrench_in_the_axes_of_frame_0_is_named() {
     puma.base.rpy = [0.3, -0.2, 1.0].map(rne_model::Angle::new);
     let other = |at: &Observation| {
         let (pose, Wrench { force, moment }) = (level.forward_kinematics(&at.q).unwrap(), at.wrench.unwrap());
-        let tip = |v: [f64; 3]| {
-            [0, 1, 2].map(|axis| (0..3).map(|row: usize| pose.rotation[row][axis] * v[row]).sum::<f64>())
-        };
+        let tip =
+            |v: [f64; 3]| [0, 1, 2].map(|axis| (0..3).map(|row: usize| pose.rotation[row][axis] * v[row]).sum::<f64>());
         let wrench = Wrench { force: tip(force), moment: tip(moment) };
         level.inverse_dynamics_with_wrench(&at.q, &at.qd, &at.qdd, &wrench).unwrap()
     };
@@ -129,9 +127,8 @@ fn a_follower_with_the_other_sign_is_named() {
     let wrong = gripper().replace("follows: {finger_a: 1}", "follows: {finger_a: -1}");
     assert_ne!(wrong, gripper());
     let arm = DynArm::from_robot(&robot(&wrong));
-    let other = |at: &Observation| {
-        arm.inverse_dynamics_with_wrench(&at.q, &at.qd, &at.qdd, &at.wrench.unwrap()).unwrap()
-    };
+    let other =
+        |at: &Observation| arm.inverse_dynamics_with_wrench(&at.q, &at.qd, &at.qdd, &at.wrench.unwrap()).unwrap();
     let slip = Slip::FollowerReversed(3);
     assert_eq!(first(&file, other), [slip]);
     assert_eq!(slip.says(&file), "the joint finger_b follows finger_a with the other sign");
@@ -143,9 +140,8 @@ fn a_follower_with_the_other_sign_is_named() {
         let coupling = wrong.joints[joint].coupling.as_mut().unwrap();
         coupling.follows.iter_mut().for_each(|(_, ratio)| *ratio = -*ratio);
         let arm = DynArm::from_robot(&wrong);
-        let other = |at: &Observation| {
-            arm.inverse_dynamics_with_wrench(&at.q, &at.qd, &at.qdd, &at.wrench.unwrap()).unwrap()
-        };
+        let other =
+            |at: &Observation| arm.inverse_dynamics_with_wrench(&at.q, &at.qd, &at.qdd, &at.wrench.unwrap()).unwrap();
         assert_eq!(first(&palletiser, other), [Slip::FollowerReversed(joint)]);
     }
 }

@@ -68,7 +68,9 @@ impl Parameters {
             .collect();
         let place = |parameter: Parameter| match parameter {
             Parameter::Link(link, index) => link * PER_LINK + index,
-            Parameter::Rotor(joint) => links * PER_LINK + coordinates.iter().take_while(|&&other| other < joint).count(),
+            Parameter::Rotor(joint) => {
+                links * PER_LINK + coordinates.iter().take_while(|&&other| other < joint).count()
+            }
         };
         let all = links * PER_LINK + if rotors { coordinates.len() } else { 0 };
         let stacked = stacked(robot, all);

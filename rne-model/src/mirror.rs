@@ -42,8 +42,7 @@ pub(crate) fn twins(cx: &Context, root: &Node, joints: &[Joint]) {
             format!("; so do the links of {} and {} other pairs", others[..NAMED].join(", of "), count - NAMED)
         }
     };
-    let message =
-        format!("by their names the links of {} are mirror images, but {what}{more}", names([one, other]));
+    let message = format!("by their names the links of {} are mirror images, but {what}{more}", names([one, other]));
     let link = items.get(other).map_or(root, |item| item.get("link").unwrap_or(item));
     let place = link.get(key).unwrap_or(link).head();
     cx.report(Diagnostic::lint(place, message).label("differs from the other side").help(

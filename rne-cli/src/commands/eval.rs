@@ -96,7 +96,7 @@ pub(crate) struct Arguments {
     /// Print every intermediate value of the seven steps
     #[arg(long)]
     trace: bool,
-    /// Axes in which --trace prints vectors: link (default), joint, or base (frame 0)
+    /// Axes of --trace: link (default), joint, base
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
     /// Print only joint I of --trace; 1 is at the base

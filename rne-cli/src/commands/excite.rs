@@ -14,7 +14,7 @@ use rne_machine::{CompiledArm, Form};
 use rne_model::{Joint, Robot, exact_digits, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
-use crate::files::chosen_arm::Carried;
+use crate::files::chosen_arm::{Carried, check_unknown_rotors};
 use crate::files::file_name::{self, Format};
 use crate::files::interruption;
 use crate::files::output_file::{
@@ -105,6 +105,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.carried.of(robot_file::robot(&arguments.file, Shape::Coupled)?)?;
+    check_unknown_rotors(&robot, arguments.rotors)?;
     if arguments.seconds * arguments.rate > MOST {
         return Err(Failure::usage(format_args!(
             "{} s at {} Hz are more than {MOST} samples; use a lower --rate",

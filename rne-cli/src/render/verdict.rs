@@ -255,7 +255,11 @@ impl Worded<'_> {
     pub(crate) fn offsets(&self) -> Option<String> {
         let unknown = &self.verdict.excited.as_ref()?.unknown_offsets;
         let is_equal = |joint: &usize| {
-            let coulomb = self.robot.independent_joint(*joint).and_then(|joint| joint.motor).map_or([0.0; 2], |motor| motor.coulomb);
+            let coulomb = self
+                .robot
+                .independent_joint(*joint)
+                .and_then(|joint| joint.motor)
+                .map_or([0.0; 2], |motor| motor.coulomb);
             coulomb[0] == -coulomb[1]
         };
         let joints = listed("joint", unknown);

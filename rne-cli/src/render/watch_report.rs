@@ -158,7 +158,8 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             )
         }
         Cause::Sensor if event.parameter == "exchanged" => {
-            let others: Vec<String> = event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
+            let others: Vec<String> =
+                event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
             let other = others.join(", ");
             format!(
                 "sensors: the efforts of {joint} and {other} look exchanged; the other results hold for the efforts \
@@ -173,7 +174,8 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             rounded(event.baseline_value, 3)
         ),
         Cause::Contact => {
-            let others: Vec<String> = event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
+            let others: Vec<String> =
+                event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
             let too = if others.is_empty() { String::new() } else { format!(" (also at {})", others.join(", ")) };
             format!("contact at {joint}{too}: external torque up to {} {unit}", rounded(event.value, 3))
         }
