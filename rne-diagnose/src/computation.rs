@@ -48,8 +48,8 @@ pub(crate) enum WrenchAxes {
     AboutWorld,
 }
 
-/// Whether the lecture's formulas are of such a robot: a serial arm none of whose joints follows another, without rotors
-/// on links.
+/// Whether the lecture's formulas are of such a robot: a serial arm none of whose joints follows another, without
+/// rotors on links.
 pub(crate) fn is_of_lecture(robot: &Robot) -> bool {
     robot.is_serial() && !robot.has_couplings() && !robot.has_spinning_rotors()
 }

@@ -28,6 +28,7 @@ mod observation;
 mod order;
 mod slip;
 mod typo;
+mod wording;
 pub mod worksheet;
 
 use rne_model::Robot;

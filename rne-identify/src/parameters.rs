@@ -49,8 +49,8 @@ impl Base {
 pub struct Parameters {
     /// Base parameters, one for each independent column of the regressor, base to tip, then rotors.
     pub bases: Vec<Base>,
-    /// Rank × (10 · links + rotors, of the coordinates): base parameters of link parameters, link by link as (m, m cx, m cy, m cz, Jxx,
-    /// Jxy, Jxz, Jyy, Jyz, Jzz), then the rotors'.
+    /// Rank × (10 · links + rotors, of the coordinates): base parameters of link parameters, link by link as (m, m cx,
+    /// m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz), then the rotors'.
     pub regrouping: DMatrix<f64>,
     pub(crate) rotors: bool,
 }

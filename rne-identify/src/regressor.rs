@@ -1,7 +1,7 @@
 //! The columns of the inertial parameters at the states of a motion, and the torques that no parameter changes.
 //!
-//! With the ratios of the couplings in the matrix G, the joints of a robot have G q, G q̇ and G q̈, and the torques that
-//! work on its coordinates are Gᵀ τ. So its regressor is Gᵀ Y of the robot whose joints all move freely, at those
+//! With the ratios of the couplings in the matrix G, the joints of a robot have G q, G q̇ and G q̈, and the torques
+//! that work on its coordinates are Gᵀ τ. So its regressor is Gᵀ Y of the robot whose joints all move freely, at those
 //! states. The rotors of the list `motors` have torques of their own, which are known: they are those of the robot
 //! without links.
 

@@ -14,8 +14,9 @@ use crate::robot::parent;
 use crate::source::{quoted, six_digits};
 use crate::{Joint, Link};
 
-/// Numbers of twins that differ by a larger part of the larger one are no twins. CAD programs give twins numbers that
-/// differ by up to 0.3 %, as in the wrists of Romeo; known mistakes begin at 25 %, as in the legs of the iCub and Atlas.
+/// Links whose numbers differ by a larger part of the larger one are no mirror images. CAD programs give numbers that
+/// differ by up to 0.3 %, as in the wrists of Romeo; known mistakes begin at 25 %, as in the legs of Atlas and the
+/// iCub.
 const ALIKE: f64 = 0.01;
 
 /// Longer names are no names of sides.

@@ -227,8 +227,8 @@ fn mistakes_in_tips_are_told_at_their_place() {
 #[test]
 fn bodies_that_overflow_are_refused_at_their_line() {
     let heavy = "tool: {on: b}\nbodies:\n  - {name: x, on: a, mass: 1e308}\n  - {name: y, on: a, mass: 1e308}\n";
-    let far = "tool: {on: b}\nbodies:\n  - {name: x, on: b, mass: 1e10}\n  - {name: y, on: b, at: {xyz: [1e150, 0, 0]}, \
-               mass: 1e10}\n";
+    let far = "tool: {on: b}\nbodies:\n  - {name: x, on: b, mass: 1e10}\n  \
+               - {name: y, on: b, at: {xyz: [1e150, 0, 0]}, mass: 1e10}\n";
     for (bodies, place, link) in [(heavy, "14:28", "`a`"), (far, "14:54", "`b`")] {
         let report = read_with(bodies, &[]).expect_err(bodies);
         let said = format!("torso.yaml:{place}: error: the link of {link} with its bodies is too heavy");

@@ -74,12 +74,15 @@ fn a_heavier_arm_is_named_with_all_pairs() {
 #[test]
 fn rounding_and_other_axes_are_no_difference() {
     let file = |right: &str| {
-        format!(
-            "format: 2\nname: torso\nsource: own\nconvention: modified\ngravity: [0, 0, -9.81]\ntool: {{on: arm_l}}\njoints:\n  \
-             - {{name: arm_l, type: revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {{mass: 2, com: [0.1, 0, 0], \
-             inertia: {{xx: 0.1, yy: 0.2, zz: 0.25}}}}}}\n  - {{name: arm_r, parent: base, type: revolute, dh: {{theta: \
-             0, d: 0, a: -1, alpha: 0}}, link: {{{right}}}}}\n"
-        )
+        let head = "format: 2\nname: torso\nsource: own\nconvention: modified\ngravity: [0, 0, -9.81]\n";
+        let joint = |name: &str, a: &str, link: &str| {
+            format!(
+                "  - {{name: {name}, parent: base, type: revolute, dh: {{theta: 0, d: 0, a: {a}, alpha: 0}}, link: \
+                 {{{link}}}}}\n"
+            )
+        };
+        let left = joint("arm_l", "1", "mass: 2, com: [0.1, 0, 0], inertia: {xx: 0.1, yy: 0.2, zz: 0.25}");
+        format!("{head}tool: {{on: arm_l}}\njoints:\n{left}{}", joint("arm_r", "-1", right))
     };
     assert_eq!(told(&file("mass: 2.004, com: [-0.1, 0, 0], inertia: {xx: 0.2004, yy: 0.1, zz: 0.25}")), None);
     // turned by 45° about z: xx = yy = (0.1 + 0.2)/2, xy = ±(0.2 - 0.1)/2
