@@ -38,7 +38,7 @@ pub(crate) struct Computation {
 /// The axes of a wrench and the point that its moment is about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum WrenchAxes {
-    /// Those of the tip frame, and its origin.
+    /// Axes of the tip frame, at its origin.
     Tip,
     /// World axes, at the origin of the tip frame.
     World,

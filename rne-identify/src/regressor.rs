@@ -13,7 +13,7 @@ use rne_model::{Link, PER_LINK, Robot};
 
 use crate::design::run;
 
-/// What the torques of a robot's geometry depend on.
+/// The columns of a robot's geometry, and its known rotors.
 #[derive(Clone, Debug)]
 pub(crate) struct Regressor {
     /// The geometry alone, every joint free.
@@ -97,7 +97,7 @@ impl Regressor {
     }
 
     /// The torques of the rotors of the list `motors` at some states of a motion, coordinate by coordinate; `None`
-    /// where there are none.
+    /// for a robot without such rotors.
     pub(crate) fn of_rotors(
         &self,
         motion: &Motion,

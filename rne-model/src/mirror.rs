@@ -52,7 +52,7 @@ pub(crate) fn twins(cx: &Context, root: &Node, joints: &[Joint]) {
     ));
 }
 
-/// What differs between two links.
+/// A difference of two links.
 struct Difference {
     /// The key of the link that has the numbers.
     key: &'static str,

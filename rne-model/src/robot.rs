@@ -158,7 +158,7 @@ impl Robot {
         self.independent_joints().nth(coordinate)
     }
 
-    /// The name of the joint of a coordinate, which is counted from 0; empty where there is none.
+    /// The name of the joint of a coordinate, which is counted from 0; empty if there is no such coordinate.
     #[must_use]
     pub fn coordinate_name(&self, coordinate: usize) -> &str {
         self.independent_joint(coordinate).map_or("", |joint| &joint.name)

@@ -10,7 +10,7 @@ fn lints(text: &str) -> Report {
     read.unwrap_or_else(|report| panic!("{report}")).lints
 }
 
-/// What the lint says, with its line.
+/// The message of the lint, with its line.
 fn told(text: &str) -> Option<(usize, String)> {
     let report = lints(text);
     let of_sides = report.diagnostics.iter().filter(|lint| lint.message.contains("mirror images"));

@@ -1,5 +1,5 @@
-//! Whether a mass matrix is positive definite. That of an arm whose links are bodies is; with `physical: false` a link
-//! need not be a body.
+//! Whether a mass matrix is positive definite. The mass matrix of an arm whose links are bodies is positive definite;
+//! with `physical: false` a link need not be a body.
 
 use rne::DynArm;
 use rne_codegen::Function;
@@ -8,14 +8,14 @@ use rne_model::Robot;
 /// A pivot counts as negative beyond this part of the largest element: rounding does not make such a pivot.
 const NEGATIVE: f64 = 1e-9;
 
-/// What is wrong with the result of a function that inverts the mass matrix, where this is not positive definite.
+/// The mistake in the result of a function that inverts the mass matrix, where this is not positive definite.
 pub(crate) const NOT_DEFINITE: &str = "the mass matrix is not positive definite at this position: a link is no real \
                                        body (`physical: false`), or a payload has negative numbers";
 
 /// Whether a function inverts the mass matrix of the robot, and that is not positive definite at a position.
 pub(crate) fn is_indefinite(robot: &Robot, function: Function, q: &[f64]) -> bool {
     function.inverts_mass()
-        && DynArm::from_robot(robot).mass_matrix(q).is_ok_and(|matrix| has_negative_direction(matrix))
+        && DynArm::from_robot(robot).mass_matrix(q).is_ok_and(has_negative_direction)
 }
 
 /// Whether xᵀ M x < 0 for some x: elimination with the largest pivot of the diagonal, or a rest whose diagonal is zero
