@@ -37,6 +37,13 @@ fn read(text: &str) -> Robot {
     read.unwrap_or_else(|report| panic!("{report}\n{text}")).robot
 }
 
+/// The default options with a change.
+fn with(change: impl Fn(&mut Options)) -> Options {
+    let mut options = Options::default();
+    change(&mut options);
+    options
+}
+
 /// Torques at random states, one after the other, with the friction of the file.
 fn states(robot: &Robot, count: u32, seed: u64) -> Motion {
     let (arm, dof, mut rng) = (DynArm::from_robot(&robot.clone().with_rotors()), robot.dof(), Rng::with_seed(seed));
@@ -94,7 +101,7 @@ fn equations(robot: &Robot, kept: &[Parameter], motion: &Motion) -> (DMatrix<f64
 fn base_parameters_of_coupled_robots_give_the_torques_back() {
     for text in [GRIPPER, PALLETISER, ROTORS] {
         let robot = read(text);
-        let structure = Structure::new(&robot, Options { friction: false, ..Options::default() });
+        let structure = Structure::new(&robot, with(|options| options.friction = false));
         let kept: Vec<Parameter> = structure.parameters().bases.iter().map(|base| base.kept).collect();
         let (matrix, target) = equations(&robot, &kept, &states(&robot, 60, 1));
         let factors = matrix.svd(true, true);
@@ -112,20 +119,16 @@ fn base_parameters_of_coupled_robots_give_the_torques_back() {
     }
 }
 
-/// The columns that identification uses are those of the runtime, times nothing: a fit of exact rows is exact.
+/// Bound as for a clean log of a tree: passes with weights and a prior are between the rows and the result.
 #[test]
 fn an_identification_of_exact_torques_is_exact() {
     for text in [GRIPPER, PALLETISER, ROTORS] {
         let robot = read(text);
         let has_friction = robot.joints.iter().any(|joint| joint.motor.is_some());
-        let options = Options {
-            friction: has_friction,
-            delay: false,
-            cutoff: None,
-            widths: vec![0.0],
-            displacements: Vec::new(),
-            ..Options::default()
-        };
+        let options = with(|options| {
+            (options.friction, options.delay, options.cutoff) = (has_friction, false, None);
+            (options.widths, options.displacements) = (vec![0.0], Vec::new());
+        });
         // the masses of the file are no help
         let mut unknown = robot.clone();
         unknown.joints.iter_mut().for_each(|joint| joint.row.link = Link::default());
@@ -135,7 +138,7 @@ fn an_identification_of_exact_torques_is_exact() {
         let truth = &parameters.regrouping * parameters.of_robot(&robot);
         for (base, truth) in found.bases.iter().zip(truth.iter()) {
             let error = (base.value - truth).abs();
-            assert!(error < 1e-9 * (1.0 + truth.abs()), "{} {} {} {truth}", robot.name, base.name, base.value);
+            assert!(error < 1e-6 * (1.0 + truth.abs()), "{} {} {} {truth}", robot.name, base.name, base.value);
         }
         assert_eq!(found.joints.len(), robot.dof());
         // the file that is written is of the same robot: its couplings and motors are those of before
@@ -152,12 +155,12 @@ fn an_identification_of_exact_torques_is_exact() {
 #[test]
 fn rotors_of_the_list_are_known() {
     let robot = read(ROTORS);
-    let structure = Structure::new(&robot, Options { rotors: true, ..Options::default() });
+    let structure = Structure::new(&robot, with(|options| options.rotors = true));
     assert!(!structure.options().rotors);
     assert!(structure.parameters().bases.iter().all(|base| matches!(base.kept, Parameter::Link(..))));
     // of a gripper without them, the rotors of the three coordinates are unknown
     let gripper = read(GRIPPER);
-    let structure = Structure::new(&gripper, Options { rotors: true, ..Options::default() });
+    let structure = Structure::new(&gripper, with(|options| options.rotors = true));
     assert_eq!(structure.parameters().regrouping.ncols(), 4 * 10 + 3);
     let (mut information, motion) = (Information::new(&structure), states(&gripper, 300, 5));
     information.absorb(&structure, &motion, None).unwrap();

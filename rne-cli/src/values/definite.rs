@@ -14,8 +14,7 @@ pub(crate) const NOT_DEFINITE: &str = "the mass matrix is not positive definite 
 
 /// Whether a function inverts the mass matrix of the robot, and that is not positive definite at a position.
 pub(crate) fn is_indefinite(robot: &Robot, function: Function, q: &[f64]) -> bool {
-    function.inverts_mass()
-        && DynArm::from_robot(robot).mass_matrix(q).is_ok_and(has_negative_direction)
+    function.inverts_mass() && DynArm::from_robot(robot).mass_matrix(q).is_ok_and(has_negative_direction)
 }
 
 /// Whether xᵀ M x < 0 for some x: elimination with the largest pivot of the diagonal, or a rest whose diagonal is zero
