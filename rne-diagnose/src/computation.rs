@@ -1,6 +1,7 @@
 //! A computation of torques, into which slips are made.
 
-use rne_model::{Convention, JointKind, Robot};
+use nalgebra::Vector3;
+use rne_model::{Convention, JointKind, Robot, Row};
 use rne_runtime::{DynArm, Wrench, WrongLength};
 
 use crate::lecture::{self, Misprint};
@@ -30,7 +31,27 @@ pub(crate) struct Computation {
     /// A factor on the torques of revolute joints.
     pub(crate) moment_factor: f64,
     pub(crate) wrench_factor: f64,
+    pub(crate) wrench_axes: WrenchAxes,
     pub(crate) torque_factor: f64,
+}
+
+/// The axes of a wrench and the point that its moment is about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum WrenchAxes {
+    /// Axes of the tip frame, at its origin.
+    Tip,
+    /// World axes, at the origin of the tip frame.
+    World,
+    /// The axes of frame 0, at the origin of the tip frame.
+    Base,
+    /// World axes, at the origin of the world.
+    AboutWorld,
+}
+
+/// Whether the lecture's formulas are of such a robot: a serial arm none of whose joints follows another, without
+/// rotors on links.
+pub(crate) fn is_of_lecture(robot: &Robot) -> bool {
+    robot.is_serial() && !robot.has_couplings() && !robot.has_spinning_rotors()
 }
 
 /// A state as a computation understands it.
@@ -59,6 +80,7 @@ impl Computation {
             order_of_torques: Vec::new(),
             moment_factor: 1.0,
             wrench_factor: 1.0,
+            wrench_axes: WrenchAxes::Tip,
             torque_factor: 1.0,
         }
     }
@@ -72,8 +94,13 @@ impl Computation {
         for slip in slips {
             slip.make(&mut this);
         }
-        let is_of_lecture = this.robot.convention == Convention::Standard && this.robot.is_serial();
-        (this.misprints.is_empty() || is_of_lecture).then_some(this)
+        let is_computable = this.robot.convention == Convention::Standard && is_of_lecture(&this.robot);
+        (this.misprints.is_empty() || is_computable).then_some(this)
+    }
+
+    /// The rows of the coordinates.
+    fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.robot.independent_joints().map(|joint| &joint.row)
     }
 
     /// Takes the angles, and if `all` speeds and accelerations too, for another unit.
@@ -92,12 +119,36 @@ impl Computation {
     /// When a list of the observation does not have one number per joint.
     pub(crate) fn torques(&self, arm: &DynArm, at: &Observation) -> Result<Vec<f64>, WrongLength> {
         let Moved { q, qd, qdd, wrench } = self.moved(at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench);
+        let wrench = wrench.map(|wrench| self.in_tip_axes(arm, &q, &wrench)).transpose()?;
         let tau = if self.misprints.is_empty() {
             arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench.unwrap_or_else(Wrench::zero))?
         } else {
             self.by_the_lecture(&q, &qd, &qdd, wrench)
         };
         self.printed(arm, tau, &qd, &qdd)
+    }
+
+    /// The wrench at the tip in its axes, from one as this computation understands it.
+    pub(crate) fn in_tip_axes(
+        &self,
+        arm: &DynArm,
+        q: &[f64],
+        wrench: &Wrench<f64>,
+    ) -> Result<Wrench<f64>, WrongLength> {
+        if self.wrench_axes == WrenchAxes::Tip {
+            return Ok(*wrench);
+        }
+        let pose = arm.forward_kinematics(q)?;
+        let (mut force, mut moment) = (Vector3::from(wrench.force), Vector3::from(wrench.moment));
+        if self.wrench_axes == WrenchAxes::Base {
+            let base = rotation(&self.robot.base);
+            (force, moment) = (base * force, base * moment);
+        }
+        if self.wrench_axes == WrenchAxes::AboutWorld {
+            moment -= Vector3::from(pose.translation).cross(&force);
+        }
+        let to_tip = |v: Vector3<f64>| [0, 1, 2].map(|axis| (0..3).map(|k| pose.rotation[k][axis] * v[k]).sum());
+        Ok(Wrench { force: to_tip(force), moment: to_tip(moment) })
     }
 
     /// The state as this computation understands it.
@@ -118,7 +169,7 @@ impl Computation {
                 self.order_of_state.iter().zip(given).for_each(|(&joint, number)| list[joint] = number);
             }
         }
-        let joints = self.robot.rows().zip(&mut q).zip(qd.iter_mut().zip(&mut qdd)).enumerate();
+        let joints = self.rows().zip(&mut q).zip(qd.iter_mut().zip(&mut qdd)).enumerate();
         for (index, ((row, q), (qd, qdd))) in joints {
             let revolute = row.kind == JointKind::Revolute;
             if revolute {
@@ -149,7 +200,7 @@ impl Computation {
             let motors = arm.actuator_torques(qd, qdd)?;
             tau.iter_mut().zip(motors).for_each(|(tau, motor)| *tau += motor);
         }
-        for (index, (tau, row)) in tau.iter_mut().zip(self.robot.rows()).enumerate() {
+        for (index, (tau, row)) in tau.iter_mut().zip(self.rows()).enumerate() {
             *tau *= if self.reversed.contains(&index) { -self.torque_factor } else { self.torque_factor };
             *tau *= if row.kind == JointKind::Revolute { self.moment_factor } else { 1.0 };
         }

@@ -25,8 +25,10 @@ mod computation;
 pub mod lecture;
 mod misprint;
 mod observation;
+mod order;
 mod slip;
 mod typo;
+mod wording;
 pub mod worksheet;
 
 use rne_model::Robot;
@@ -71,7 +73,8 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
         let tried = Tried::of(robot, seen, slips)?.filter(|tried| tried.fits);
         Ok(tried.map(|Tried { error, .. }| Explanation { slips: slips.to_vec(), error }))
     };
-    let alone = slips.iter().copied().chain(Typo::candidates(robot).into_iter().map(Slip::Typo));
+    let alone =
+        slips.iter().copied().chain(Slip::alone(robot)).chain(Typo::candidates(robot).into_iter().map(Slip::Typo));
     let found = alone.filter_map(|slip| explains(&[slip]).transpose()).collect::<Result<Vec<_>, _>>()?;
     if !found.is_empty() {
         return Ok(Diagnosis::Explained(found));

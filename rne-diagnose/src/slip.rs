@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use rne_model::{Convention, Inertia, InertiaReference, JointKind, Link, Robot, Transform};
+use rne_model::{Convention, Inertia, JointKind, Link, Robot, Transform};
 
-use crate::computation::Computation;
+use crate::computation::{Computation, WrenchAxes, is_of_lecture};
 use crate::lecture::Misprint;
+use crate::order;
 use crate::typo::Typo;
 
 /// A row for each slip: its word for programs, what it changes, and its documentation.
@@ -70,12 +71,26 @@ slips! {
     WrenchReversed: "wrench_reversed", "wrench", "The wrench is that of the environment on the arm.";
     NoWrench: "no_wrench", "wrench", "The wrench is left out.";
     NoTool: "no_tool", "wrench", "The wrench acts at the last frame instead of the tip.";
+    WrenchInWorld: "wrench_in_world", "axes of the wrench", "The wrench at the tip is in world axes.";
+    WrenchInBase: "wrench_in_base", "axes of the wrench", "The wrench at the tip is in the axes of frame 0.";
+    WrenchAboutWorld: "wrench_about_world", "axes of the wrench",
+        "The wrench is in world axes, and its moment is about the origin of the world.";
     TipOnLastRow: "tip_on_last_row", "wrench", "The link of the last row of a tree carries the tip.";
     TorquesReversed: "torques_reversed", "torques", "The torques are those of the arm on its motors.";
     TorquesFromTheTip: "torques_from_the_tip", "order", "The torques stand from tip to base.";
     TorquesByName: "torques_by_name", "order", "The torques stand in the alphabetical order of the joints.";
     JointsByName: "joints_by_name", "order",
         "Positions, velocities, accelerations and torques stand in the alphabetical order of the joints.";
+    JointsFromTheTip: "joints_from_the_tip", "order",
+        "Positions, velocities, accelerations and torques stand from tip to base.";
+    JointsByLevel: "joints_by_level", "order",
+        "Positions, velocities, accelerations and torques stand by the number of joints from the base: breadth first.";
+    BranchesExchanged(usize, usize): "branches_exchanged", "order",
+        "Two branches of a tree with equally many joints are exchanged in all lists; each is given by its first joint.";
+    JointsExchanged(usize, usize): "joints_exchanged", "order",
+        "Two coordinates are exchanged in all lists; looked for alone, not in pairs.";
+    FollowerReversed(usize): "follower_reversed", "follower",
+        "A joint that follows others, counted from 0, follows them with the other sign.";
     TorquesInNmm: "torques_in_nmm", "unit of torque", "The torques of revolute joints are N mm.";
     RatesExchanged: "rates_exchanged", "rates", "Velocities and accelerations are exchanged.";
     Misprint(Misprint): "misprint", "formula",
@@ -126,24 +141,70 @@ impl Slip {
             Self::TorquesFromTheTip,
             Self::TorquesInNmm,
             Self::RatesExchanged,
+            Self::WrenchInWorld,
+            Self::WrenchAboutWorld,
         ]);
-        if robot.is_serial() {
+        all.extend((!is_unturned(&robot.base)).then_some(Self::WrenchInBase));
+        if is_of_lecture(robot) {
             all.extend(Misprint::IN_TORQUES.map(Self::Misprint));
         } else {
-            // the lecture's formulas are those of a chain, and the order of a chain is that of its links
+            // the lecture's formulas are those of a chain
             all.retain(|slip| *slip != Self::NoFirstSlide);
             all.extend(robot.tip_on.map(|_| Self::TipOnLastRow));
-            if !by_name(robot).is_sorted() {
-                all.extend([Self::TorquesByName, Self::JointsByName]);
-            }
         }
+        all.extend(
+            (0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_some()).map(Self::FollowerReversed),
+        );
+        if !order::by_name(robot).is_sorted() {
+            all.push(Self::TorquesByName);
+        }
+        all.extend(Self::orders(robot));
         all
+    }
+
+    /// The slips that put all lists into another order, each order once.
+    fn orders(robot: &Robot) -> Vec<Self> {
+        let branches = order::equal_branches(robot).into_iter().map(|[one, other]| Self::BranchesExchanged(one, other));
+        let named = [Self::JointsByName, Self::JointsFromTheTip, Self::JointsByLevel];
+        let mut known = vec![(0..robot.dof()).collect::<Vec<_>>()];
+        let is_new = |slip: &Self| {
+            let order = slip.order(robot);
+            let is_new = !known.contains(&order);
+            known.push(order);
+            is_new
+        };
+        named.into_iter().chain(branches).filter(is_new).collect()
+    }
+
+    /// The slips that are looked for alone, beside [`Typo`]s: two coordinates in each other's place.
+    pub(crate) fn alone(robot: &Robot) -> impl Iterator<Item = Self> {
+        let known: Vec<Vec<usize>> = Self::orders(robot).into_iter().map(|slip| slip.order(robot)).collect();
+        let dof = robot.dof();
+        let pairs = (0..dof).flat_map(move |one| (one + 1..dof).map(move |other| Self::JointsExchanged(one, other)));
+        pairs.filter(move |slip| !known.contains(&slip.order(robot)))
+    }
+
+    /// The coordinate at each place of all lists; those of the file where the slip does not change the order.
+    fn order(self, robot: &Robot) -> Vec<usize> {
+        match self {
+            Self::JointsByName => order::by_name(robot),
+            Self::JointsFromTheTip => (0..robot.dof()).rev().collect(),
+            Self::JointsByLevel => order::by_level(robot),
+            Self::BranchesExchanged(one, other) => order::with_branches_exchanged(robot, [one, other]),
+            Self::JointsExchanged(one, other) => {
+                let mut order: Vec<usize> = (0..robot.dof()).collect();
+                order.swap(one, other);
+                order
+            }
+            _ => (0..robot.dof()).collect(),
+        }
     }
 
     /// Whether both can be made at once. Of joints, formulas and numbers there are several.
     #[must_use]
     pub fn goes_with(self, other: Self) -> bool {
-        let is_one_of_several = matches!(self, Self::JointReversed(_) | Self::Misprint(_) | Self::Typo(_));
+        let is_one_of_several =
+            matches!(self, Self::JointReversed(_) | Self::FollowerReversed(_) | Self::Misprint(_) | Self::Typo(_));
         self.subject() != other.subject() || is_one_of_several && self != other
     }
 
@@ -199,11 +260,22 @@ impl Slip {
             Self::TipOnLastRow => robot.tip_on = None,
             Self::TorquesReversed => of.torque_factor = -1.0,
             Self::TorquesFromTheTip => of.order_of_torques = (0..robot.dof()).rev().collect(),
-            Self::TorquesByName => of.order_of_torques = by_name(robot),
-            Self::JointsByName => {
-                of.order_of_state = by_name(robot);
+            Self::TorquesByName => of.order_of_torques = order::by_name(robot),
+            Self::JointsByName
+            | Self::JointsFromTheTip
+            | Self::JointsByLevel
+            | Self::BranchesExchanged(..)
+            | Self::JointsExchanged(..) => {
+                of.order_of_state = self.order(robot);
                 of.order_of_torques.clone_from(&of.order_of_state);
             }
+            Self::FollowerReversed(joint) => {
+                let coupling = robot.joints.get_mut(joint).and_then(|joint| joint.coupling.as_mut());
+                coupling.into_iter().flat_map(|it| &mut it.follows).for_each(|(_, ratio)| *ratio = -*ratio);
+            }
+            Self::WrenchInWorld => of.wrench_axes = WrenchAxes::World,
+            Self::WrenchInBase => of.wrench_axes = WrenchAxes::Base,
+            Self::WrenchAboutWorld => of.wrench_axes = WrenchAxes::AboutWorld,
             Self::TorquesInNmm => of.moment_factor = 1e3,
             Self::RatesExchanged => of.rates_exchanged = true,
             Self::Misprint(misprint) => of.misprints.push(misprint),
@@ -212,11 +284,9 @@ impl Slip {
     }
 }
 
-/// The joints in the alphabetical order of their names.
-fn by_name(robot: &Robot) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..robot.dof()).collect();
-    order.sort_by_key(|&joint| &robot.joints[joint].name);
-    order
+/// Whether a placement does not turn.
+fn is_unturned(placement: &Transform) -> bool {
+    placement.rpy.iter().all(|angle| angle.radians == 0.0)
 }
 
 fn close(a: &[f64; 3], b: &[f64; 3]) -> bool {
@@ -252,166 +322,4 @@ fn move_com(robot: &mut Robot, times: f64) {
         let com = &mut joint.row.link.com;
         (0..3).for_each(|axis| com[axis] += times * way[axis]);
     }
-}
-
-impl Slip {
-    /// The mistake of the other computation, in a clause: "gravity points the other way".
-    #[must_use]
-    pub fn says(self, robot: &Robot) -> String {
-        let (this, other) = match robot.convention {
-            Convention::Standard => ("standard", "modified"),
-            Convention::Modified => ("modified", "standard"),
-        };
-        let [near, far] = match robot.convention {
-            Convention::Standard => ["far", "near"],
-            Convention::Modified => ["near", "far"],
-        };
-        match self {
-            Self::OtherConvention => {
-                format!("the rows are read in the {other} convention; the file has the {this} convention")
-            }
-            Self::GravityReversed => "gravity points the other way".to_owned(),
-            Self::NoGravity => "there is no gravity".to_owned(),
-            Self::GravityAlong(axis, reversed) => {
-                let sign = if reversed { "-" } else { "" };
-                format!("gravity points along {sign}{} of frame 0", ["x", "y", "z"][axis.min(2)])
-            }
-            Self::GravityInWorld => "gravity is taken in world axes, and is rotated by `base`".to_owned(),
-            Self::InertiaAboutOrigin => match reference(robot) {
-                InertiaReference::Com => {
-                    "inertias about the centre of mass are read as inertias about the frame's origin"
-                }
-                InertiaReference::Origin => "the parallel axis term is subtracted from the inertias twice",
-            }
-            .to_owned(),
-            Self::InertiaShifted => match reference(robot) {
-                InertiaReference::Com => {
-                    "inertias about the frame's origin are used in place of inertias about the centre of mass"
-                }
-                InertiaReference::Origin => {
-                    "inertias about the frame's origin are read as inertias about the centre of mass"
-                }
-            }
-            .to_owned(),
-            Self::ProductsOfInertia => "xy, xz and yz of the inertias have the other sign".to_owned(),
-            Self::ComReversed => "the centres of mass have the other sign".to_owned(),
-            Self::ComFromOtherEnd => {
-                format!(
-                    "the file's centres of mass are measured from the {far} end of the link, not from its {near} end"
-                )
-            }
-            Self::ComOfOtherEnd => {
-                format!(
-                    "centres of mass measured from the {far} end of the link are used in place of those measured from \
-                     its {near} end"
-                )
-            }
-            Self::PositionsAsDegrees => "the angles are in radians, but are read as degrees".to_owned(),
-            Self::PositionsInDegrees => "the angles are multiplied by 180/π, and then read as radians".to_owned(),
-            Self::StateAsDegrees => {
-                "angles, speeds and accelerations are in rad, rad/s and rad/s², but are read as degrees".to_owned()
-            }
-            Self::StateInDegrees => "angles, speeds and accelerations are multiplied by 180/π".to_owned(),
-            Self::NoOffsets => "the constant `theta` (or `d`) of the joints' rows is left out".to_owned(),
-            Self::OffsetsReversed => "the constant `theta` (or `d`) of the joints' rows has the other sign".to_owned(),
-            Self::JointReversed(joint) => {
-                let name = robot.joints.get(joint).map_or("", |joint| &joint.name);
-                format!("joint {} ({name}) has the opposite positive direction", joint + 1)
-            }
-            Self::NoVelocities => "the velocities are zero: no Coriolis and centrifugal terms".to_owned(),
-            Self::NoAccelerations => "the accelerations are zero: no inertia terms".to_owned(),
-            Self::NoFirstSlide => "the acceleration of a prismatic first joint is ignored".to_owned(),
-            Self::RotorInertia => "the rotors' inertia G² Jm is part of the arm".to_owned(),
-            Self::MotorTorques => "the motors' inertia and friction are in the torques".to_owned(),
-            Self::WrenchReversed => "the wrench is what the environment exerts on the arm".to_owned(),
-            Self::NoWrench => "the wrench is left out".to_owned(),
-            Self::NoTool if robot.is_serial() => "the wrench acts at the last frame: the tool is left out".to_owned(),
-            Self::NoTool => "the wrench acts at the frame of the link with the tip: the tool is left out".to_owned(),
-            Self::TipOnLastRow => "the wrench acts at the link of the last row".to_owned(),
-            Self::TorquesReversed => "the torques are what the arm exerts on its motors".to_owned(),
-            Self::TorquesFromTheTip if robot.is_serial() => "the torques are listed from tip to base".to_owned(),
-            Self::TorquesFromTheTip => "the torques are listed from the last row to the first".to_owned(),
-            Self::TorquesByName => "the torques are listed in the alphabetical order of the joints".to_owned(),
-            Self::JointsByName => {
-                "positions, velocities, accelerations and torques are listed in the alphabetical order of the joints"
-                    .to_owned()
-            }
-            Self::TorquesInNmm => "the torques of revolute joints are in N mm".to_owned(),
-            Self::RatesExchanged => "velocities and accelerations are exchanged".to_owned(),
-            Self::Misprint(misprint) => misprint.says().to_owned(),
-            Self::Typo(typo) => typo.says(robot),
-        }
-    }
-
-    /// The line that is right, or what to write where: "`gravity: [0, 0, -9.81]` is its acceleration, downwards".
-    #[must_use]
-    pub fn right(self, robot: &Robot) -> String {
-        let [x, y, z] = robot.gravity;
-        let com = match robot.convention {
-            Convention::Standard => "`com` is measured from frame i, at the far end of link i",
-            Convention::Modified => "`com` is measured from frame i, on the axis of joint i",
-        };
-        match self {
-            Self::OtherConvention => match robot.convention {
-                Convention::Standard => {
-                    "`convention: standard`: Rz(theta) Tz(d) Tx(a) Rx(alpha), frame i at the far end"
-                }
-                Convention::Modified => {
-                    "`convention: modified`: Rx(alpha) Tx(a) Rz(theta) Tz(d), a and alpha of link i-1"
-                }
-            }
-            .to_owned(),
-            Self::GravityReversed | Self::NoGravity | Self::GravityAlong(..) => format!(
-                "`gravity: [{x}, {y}, {z}]`: the acceleration of a falling body in frame 0 (Pinocchio's sign; the \
-                 Robotics Toolbox has the other)"
-            ),
-            Self::GravityInWorld => format!("`gravity: [{x}, {y}, {z}]` is in frame 0; `base` never turns it"),
-            Self::InertiaAboutOrigin | Self::InertiaShifted => {
-                let about = if reference(robot) == InertiaReference::Com { "com" } else { "origin" };
-                format!("the file's inertias are about `{about}`; I_origin = I_com + m (c² 1 - c cᵀ)")
-            }
-            Self::ProductsOfInertia => "`xy` is the element of the tensor, -∫ x y dm".to_owned(),
-            Self::ComReversed | Self::ComFromOtherEnd | Self::ComOfOtherEnd => com.to_owned(),
-            Self::PositionsAsDegrees | Self::PositionsInDegrees => "q in rad: deg(30) is pi/6".to_owned(),
-            Self::StateAsDegrees | Self::StateInDegrees => "q, q̇ and q̈ in rad, rad/s and rad/s²".to_owned(),
-            Self::NoOffsets | Self::OffsetsReversed => {
-                "the joint angle is theta + q; the offset of a prismatic joint is d + q".to_owned()
-            }
-            Self::JointReversed(_) => {
-                "q, q̇, q̈ and τ are positive about (prismatic joints: along) +z of the joint".to_owned()
-            }
-            Self::NoVelocities => "n = I ω̇ + ω × I ω, and c̈ with its ω × (ω × …)".to_owned(),
-            Self::NoAccelerations => "τ includes M(q) q̈".to_owned(),
-            Self::NoFirstSlide => {
-                "the C code of the Robotics Toolbox for MATLAB has this mistake; its MATLAB code is right".to_owned()
-            }
-            Self::RotorInertia => {
-                "the arm consists of the links of the file; rotors are added only on request".to_owned()
-            }
-            Self::MotorTorques => "τ is without motors; `actuator_torques` adds their inertia and friction".to_owned(),
-            Self::WrenchReversed => {
-                "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w".to_owned()
-            }
-            Self::NoWrench => "τ = τ_free + Jᵀ w".to_owned(),
-            Self::NoTool => "the wrench acts at the tip frame, in its axes: frame n, then `tool`".to_owned(),
-            Self::TipOnLastRow => {
-                let on = robot.tip().on.and_then(|on| robot.joints.get(on)).map_or("", |joint| &joint.name);
-                format!("the wrench acts at the tip, which is on the link of {on}: `tool: {{on: {on}}}`")
-            }
-            Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
-            Self::TorquesFromTheTip if robot.is_serial() => "lists run from base to tip".to_owned(),
-            Self::TorquesFromTheTip | Self::TorquesByName | Self::JointsByName => {
-                let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-                format!("lists are in the order of the rows of the file: {}", names.join(", "))
-            }
-            Self::TorquesInNmm => "N m for a revolute joint, N for a prismatic joint".to_owned(),
-            Self::RatesExchanged => "q̇ before q̈: τ(q, q̇, q̈)".to_owned(),
-            Self::Misprint(misprint) => misprint.right().to_owned(),
-            Self::Typo(typo) => typo.right(robot),
-        }
-    }
-}
-
-fn reference(robot: &Robot) -> InertiaReference {
-    robot.joints.first().map_or(InertiaReference::Com, |joint| joint.written_inertia.1)
 }

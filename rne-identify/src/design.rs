@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
-use rne_machine::{Arguments, Array, CompiledArm, Destination, EvaluationError, Form, Function};
+use rne_machine::{Arguments, Array, CompiledArm, Destination, EvaluationError, Function};
 use rne_model::{JointKind, Robot};
 
 use crate::fourier::{Fourier, Grid};
@@ -52,8 +52,8 @@ impl Design {
             Options { friction, rotors, delay: false, cutoff: None, widths: vec![WIDTH], displacements: Vec::new() };
         let mut structure = Structure::new(robot, options);
         // with the same bits everywhere: a search goes other ways by the last one
-        structure.arm = structure.arm.in_form(Form::SevenSteps);
-        let efforts: Option<Vec<f64>> = robot.joints.iter().map(|joint| joint.limits.effort).collect();
+        structure.regressor = structure.regressor.in_seven_steps();
+        let efforts: Option<Vec<f64>> = robot.independent_joints().map(|joint| joint.limits.effort).collect();
         let efforts = efforts.filter(|efforts| efforts.len() == limits.len() && efforts.iter().all(|x| *x > 0.0));
         let has_efforts = efforts.is_some();
         let weights = efforts.map_or(vec![1.0; robot.dof()], |efforts| efforts.iter().map(|x| 1.0 / x).collect());
@@ -91,7 +91,7 @@ impl Design {
     /// rotor. Along the vertical its mass has q̈ + g, the rotor q̈ and the offset 1, which no motion tells apart.
     fn asked(&self) -> Vec<usize> {
         let Structure { options, parameters, robot, .. } = &self.structure;
-        let slides = |joint: usize| robot.joints[joint].row.kind == JointKind::Prismatic;
+        let slides = |joint: usize| robot.coordinate_kind(joint) == JointKind::Prismatic;
         let is_asked = |unknown: &usize| {
             let friction = unknown.checked_sub(parameters.rank()).filter(|_| options.friction && options.rotors);
             !friction.is_some_and(|at| at % FRICTION == FRICTION - 1 && slides(at / FRICTION))

@@ -27,7 +27,7 @@ impl Effort {
             let worse = |(joint, limits): (&Joint, &MotionLimits)| {
                 joint.friction(limits.velocity).abs().max(joint.friction(-limits.velocity).abs())
             };
-            let friction = robot.joints.iter().zip(limits).map(worse).collect();
+            let friction = robot.independent_joints().zip(limits).map(worse).collect();
             Self { arm, friction, grid: Grid::new(INSTANTS * harmonics) }
         })
     }

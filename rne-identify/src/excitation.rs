@@ -355,7 +355,7 @@ impl<'a> Problem<'a> {
             let (needed, limit) = (used.effort?, used.limits.effort?);
             (needed > limit).then(|| (needed / limit, one_line(&joint.name), needed, limit))
         };
-        let worst = robot.joints.iter().zip(&joints).filter_map(over).max_by(|a, b| a.0.total_cmp(&b.0));
+        let worst = robot.independent_joints().zip(&joints).filter_map(over).max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((_, joint, needed, limit)) = worst {
             return Err(ExcitationError::Effort { joint, needed, limit });
         }

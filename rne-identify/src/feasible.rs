@@ -120,7 +120,8 @@ impl Problem {
         let rank = structure.parameters.rank();
         let of_rotors = if structure.options.rotors { dof } else { 0 };
         let of_friction = if structure.options.friction { FRICTION * dof } else { 0 };
-        let inertial = dof * PER_LINK;
+        let links = structure.robot.joints.len();
+        let inertial = links * PER_LINK;
         let positive = of_rotors + of_friction;
         let delay = usize::from(structure.options.delay);
         let mut map = DMatrix::zeros(count, inertial + positive + delay);
@@ -144,12 +145,14 @@ impl Problem {
         }
         let mut expected = Vec::with_capacity(positive);
         for joint in 0..of_rotors {
-            let behind: f64 = (joint..dof).map(|link| scale[link * PER_LINK + 9]).sum();
-            let known = structure.robot.joints[joint].motor.map(|motor| motor.gear_ratio.powi(2) * motor.inertia);
+            let first = structure.robot.coordinates().nth(joint).unwrap_or(joint);
+            let behind: f64 = (first..links).map(|link| scale[link * PER_LINK + 9]).sum();
+            let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
+            let known = motor.map(|motor| motor.gear_ratio.powi(2) * motor.inertia);
             expected.push(known.filter(|known| *known > 0.0).unwrap_or(PART * behind));
         }
         for joint in 0..of_friction / FRICTION {
-            let motor = structure.robot.joints[joint].motor;
+            let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
             let ratio = motor.map_or(1.0, |motor| motor.gear_ratio.abs());
             let known = |value: Option<f64>| value.filter(|value| *value > 0.0);
             let guess = PART * scales.friction[joint];
@@ -182,7 +185,7 @@ impl Problem {
             design,
             target,
             least,
-            links: dof,
+            links,
             inverses: inverses.collect(),
             units: pseudo_inertia::units(),
             positive,
@@ -289,9 +292,10 @@ impl Problem {
         };
         let inertial = self.links * PER_LINK;
         let unscaled = |index: usize| at[inertial + index] * self.scale[inertial + index];
-        let of_rotors = if structure.options.rotors { self.links } else { 0 };
-        let rotors = (0..self.links).map(|joint| if joint < of_rotors { unscaled(joint) } else { 0.0 }).collect();
-        let friction = (0..self.links).map(|joint| {
+        let dof = structure.dof();
+        let of_rotors = if structure.options.rotors { dof } else { 0 };
+        let rotors = (0..dof).map(|joint| if joint < of_rotors { unscaled(joint) } else { 0.0 }).collect();
+        let friction = (0..dof).map(|joint| {
             if !structure.options.friction {
                 return [0.0; FRICTION];
             }

@@ -160,7 +160,7 @@ impl FittedModel {
 
 /// Viscous friction, the odd part of Coulomb friction and its even part at a joint, as the robot file has them.
 pub(crate) fn file_friction(robot: &Robot, joint: usize) -> [f64; FRICTION] {
-    let Some(motor) = robot.joints.get(joint).and_then(|joint| joint.motor) else { return [0.0; FRICTION] };
+    let Some(motor) = robot.independent_joint(joint).and_then(|joint| joint.motor) else { return [0.0; FRICTION] };
     let ratio = motor.gear_ratio.abs();
     let [forward, backward] = motor.coulomb.map(|coulomb| ratio * coulomb);
     [ratio * ratio * motor.viscous, 0.5 * (forward - backward), 0.5 * (forward + backward)]

@@ -27,7 +27,7 @@ pub enum Parameter {
     /// A parameter of a link, both counted from 0: the place in (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz),
     /// about the origin of the link frame.
     Link(usize, usize),
-    /// The inertia of a rotor, at its joint, counted from 0.
+    /// The inertia of a rotor, at its joint, counted from 0 among all joints.
     Rotor(usize),
 }
 
@@ -64,9 +64,8 @@ impl Identifiability {
     /// without rounding and without a tolerance. The numbers of the links do not matter.
     #[must_use]
     pub fn of(robot: &Robot, rotors: bool) -> Self {
-        let dof = robot.dof();
-        let links = (0..dof).flat_map(|link| ORDER.map(|index| Parameter::Link(link, index)));
-        let of_rotors = (0..if rotors { dof } else { 0 }).map(Parameter::Rotor);
+        let links = (0..robot.joints.len()).flat_map(|link| ORDER.map(|index| Parameter::Link(link, index)));
+        let of_rotors = robot.coordinates().filter(|_| rotors).map(Parameter::Rotor);
         let order: Vec<Parameter> = links.chain(of_rotors).collect();
         let regressor = Regressor::new(robot);
         let mut rows = Rows { reduced: Vec::new(), width: order.len() };
@@ -87,27 +86,32 @@ impl Identifiability {
 /// The regressor of a robot, ready to be evaluated.
 struct Regressor {
     function: ExactFunction,
-    dof: usize,
+    /// Number of links.
+    links: usize,
+    /// The joints that follow no other, counted from 0.
+    coordinates: Vec<usize>,
 }
 
 impl Regressor {
     fn new(robot: &Robot) -> Self {
         // what a link has does not enter, but rotors would
         let robot = Robot { rotors: false, ..robot.clone() };
-        Self { function: ExactFunction::new(&robot, Function::Regressor), dof: robot.dof() }
+        let coordinates = robot.coordinates().collect();
+        Self { function: ExactFunction::new(&robot, Function::Regressor), links: robot.joints.len(), coordinates }
     }
 
-    /// A row per joint, in the order of the parameters.
+    /// A row per coordinate, in the order of the parameters.
     fn rows(&self, point: u64, order: &[Parameter]) -> Vec<Vec<Residue>> {
         let outputs = self.function.at(point);
         let output = |at: usize| outputs[at];
         let acceleration = |joint: usize| self.function.argument(point, Name::scalar(Quantity::RateDot, joint + 1));
-        let element = |joint: usize, parameter: &Parameter| match *parameter {
-            Parameter::Link(link, place) => output((joint * self.dof + link) * PER_LINK + place),
+        let element = |at: usize, joint: usize, parameter: &Parameter| match *parameter {
+            Parameter::Link(link, place) => output((at * self.links + link) * PER_LINK + place),
             Parameter::Rotor(of) if of == joint => acceleration(joint),
             Parameter::Rotor(_) => Residue::ZERO,
         };
-        (0..self.dof).map(|joint| order.iter().map(|parameter| element(joint, parameter)).collect()).collect()
+        let row = |(at, &joint): (usize, &usize)| order.iter().map(|parameter| element(at, joint, parameter)).collect();
+        self.coordinates.iter().enumerate().map(row).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Matrix4;
 use rne_logs::Motion;
-use rne_model::{FrictionTransition, Inertia, InertiaReference, Joint, Link, Motor, Robot};
+use rne_model::{Bodies, FrictionTransition, Inertia, InertiaReference, Joint, Link, Motor, Robot};
 
 use crate::feasible::Feasible;
 use crate::friction::{FrictionExcitation, HeldFriction};
@@ -374,9 +374,18 @@ fn not_finite(robot: &Robot) -> Option<usize> {
 fn robot_of(structure: &Structure, one: &Fit) -> Robot {
     let Fit { least_squares, feasible, .. } = one;
     let mut robot = structure.robot.clone();
-    for (at, joint) in robot.joints.iter_mut().enumerate() {
-        joint.row.link = link(&feasible.links[at]);
+    // what is identified has the bodies in it
+    robot.bodies = Bodies::default();
+    let mut coordinate = 0;
+    for (joint, of_link) in robot.joints.iter_mut().zip(&feasible.links) {
+        joint.row.link = link(of_link);
         joint.written_inertia = (joint.row.link.inertia, InertiaReference::Com);
+        // a follower has no motor
+        if joint.coupling.is_some() {
+            continue;
+        }
+        let at = coordinate;
+        coordinate += 1;
         let before = joint.motor.unwrap_or(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.0, coulomb: [0.0; 2] });
         let ratio = before.gear_ratio.abs();
         let mut motor = before;

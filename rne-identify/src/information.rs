@@ -8,16 +8,14 @@ use std::fmt;
 
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
-use rne_machine::{EvaluationError, Function};
+use rne_machine::EvaluationError;
 use rne_model::TransitionSign;
 
-use crate::design::run;
 use crate::least_squares::effort;
 use crate::prior::Scales;
 use crate::r_factor::RFactor;
 use crate::smoothing::{Kernel, Weights};
 use crate::structure::Structure;
-use rne_model::PER_LINK;
 
 pub(crate) use instants::instants;
 use instants::{between, slope};
@@ -416,6 +414,7 @@ pub(crate) fn rows(
     let time = &motion.time[from..to];
     walk.advance(motion, from);
     let plain = plain_columns(structure, motion, from..to, walk)?;
+    let of_rotors = structure.regressor.of_rotors(motion, from..to)?;
     // without filter instants are states, which follow each other
     let place = time.partition_point(|time| time < start);
     let weights: Vec<Weights> = match kernel {
@@ -434,10 +433,13 @@ pub(crate) fn rows(
         let inner = columns - 1 - usize::from(has_delay);
         let tau = &motion.tau[joint][from..to];
         let (rotor, qdd) = (structure.known_rotor(joint), &motion.qdd[joint][from..to]);
-        let known = |row: usize| match kernel {
-            _ if rotor == 0.0 => 0.0,
-            Some(_) => rotor * weights[row].of(qdd),
-            None => rotor * qdd[place + row],
+        let at_row = |row: usize, list: &[f64]| match kernel {
+            Some(_) => weights[row].of(list),
+            None => list[place + row],
+        };
+        let known = |row: usize| {
+            let own = if rotor == 0.0 { 0.0 } else { rotor * at_row(row, qdd) };
+            of_rotors.as_ref().map_or(own, |of_rotors| own + at_row(row, &of_rotors[joint]))
         };
         DMatrix::from_fn(instants.len(), columns, |row, column| match (kernel.is_some(), column) {
             (true, column) if column < inner => weights[row].of(plain[joint].column(column).as_slice()),
@@ -469,20 +471,14 @@ pub(crate) fn plain_columns(
 ) -> Result<Vec<DMatrix<f64>>, EvaluationError> {
     let dof = structure.dof();
     let states = range.len();
-    let mut regressor = DMatrix::zeros(states, dof * dof * PER_LINK);
-    let columns = regressor.as_mut_slice().chunks_mut(states.max(1)).collect();
-    if states > 0 {
-        run(&structure.arm, Function::Regressor, motion, range.clone(), columns)?;
-    }
+    let regressor = structure.regressor.columns(motion, range.clone())?;
     let friction = structure.options.friction;
     let of_joint = |joint: usize| {
         let [q, qd, qdd] = [&motion.q, &motion.qd, &motion.qdd].map(|lists| &lists[joint][range.clone()]);
         let mut columns: Vec<DVector<f64>> = Vec::with_capacity(structure.columns(joint));
         for &base in &structure.felt[joint] {
             columns.push(match structure.parameters.bases[base].kept {
-                crate::Parameter::Link(link, index) => {
-                    regressor.column((joint * dof + link) * PER_LINK + index).clone_owned()
-                }
+                crate::Parameter::Link(link, index) => DVector::from_column_slice(regressor.of(joint, link, index)),
                 crate::Parameter::Rotor(_) => DVector::from_column_slice(qdd),
             });
         }

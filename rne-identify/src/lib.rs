@@ -25,6 +25,7 @@ pub mod prior;
 pub mod pseudo_inertia;
 mod r_factor;
 mod random;
+mod regressor;
 mod reply;
 mod smoothing;
 mod steady;

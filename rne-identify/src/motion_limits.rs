@@ -66,7 +66,7 @@ impl MotionLimits {
             let link = &joint.row.link;
             link.mass > 0.0 || link.has_first_moment()
         });
-        let limits = robot.joints.iter().enumerate().map(|(at, joint)| {
+        let limits = robot.independent_joints().enumerate().map(|(at, joint)| {
             let position = position(joint, asked_for(&asked.range, at))?;
             let velocity =
                 [asked_for(&asked.velocity, at), joint.limits.velocity].into_iter().flatten().reduce(f64::min);

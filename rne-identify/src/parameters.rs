@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use crate::identifiability::{Identifiability, Parameter, Visibility};
 use nalgebra::{DMatrix, DVector};
-use rne_model::{Link, PER_LINK, Robot};
+use rne_model::{PER_LINK, Robot};
 use rne_runtime::{DynArm, LinkParameter};
 
 use crate::random::Random;
+use crate::regressor::bare;
 
 /// Random states from which factors are computed that are no small whole numbers.
 const STATES: usize = 60;
@@ -48,8 +49,8 @@ impl Base {
 pub struct Parameters {
     /// Base parameters, one for each independent column of the regressor, base to tip, then rotors.
     pub bases: Vec<Base>,
-    /// Rank × (10 · links + rotors): base parameters of link parameters, link by link as (m, m cx, m cy, m cz, Jxx,
-    /// Jxy, Jxz, Jyy, Jyz, Jzz), then the rotors'.
+    /// Rank × (10 · links + rotors, of the coordinates): base parameters of link parameters, link by link as (m, m cx,
+    /// m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz), then the rotors'.
     pub regrouping: DMatrix<f64>,
     pub(crate) rotors: bool,
 }
@@ -59,7 +60,7 @@ impl Parameters {
     #[must_use]
     pub fn of(robot: &Robot, rotors: bool) -> Self {
         let Identifiability { parameters, .. } = Identifiability::of(robot, rotors);
-        let dof = robot.dof();
+        let (links, coordinates) = (robot.joints.len(), robot.coordinates().collect::<Vec<_>>());
         let kept: Vec<Parameter> = parameters
             .iter()
             .filter(|(_, visibility)| *visibility == Visibility::Kept)
@@ -67,9 +68,11 @@ impl Parameters {
             .collect();
         let place = |parameter: Parameter| match parameter {
             Parameter::Link(link, index) => link * PER_LINK + index,
-            Parameter::Rotor(joint) => dof * PER_LINK + joint,
+            Parameter::Rotor(joint) => {
+                links * PER_LINK + coordinates.iter().take_while(|&&other| other < joint).count()
+            }
         };
-        let all = dof * PER_LINK + if rotors { dof } else { 0 };
+        let all = links * PER_LINK + if rotors { coordinates.len() } else { 0 };
         let stacked = stacked(robot, all);
         let mut bases: Vec<Base> = kept.iter().map(|&kept| Base { kept, regrouped: Vec::new() }).collect();
         let mut regrouping = DMatrix::zeros(kept.len(), all);
@@ -117,45 +120,36 @@ impl Parameters {
         if self.rotors {
             values.extend(
                 robot
-                    .joints
-                    .iter()
+                    .independent_joints()
                     .map(|joint| joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia)),
             );
         }
         DVector::from_vec(values)
     }
 
-    /// Whether the torque of a joint may depend on a base parameter.
-    pub(crate) fn is_felt(robot: &Robot, base: &Base, joint: usize) -> bool {
+    /// Whether the torque of a coordinate may depend on a base parameter.
+    pub(crate) fn is_felt(robot: &Robot, base: &Base, coordinate: usize) -> bool {
         match base.kept {
-            Parameter::Link(link, _) => moves(robot, joint, link),
-            Parameter::Rotor(of) => of == joint,
+            Parameter::Link(link, _) => moves(robot, coordinate, link),
+            Parameter::Rotor(of) => robot.coordinates().nth(coordinate) == Some(of),
         }
     }
 }
 
-/// Whether a joint moves a link; both count from 0.
-pub(crate) fn moves(robot: &Robot, joint: usize, link: usize) -> bool {
-    std::iter::successors(Some(link), |&link| robot.parent(link)).any(|other| other == joint)
+/// Whether a coordinate moves a link, by its own joint or by one that follows it; both count from 0.
+pub(crate) fn moves(robot: &Robot, coordinate: usize, link: usize) -> bool {
+    let joint = robot.coordinates().nth(coordinate);
+    let is_moved = |other: usize| match &robot.joints[other].coupling {
+        None => Some(other) == joint,
+        Some(coupling) => coupling.follows.iter().any(|(followed, _)| Some(*followed) == joint),
+    };
+    std::iter::successors(Some(link), |&link| robot.parent(link)).any(is_moved)
 }
 
 /// The regressor with the columns of rotors at random states, one below the other.
 fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
-    let dof = robot.dof();
-    let bare = Robot {
-        joints: robot
-            .joints
-            .iter()
-            .cloned()
-            .map(|mut joint| {
-                joint.row.link = Link::default();
-                joint
-            })
-            .collect(),
-        rotors: false,
-        ..robot.clone()
-    };
-    let arm = DynArm::from_robot(&bare);
+    let (dof, links) = (robot.dof(), robot.joints.len());
+    let arm = DynArm::from_robot(&bare(robot));
     let mut random = Random::new(1);
     let mut stacked = DMatrix::zeros(STATES * dof, columns);
     for state in 0..STATES {
@@ -167,8 +161,8 @@ fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
             for (at, element) in torque.iter().flatten().enumerate() {
                 stacked[(state * dof + joint, at)] = *element;
             }
-            if columns > dof * PER_LINK {
-                stacked[(state * dof + joint, dof * PER_LINK + joint)] = qdd[joint];
+            if columns > links * PER_LINK {
+                stacked[(state * dof + joint, links * PER_LINK + joint)] = qdd[joint];
             }
         }
     }

@@ -238,7 +238,7 @@ impl Payload {
 fn options(robot: &Robot, cutoff: f64) -> Options {
     let mut options =
         Options { cutoff: Some(cutoff), widths: Vec::new(), displacements: Vec::new(), ..Options::default() };
-    for joint in &robot.joints {
+    for joint in robot.independent_joints() {
         let (list, value) = match FrictionTransition::of(joint) {
             FrictionTransition::Speed(width) => (&mut options.widths, width),
             FrictionTransition::Displacement(length) => (&mut options.displacements, length),
@@ -254,7 +254,7 @@ fn options(robot: &Robot, cutoff: f64) -> Options {
 fn transitions(structure: &Structure, fitted: &[usize]) -> Vec<usize> {
     let all = structure.options().transitions();
     let of_file = |joint| all.iter().position(|transition| *transition == FrictionTransition::of(joint));
-    let joints = structure.robot().joints.iter().zip(fitted);
+    let joints = structure.robot().independent_joints().zip(fitted);
     joints.map(|(joint, fitted)| of_file(joint).unwrap_or(*fitted)).collect()
 }
 
@@ -316,8 +316,11 @@ impl Equations {
     /// The error of the model as a first moment, kg m, and as an inertia, kg m²: the offset by which friction of the
     /// last joints is wrong, at a typical acceleration.
     fn moment_error(&self, robot: &Robot) -> f64 {
-        let turns = |joint: &usize| robot.joints[*joint].row.kind == JointKind::Revolute;
-        let near = std::iter::successors(robot.tip().on, |&link| robot.parent(link)).filter(turns).take(NEAR);
+        let coordinate = |link: usize| {
+            let turns = robot.joints[link].row.kind == JointKind::Revolute;
+            robot.coordinates().position(|joint| joint == link).filter(|_| turns)
+        };
+        let near = std::iter::successors(robot.tip().on, |&link| robot.parent(link)).filter_map(coordinate).take(NEAR);
         let coulomb = |joint: usize| self.errors[FRICTION * joint + FrictionParameter::Coulomb as usize] / COULOMB;
         OFFSET * near.map(coulomb).fold(0.0, f64::max) / ACCELERATION
     }

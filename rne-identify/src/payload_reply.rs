@@ -81,7 +81,7 @@ impl PayloadReply {
                 com: payload.com.each_ref().map(|number| Number::of(number, "m")),
                 inertia: payload.inertia.each_ref().map(|number| Number::of(number, "kg m²")),
             },
-            joints: robot.joints.iter().enumerate().map(joint).collect(),
+            joints: robot.independent_joints().enumerate().map(joint).collect(),
             delay: payload.delay,
         }
     }

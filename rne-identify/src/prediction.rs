@@ -131,7 +131,7 @@ impl Prediction {
             let columns = torques.iter_mut().map(|torques| &mut torques[range.clone()]).collect();
             run(&self.arm, Function::InverseDynamics, motion, range, columns)?;
         }
-        for (at, (torques, joint)) in torques.iter_mut().zip(&self.robot.joints).enumerate() {
+        for (at, (torques, joint)) in torques.iter_mut().zip(self.robot.independent_joints()).enumerate() {
             let mut friction = Friction::of(joint);
             for ((torque, position), speed) in torques.iter_mut().zip(&motion.q[at]).zip(&motion.qd[at]) {
                 *torque += friction.next(*position, *speed);

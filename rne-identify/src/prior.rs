@@ -42,7 +42,7 @@ pub fn links(robot: &Robot) -> Vec<PriorLink> {
         let link = &robot.joints[joint].row.link;
         link.mass > 0.0 && !link.has_first_moment()
     };
-    (0..robot.dof())
+    (0..robot.joints.len())
         .map(|joint| {
             let written = pseudo_inertia::of(&values[joint]);
             let guess = plausible(robot, joint, if is_body(joint) { values[joint][0] } else { MASS });
@@ -87,7 +87,7 @@ fn span(robot: &Robot, joint: usize) -> Vector3<f64> {
             -Vector3::new(dh.a, sin * dh.d, cos * dh.d)
         }
         Convention::Modified => {
-            let carried = (joint + 1..robot.dof()).filter(|next| robot.parent(*next) == Some(joint));
+            let carried = (joint + 1..robot.joints.len()).filter(|next| robot.parent(*next) == Some(joint));
             let way = carried.map(|next| {
                 let Joint { row: Row { dh, .. }, branch, .. } = &robot.joints[next];
                 let way = Vector3::new(dh.a, -dh.alpha.sin * dh.d, dh.alpha.cos * dh.d);
@@ -123,9 +123,9 @@ impl Scales {
         if parameters.rotors {
             for joint in 0..robot.dof() {
                 // rotors resist as links do
-                let behind = (joint..robot.dof()).filter(|link| moves(robot, joint, *link));
+                let behind = (0..links.len()).filter(|link| moves(robot, joint, *link));
                 let behind: f64 = behind.map(|link| values[link * PER_LINK + 9]).sum();
-                values[robot.dof() * PER_LINK + joint] = behind;
+                values[links.len() * PER_LINK + joint] = behind;
             }
         }
         let squares = parameters.regrouping.map(|factor| factor * factor) * values.map(|value| value * value);

@@ -197,7 +197,7 @@ impl IdentificationReply {
 impl OfVerdict {
     fn of(robot: &Robot, verdict: &Verdict, found: Option<&Identification>) -> Self {
         let named = |is_predicted: bool| {
-            let all = robot.joints.iter().zip(&verdict.joints);
+            let all = robot.independent_joints().zip(&verdict.joints);
             all.filter(|(_, verdict)| verdict.is_predicted == is_predicted)
                 .map(|(joint, _)| joint.name.clone())
                 .collect()
@@ -220,14 +220,14 @@ impl OfVerdict {
             not_excited_base_parameters: not_excited.map(|base| base.name.clone()).collect(),
             frictions: excited.map(|excited| excited.frictions),
             excited_frictions: excited.map(Excited::known_frictions),
-            not_excited_friction: unknown.map(|joint| robot.joints[*joint].name.clone()).collect(),
-            not_excited_offset: offsets.map(|joint| robot.joints[*joint].name.clone()).collect(),
+            not_excited_friction: unknown.map(|joint| robot.coordinate_name(*joint).to_owned()).collect(),
+            not_excited_offset: offsets.map(|joint| robot.coordinate_name(*joint).to_owned()).collect(),
         }
     }
 }
 
 fn joints(robot: &Robot, verdict: &Verdict) -> Vec<OfJoint> {
-    let each = robot.joints.iter().zip(&verdict.joints).enumerate();
+    let each = robot.independent_joints().zip(&verdict.joints).enumerate();
     let joint = |(at, (joint, of)): (usize, (&Joint, &JointVerdict))| {
         let other = of.other.as_ref().map(OfError::of);
         let (held_out, judged) = if verdict.evidence == Evidence::Judged { (None, other) } else { (other, None) };
@@ -285,7 +285,7 @@ impl OfDoubt {
 }
 
 fn friction(found: &Identification) -> Vec<OfFriction> {
-    let each = found.robot.joints.iter().zip(&found.joints).enumerate();
+    let each = found.robot.independent_joints().zip(&found.joints).enumerate();
     let joint = |(at, (joint, report)): (usize, (&Joint, &JointReport))| {
         let [viscous, forward, backward] = report.friction?;
         let effort = joint.row.kind.effort_unit();

@@ -2,10 +2,10 @@
 
 use crate::Parameter;
 use nalgebra::DMatrixView;
-use rne_machine::CompiledArm;
-use rne_model::{FrictionTransition, JointKind, Link, PER_LINK, Robot};
+use rne_model::{FrictionTransition, JointKind, PER_LINK, Robot};
 
 use crate::parameters::Parameters;
+use crate::regressor::Regressor;
 use crate::smoothing::Kernel;
 
 /// Options of an identification.
@@ -68,8 +68,8 @@ pub struct Structure {
     pub(crate) transitions: Vec<FrictionTransition>,
     pub(crate) parameters: Parameters,
     pub(crate) robot: Robot,
-    /// The geometry alone.
-    pub(crate) arm: CompiledArm,
+    /// The columns of its geometry.
+    pub(crate) regressor: Regressor,
     /// The base parameters that the torque of each joint may depend on.
     pub(crate) felt: Vec<Vec<usize>>,
 }
@@ -78,14 +78,12 @@ pub struct Structure {
 pub(crate) const FRICTION: usize = 3;
 
 impl Structure {
-    /// Sets up the equations of a robot's geometry; its links count as prior knowledge alone.
+    /// Sets up the equations of a robot's geometry; its links count as prior knowledge alone. The inertia of rotors in
+    /// the list `motors` is known: a robot that has some has no [`Options::rotors`].
     #[must_use]
     pub fn new(robot: &Robot, options: Options) -> Self {
+        let options = Options { rotors: options.rotors && !robot.has_spinning_rotors(), ..options };
         let parameters = Parameters::of(robot, options.rotors);
-        let mut bare = Robot { rotors: false, ..robot.clone() };
-        for joint in &mut bare.joints {
-            joint.row.link = Link::default();
-        }
         let felt = (0..robot.dof())
             .map(|joint| {
                 let felt = |base: &usize| Parameters::is_felt(robot, &parameters.bases[*base], joint);
@@ -93,7 +91,7 @@ impl Structure {
             })
             .collect();
         let transitions = options.transitions();
-        Self { parameters, robot: robot.clone(), arm: CompiledArm::from_robot(&bare), felt, options, transitions }
+        Self { parameters, robot: robot.clone(), regressor: Regressor::of(robot), felt, options, transitions }
     }
 
     /// The base parameters.
@@ -127,7 +125,8 @@ impl Structure {
         }
     }
 
-    /// Number of joints.
+    /// Number of coordinates: of the joints that follow no other. Joints of rows, of friction and of motions are
+    /// coordinates.
     #[must_use]
     pub fn dof(&self) -> usize {
         self.robot.dof()
@@ -186,7 +185,7 @@ impl Structure {
 
     /// G² Jm of a joint, kg m² or kg, where the file has it and nobody asked for it: its torque is known.
     pub(crate) fn known_rotor(&self, joint: usize) -> f64 {
-        match self.robot.joints.get(joint).and_then(|joint| joint.motor) {
+        match self.robot.independent_joint(joint).and_then(|joint| joint.motor) {
             Some(motor) if !self.options.rotors => motor.gear_ratio * motor.gear_ratio * motor.inertia,
             _ => 0.0,
         }

@@ -143,7 +143,8 @@ impl Verdict {
             }
             JointVerdict::new(None, Some(*error), doubts, !is_unknown)
         };
-        let joints = errors.iter().zip(&robot.joints).zip(Identification::not_excited(robot)).map(joint).collect();
+        let joints =
+            errors.iter().zip(robot.independent_joints()).zip(Identification::not_excited(robot)).map(joint).collect();
         Self { evidence: Evidence::Judged, joints, excited: None }
     }
 

@@ -15,7 +15,7 @@ impl Identification {
     #[must_use]
     pub fn robot_file(&self, logs: &str) -> String {
         let mut unknown = String::new();
-        for (report, joint) in self.joints.iter().zip(&self.robot.joints) {
+        for (report, joint) in self.joints.iter().zip(self.robot.independent_joints()) {
             if !report.is_excited() {
                 let _ = write!(unknown, "\n{NOT_EXCITED}{}", one_line(&joint.name));
             }
@@ -27,10 +27,12 @@ impl Identification {
             if line.starts_with("  - name:") {
                 joint += 1;
             }
-            if let Some(report) = joint.checked_sub(1).and_then(|joint| self.joints.get(joint)) {
-                let kind = self.robot.joints[joint - 1].row.kind;
+            let row = joint.checked_sub(1);
+            let coordinate = row.and_then(|row| self.robot.coordinates().position(|joint| joint == row));
+            if let Some((at, report)) = coordinate.and_then(|at| Some((at, self.joints.get(at)?))) {
+                let kind = self.robot.coordinate_kind(at);
                 if line == "    link:" {
-                    let _ = writeln!(text, "    # {}", of_link(self, report, joint - 1));
+                    let _ = writeln!(text, "    # {}", of_link(self, report, at));
                 } else if line.starts_with("    motor:")
                     && let Some(words) = of_motor(report, kind)
                 {
@@ -49,7 +51,7 @@ impl Identification {
     pub fn not_excited(robot: &Robot) -> Vec<bool> {
         let notes = robot.notes.as_deref().unwrap_or_default();
         let named: Vec<&str> = notes.lines().filter_map(|line| line.trim().strip_prefix(NOT_EXCITED)).collect();
-        robot.joints.iter().map(|joint| named.iter().any(|name| *name == one_line(&joint.name))).collect()
+        robot.independent_joints().map(|joint| named.iter().any(|name| *name == one_line(&joint.name))).collect()
     }
 }
 
@@ -103,7 +105,7 @@ fn head(identification: &Identification) -> String {
 }
 
 fn of_link(identification: &Identification, report: &JointReport, joint: usize) -> String {
-    let unit = identification.robot.joints[joint].row.kind.effort_unit();
+    let unit = identification.robot.coordinate_kind(joint).effort_unit();
     if let (true, Some((offset, _))) = (report.is_excited(), report.offset) {
         format!("identified: its offset of {} {unit} is more than its Coulomb friction can store", short(offset))
     } else if report.is_excited() {

@@ -85,3 +85,13 @@ fn rotors_of_the_first_joints_are_seen_with_their_links() {
         assert!(matches!(seen(1), Some((_, Visibility::Regrouped(_)))), "{name}");
     }
 }
+
+/// Robots some of whose joints follow others: their ratios are 1 and -1.
+#[test]
+fn base_parameters_of_coupled_robots_are_the_exact_ones() {
+    for text in [include_str!("../../docs/gripper.yaml"), include_str!("../../docs/palletiser.yaml")] {
+        let read = rne_model::Reader::new("robot").trees().couplings().read(text);
+        let robot = read.unwrap_or_else(|report| panic!("{report}")).robot;
+        compare(&robot, &robot.name);
+    }
+}

@@ -200,7 +200,29 @@ pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -
         }
     }
     let list = read.into_iter().collect::<Option<Vec<_>>>()?;
+    if valid && let Some((index, on)) = overflow(&list, joints) {
+        let message = format!(
+            "the link of {} with its bodies is too heavy: its mass or its inertia is more than a 64-bit number holds",
+            quoted(&joints[on].name)
+        );
+        let place = items[index].get("mass").unwrap_or(&items[index]).span.clone();
+        let help = "masses are in kg, lengths in m and inertias in kg m²; check the numbers of the bodies of this link";
+        return cx.refuse(Diagnostic::error(place, message).label("too large with this body").help(help));
+    }
     valid.then_some(Bodies { list, bare: Vec::new() })
+}
+
+/// The first body, counted from 0, with which its link is not finite any more, and the joint of that link.
+fn overflow(list: &[Body], joints: &[Joint]) -> Option<(usize, usize)> {
+    let mut links: Vec<Link> = joints.iter().map(|joint| joint.row.link).collect();
+    list.iter().enumerate().find_map(|(index, body)| {
+        let on = body.fixed.on?;
+        let link = links.get_mut(on)?;
+        *link = together(link, &seen_from_link(&body.matter, &body.fixed.placement));
+        let numbers = [link.mass].into_iter().chain(link.com);
+        let is_finite = numbers.chain(link.com.map(|c| link.mass * c)).all(f64::is_finite);
+        (!is_finite || inertia::principal_moments(&link.inertia).is_none()).then_some((index, on))
+    })
 }
 
 /// Why a link cannot carry a body.

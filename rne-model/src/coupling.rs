@@ -8,7 +8,7 @@ use crate::frame::joint_names;
 use crate::source::quoted;
 use crate::tree::needs_format_2;
 use crate::varying::fixed;
-use crate::{Drive, Entry, Joint};
+use crate::{Drive, Entry, Joint, JointKind, lint};
 
 /// How a joint follows others: its position is Σ ratio · q + offset, with the positions q of the joints that it
 /// follows. Such a joint, a follower, is not among the coordinates of the robot: q, q̇, q̈ and τ have no element for it.
@@ -81,7 +81,13 @@ pub(crate) fn couplings(cx: &Context, root: &Node, format: u32, joints: &mut [Jo
         }
     }
     valid.then(|| {
-        for Written { joint, coupling } in written {
+        for (item, Written { joint, coupling }) in items.iter().zip(written) {
+            if let Some(offset) = item.get("offset") {
+                match joints[joint].row.kind {
+                    JointKind::Revolute => lint::angle(cx, offset, coupling.offset),
+                    JointKind::Prismatic => lint::length(cx, offset, coupling.offset),
+                }
+            }
             joints[joint].coupling = Some(coupling);
         }
     })
@@ -167,7 +173,8 @@ pub(crate) fn named(
 /// Refuses couplings and the list `motors` for a function that takes robots without them.
 pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], drives: &[Drive]) {
     if joints.iter().any(|joint| joint.coupling.is_some()) {
-        let place = root.get("couplings").or_else(|| root.get("loops")).unwrap_or(root).head();
+        let key = if root.has_entries("couplings") { "couplings" } else { "loops" };
+        let place = root.get(key).unwrap_or(root).head();
         let message = "the robot has couplings, and joints that follow others are not supported here";
         let help = "the section Couplings of docs/robot-file.md lists the commands, derives and types that take \
                     couplings";

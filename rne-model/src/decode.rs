@@ -338,19 +338,22 @@ fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
         ));
     }
     let place = match key {
-        "theta" | "d" | "a" | "alpha" => "dh",
-        "mass" | "com" | "first_moment" | "inertia" | "inertia_about" | "physical" => "link",
-        "position" | "velocity" | "effort" => "limits",
-        "gear_ratio" | "viscous" | "coulomb" | "coulomb_width" | "coulomb_displacement" => "motor",
-        "follows" => "an entry of `couplings",
-        "xyz" | "rpy" => "base`, `tool` or an entry of `frames",
+        "theta" | "d" | "a" | "alpha" | "gamma" | "b" => "`dh`",
+        "mass" | "com" | "first_moment" | "inertia" | "inertia_about" | "physical" => "`link`",
+        "position" | "velocity" | "effort" => "`limits`",
+        "gear_ratio" | "viscous" | "coulomb" | "coulomb_width" | "coulomb_displacement" => "`motor`",
+        "follows" => "an entry of `couplings`",
+        "turns" | "rotor" => "an entry of `motors`",
+        "axis" => "`rotor`, in an entry of `motors`",
+        "between" | "cut" | "dependent" => "an entry of `loops`",
+        "xyz" | "rpy" => "`base`, `tool`, `at` or an entry of `frames`",
         "<<" => return Some("YAML merge keys are not part of the format; write the keys out".to_owned()),
         "offset" if allowed.contains(&"dh") => {
             return Some("write the offset of the joint as the constant in `theta` or `d`".to_owned());
         }
         _ => return None,
     };
-    Some(format!("`{key}` belongs under `{place}`"))
+    Some(format!("`{key}` belongs under {place}"))
 }
 
 /// A finite number: a decimal or an expression. What may vary at run time, and where, is for

@@ -106,6 +106,11 @@ impl Node {
         entries.iter().find(|entry| entry.key == key).map(|entry| &*entry.value)
     }
 
+    /// Whether this is a mapping that has the key, with another value than an empty list.
+    pub(crate) fn has_entries(&self, key: &str) -> bool {
+        self.get(key).is_some_and(|node| !matches!(&node.content, Content::Sequence(items) if items.is_empty()))
+    }
+
     /// Where to point when the whole value is meant: a block mapping or list is represented by its first line.
     #[must_use]
     pub fn head(&self) -> Range<usize> {

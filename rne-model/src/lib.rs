@@ -84,6 +84,8 @@ mod link;
 #[cfg(feature = "std")]
 mod lint;
 #[cfg(feature = "std")]
+mod mirror;
+#[cfg(feature = "std")]
 mod parallelogram;
 #[cfg(feature = "std")]
 mod quantity;

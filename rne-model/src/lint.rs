@@ -290,7 +290,7 @@ const WITH_FRICTION: usize = 2;
 /// friction elsewhere.
 pub(crate) fn missing_friction(cx: &Context, root: &Node) {
     let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
-    if ["couplings", "motors", "loops"].iter().any(|key| root.get(key).is_some()) {
+    if ["couplings", "motors", "loops"].iter().any(|key| root.has_entries(key)) {
         return;
     }
     let has_friction = |item: &Node| {

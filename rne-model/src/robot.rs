@@ -158,6 +158,18 @@ impl Robot {
         self.independent_joints().nth(coordinate)
     }
 
+    /// The name of the joint of a coordinate, which is counted from 0; empty if there is no such coordinate.
+    #[must_use]
+    pub fn coordinate_name(&self, coordinate: usize) -> &str {
+        self.independent_joint(coordinate).map_or("", |joint| &joint.name)
+    }
+
+    /// The kind of the joint of a coordinate, which is counted from 0.
+    #[must_use]
+    pub fn coordinate_kind(&self, coordinate: usize) -> JointKind {
+        self.independent_joint(coordinate).map_or(JointKind::Revolute, |joint| joint.row.kind)
+    }
+
     /// Whether some joint follows others.
     #[must_use]
     pub fn has_couplings(&self) -> bool {

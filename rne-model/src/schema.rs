@@ -19,7 +19,7 @@ use crate::tips::{first_tip, tips};
 use crate::varying::{entry, fixed, unknown_names, unknown_settings, without_effect};
 use crate::{
     Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits, Link,
-    Motor, Robot, Row, Transform, lint, tree,
+    Motor, Robot, Row, Transform, lint, mirror, tree,
 };
 
 /// More than every number of 64 joints with a name of its own.
@@ -81,6 +81,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         lint::inertias(cx, node, convention, &joints);
         lint::placeholders(cx, node, &joints);
         lint::missing_friction(cx, node);
+        mirror::twins(cx, node, &joints);
         // the reach of a tree is not the sum of its rows
         if joints.iter().all(|joint| joint.branch.is_none()) {
             lint::light_for_reach(cx, node, &joints);

@@ -50,7 +50,7 @@ pub(crate) fn tips(cx: &Context, root: &Node, format: u32, frames: &[Frame]) -> 
         return cx.refuse(needs_format_2("tips", node));
     }
     let items = match &node.content {
-        Content::Sequence(items) if !items.is_empty() => items,
+        Content::Sequence(items) => items,
         _ => {
             let message = format!("found {} where a list of names is needed", node.described());
             let help = "write the names of the frames that carry wrenches, such as `tips: [left, right]`";

@@ -125,7 +125,7 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
     let carries = |joint: usize| (joint..joints.len()).any(|other| parent(joints, other) == Some(joint));
     let ends: Vec<&Joint> = joints.iter().enumerate().filter(|(at, _)| !carries(*at)).map(|(_, joint)| joint).collect();
     // without `tool`, the first of `tips` is the tip
-    if ends.len() < 2 || (tool.is_none() && root.get("tips").is_some()) {
+    if ends.len() < 2 || (tool.is_none() && root.has_entries("tips")) {
         return Some(None);
     }
     let listed: Vec<_> = ends.iter().take(6).map(|joint| quoted(&joint.name)).collect();

@@ -213,7 +213,6 @@ fn mistakes_in_tips_are_told_at_their_place() {
         ),
         ("[left, left]", "12:14", "`left` is in the list twice"),
         ("[floor]", "12:8", "the tip `floor` is on `base`"),
-        ("[]", "12:7", "a list of names is needed"),
         ("left", "12:7", "a list of names is needed"),
         ("[b]", "12:8", "`tips` names `b`, which is no frame of this file"),
     ] {
@@ -222,4 +221,39 @@ fn mistakes_in_tips_are_told_at_their_place() {
     }
     let report = read_with("tips: [left]\n", &[]).unwrap_err();
     assert!(report.contains("the file has no list `frames`"), "{report}");
+}
+
+/// Two bodies of 1e308 kg weigh more than a 64-bit number holds; so does the inertia of a light one that is far away.
+#[test]
+fn bodies_that_overflow_are_refused_at_their_line() {
+    let heavy = "tool: {on: b}\nbodies:\n  - {name: x, on: a, mass: 1e308}\n  - {name: y, on: a, mass: 1e308}\n";
+    let far = "tool: {on: b}\nbodies:\n  - {name: x, on: b, mass: 1e10}\n  \
+               - {name: y, on: b, at: {xyz: [1e150, 0, 0]}, mass: 1e10}\n";
+    for (bodies, place, link) in [(heavy, "14:28", "`a`"), (far, "14:54", "`b`")] {
+        let report = read_with(bodies, &[]).expect_err(bodies);
+        let said = format!("torso.yaml:{place}: error: the link of {link} with its bodies is too heavy");
+        assert!(report.contains(&said), "{report}");
+    }
+    // on two links each is a number
+    assert!(read_with(&heavy.replace("y, on: a", "y, on: b"), &[]).is_ok());
+}
+
+/// A list without entries means the same as no list, whichever it is.
+#[test]
+fn empty_lists_are_as_no_list() {
+    let without = read("");
+    for key in ["frames", "couplings", "loops", "motors", "bodies", "tips"] {
+        let text = format!("{FILE}tool: {{on: b}}\n{key}: []\n");
+        let read = Reader::new("torso.yaml").trees().couplings().read(&text);
+        assert_eq!(read.unwrap_or_else(|report| panic!("{key}: {report}")).robot, without, "{key}");
+        if key != "frames" {
+            let chain = FILE.replace("format: 2", "format: 1").replace("parent: a, ", "");
+            let old = format!("{chain}{key}: []\n");
+            let report = Reader::new("torso.yaml").read(&old).unwrap_err().short();
+            assert!(report.contains(&format!("the key `{key}` needs `format: 2`")), "{report}");
+        }
+    }
+    // a robot with several ends and no tips says where its tip is
+    let report = read_with("tips: []\n", &[]).unwrap_err();
+    assert!(report.contains("the robot has 2 ends (`b`, `c`)"), "{report}");
 }

@@ -75,3 +75,23 @@ fn mistakes_are_told_at_their_place() {
     let old = Reader::new("hand.yaml").couplings().read(&old).unwrap_err().short();
     assert!(old.contains("the key `couplings` needs `format: 2`"), "{old}");
 }
+
+/// An offset is an angle or a length as those of the table are, and degrees and millimetres are noticed as there.
+#[test]
+fn degrees_and_millimetres_in_an_offset_are_remarked() {
+    let lints = |couplings: &str| {
+        let checked = Reader::new("hand.yaml").trees().couplings().read(&format!("{FILE}{couplings}"));
+        let lints = checked.unwrap_or_else(|report| panic!("{report}")).lints.diagnostics;
+        let of_offset = lints.into_iter().filter(|lint| lint.line == 13);
+        of_offset.map(|lint| (lint.message, lint.help.unwrap_or_default())).collect::<Vec<_>>()
+    };
+    let [(message, help)] = &lints("  - {joint: b, follows: {a: 1}, offset: 90}")[..] else { panic!() };
+    assert!(message.contains("the angle `90` rad is more than a full turn") && help.contains("write `deg(90)`"));
+    let [(message, _)] = &lints("  - {joint: b, follows: {a: 1}, offset: 1.5708}")[..] else { panic!() };
+    assert!(message.contains("off the right angle `pi/2`"), "{message}");
+    let [(message, _)] = &lints("  - {joint: c, follows: {a: 1}, offset: 35}")[..] else { panic!() };
+    assert!(message.contains("the length `35` m is over 20 m"), "{message}");
+    for meant in ["  - {joint: b, follows: {a: 1}, offset: pi/2}", "  - {joint: c, follows: {a: 1}, offset: 1.57}"] {
+        assert_eq!(lints(meant), [], "{meant}");
+    }
+}

@@ -641,3 +641,31 @@ fn thousands_of_joints() {
         assert!(report.errors().next().unwrap().message.contains(message), "{report}");
     }
 }
+
+/// A value in too many brackets: none of them is open at its end, so the help does not ask for one.
+#[test]
+fn too_many_brackets_are_not_said_to_be_open() {
+    // deeper than the parser's own limit, too
+    for depth in [16, 20, 300] {
+        let text = format!("format: 1\nname: {}0{}\n", "[".repeat(depth), "]".repeat(depth));
+        let report = found(&text);
+        let [error] = &report.diagnostics[..] else { panic!("{report}") };
+        assert!(error.message.contains("nested more than 16 levels deep"), "{report}");
+        assert!(error.help.as_deref().is_some_and(|help| help.starts_with("delete brackets")), "{report}");
+    }
+}
+
+/// A key of one mapping in another one: the help names the place where it belongs, in whole words.
+#[test]
+fn keys_in_another_mapping_are_told_where_they_belong() {
+    for (key, place) in [
+        ("follows: {a: 1}", "`follows` belongs under an entry of `couplings`"),
+        ("turns: {a: 1}", "`turns` belongs under an entry of `motors`"),
+        ("xyz: [0, 0, 0]", "`xyz` belongs under `base`, `tool`, `at` or an entry of `frames`"),
+        ("between: []", "`between` belongs under an entry of `loops`"),
+    ] {
+        let report = found(&with("name: first", &format!("name: first\n    {key}")));
+        let has = report.diagnostics.iter().any(|found| found.help.as_deref() == Some(place));
+        assert!(has, "{place}\n{report}");
+    }
+}

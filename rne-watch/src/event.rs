@@ -144,7 +144,7 @@ impl Event {
 /// The unit of a candidate's value.
 #[must_use]
 pub fn unit(robot: &Robot, candidate: Candidate) -> &'static str {
-    let kind = candidate.joint().and_then(|joint| robot.joints.get(joint)).map(|joint| joint.row.kind);
+    let kind = candidate.joint().and_then(|joint| robot.independent_joint(joint)).map(|joint| joint.row.kind);
     match (candidate, kind) {
         (Candidate::Payload, _) => "kg",
         (Candidate::Gain(_), _) => "1",

@@ -51,7 +51,7 @@ pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> 
             bands: bands.collect(),
         }
     };
-    let joints = robot.joints.iter().enumerate().take(signals.dof());
+    let joints = robot.independent_joints().enumerate().take(signals.dof());
     let title = robot.title.as_deref().unwrap_or(&robot.name);
     panels(&format!("Watched: {title}"), title, about, &signals.time, &joints.map(panel).collect::<Vec<_>>())
 }
@@ -70,7 +70,7 @@ fn significant(value: f64) -> String {
 
 /// An event in words: `friction of elbow: coulomb 9.9 ± 0.5 N m, 0.3 s to 18.9 s`.
 fn words(robot: &Robot, event: &Event) -> String {
-    let joint = event.joint.map_or(String::new(), |joint| format!(" of {}", one_line(&robot.joints[joint].name)));
+    let joint = event.joint.map_or(String::new(), |joint| format!(" of {}", one_line(robot.coordinate_name(joint))));
     let deviation = if event.deviation.is_finite() { format!(" ± {:.3}", event.deviation) } else { String::new() };
     format!(
         "{}{joint}: {} {:.3}{deviation} {}, {:.3} s to {:.3} s",

@@ -93,7 +93,7 @@ fn finite(number: f64) -> Option<f64> {
 }
 
 fn name(robot: &Robot, joint: Option<usize>) -> Option<String> {
-    joint.map(|joint| robot.joints[joint].name.clone())
+    joint.map(|joint| robot.coordinate_name(joint).to_owned())
 }
 
 fn rivals(event: &Event) -> Vec<&'static str> {
@@ -156,7 +156,7 @@ impl WatchReply {
         };
         let of_joint = |(at, error): (usize, &JointError)| OfJoint {
             joint: at + 1,
-            name: robot.joints[at].name.clone(),
+            name: robot.coordinate_name(at).to_owned(),
             error: finite(error.error),
             unfiltered: finite(error.unfiltered),
             residual: report.changes.residual[at],
@@ -221,7 +221,7 @@ impl TrendReply {
             let joints = row.friction.iter().zip(&row.residual).enumerate();
             let joints = joints.map(|(joint, (of, residual))| OfFriction {
                 joint: joint + 1,
-                name: robot.joints[joint].name.clone(),
+                name: robot.coordinate_name(joint).to_owned(),
                 coulomb: finite(of.value),
                 coulomb_deviation: finite(of.deviation),
                 threshold: finite(of.threshold),

@@ -171,7 +171,7 @@ fn of_position(robot: &Robot, frozen: &FrozenPosition) -> Event {
         joint: Some(frozen.joint),
         parameter: "frozen_position",
         value: frozen.value,
-        unit: if robot.joints[frozen.joint].row.kind == JointKind::Revolute { "rad" } else { "m" },
+        unit: if robot.coordinate_kind(frozen.joint) == JointKind::Revolute { "rad" } else { "m" },
         run: frozen.run,
         since,
         until,

@@ -93,7 +93,7 @@ impl Signals {
         let (parameters, mut counted) = (arm.inertial_parameters(), 0.0);
         let (mut magnitudes, mut rows) = (Vec::new(), Vec::new());
         let mut settled = Vec::with_capacity(samples);
-        let begun = || -> Vec<Friction> { robot.joints.iter().map(Friction::of).collect() };
+        let begun = || -> Vec<Friction> { robot.independent_joints().map(Friction::of).collect() };
         let mut frictions = begun();
         let mut observer = DynObserverState::new(dof, gain, period);
         let still = still(&motion.qd);
@@ -130,7 +130,7 @@ impl Signals {
             }
         }
         let (mut open, mut creeps) = (Vec::with_capacity(dof), Vec::with_capacity(dof));
-        for (joint, row) in robot.joints.iter().enumerate() {
+        for (joint, row) in robot.independent_joints().enumerate() {
             let now = left_open(row, &motion.qd[joint], still[joint]);
             creeps.push(creeping(&motion.time, &now));
             open.push(faded(&motion.time, &now, gain, FORGOTTEN * row.coulomb_span()));

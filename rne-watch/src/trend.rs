@@ -97,7 +97,7 @@ impl Trend {
             if line.contains([',', '"']) { format!("\"{}\"", line.replace('"', "\"\"")) } else { line }
         };
         let mut text = "log".to_owned();
-        for joint in &robot.joints {
+        for joint in robot.independent_joints() {
             let joint = one_line(&joint.name);
             for column in ["coulomb", "coulomb_deviation", "residual"] {
                 let _ = write!(text, ",{}", name(&format!("{joint}_{column}")));
@@ -121,7 +121,7 @@ impl Trend {
         let names: Vec<String> = self.rows.iter().map(|row| row.name.clone()).collect();
         let of_joint = |(joint, [_, before]): (usize, &[f64; 2])| {
             let unit = unit(robot, Candidate::Coulomb(joint));
-            let title = format!("{} {}: Coulomb friction, {unit}", joint + 1, robot.joints[joint].name);
+            let title = format!("{} {}: Coulomb friction, {unit}", joint + 1, robot.coordinate_name(joint));
             Series::new(title, *before, self.rows.iter().map(|row| row.friction[joint]))
         };
         let mut series: Vec<Series> = self.friction.iter().enumerate().map(of_joint).collect();

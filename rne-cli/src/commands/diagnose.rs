@@ -32,10 +32,11 @@ Examples:
 
 rne tries the usual mistakes one by one, then in pairs: convention, gravity,
 inertia and centre of mass about another point, units, offsets, signs, motors,
-wrench, and the misprints of the lecture (docs/lecture/errata.md). Single
-mistakes also include the sign of one alpha, one theta, or one component of a
-centre of mass. In a tree rne also tries lists in alphabetical order and a tip
-on another link, and no misprints. Give speeds and accelerations of all joints:
+wrench, order of lists, and the misprints of the lecture
+(docs/lecture/errata.md). Single mistakes also include two exchanged joints and
+the sign of one alpha, one theta, or one component of a centre of mass. In a
+tree rne also tries exchanged branches and a tip on another link, and no
+misprints; followers may have the other sign. Give speeds and accelerations of all joints:
 such a state distinguishes most mistakes.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -109,7 +110,7 @@ const COARSEST: f64 = 1e-3;
 const SHOWN: usize = 5;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.arm.robot_with_payload(Shape::Tree)?;
+    let robot = arguments.arm.robot_with_payload(Shape::Coupled)?;
     let (seen, right) = observation(arguments, &robot)?;
     let diagnosis = rne_diagnose::diagnose(&robot, std::slice::from_ref(&seen)).map_err(Failure::usage)?;
     let at_fault = matches!(diagnosis, Diagnosis::Unexplained(_));
@@ -155,7 +156,7 @@ fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec
     let state = State::new(function, given, robot)?;
     let right = state.numbers(&DynArm::from_robot(robot)).map_err(Failure::usage)?;
     if let Some(index) = right.iter().position(|number| !number.is_finite()) {
-        return Err(Failure::input(not_finite(robot, function, index)));
+        return Err(Failure::input(not_finite(robot, function, index, &state.q)));
     }
     let largest = tau.iter().chain(&right).fold(0.0, |largest: f64, tau| largest.max(tau.abs()));
     let resolution = match arguments.tolerance {
@@ -191,7 +192,7 @@ fn closeness(error: f64) -> String {
 /// Torques beside the right ones.
 fn table(robot: &Robot, seen: &Observation, right: &[f64]) -> String {
     let mut cells = vec![["  joint", "yours", "robot file", "difference"].map(str::to_owned)];
-    for ((joint, yours), right) in robot.joints.iter().zip(&seen.tau).zip(right) {
+    for ((joint, yours), right) in robot.independent_joints().zip(&seen.tau).zip(right) {
         let numbers = [*yours, *right, yours - right].map(|number| rounded(number, 6));
         let [yours, right, difference] = numbers;
         cells.push([format!("  {}", joint.name), yours, right, difference]);

@@ -24,6 +24,7 @@ use crate::render::layout::PAGE;
 use crate::render::letters::Letters;
 use crate::render::worksheet::{self, Axes, Narrowed};
 use crate::values::choice;
+use crate::values::definite::{NOT_DEFINITE, is_indefinite};
 use crate::values::limits;
 use crate::values::numbers::List;
 use crate::values::state::{Given, State, TipWrench};
@@ -95,7 +96,7 @@ pub(crate) struct Arguments {
     /// Print every intermediate value of the seven steps
     #[arg(long)]
     trace: bool,
-    /// Axes in which --trace prints vectors: link (default), joint, or base (frame 0)
+    /// Axes of --trace: link (default), joint, base
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
     /// Print only joint I of --trace; 1 is at the base
@@ -200,9 +201,12 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
     let numbers = state.numbers(&arm).map_err(Failure::usage)?;
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
-        return Err(Failure::input(not_finite(&robot, function, index)));
+        return Err(Failure::input(not_finite(&robot, function, index, &state.q)));
     }
     let mut remark = limits::remark(&robot, &state.q);
+    if is_indefinite(&robot, function, &state.q) {
+        let _ = writeln!(remark, "note: {NOT_DEFINITE}");
+    }
     if !assumed.is_empty() {
         let (names, verb) = (assumed.join(" and "), if assumed.len() == 1 { "is" } else { "are" });
         let _ = writeln!(remark, "note: {names} {verb} not given, so these numbers are 0");

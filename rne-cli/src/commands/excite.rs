@@ -14,7 +14,7 @@ use rne_machine::{CompiledArm, Form};
 use rne_model::{Joint, Robot, exact_digits, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
-use crate::files::chosen_arm::Carried;
+use crate::files::chosen_arm::{Carried, check_unknown_rotors};
 use crate::files::file_name::{self, Format};
 use crate::files::interruption;
 use crate::files::output_file::{
@@ -104,7 +104,8 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arguments.carried.of(robot_file::robot(&arguments.file, Shape::Tree)?)?;
+    let robot = arguments.carried.of(robot_file::robot(&arguments.file, Shape::Coupled)?)?;
+    check_unknown_rotors(&robot, arguments.rotors)?;
     if arguments.seconds * arguments.rate > MOST {
         return Err(Failure::usage(format_args!(
             "{} s at {} Hz are more than {MOST} samples; use a lower --rate",
@@ -175,7 +176,7 @@ fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError
     };
     let helps = "neither a slower motion nor a smaller --range helps";
     Failure::input(if least.part > 1.0 {
-        let name = one_line(&robot.joints[least.joint].name);
+        let name = one_line(robot.coordinate_name(least.joint));
         format!(
             "{none}: {}, and gravity needs no less at {POSITIONS} positions within the limits, so {helps}: check the \
              effort limit of {name} and the masses that this joint carries",
@@ -246,14 +247,13 @@ impl Load {
         let position = |(joint, q): (&Joint, &f64)| {
             format!("{} {} {}", one_line(&joint.name), rounded(*q, 3), joint.row.kind.position_unit())
         };
-        let positions: Vec<String> = robot.joints.iter().zip(&self.q).map(position).collect();
-        let joint = &robot.joints[self.joint];
+        let positions: Vec<String> = robot.independent_joints().zip(&self.q).map(position).collect();
         format!(
             "gravity alone needs {} of {} {} of {} at {}",
             rounded(self.needed, 3),
             limits[self.joint].effort.map_or_else(String::new, |limit| rounded(limit, 3)),
-            joint.row.kind.effort_unit(),
-            one_line(&joint.name),
+            robot.coordinate_kind(self.joint).effort_unit(),
+            one_line(robot.coordinate_name(self.joint)),
             positions.join(", ")
         )
     }
@@ -345,7 +345,7 @@ fn joints(text: &mut String, robot: &Robot, found: &Excitation) {
     let heading = ["  joint", "start", "from", "to", "", "range", "speed", "acceleration", "effort"];
     let mut cells = vec![heading.map(str::to_owned)];
     let percent = |used: f64, limit: f64| format!("{:.0} %", 100.0 * used / limit);
-    for (joint, used) in robot.joints.iter().zip(&found.joints) {
+    for (joint, used) in robot.independent_joints().zip(&found.joints) {
         let JointUse { limits, start, bounds, effort, .. } = used;
         let unit = joint.row.kind.position_unit();
         let (lower, upper) = limits.position;
@@ -407,7 +407,7 @@ fn picture(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
         })
         .collect();
     let positions: Vec<Vec<f64>> = (0..robot.dof()).map(|joint| states.iter().map(|q| q[joint]).collect()).collect();
-    let of_joint = robot.joints.iter().zip(&found.joints).zip(&positions).map(|((joint, used), values)| Panel {
+    let of_joint = robot.independent_joints().zip(&found.joints).zip(&positions).map(|((joint, used), values)| Panel {
         title: format!("{}, {}", joint.name, joint.row.kind.position_unit()),
         note: format!("starts at {}", rounded(used.start, 3)),
         curves: vec![PanelCurve { name: "position", values }],

@@ -13,6 +13,7 @@ use rne_plot::{Comparison, comparison_svg};
 
 use crate::commands::prediction_errors::errors_table;
 use crate::commands::residuals;
+use crate::files::chosen_arm::check_unknown_rotors;
 use crate::files::file_name::Format;
 use crate::files::motion_log::MotionLog;
 use crate::files::output_file::{
@@ -93,7 +94,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file, Shape::Tree)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Coupled)?;
+    check_unknown_rotors(&robot, arguments.rotors)?;
     // a file is judged by all that the log has
     let purpose = if arguments.judge { Purpose::Judge } else { Purpose::Fit };
     let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading, purpose)?;
@@ -325,7 +327,7 @@ impl Judged {
 /// Warnings about a log.
 fn warnings(found: &Identification) -> Vec<String> {
     let mut said = Vec::new();
-    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
+    for (joint, report) in found.robot.independent_joints().zip(&found.joints) {
         let (name, unit) = (one_line(&joint.name), joint.row.kind.effort_unit());
         if let Some(rejected) = report.rejected {
             said.push(format!(

@@ -67,7 +67,7 @@ impl Arguments {
     /// Opens and surveys the log, by the joints of the robot where there is one.
     fn describe(&self, mut options: Options, is_result_shown: bool) -> Result<Described, Failure> {
         let mut matched = None;
-        let robot = self.robot.as_deref().map(|path| robot_file::robot(path, Shape::Tree)).transpose()?;
+        let robot = self.robot.as_deref().map(|path| robot_file::robot(path, Shape::Coupled)).transpose()?;
         if let Some(robot) = &robot {
             (options, matched) =
                 joint_options(&self.files, robot, options).map_err(|error| motion_log::failure(&error))?;

@@ -97,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let inputs = arguments.logs.iter().chain(&arguments.quiet).chain(&arguments.baseline).chain([&arguments.file]);
     let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file, Shape::Tree)?;
+    let robot = robot_file::robot(&arguments.file, Shape::Coupled)?;
     let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
     let mut remark = String::new();
     let known = known_baseline(arguments, &robot, &settings, &sources, &mut remark)?;
@@ -495,5 +495,5 @@ fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<usize>
 }
 
 fn names(robot: &Robot, joints: &[usize]) -> String {
-    joints.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect::<Vec<_>>().join(", ")
+    joints.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect::<Vec<_>>().join(", ")
 }

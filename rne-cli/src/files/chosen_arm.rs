@@ -34,6 +34,17 @@ impl Rotors {
     }
 }
 
+/// Refuses rotors as unknowns of an identification where the list `motors` has them: each is counted once.
+pub(crate) fn check_unknown_rotors(robot: &Robot, is_asked: bool) -> Result<(), Failure> {
+    if is_asked && robot.has_spinning_rotors() {
+        return Err(Failure::usage(format_args!(
+            "the list `motors` of {} has the inertia of its rotors, which is known; leave out {TYPED}--rotors{TYPED:#}",
+            robot.name
+        )));
+    }
+    Ok(())
+}
+
 /// The frame that stands in the place of the tip.
 #[derive(Args, Clone)]
 pub(crate) struct AtFrame {
@@ -102,8 +113,8 @@ pub(crate) struct Carried {
     /// axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub(crate) payload: Option<List>,
-    /// Frame or joint that carries --payload, not the tip
-    #[arg(long, value_name = "NAME", requires = "payload", hide = true)]
+    /// Frame or joint with --payload, not the tip
+    #[arg(long, value_name = "NAME", requires = "payload")]
     pub(crate) payload_on: Option<String>,
 }
 

@@ -9,6 +9,7 @@ use rne_model::{INERTIAL_PARAMETERS, Inertia, InertiaElement, JointKind, Robot, 
 use crate::palette::{QUIET, TITLE};
 use crate::render::layout::{Align, columns, left, width};
 use crate::render::payload::link_with_tip;
+use crate::values::definite::{NOT_DEFINITE, is_indefinite};
 use crate::values::numbers::{at_the_point, rounded};
 use crate::values::state::State;
 
@@ -245,11 +246,14 @@ impl Kinds {
 }
 
 /// Explains why a result is not a finite number.
-pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
+pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize, q: &[f64]) -> String {
     let joint = |index: usize| {
         let name = robot.independent_joints().nth(index).map_or("", |joint| &joint.name);
         format!("joint {} ({name})", index + 1)
     };
+    if is_indefinite(robot, function, q) {
+        return format!("the result of {function} is not finite: {NOT_DEFINITE}");
+    }
     if let Some(meaning) = function.divides() {
         return meaning.to_owned();
     }

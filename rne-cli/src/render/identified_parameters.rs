@@ -66,7 +66,7 @@ pub(crate) fn tables(found: &Identification) -> String {
 fn friction(text: &mut String, found: &Identification) {
     let heading = ["  joint", "viscous", "Coulomb +", "Coulomb -", "transition"].map(str::to_owned);
     let mut cells = vec![heading];
-    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
+    for (joint, report) in found.robot.independent_joints().zip(&found.joints) {
         let Some(friction) = report.friction else { return };
         let with = |(value, deviation): (f64, f64)| {
             if report.is_friction_excited() {
@@ -87,7 +87,7 @@ fn friction(text: &mut String, found: &Identification) {
         ]);
     }
     let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right];
-    let kinds: Vec<JointKind> = found.robot.joints.iter().map(|joint| joint.row.kind).collect();
+    let kinds: Vec<JointKind> = found.robot.independent_joints().map(|joint| joint.row.kind).collect();
     let units = match (kinds.contains(&JointKind::Revolute), kinds.contains(&JointKind::Prismatic)) {
         (_, false) => "N m s/rad, N m",
         (false, true) => "N s/m, N",
@@ -110,7 +110,7 @@ fn turns(transition: FrictionTransition, kind: JointKind) -> String {
 fn inertia_of_rotors(text: &mut String, found: &Identification) {
     let mut cells = vec![["  joint", "rotor", "", ""].map(str::to_owned)];
     let bases = || found.structure.parameters().bases.iter().zip(&found.bases);
-    for (at, (joint, report)) in found.robot.joints.iter().zip(&found.joints).enumerate() {
+    for (at, (joint, report)) in found.robot.independent_joints().zip(&found.joints).enumerate() {
         let Some(rotor) = report.rotor else { return };
         let [unit, link] = match joint.row.kind {
             JointKind::Revolute => ["kg m²", "inertia"],

@@ -52,7 +52,7 @@ impl WordedPayload<'_> {
         }
         if let Some(with) = self.with {
             let mut cells = vec![["  joint", "FILE", "with payload"].map(str::to_owned)];
-            for ((joint, before), after) in self.robot.joints.iter().zip(self.errors).zip(with) {
+            for ((joint, before), after) in self.robot.independent_joints().zip(self.errors).zip(with) {
                 let name = shortened(&one_line(&joint.name), NAME);
                 cells.push([format!("  {name}"), percent(before.error), percent(after.error)]);
             }

@@ -38,7 +38,7 @@ pub(crate) struct Worded<'a> {
 impl Worded<'_> {
     /// The verdict in sentences below a heading.
     pub(crate) fn below(&self, heading: &str) -> String {
-        let joints = || self.robot.joints.iter().zip(&self.verdict.joints);
+        let joints = || self.robot.independent_joints().zip(&self.verdict.joints);
         let mut doubtful: Vec<(&Joint, &JointVerdict)> =
             joints().filter(|(_, verdict)| !verdict.is_predicted).collect();
         // the largest error first, and joints without a reason last
@@ -189,7 +189,7 @@ impl Worded<'_> {
         heading.extend(has_other.then_some(if both { "held out" } else { "error" }));
         heading.extend(["residual", "", ""]);
         let mut cells: Vec<Vec<String>> = vec![heading.into_iter().map(str::to_owned).collect()];
-        for (joint, verdict) in self.robot.joints.iter().zip(&self.verdict.joints) {
+        for (joint, verdict) in self.robot.independent_joints().zip(&self.verdict.joints) {
             let mut row = vec![format!("  {}", shortened(&one_line(&joint.name), 20))];
             row.extend([verdict.fitted, verdict.other].into_iter().flatten().map(|error| tenths(error.error)));
             row.push(verdict.error().map_or(String::new(), |error| rounded(error.residual, 3)));
@@ -255,7 +255,11 @@ impl Worded<'_> {
     pub(crate) fn offsets(&self) -> Option<String> {
         let unknown = &self.verdict.excited.as_ref()?.unknown_offsets;
         let is_equal = |joint: &usize| {
-            let coulomb = self.robot.joints[*joint].motor.map_or([0.0; 2], |motor| motor.coulomb);
+            let coulomb = self
+                .robot
+                .independent_joint(*joint)
+                .and_then(|joint| joint.motor)
+                .map_or([0.0; 2], |motor| motor.coulomb);
             coulomb[0] == -coulomb[1]
         };
         let joints = listed("joint", unknown);
@@ -271,7 +275,7 @@ impl Worded<'_> {
 
     /// The warning on joints whose held-out error is much larger than the error on the data of the identification.
     pub(crate) fn grown(&self) -> Option<String> {
-        let joints = self.robot.joints.iter().zip(&self.verdict.joints);
+        let joints = self.robot.independent_joints().zip(&self.verdict.joints);
         let named = joints.filter(|(_, verdict)| verdict.growth().is_some()).map(|(joint, verdict)| {
             let part = |error: Option<rne_identify::JointError>| percent(error.map_or(f64::NAN, |error| error.error));
             format!("{} ({}, fitted {})", one_line(&joint.name), part(verdict.other), part(verdict.fitted))

@@ -18,7 +18,7 @@ const COLUMNS: usize = 4;
 
 /// The name of a parameter: `elbow: Coulomb friction`.
 fn parameter(robot: &Robot, candidate: Candidate) -> String {
-    let name = |joint: usize| one_line(&robot.joints[joint].name);
+    let name = |joint: usize| one_line(robot.coordinate_name(joint));
     match candidate {
         Candidate::Coulomb(joint) => format!("{}: Coulomb friction", name(joint)),
         Candidate::Viscous(joint) => format!("{}: viscous friction", name(joint)),
@@ -93,7 +93,7 @@ fn unknown(robot: &Robot, baseline: &Baseline, changes: &Changes) -> Vec<String>
         matches!(statistic.candidate, Candidate::Coulomb(_)) && !baseline.scale.is_watched(statistic)
     };
     let joints = changes.statistics.iter().filter(is_unknown).filter_map(|statistic| statistic.candidate.joint());
-    joints.map(|joint| one_line(&robot.joints[joint].name)).collect()
+    joints.map(|joint| one_line(robot.coordinate_name(joint))).collect()
 }
 
 /// A change with its share of the threshold.
@@ -114,7 +114,7 @@ fn signed(value: f64) -> String {
 /// An event in a sentence.
 fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) -> String {
     let unit = event.unit;
-    let joint = event.joint.map_or(String::new(), |joint| one_line(&robot.joints[joint].name));
+    let joint = event.joint.map_or(String::new(), |joint| one_line(robot.coordinate_name(joint)));
     let value = with_unit(&with_deviation(event.value, event.deviation), unit);
     let percent = |base: f64| {
         let part = 100.0 * event.change() / base.abs();
@@ -158,7 +158,8 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             )
         }
         Cause::Sensor if event.parameter == "exchanged" => {
-            let others: Vec<String> = event.others.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect();
+            let others: Vec<String> =
+                event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
             let other = others.join(", ");
             format!(
                 "sensors: the efforts of {joint} and {other} look exchanged; the other results hold for the efforts \
@@ -173,7 +174,8 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
             rounded(event.baseline_value, 3)
         ),
         Cause::Contact => {
-            let others: Vec<String> = event.others.iter().map(|joint| one_line(&robot.joints[*joint].name)).collect();
+            let others: Vec<String> =
+                event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
             let too = if others.is_empty() { String::new() } else { format!(" (also at {})", others.join(", ")) };
             format!("contact at {joint}{too}: external torque up to {} {unit}", rounded(event.value, 3))
         }
@@ -240,7 +242,7 @@ pub(crate) fn parameters_csv(robot: &Robot, baseline: &Baseline, changes: &Chang
     for statistic in &changes.statistics {
         let candidate = statistic.candidate;
         let joint = candidate.joint().map_or_else(String::new, |joint| (joint + 1).to_string());
-        let name = candidate.joint().map_or_else(String::new, |joint| cell(&one_line(&robot.joints[joint].name)));
+        let name = candidate.joint().map_or_else(String::new, |joint| cell(&one_line(robot.coordinate_name(joint))));
         let (cause, unit) = (Cause::of(candidate).name(), unit(robot, candidate));
         let Statistic { change, deviation, threshold, .. } = statistic;
         let (ratio, is_watched) = (statistic.ratio(), baseline.scale.is_watched(statistic));
@@ -257,7 +259,7 @@ pub(crate) fn parameters_csv(robot: &Robot, baseline: &Baseline, changes: &Chang
 pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>], names: &[LogNames<'_>]) -> String {
     let joints = changing(trend);
     let mut cells = vec![vec!["  log".to_owned(), "events".to_owned(), "payload, kg".to_owned()]];
-    cells[0].extend(joints.iter().map(|joint| shortened(&one_line(&robot.joints[*joint].name), 14)));
+    cells[0].extend(joints.iter().map(|joint| shortened(&one_line(robot.coordinate_name(*joint)), 14)));
     let with = |found: TrendValue| with_deviation(found.value, found.deviation);
     for row in &trend.rows {
         let mut line = vec![format!("  {}", shortened(&row.name, 20)), row.events.to_string(), with(row.payload)];

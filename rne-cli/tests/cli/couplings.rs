@@ -66,5 +66,58 @@ fn a_gripper_is_certified() {
 #[test]
 fn what_takes_no_followers_says_so() {
     fails(2, &["eval", GRIPPER, "--function", "regressor", "--q", "0,0,0"], &["`finger_b` follows other joints"]);
-    fails(1, &["excite", GRIPPER], &["docs/gripper.yaml:32:3", "joints that follow others are not supported here"]);
+    fails(
+        1,
+        &["show", GRIPPER, "--symbolic"],
+        &["docs/gripper.yaml:32:3", "joints that follow others are not supported here"],
+    );
+}
+
+/// A log of torques of the file itself, at states that `rne eval` computes: its links are found again.
+#[test]
+fn a_gripper_is_identified_from_its_torques() {
+    let place = folder("couplings_identified");
+    let [states, log, out] = ["states.csv", "log.csv", "out.yaml"].map(|name| place.join(name));
+    let name = |path: &std::path::Path| path.to_str().expect("UTF-8").to_owned();
+    // sums of sines, no two of one frequency, at 50 Hz
+    let mut text = "t,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3\n".to_owned();
+    let (mut times, mut rows) = (Vec::new(), Vec::new());
+    for sample in 0..1500_u32 {
+        let time = f64::from(sample) / 50.0;
+        let mut lists = [[0.0; 3]; 3];
+        for joint in 0..3_u32 {
+            for k in 1..=3_u32 {
+                let size = if joint == 2 { 0.01 } else { 0.6 } / f64::from(k);
+                let rate = std::f64::consts::TAU * (0.11 * f64::from(k) + 0.017 * f64::from(joint));
+                let (sin, cos) = (rate * time + f64::from(k + 2 * joint)).sin_cos();
+                let at = joint as usize;
+                lists[0][at] += size * sin;
+                lists[1][at] += size * rate * cos;
+                lists[2][at] -= size * rate * rate * sin;
+            }
+        }
+        let row = lists.iter().flatten().map(|x| format!("{x:.12}")).collect::<Vec<_>>();
+        text += &format!("{time},{}\n", row.join(","));
+        times.push(time);
+        rows.push(row);
+    }
+    std::fs::write(&states, text).expect("a table");
+    let torques = place.join("torques.csv");
+    fine(&["eval", GRIPPER, "--states", &name(&states), "-o", &name(&torques), "--force"]);
+    let torques = std::fs::read_to_string(torques).expect("torques");
+    let mut text =
+        "time,shoulder_position,elbow_position,finger_a_position,shoulder_effort,elbow_effort,finger_a_effort\n"
+            .to_owned();
+    for ((time, row), torque) in times.iter().zip(&rows).zip(torques.lines().skip(1)) {
+        text += &format!("{time},{},{},{},{torque}\n", row[0], row[1], row[2]);
+    }
+    std::fs::write(&log, text).expect("a log");
+    let said = fine(&["identify", GRIPPER, &name(&log), "-o", &name(&out), "--force"]);
+    assert!(said.contains("all 3 joints"), "{said}");
+    let file = std::fs::read_to_string(&out).expect("a robot file");
+    assert!(file.contains("couplings:\n  - {joint: finger_b, follows: {finger_a: 1}}"), "{file}");
+    fine(&["check", &name(&out)]);
+    let described = fine(&["log", &name(&log), "--robot", GRIPPER]);
+    assert!(described.contains("finger_a") && !described.contains("finger_b"), "{described}");
+    fails(2, &["identify", "mini_cheetah", &name(&log), "--rotors"], &["leave out --rotors"]);
 }

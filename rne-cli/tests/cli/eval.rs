@@ -434,3 +434,23 @@ fn positions_outside_of_the_limits_are_noted() {
     let free = rne(&["eval", "robots/planar2.yaml", "--function", "gravity_torques", "--q", "100,100"]);
     assert_eq!((free.status, free.err.as_str()), (0, ""));
 }
+
+/// M = [[0, 1], [1, 1]] has the eigenvalues (1 ± √5)/2: it is not singular, but no real bodies have it. With -0.5 in
+/// place of -1 the pivots are no zeros, and accelerations are computed, with a note.
+#[test]
+fn a_mass_matrix_that_is_not_positive_definite_is_told() {
+    let file = folder("eval_indefinite").join("arm.yaml");
+    let text = "format: 1\nname: arm\nsource: own\nconvention: modified\ngravity: [0, 0, 0]\njoints:\n  \
+                - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 0, inertia: {zz: -1}, physical: \
+                false}}\n  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 0, inertia: {zz: 1}}}\n";
+    let name = file.to_str().expect("UTF-8");
+    let arguments = ["eval", name, "--function", "forward_dynamics", "--q", "0,0", "--tau", "1,1"];
+    fs::write(&file, text).expect("a robot file");
+    fails(1, &arguments, &["is not finite: the mass matrix is not positive definite at this position"]);
+    fs::write(&file, text.replace("zz: -1", "zz: -0.5")).expect("a robot file");
+    let called = rne(&arguments);
+    assert!(called.err.contains("note: the mass matrix is not positive definite"), "{}", called.err);
+    // there is no note on bodies
+    fs::write(&file, text.replace("zz: -1", "zz: 1")).expect("a robot file");
+    assert!(!rne(&arguments).err.contains("positive definite"));
+}

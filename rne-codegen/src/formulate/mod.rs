@@ -21,6 +21,8 @@ pub(crate) use payload::{AtTip, Payload};
 pub(crate) use seven_steps::{Load, Motion, Turning};
 pub(crate) use spin::Spin;
 
+use std::array::from_fn;
+
 use rne_model::Robot;
 
 use crate::coordinates::{Coordinates, scaled};
@@ -252,9 +254,14 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn regressor(&self) -> Outputs<'s> {
-        let rows = regressor::regressor(&self.arm, &self.states, &self.motions());
+        let of_joints = regressor::regressor(&self.arm, &self.states, &self.motions());
+        let rows = self.coordinates().gathered(
+            &of_joints,
+            |sum, row| sum.iter().zip(row).map(|(a, b)| from_fn(|parameter| a[parameter] + b[parameter])).collect(),
+            |row, ratio| row.into_iter().map(|elements| elements.map(|element| scaled(element, ratio))).collect(),
+        );
         let mut outputs = Vec::new();
-        for (joint, row) in rows.iter().enumerate() {
+        for (&joint, row) in self.coordinates().joints().iter().zip(&rows) {
             for (link, elements) in row.iter().enumerate() {
                 let elements = elements.iter().enumerate();
                 outputs.extend(elements.map(|(i, element)| (regressor::element_name(joint, link, i), *element)));

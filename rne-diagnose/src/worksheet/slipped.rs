@@ -39,9 +39,11 @@ fn values(
     sheet: &Worksheet,
 ) -> Result<Vec<Vec<f64>>, WrongLength> {
     let moved = computation.moved(at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench);
+    let arm = DynArm::from_robot(&computation.robot);
+    let wrench = moved.wrench.map(|wrench| computation.in_tip_axes(&arm, &moved.q, &wrench)).transpose()?;
+    let moved = Moved { wrench, ..moved };
     let Moved { q, qd, qdd, wrench } = &moved;
     let slipped = Situation { q: q.clone(), qd: qd.clone(), qdd: qdd.clone(), wrench: *wrench, ..at.clone() };
-    let arm = DynArm::from_robot(&computation.robot);
     let own = Worksheet::new(&computation.robot, &slipped, sheet.axes)?;
     let mut values: Vec<Vec<f64>> = own.lines.iter().map(|line| line.values.clone()).collect();
     let mut tau = own.tau();

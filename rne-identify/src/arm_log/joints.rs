@@ -21,7 +21,7 @@ pub fn joint_options(
     mut options: Options,
 ) -> Result<(Options, Option<ArmLogRemark>), ArmLogError> {
     options.slides = slides(robot);
-    let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints: Vec<String> = robot.independent_joints().map(|joint| joint.name.clone()).collect();
     let unnamed = || Log::open(paths, Options { joints: None, torque_constants: Vec::new(), ..options.clone() });
     let Some(names) = &options.joints else {
         let log = unnamed().map_err(|error| ArmLogError::Log { error, joints: joints.clone() })?;
@@ -39,7 +39,7 @@ pub fn joint_options(
 
 /// Whether each joint is prismatic: no option converts its lengths into angles.
 fn slides(robot: &Robot) -> Vec<bool> {
-    robot.joints.iter().map(|joint| joint.row.kind == JointKind::Prismatic).collect()
+    robot.independent_joints().map(|joint| joint.row.kind == JointKind::Prismatic).collect()
 }
 
 /// The joints of the log that are those of the robot, base to tip.
@@ -90,7 +90,7 @@ pub fn match_joints(joints: &[String], measured: &[String]) -> Result<JointMatch
 /// # Errors
 /// When they are those of another kind of joint.
 pub fn check_units(robot: &Robot, layout: &Layout) -> Result<(), ArmLogError> {
-    for ((joint, logged), units) in robot.joints.iter().zip(&layout.joints).zip(&layout.units) {
+    for ((joint, logged), units) in robot.independent_joints().zip(&layout.joints).zip(&layout.units) {
         let JointUnits { position, velocity, effort, .. } = *units;
         let kind = joint.row.kind;
         let (motion, force) = match kind {

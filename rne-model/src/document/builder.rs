@@ -61,7 +61,11 @@ impl<'t> Builder<'t> {
             self.problems.count(1);
             let (event, span) = event.map_err(|error| {
                 let at = self.offset(error.marker().index());
-                self.syntax_error(at, error.info()).maybe_help(self.open_bracket().or_else(|| self.around(at)))
+                // The parser reads ahead and may meet its own limit, 255, before ours: no bracket is missing then.
+                if error.info().contains("recursion limit") {
+                    return self.too_deep(at..at + 1);
+                }
+                syntax_error(at, error.info()).maybe_help(self.open_bracket().or_else(|| self.around(at)))
             })?;
             let span = self.offset(span.start.index())..self.offset(span.end.index());
             match event {
@@ -278,24 +282,21 @@ impl<'t> Builder<'t> {
                 self.kind.name
             ),
         )
+        .help("delete brackets, dashes or keys that are not needed: a list of numbers has one pair, `[0, 0, 1]`")
     }
+}
 
-    fn syntax_error(&self, at: usize, info: &str) -> Diagnostic {
-        // The parser reads ahead and may meet its own limit, 255, before ours.
-        if info.contains("recursion limit") {
-            return self.too_deep(at..at + 1);
-        }
-        let help = if info.contains(" tab") {
-            Some("indent with spaces; YAML does not allow tabs in the indentation")
-        } else if info.contains("':'") || info.contains("mapping values") {
-            Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")
-        } else if info.contains("unknown anchor") {
-            Some("an alias `*name` needs a value marked `&name` before it")
-        } else {
-            None
-        };
-        Diagnostic::error(at..at + 1, format!("this is not YAML: {info}")).maybe_help(help.map(str::to_owned))
-    }
+fn syntax_error(at: usize, info: &str) -> Diagnostic {
+    let help = if info.contains(" tab") {
+        Some("indent with spaces; YAML does not allow tabs in the indentation")
+    } else if info.contains("':'") || info.contains("mapping values") {
+        Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")
+    } else if info.contains("unknown anchor") {
+        Some("an alias `*name` needs a value marked `&name` before it")
+    } else {
+        None
+    };
+    Diagnostic::error(at..at + 1, format!("this is not YAML: {info}")).maybe_help(help.map(str::to_owned))
 }
 
 /// The line of a byte, given the places of the line breaks.
