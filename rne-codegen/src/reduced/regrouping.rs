@@ -4,6 +4,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{ExactAngle, Number};
+use crate::reduced::attitudes::holders;
 use crate::reduced::{
     Entry, IDENTITY, JointFrame, JointFrames, OriginShift, Plan, PseudoInertia, RegroupingTarget, Scale, Square, Triple,
 };
@@ -142,19 +143,24 @@ fn regrouped(
     if !plan.regrouped {
         return Some((links, sphere));
     }
+    let mut links = Links { list: links, holders: holders(joint_frames) };
+    for index in 0..end {
+        let s = std::mem::take(&mut links.list[index].s);
+        links.add(index, PseudoInertia { s, ..PseudoInertia::default() });
+    }
     for index in (0..end).rev() {
         match rows[index].kind {
             Prismatic => {
                 // a sliding link turns as the one before: all second moments belong to that
-                let s = std::mem::take(&mut links[index].s);
+                let s = std::mem::take(&mut links.list[index].s);
                 if let Some(parent) = rows[index].parent {
-                    let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[index].rotation());
-                    links[parent] = links[parent] + moved;
+                    links.add(parent, PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[index].rotation()));
                 }
             }
             Revolute => share_rods(rows, origin_shifts, plan, offers, &mut links, index)?,
         }
     }
+    let mut links = links.list;
     for (_, first) in rows.iter().zip(&mut links).filter(|(row, _)| row.parent.is_none() && row.kind == Revolute) {
         // only the inertia about its axis acts
         let about_axis = first.s[0][0] + first.s[1][1];
@@ -164,13 +170,50 @@ fn regrouped(
     Some((links, sphere))
 }
 
+/// The links while matter moves between them.
+struct Links {
+    list: Vec<PseudoInertia>,
+    /// For each link, the link that has its second moments, and the rotation to the axes of that.
+    holders: Vec<Option<(usize, Square)>>,
+}
+
+impl Links {
+    /// Adds matter to a link: its second moments to the link that has those of this one.
+    fn add(&mut self, link: usize, matter: PseudoInertia) {
+        let PseudoInertia { mass, h, s } = matter;
+        let first = PseudoInertia { mass, h, ..PseudoInertia::default() };
+        self.list[link] = self.list[link] + first;
+        if let Some((holder, s)) = self.second_moments(link, s) {
+            self.list[holder] = self.list[holder] + s;
+        }
+    }
+
+    /// The link that has the second moments of a link, and these in its axes; `None` for a link that does not turn.
+    fn second_moments(&self, link: usize, s: Square) -> Option<(usize, PseudoInertia)> {
+        let (holder, rotation) = self.holders[link]?;
+        let s = PseudoInertia { s, ..PseudoInertia::default() };
+        Some((holder, if holder == link { s } else { s.turned(&rotation) }))
+    }
+
+    /// What a parent has at the place of a target, and what it gets there of some matter.
+    fn at(&self, parent: usize, entry: Entry, matter: &PseudoInertia) -> (Number, Number) {
+        match entry {
+            Entry::Mass | Entry::H(_) => (self.list[parent].get(entry), matter.get(entry)),
+            Entry::S(..) | Entry::Difference => match self.second_moments(parent, matter.s) {
+                Some((holder, s)) => (self.list[holder].get(entry), s.get(entry)),
+                None => (Number::ZERO, Number::ZERO),
+            },
+        }
+    }
+}
+
 /// Moves three rods of matter from revolute link `index` to its parent, so that the three targets vanish.
 fn share_rods(
     rows: &[JointFrame],
     origin_shifts: &[Number],
     plan: &Plan,
     offers: &Offers,
-    links: &mut [PseudoInertia],
+    links: &mut Links,
     index: usize,
 ) -> Option<()> {
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
@@ -181,9 +224,10 @@ fn share_rods(
     let equation = |k: usize| {
         let ([x, y, z], constant) = match (targets[k].entry(), parent) {
             (Some(entry), Some(parent)) => {
-                (IDENTITY.map(|unit| -PseudoInertia::rod(unit, p, u).get(entry)), links[parent].get(entry))
+                let rods = IDENTITY.map(|unit| links.at(parent, entry, &PseudoInertia::rod(unit, p, u)));
+                (rods.map(|(_, rod)| -rod), rods[0].0)
             }
-            _ => (IDENTITY[k], links[index].get(OWN[k])),
+            _ => (IDENTITY[k], links.list[index].get(OWN[k])),
         };
         [x, y, z, constant]
     };
@@ -193,12 +237,9 @@ fn share_rods(
     if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
         return None;
     }
-    let link = &mut links[index];
-    link.mass = link.mass - rods[0];
-    link.h[2] = link.h[2] - rods[1];
-    link.s[2][2] = link.s[2][2] - rods[2];
+    links.add(index, PseudoInertia::rod(rods.map(|rod| -rod), [Number::ZERO; 3], IDENTITY[2]));
     if let Some(parent) = parent {
-        links[parent] = links[parent] + PseudoInertia::rod(rods, p, u);
+        links.add(parent, PseudoInertia::rod(rods, p, u));
     }
     Some(())
 }
