@@ -81,12 +81,14 @@ fn attitude(joint_frames: &JointFrames, attitudes: &mut Vec<Attitude>, index: us
     let is_same = |other: &Attitude| {
         // the base is turned into the frame of each joint on it
         let is_on_same = other.on == on && (on.is_some() || root(other.first) == root(index));
-        is_on_same && ratio_of_axes(axis, other.axis).is_some_and(|sign| {
-            let is_equal = |coordinate, ratio: &Number| {
-                turning.get(coordinate).is_some_and(|own| (*own - sign * *ratio).is_zero())
-            };
-            other.turning.len() == turning.len() && other.turning.iter().all(|(coordinate, ratio)| is_equal(coordinate, ratio))
-        })
+        is_on_same
+            && ratio_of_axes(axis, other.axis).is_some_and(|sign| {
+                let is_equal = |coordinate, ratio: &Number| {
+                    turning.get(coordinate).is_some_and(|own| (*own - sign * *ratio).is_zero())
+                };
+                other.turning.len() == turning.len()
+                    && other.turning.iter().all(|(coordinate, ratio)| is_equal(coordinate, ratio))
+            })
     };
     if let Some(found) = attitudes.iter().position(is_same) {
         return (Some(found), compose(&transpose(&attitudes[found].at_rest), &at_rest));

@@ -149,15 +149,18 @@ fn regrouped(
         links.add(index, PseudoInertia { s, ..PseudoInertia::default() });
     }
     for index in (0..end).rev() {
-        match rows[index].kind {
-            Prismatic => {
-                // a sliding link turns as the one before: all second moments belong to that
-                let s = std::mem::take(&mut links.list[index].s);
-                if let Some(parent) = rows[index].parent {
-                    links.add(parent, PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[index].rotation()));
-                }
-            }
-            Revolute => share_rods(rows, origin_shifts, plan, offers, &mut links, index)?,
+        let carried =
+            |kind| (index + 1..end).rev().filter(move |&at| rows[at].parent == Some(index) && rows[at].kind == kind);
+        for sliding in carried(Prismatic) {
+            // it turns as the link before: all second moments belong to that
+            let s = std::mem::take(&mut links.list[sliding].s);
+            links.add(index, PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[sliding].rotation()));
+        }
+        share_rods(rows, origin_shifts, plan, offers, &mut links, &carried(Revolute).collect::<Vec<_>>())?;
+        match (rows[index].parent, rows[index].kind) {
+            (None, Prismatic) => links.list[index].s = Square::default(),
+            (None, Revolute) => share_rods(rows, origin_shifts, plan, offers, &mut links, &[index])?,
+            _ => {}
         }
     }
     let mut links = links.list;
@@ -195,77 +198,96 @@ impl Links {
         Some((holder, if holder == link { s } else { s.turned(&rotation) }))
     }
 
-    /// What a parent has at the place of a target, and what it gets there of some matter.
-    fn at(&self, parent: usize, entry: Entry, matter: &PseudoInertia) -> (Number, Number) {
-        match entry {
-            Entry::Mass | Entry::H(_) => (self.list[parent].get(entry), matter.get(entry)),
-            Entry::S(..) | Entry::Difference => match self.second_moments(parent, matter.s) {
-                Some((holder, s)) => (self.list[holder].get(entry), s.get(entry)),
-                None => (Number::ZERO, Number::ZERO),
-            },
+    /// What a link has at an entry, or the one that has its second moments.
+    fn had(&self, link: usize, entry: Entry) -> Number {
+        let holder =
+            if entry.is_of_second_moments() { self.holders[link].map(|(holder, _)| holder) } else { Some(link) };
+        holder.map_or(Number::ZERO, |holder| self.list[holder].get(entry))
+    }
+
+    /// What a link gets at an entry by some matter, or the one that has its second moments.
+    fn given(&self, link: usize, entry: Entry, matter: &PseudoInertia) -> Number {
+        if !entry.is_of_second_moments() {
+            return matter.get(entry);
         }
+        self.second_moments(link, matter.s).map_or(Number::ZERO, |(_, s)| s.get(entry))
     }
 }
 
-/// Moves three rods of matter from revolute link `index` to its parent, so that the three targets vanish.
+/// Moves three rods of matter from each of some revolute links on one parent to that, so that all targets vanish.
 fn share_rods(
     rows: &[JointFrame],
     origin_shifts: &[Number],
     plan: &Plan,
     offers: &Offers,
     links: &mut Links,
-    index: usize,
+    carried: &[usize],
 ) -> Option<()> {
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
-    let (p, u) = line(rows, origin_shifts, index);
-    let parent = rows[index].parent;
-    let targets = if parent.is_none() { [RegroupingTarget::Own; 3] } else { plan.joints[index].targets };
-    // three equations: the target vanishes
-    let equation = |k: usize| {
-        let ([x, y, z], constant) = match (targets[k].entry(), parent) {
-            (Some(entry), Some(parent)) => {
-                let rods = IDENTITY.map(|unit| links.at(parent, entry, &PseudoInertia::rod(unit, p, u)));
-                (rods.map(|(_, rod)| -rod), rods[0].0)
-            }
-            _ => (IDENTITY[k], links.list[index].get(OWN[k])),
-        };
-        [x, y, z, constant]
-    };
-    let rods = solved([0, 1, 2].map(equation))?;
-    // what a link has of its own it can always give, in an arm without mass too
-    let is_plain = targets == [RegroupingTarget::Own; 3];
-    if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
-        return None;
+    let Some(parent) = carried.first().map(|&link| rows[link].parent) else { return Some(()) };
+    let lines: Vec<(Triple, Triple)> = carried.iter().map(|&link| line(rows, origin_shifts, link)).collect();
+    // the equations: the targets vanish
+    let mut equations = Vec::with_capacity(3 * carried.len());
+    for (place, &link) in carried.iter().enumerate() {
+        for (k, target) in plan.joints[link].targets.into_iter().enumerate() {
+            let mut equation = vec![Number::ZERO; 3 * carried.len()];
+            let constant = match (target.entry(), parent) {
+                (Some(entry), Some(parent)) => {
+                    for (three, &(p, u)) in equation.chunks_mut(3).zip(&lines) {
+                        three.copy_from_slice(
+                            &IDENTITY.map(|unit| -links.given(parent, entry, &PseudoInertia::rod(unit, p, u))),
+                        );
+                    }
+                    links.had(parent, entry)
+                }
+                _ => {
+                    equation[3 * place + k] = Number::ONE;
+                    links.list[link].get(OWN[k])
+                }
+            };
+            equation.push(constant);
+            equations.push(equation);
+        }
     }
-    links.add(index, PseudoInertia::rod(rods.map(|rod| -rod), [Number::ZERO; 3], IDENTITY[2]));
-    if let Some(parent) = parent {
-        links.add(parent, PseudoInertia::rod(rods, p, u));
+    let rods = solved(equations)?;
+    for ((&link, rods), (p, u)) in carried.iter().zip(rods.chunks(3)).zip(lines) {
+        let rods = [rods[0], rods[1], rods[2]];
+        // what a link has of its own it can always give, in an arm without mass too
+        let is_plain = parent.is_none() || plan.joints[link].targets == [RegroupingTarget::Own; 3];
+        if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
+            return None;
+        }
+        links.add(link, PseudoInertia::rod(rods.map(|rod| -rod), [Number::ZERO; 3], IDENTITY[2]));
+        if let Some(parent) = parent {
+            links.add(parent, PseudoInertia::rod(rods, p, u));
+        }
     }
     Some(())
 }
 
-/// Three linear equations by Gauss and Jordan; `None` when a pivot is too small.
-fn solved(mut rows: [[Number; 4]; 3]) -> Option<Triple> {
-    for column in 0..3 {
-        let size = |row: &[Number; 4]| row[column].to_f64().abs();
-        let pivot = (column..3).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b])).then(b.cmp(&a)))?;
+/// Linear equations, each with its constant at the end, by Gauss and Jordan; `None` when a pivot is too small.
+fn solved(mut rows: Vec<Vec<Number>>) -> Option<Vec<Number>> {
+    let count = rows.len();
+    for column in 0..count {
+        let size = |row: &[Number]| row[column].to_f64().abs();
+        let pivot = (column..count).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b])).then(b.cmp(&a)))?;
         if size(&rows[pivot]) < LEAST_PIVOT {
             return None;
         }
         rows.swap(column, pivot);
         let scale = rows[column][column].inverse()?;
-        rows[column] = rows[column].map(|x| x * scale);
-        for other in (0..3).filter(|&other| other != column) {
-            let factor = rows[other][column];
+        rows[column].iter_mut().for_each(|x| *x = *x * scale);
+        let pivot = rows[column].clone();
+        for row in rows.iter_mut().enumerate().filter(|(other, _)| *other != column).map(|(_, row)| row) {
+            let factor = row[column];
             if !factor.is_zero() {
-                let pivot = rows[column];
-                for (x, p) in rows[other].iter_mut().zip(pivot).skip(column) {
-                    *x = *x - factor * p;
+                for (x, p) in row.iter_mut().zip(&pivot).skip(column) {
+                    *x = *x - factor * *p;
                 }
             }
         }
     }
-    Some(rows.map(|row| row[3]))
+    rows.iter().map(|row| row.last().copied()).collect()
 }
 
 /// The axis of a row in axes of its parent: the origin of its frame, and its direction.
