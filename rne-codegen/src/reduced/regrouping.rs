@@ -231,19 +231,15 @@ fn share_rods(
     for (place, &link) in carried.iter().enumerate() {
         for (k, target) in plan.joints[link].targets.into_iter().enumerate() {
             let mut equation = vec![Number::ZERO; 3 * carried.len()];
-            let constant = match (target.entry(), parent) {
-                (Some(entry), Some(parent)) => {
-                    for (three, &(p, u)) in equation.chunks_mut(3).zip(&lines) {
-                        three.copy_from_slice(
-                            &IDENTITY.map(|unit| -links.given(parent, entry, &PseudoInertia::rod(unit, p, u))),
-                        );
-                    }
-                    links.had(parent, entry)
+            let constant = if let (Some(entry), Some(parent)) = (target.entry(), parent) {
+                for (three, &(p, u)) in equation.chunks_mut(3).zip(&lines) {
+                    let rods = IDENTITY.map(|unit| PseudoInertia::rod(unit, p, u));
+                    three.copy_from_slice(&rods.map(|rod| -links.given(parent, entry, &rod)));
                 }
-                _ => {
-                    equation[3 * place + k] = Number::ONE;
-                    links.list[link].get(OWN[k])
-                }
+                links.had(parent, entry)
+            } else {
+                equation[3 * place + k] = Number::ONE;
+                links.list[link].get(OWN[k])
             };
             equation.push(constant);
             equations.push(equation);

@@ -17,7 +17,7 @@ fn common(a: Triple, b: Triple) -> usize {
 }
 
 /// p along one axis alone.
-fn along<'s>(builder: &'s Builder, p: Triple, axis: usize) -> Vector<'s> {
+fn along(builder: &Builder, p: Triple, axis: usize) -> Vector<'_> {
     let mut alone = Triple::default();
     alone[axis] = p[axis];
     builder.vector(alone)
