@@ -3,11 +3,12 @@
 Usage: python3 tree_counts.py RNE ROBOT.yaml ...     `cargo xtask tree-counts` calls it; needs PyYAML.
 
 Both columns come from one robot file. Ours is what `rne ops` counts in the emitted program, with the plan file beside
-the robot file. The peer is the customised Newton-Euler algorithm of Khalil and Kleinfinger (1987) with base parameters, on
-the modified rows of the file, as SYMORO writes it: each formula of the recursion is an operation of its own, a product
-with 0, 1 or -1 and a sum with 0 cost nothing, equal subexpressions are computed once, and what no torque needs is
-left out. The rules that only help the peer: the base is turned into the frame of each joint on it, and the constant angle of a
-last joint is part of its link. Followers cost their linear form. Rotors in `motors` are no part of the peer here.
+the robot file. The peer is the customised Newton-Euler algorithm of Khalil and Kleinfinger (1987) with base
+parameters, on the modified rows of the file, as SYMORO writes it: each formula of the recursion is an operation of
+its own, a product with 0, 1 or -1 and a sum with 0 cost nothing, equal subexpressions are computed once, and what no
+torque needs is left out. The rules that only help the peer: the base is turned into the frame of each joint on it,
+and the constant angle of a last joint is part of its link. Followers cost their linear form. Rotors in `motors` are
+no part of the peer here.
 """
 
 import json
