@@ -227,8 +227,8 @@ fn a_parallelogram_stays_closed() {
     }
 }
 
-/// A tree whose axis 7 is opposite to axis 2, with joints 3 and 8 that follow; joint 3 follows joint 2 with `ratio`. With
-/// -1, links 2 and 8 always turn alike, and so do links 3 and 7.
+/// A tree whose axis 7 is opposite to axis 2, with joints 3 and 8 that follow; joint 3 follows joint 2 with `ratio`.
+/// With -1, links 2 and 8 always turn alike, and so do links 3 and 7.
 fn tree_of_opposite_sides(ratio: &str) -> Robot {
     let link = "mass: 2, com: [0.1, -0.2, 0.3], inertia: {xx: 0.5, yy: 0.6, zz: 0.7, xy: 0.05, xz: -0.06, yz: 0.07}";
     let joint = |name: &str, row: &str| format!("{{name: {name}, type: revolute, {row}, link: {{{link}}}}},");
