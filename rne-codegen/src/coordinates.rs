@@ -42,6 +42,11 @@ impl Coordinates {
         self.follows[joint].is_none()
     }
 
+    /// The coordinates with which a joint moves, and their ratios.
+    pub(crate) fn followed(&self, joint: usize) -> Vec<(usize, f64)> {
+        self.follows[joint].clone().unwrap_or_else(|| vec![(joint, 1.0)])
+    }
+
     /// Whether no joint follows another.
     pub(crate) fn is_every_joint(&self) -> bool {
         self.joints.len() == self.follows.len()

@@ -226,3 +226,54 @@ fn a_parallelogram_stays_closed() {
         }
     }
 }
+
+/// A tree whose axis 7 is opposite to axis 2, with joints 3 and 8 that follow; joint 3 follows joint 2 with `ratio`.
+/// With -1, links 2 and 8 always turn alike, and so do links 3 and 7.
+fn tree_of_opposite_sides(ratio: &str) -> Robot {
+    let link = "mass: 2, com: [0.1, -0.2, 0.3], inertia: {xx: 0.5, yy: 0.6, zz: 0.7, xy: 0.05, xz: -0.06, yz: 0.07}";
+    let joint = |name: &str, row: &str| format!("{{name: {name}, type: revolute, {row}, link: {{{link}}}}},");
+    let joints = [
+        joint("j1", "dh: {alpha: 0.3, a: 0, theta: 0, d: 0}"),
+        joint("j2", "dh: {alpha: -pi/2, a: 0.2, theta: 0, d: 0}"),
+        joint("j3", "dh: {alpha: 0, a: 0.7, theta: 0, d: 0}"),
+        joint("j4", "dh: {alpha: -pi/2, a: 0.15, theta: 0, d: 0.8}"),
+        joint("j7", "parent: j1, dh: {gamma: 0, b: 0.1, alpha: pi/2, a: 0.2, theta: 0.5, d: 0.3}"),
+        joint("j8", "dh: {alpha: pi, a: 0.3, theta: -0.2, d: 0}"),
+    ];
+    let text = format!(
+        "{{format: 2, name: sides, source: own, convention: modified, gravity: [0, 0, -9.81], tool: {{on: j4}},
+        joints: [{}], couplings: [{{joint: j3, follows: {{j7: -1, j2: {ratio}}}, offset: 0.3}},
+        {{joint: j8, follows: {{j7: 1, j2: 1}}, offset: -0.7}}]}}",
+        joints.concat()
+    );
+    let read = Reader::new("sides.yaml").trees().couplings().read(&text);
+    read.unwrap_or_else(|report| panic!("{report}")).robot
+}
+
+/// Second moments of links that turn alike are those of one link, and the torques stay what they are; links that do
+/// not turn alike keep theirs, and take more operations.
+#[test]
+fn a_tree_whose_links_turn_alike_is_the_runtime() {
+    let torques = |robot: &Robot| {
+        let maker = Maker::Code(Form::Reduced);
+        let arm = Arm::new(robot, maker);
+        let mut worst = Worst::default();
+        compare_at_states(&arm, maker, &mut worst);
+        worst.at_most(TOLERANCE, "links that turn alike");
+        arm.program(Function::InverseDynamics).operations().total()
+    };
+    let [alike, different] = ["-1", "-0.9"].map(|ratio| torques(&tree_of_opposite_sides(ratio)));
+    assert!(alike + 20 < different, "{alike} {different}");
+}
+
+/// The SR400 of Khalil and Kleinfinger with links of which no number is zero: its parallelogram, by its plan file.
+#[test]
+fn the_tree_of_the_sr400_takes_517_operations() {
+    let maker = Maker::Code(Form::Reduced);
+    let arm = Arm::from_file("benches/trees/sr400.yaml", maker);
+    let mut worst = Worst::default();
+    compare_at_states(arm, maker, &mut worst);
+    worst.at_most(TOLERANCE, "SR400");
+    let operations = arm.program(Function::InverseDynamics).operations().total();
+    assert!(operations <= 517, "{operations}");
+}

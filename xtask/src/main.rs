@@ -31,6 +31,7 @@ mod sbom;
 mod single_calls;
 mod site;
 mod tool;
+mod tree_counts;
 mod urdf;
 mod verify;
 mod wrapping;
@@ -74,6 +75,7 @@ enum Task {
     Prose(prose::Prose),
     Package(package::Package),
     Tool(tool::Tool),
+    TreeCounts(tree_counts::TreeCounts),
     Features(features::Features),
     Fleet(fleet::Fleet),
     Sbom(sbom::Sbom),
@@ -120,6 +122,7 @@ impl Task {
             Self::Prose(task) => ("prose", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
+            Self::TreeCounts(task) => ("tree counts", false, task.run()),
             Self::Fleet(_) => ("fleet", false, fleet::Fleet::run()),
             Self::Sbom(task) => ("sbom", false, task.run()),
             Self::Frozen(task) => ("frozen", false, task.run()),

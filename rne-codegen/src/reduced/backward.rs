@@ -14,6 +14,7 @@ use crate::reduced::gyrostats::{of_other_joints, resistance};
 use crate::reduced::inward::full;
 use crate::reduced::joint_frames::Tip;
 use crate::reduced::regrouping::is_parallel;
+use crate::reduced::siblings::gathered;
 use crate::reduced::{
     Arm, Gradient, JointFrame, JointPlan, Load, Moment, Motion, Moved, Parameters, PseudoInertia, ScaledTwist, Side,
     SymbolicTurn, Wrench,
@@ -67,9 +68,10 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
                 .gyrostats
                 .iter()
                 .fold(own, |own, gyrostat| Wrench { moment: own.moment + gyrostat.moment(arm, link.own.omega), ..own });
-            let carried = children.iter().filter(|child| rows[child.of].parent == Some(index));
-            let (own, unturned) = carried
-                .fold((own, unturned), |(own, unturned), child| with_child(arm, index, link, *child, own, unturned));
+            let carried = children.iter().filter(|child| rows[child.of].parent == Some(index)).copied();
+            let (own, unturned) = together(builder, carried.collect())
+                .into_iter()
+                .fold((own, unturned), |(own, unturned), child| with_child(arm, index, link, child, own, unturned));
             match rows[index].kind {
                 Prismatic => {
                     let own = own.plus(unturned);
@@ -239,6 +241,17 @@ fn turned_second_moment<'s>(
     let turned_xz = cosine.times(xz) - sine.times(yz);
     let turned_yz = sine.times(xz) + cosine.times(yz);
     full([u + number(yy), number(xx) - u, number(zz), turned_xy, turned_xz, turned_yz])
+}
+
+/// What several links on one link exert in its axes, as one.
+fn together<'s>(builder: &'s Builder, carried: Vec<Child<'s>>) -> Vec<Child<'s>> {
+    let (mut unturned, own): (Vec<_>, Vec<_>) = carried.into_iter().partition(|child| child.unturned);
+    if own.len() < 2 {
+        return own.into_iter().chain(unturned).collect();
+    }
+    let wrench = gathered(builder, own.iter().map(|child| (child.wrench, child.arm)).collect());
+    unturned.push(Child { wrench, arm: [Number::ZERO; 3], ..own[0] });
+    unturned
 }
 
 /// Adds what a link behind exerts.

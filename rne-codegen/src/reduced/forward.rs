@@ -13,6 +13,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::ir::{Builder, ExactAngle, Matrix, Number, Quantity, Symbol, Vector};
 use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
+use crate::reduced::siblings::point_acceleration;
 use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn, Turned};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
@@ -161,6 +162,14 @@ impl<'a> Arm<'a, '_> {
         ([x, y, z - before].map(|length| length * scale), d * scale)
     }
 
+    /// The point of its parent, in the axes of the parent, whose acceleration a joint takes over, times λ.
+    pub(crate) fn outward_point(&self, index: usize) -> [Number; 3] {
+        let (offset, d) = self.lengths(index, self.parameters.lambda[index]);
+        let row = &self.rows()[index];
+        let is_whole = row.kind == Revolute && self.plan.joints[index].outward_offset == Side::Parent;
+        if is_whole { plus(offset, row.along_axis(d)) } else { offset }
+    }
+
     /// Whether this is the last link, and the plan makes it a spinning sphere (section 5.6).
     pub(crate) fn is_spin(&self, index: usize) -> bool {
         self.parameters.sphere.is_some() && index + 1 == self.rows().len()
@@ -210,12 +219,14 @@ fn joint_point<'s>(
     };
     let link = &moved[parent];
     let unturned = arm.plan.joints[parent].switches.origin_unturned && arm.rows()[parent].kind == Revolute;
-    let p = arm.builder.vector(p);
+    let v = arm.builder.vector(p);
     if unturned {
-        let part = link.unturned.gradient.of(link.group_turn.about_z(p));
+        let part = link.unturned.gradient.of(link.group_turn.about_z(v));
         (link.group_turn.back_about_z(link.unturned.acceleration + part), part, true)
+    } else if !is_parallel(arm.rows(), index) {
+        (point_acceleration(arm, index, &before, p), arm.builder.no_vector(), false)
     } else {
-        let part = before.gradient.of(p);
+        let part = before.gradient.of(v);
         (before.acceleration + part, part, false)
     }
 }
@@ -256,9 +267,9 @@ fn revolute<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[Mo
     if arm.is_spin(index) {
         return link.spin(before);
     }
-    let (offset, d) = arm.lengths(index, arm.parameters.lambda[index]);
+    let (_, d) = arm.lengths(index, arm.parameters.lambda[index]);
     let to_parent = link.plan.outward_offset == Side::Parent;
-    let p = if to_parent { plus(offset, link.row.along_axis(d)) } else { offset };
+    let p = arm.outward_point(index);
 
     builder.at(Quantity::OriginAcceleration, link.joint);
     let (point, part, part_unturned) = joint_point(arm, index, before, moved, p);

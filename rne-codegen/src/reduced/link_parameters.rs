@@ -38,6 +38,12 @@ pub(crate) enum Entry {
     Difference,
 }
 
+impl Entry {
+    pub(crate) const fn is_of_second_moments(self) -> bool {
+        matches!(self, Self::S(..) | Self::Difference)
+    }
+}
+
 impl PseudoInertia {
     /// From mass, centre of mass and inertia about it.
     pub(crate) fn of_body(mass: Number, com: Triple, inertia: Square, half: Number) -> Self {

@@ -10,6 +10,7 @@
 pub(crate) mod aba;
 pub(crate) mod algorithm;
 pub(crate) mod arguments;
+pub(crate) mod attitudes;
 pub(crate) mod backward;
 pub(crate) mod choices;
 pub(crate) mod crba;
@@ -22,6 +23,7 @@ pub(crate) mod momentum;
 pub(crate) mod payload;
 pub(crate) mod regrouping;
 pub(crate) mod rnea_derivatives;
+pub(crate) mod siblings;
 pub(crate) mod wrench;
 
 pub(crate) use algorithm::Algorithm;

@@ -4,6 +4,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{ExactAngle, Number};
+use crate::reduced::attitudes::holders;
 use crate::reduced::{
     Entry, IDENTITY, JointFrame, JointFrames, OriginShift, Plan, PseudoInertia, RegroupingTarget, Scale, Square, Triple,
 };
@@ -142,19 +143,27 @@ fn regrouped(
     if !plan.regrouped {
         return Some((links, sphere));
     }
+    let mut links = Links { list: links, holders: holders(joint_frames) };
+    for index in 0..end {
+        let s = std::mem::take(&mut links.list[index].s);
+        links.add(index, PseudoInertia { s, ..PseudoInertia::default() });
+    }
     for index in (0..end).rev() {
-        match rows[index].kind {
-            Prismatic => {
-                // a sliding link turns as the one before: all second moments belong to that
-                let s = std::mem::take(&mut links[index].s);
-                if let Some(parent) = rows[index].parent {
-                    let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[index].rotation());
-                    links[parent] = links[parent] + moved;
-                }
-            }
-            Revolute => share_rods(rows, origin_shifts, plan, offers, &mut links, index)?,
+        let carried =
+            |kind| (index + 1..end).rev().filter(move |&at| rows[at].parent == Some(index) && rows[at].kind == kind);
+        for sliding in carried(Prismatic) {
+            // it turns as the link before: all second moments belong to that
+            let s = std::mem::take(&mut links.list[sliding].s);
+            links.add(index, PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[sliding].rotation()));
+        }
+        share_rods(rows, origin_shifts, plan, offers, &mut links, &carried(Revolute).collect::<Vec<_>>())?;
+        match (rows[index].parent, rows[index].kind) {
+            (None, Prismatic) => links.list[index].s = Square::default(),
+            (None, Revolute) => share_rods(rows, origin_shifts, plan, offers, &mut links, &[index])?,
+            _ => {}
         }
     }
+    let mut links = links.list;
     for (_, first) in rows.iter().zip(&mut links).filter(|(row, _)| row.parent.is_none() && row.kind == Revolute) {
         // only the inertia about its axis acts
         let about_axis = first.s[0][0] + first.s[1][1];
@@ -164,67 +173,117 @@ fn regrouped(
     Some((links, sphere))
 }
 
-/// Moves three rods of matter from revolute link `index` to its parent, so that the three targets vanish.
+/// The links while matter moves between them.
+struct Links {
+    list: Vec<PseudoInertia>,
+    /// For each link, the link that has its second moments, and the rotation to the axes of that.
+    holders: Vec<Option<(usize, Square)>>,
+}
+
+impl Links {
+    /// Adds matter to a link: its second moments to the link that has those of this one.
+    fn add(&mut self, link: usize, matter: PseudoInertia) {
+        let PseudoInertia { mass, h, s } = matter;
+        let first = PseudoInertia { mass, h, ..PseudoInertia::default() };
+        self.list[link] = self.list[link] + first;
+        if let Some((holder, s)) = self.second_moments(link, s) {
+            self.list[holder] = self.list[holder] + s;
+        }
+    }
+
+    /// The link that has the second moments of a link, and these in its axes; `None` for a link that does not turn.
+    fn second_moments(&self, link: usize, s: Square) -> Option<(usize, PseudoInertia)> {
+        let (holder, rotation) = self.holders[link]?;
+        let s = PseudoInertia { s, ..PseudoInertia::default() };
+        Some((holder, if holder == link { s } else { s.turned(&rotation) }))
+    }
+
+    /// What a link has at an entry, or the one that has its second moments.
+    fn had(&self, link: usize, entry: Entry) -> Number {
+        let holder =
+            if entry.is_of_second_moments() { self.holders[link].map(|(holder, _)| holder) } else { Some(link) };
+        holder.map_or(Number::ZERO, |holder| self.list[holder].get(entry))
+    }
+
+    /// What a link gets at an entry by some matter, or the one that has its second moments.
+    fn given(&self, link: usize, entry: Entry, matter: &PseudoInertia) -> Number {
+        if !entry.is_of_second_moments() {
+            return matter.get(entry);
+        }
+        self.second_moments(link, matter.s).map_or(Number::ZERO, |(_, s)| s.get(entry))
+    }
+}
+
+/// Moves three rods of matter from each of some revolute links on one parent to that, so that all targets vanish.
 fn share_rods(
     rows: &[JointFrame],
     origin_shifts: &[Number],
     plan: &Plan,
     offers: &Offers,
-    links: &mut [PseudoInertia],
-    index: usize,
+    links: &mut Links,
+    carried: &[usize],
 ) -> Option<()> {
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
-    let (p, u) = line(rows, origin_shifts, index);
-    let parent = rows[index].parent;
-    let targets = if parent.is_none() { [RegroupingTarget::Own; 3] } else { plan.joints[index].targets };
-    // three equations: the target vanishes
-    let equation = |k: usize| {
-        let ([x, y, z], constant) = match (targets[k].entry(), parent) {
-            (Some(entry), Some(parent)) => {
-                (IDENTITY.map(|unit| -PseudoInertia::rod(unit, p, u).get(entry)), links[parent].get(entry))
-            }
-            _ => (IDENTITY[k], links[index].get(OWN[k])),
-        };
-        [x, y, z, constant]
-    };
-    let rods = solved([0, 1, 2].map(equation))?;
-    // what a link has of its own it can always give, in an arm without mass too
-    let is_plain = targets == [RegroupingTarget::Own; 3];
-    if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
-        return None;
+    let Some(parent) = carried.first().map(|&link| rows[link].parent) else { return Some(()) };
+    let lines: Vec<(Triple, Triple)> = carried.iter().map(|&link| line(rows, origin_shifts, link)).collect();
+    // the equations: the targets vanish
+    let mut equations = Vec::with_capacity(3 * carried.len());
+    for (place, &link) in carried.iter().enumerate() {
+        for (k, target) in plan.joints[link].targets.into_iter().enumerate() {
+            let mut equation = vec![Number::ZERO; 3 * carried.len()];
+            let constant = if let (Some(entry), Some(parent)) = (target.entry(), parent) {
+                for (three, &(p, u)) in equation.chunks_mut(3).zip(&lines) {
+                    let rods = IDENTITY.map(|unit| PseudoInertia::rod(unit, p, u));
+                    three.copy_from_slice(&rods.map(|rod| -links.given(parent, entry, &rod)));
+                }
+                links.had(parent, entry)
+            } else {
+                equation[3 * place + k] = Number::ONE;
+                links.list[link].get(OWN[k])
+            };
+            equation.push(constant);
+            equations.push(equation);
+        }
     }
-    let link = &mut links[index];
-    link.mass = link.mass - rods[0];
-    link.h[2] = link.h[2] - rods[1];
-    link.s[2][2] = link.s[2][2] - rods[2];
-    if let Some(parent) = parent {
-        links[parent] = links[parent] + PseudoInertia::rod(rods, p, u);
+    let rods = solved(equations)?;
+    for ((&link, rods), (p, u)) in carried.iter().zip(rods.chunks(3)).zip(lines) {
+        let rods = [rods[0], rods[1], rods[2]];
+        // what a link has of its own it can always give, in an arm without mass too
+        let is_plain = parent.is_none() || plan.joints[link].targets == [RegroupingTarget::Own; 3];
+        if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
+            return None;
+        }
+        links.add(link, PseudoInertia::rod(rods.map(|rod| -rod), [Number::ZERO; 3], IDENTITY[2]));
+        if let Some(parent) = parent {
+            links.add(parent, PseudoInertia::rod(rods, p, u));
+        }
     }
     Some(())
 }
 
-/// Three linear equations by Gauss and Jordan; `None` when a pivot is too small.
-fn solved(mut rows: [[Number; 4]; 3]) -> Option<Triple> {
-    for column in 0..3 {
-        let size = |row: &[Number; 4]| row[column].to_f64().abs();
-        let pivot = (column..3).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b])).then(b.cmp(&a)))?;
+/// Linear equations, each with its constant at the end, by Gauss and Jordan; `None` when a pivot is too small.
+fn solved(mut rows: Vec<Vec<Number>>) -> Option<Vec<Number>> {
+    let count = rows.len();
+    for column in 0..count {
+        let size = |row: &[Number]| row[column].to_f64().abs();
+        let pivot = (column..count).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b])).then(b.cmp(&a)))?;
         if size(&rows[pivot]) < LEAST_PIVOT {
             return None;
         }
         rows.swap(column, pivot);
         let scale = rows[column][column].inverse()?;
-        rows[column] = rows[column].map(|x| x * scale);
-        for other in (0..3).filter(|&other| other != column) {
-            let factor = rows[other][column];
+        rows[column].iter_mut().for_each(|x| *x = *x * scale);
+        let pivot = rows[column].clone();
+        for row in rows.iter_mut().enumerate().filter(|(other, _)| *other != column).map(|(_, row)| row) {
+            let factor = row[column];
             if !factor.is_zero() {
-                let pivot = rows[column];
-                for (x, p) in rows[other].iter_mut().zip(pivot).skip(column) {
-                    *x = *x - factor * p;
+                for (x, p) in row.iter_mut().zip(&pivot).skip(column) {
+                    *x = *x - factor * *p;
                 }
             }
         }
     }
-    Some(rows.map(|row| row[3]))
+    rows.iter().map(|row| row.last().copied()).collect()
 }
 
 /// The axis of a row in axes of its parent: the origin of its frame, and its direction.

@@ -1,0 +1,50 @@
+//! Operations of robots with branches beside those of Khalil's algorithm.
+
+use anyhow::Result;
+use clap::Args;
+use xshell::cmd;
+
+use crate::Verdict;
+use crate::machine::{self, Missing};
+
+/// Robots that are counted: shipped ones, and those of benches/trees.
+const ROBOTS: [&str; 8] = [
+    "robots/trees/hyq.yaml",
+    "benches/trees/anymal_c.yaml",
+    "benches/trees/go2.yaml",
+    "benches/trees/solo12.yaml",
+    "benches/trees/atlas.yaml",
+    "benches/trees/g1.yaml",
+    "benches/trees/sr400.yaml",
+    "robots/trees/mini_cheetah.yaml",
+];
+
+/// Counts the operations of robots with branches beside Khalil's algorithm
+///
+/// Inverse dynamics in the form reduced, by the plan files, and the customised Newton-Euler algorithm with base
+/// parameters, from the same robot files. `xtask/tree_counts.py` has the rules of both counts.
+#[derive(Args)]
+#[command(after_help = "\
+Exit status: 1 when a robot needs more operations than its bar. Needs python3 with PyYAML.
+
+Examples:
+  cargo xtask tree-counts                          all of them
+  cargo xtask tree-counts robots/trees/hyq.yaml    one robot file; a table with modified rows")]
+pub(crate) struct TreeCounts {
+    /// Robot files to count instead
+    #[arg(value_name = "FILE")]
+    files: Vec<String>,
+}
+
+impl TreeCounts {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let shell = machine::shell()?;
+        if cmd!(shell, "python3 -c 'import yaml'").quiet().ignore_stderr().run().is_err() {
+            return Err(Missing::error("there is no python3 with PyYAML"));
+        }
+        machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+        let rne = machine::target_folder("target")?.join("debug/rne");
+        let files = if self.files.is_empty() { ROBOTS.map(str::to_owned).to_vec() } else { self.files.clone() };
+        Ok(Verdict::from(cmd!(shell, "python3 xtask/tree_counts.py {rne} {files...}").quiet().run().is_ok()))
+    }
+}
