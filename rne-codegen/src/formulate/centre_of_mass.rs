@@ -87,7 +87,7 @@ fn with_first_moment<'s>(
     moment: Vector<'s>,
     inverse: Symbol<'s>,
 ) -> Vector<'s> {
-    arm.links[index].first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
+    arm.links[index].body.first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
 }
 
 /// The part of the mass that each link has, and one by the mass: constants, unless a mass is given at run time. Of an
@@ -97,12 +97,12 @@ fn parts<'s>(arm: &Arm<'s>) -> Result<(Vec<Symbol<'s>>, Symbol<'s>), Symbol<'s>>
     let line = builder.joint(arm.links.len());
     line.within(Quantity::ComPosition, || {
         let nothing = builder.constant(0.0, Cause::Arithmetic);
-        let total = arm.links.iter().fold(nothing, |total, link| total + link.mass);
+        let total = arm.links.iter().fold(nothing, |total, link| total + link.body.mass);
         let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
         let inverse = builder.quotient(one, total);
         if total.is_zero() {
             return Err(inverse);
         }
-        Ok((arm.links.iter().map(|link| link.mass * inverse).collect(), inverse))
+        Ok((arm.links.iter().map(|link| link.body.mass * inverse).collect(), inverse))
     })
 }

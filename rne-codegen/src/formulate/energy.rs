@@ -13,10 +13,10 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
         let omega = motion.turning.omega;
         twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || {
-            let momentum = link.inertia * omega;
-            let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + omega.dot(momentum);
+            let momentum = link.body.inertia * omega;
+            let of_link = motion.c_dot.dot(motion.c_dot) * link.body.mass + omega.dot(momentum);
             let twice = twice + of_link;
-            link.first_moment.map_or(twice, |h| {
+            link.body.first_moment.map_or(twice, |h| {
                 let half = motion.c_dot.dot(omega.cross(h));
                 twice + (half + half)
             })
@@ -46,8 +46,8 @@ pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vecto
         let line = builder.joint(index + 1);
         let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
         lost = line.within(Quantity::PotentialEnergy, || {
-            let lost = lost + arm.gravity.dot(centre) * link.mass;
-            link.first_moment.map_or(lost, |h| lost + arm.gravity.dot(frame.rotation * h))
+            let lost = lost + arm.gravity.dot(centre) * link.body.mass;
+            link.body.first_moment.map_or(lost, |h| lost + arm.gravity.dot(frame.rotation * h))
         });
     }
     builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)

@@ -36,6 +36,8 @@ named! {
         PayloadDynamics = "PayloadDynamics",
         /// The arm with a wrench at each named tip.
         TipWrenches = "TipWrenches",
+        /// The robot whose base nothing holds.
+        FloatingBase = "FloatingBase",
     }
 }
 

@@ -101,6 +101,7 @@ impl Algorithm {
             | Function::Regressor
             | Function::JointWrenches
             | Function::InverseDynamicsOnMovingBase
+            | Function::InverseDynamicsOfFloatingBase
             | Function::ActuatorTorques => &[],
         }
     }
