@@ -237,6 +237,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         gravity: gravity.rounded(10.0),
         base: transform(start),
         tool: transform(table.tool),
+        floating_base: None,
         tip_on: Some(chain.tip_on).filter(|on| on + 1 != chain.joints.len()),
         parameters: Vec::new(),
         joints: joints.collect(),

@@ -90,7 +90,7 @@ pub(crate) struct Arm<'s> {
     pub(crate) gravity: Vector<'s>,
     /// World → frame 0.
     pub(crate) base: Placement<'s>,
-    /// The base, about the origin of frame 0, where nothing holds it and the function says how it moves.
+    /// The base, about the origin of frame 0, where nothing holds it.
     pub(crate) floating_base: Option<Body<'s>>,
 }
 
@@ -257,14 +257,11 @@ fn from_com<'s>(
     }
 }
 
-/// The base where nothing holds it, if the function asks how it moves: without mass, where the file has no
-/// `floating_base` and the function returns the wrench on it.
+/// The base where nothing holds it: without mass, where the file has no `floating_base` and the function returns the
+/// wrench on the base.
 fn floating_base<'s>(builder: &'s Builder, robot: &Robot) -> Option<Body<'s>> {
     let (function, base) = (builder.function, robot.floating_base.as_ref().map(|base| base.link));
     let link = base.or_else(|| function.returns_base_wrench().then(rne_model::Link::default))?;
-    if !function.takes(Argument::Base) {
-        return None;
-    }
     let rows = link.inertia.rows();
     let inertia = rows.map(|row| row.map(|x| builder.constant(x, Cause::Arithmetic)));
     Some(Body {

@@ -41,7 +41,8 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
 /// `frames` in frame 0, where gravity is given.
 pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let builder = arm.builder;
-    let mut lost = builder.constant(0.0, Cause::Arithmetic);
+    let of_base = arm.floating_base.as_ref().map(|base| arm.gravity.dot(base.com) * base.mass);
+    let mut lost = of_base.unwrap_or_else(|| builder.constant(0.0, Cause::Arithmetic));
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
         let line = builder.joint(index + 1);
         let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
