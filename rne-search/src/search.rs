@@ -40,7 +40,7 @@ pub fn search(
     if let Some(&function) = options.rewrite.iter().find(|function| !function.can_be_rewritten()) {
         return Err(SearchError::Irreducible(function));
     }
-    let torques = Function::InverseDynamics;
+    let torques = Function::of_plan(robot);
     let torques_by = |plan: &Plan| Formulation::by_plan(robot, plan, torques, Algorithm::Rnea);
     let of_torques = Reference::of(robot, torques)?;
     // whether what is at hand can be taken is better known before a search than after it

@@ -120,6 +120,13 @@ impl Function {
         self.entry().returns_torques
     }
 
+    /// The function whose operations the plan of a robot is to make few: the torques, and with them the wrench on the
+    /// base where nothing holds it.
+    #[must_use]
+    pub const fn of_plan(robot: &Robot) -> Self {
+        if robot.floating_base.is_some() { Self::InverseDynamicsOfFloatingBase } else { Self::InverseDynamics }
+    }
+
     /// Whether it returns the wrench that must act on a base that nothing holds.
     #[must_use]
     pub const fn returns_base_wrench(self) -> bool {

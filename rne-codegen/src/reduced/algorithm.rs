@@ -6,11 +6,11 @@ use crate::formulate::ldlt::System;
 use crate::formulate::{self, Outputs, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
-use crate::reduced::backward::torques;
+use crate::reduced::backward::{torques, torques_of_floating_base};
 use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
-use crate::reduced::{Arm, aba, crba, momentum};
+use crate::reduced::{Arm, Wrench, aba, crba, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,7 +62,8 @@ impl Algorithm {
             | Function::InverseDynamicsWithWrench
             | Function::InverseDynamicsFromSinCos
             | Function::BiasTorques
-            | Function::InverseDynamicsWithWrenches => &[Algorithm::Rnea],
+            | Function::InverseDynamicsWithWrenches
+            | Function::InverseDynamicsOfFloatingBase => &[Algorithm::Rnea],
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload]
             }
@@ -101,7 +102,6 @@ impl Algorithm {
             | Function::Regressor
             | Function::JointWrenches
             | Function::InverseDynamicsOnMovingBase
-            | Function::InverseDynamicsOfFloatingBase
             | Function::ActuatorTorques => &[],
         }
     }
@@ -218,6 +218,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             | Function::InverseDynamicsWithWrenches,
             algorithm,
         ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
+        (Function::InverseDynamicsOfFloatingBase, _) => {
+            let (Wrench { force, moment }, of_joints) = torques_of_floating_base(arm);
+            [formulate::on_base([force, moment]), by_joint(Quantity::Torque, of_joints)].concat()
+        }
         // `Algorithm::of` matches them all
         _ => return None,
     })
