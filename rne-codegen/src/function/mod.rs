@@ -123,8 +123,11 @@ impl Function {
     /// The function whose operations the plan of a robot is to make few: the torques, and with them the wrench on the
     /// base where nothing holds it.
     #[must_use]
-    pub const fn of_plan(robot: &Robot) -> Self {
-        if robot.floating_base.is_some() { Self::InverseDynamicsOfFloatingBase } else { Self::InverseDynamics }
+    pub fn of_plan(robot: &Robot) -> Self {
+        match robot.floating_base {
+            Some(_) if !robot.has_spinning_rotors() => Self::InverseDynamicsOfFloatingBase,
+            _ => Self::InverseDynamics,
+        }
     }
 
     /// Whether it returns the wrench that must act on a base that nothing holds.
