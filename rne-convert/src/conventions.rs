@@ -86,7 +86,8 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let base = placement(&robot.base);
     let tip = end * placement(&robot.tool);
     let tip_on = joints.len().saturating_sub(1);
-    Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip_on, tip, frames }
+    let gravity = Vector::decimal(robot.gravity);
+    Chain { base, gravity, floating_base: None, joints, tip_on, tip, frames }
 }
 
 pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {

@@ -71,3 +71,11 @@ fn base_name(cx: &Context, node: &Node, root: &Node) -> Option<String> {
     };
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("choose another name"))
 }
+
+/// Refuses a floating base for a function that takes serial arms on a fixed base only.
+pub(crate) fn refuse(cx: &Context, root: &Node) {
+    let Some(node) = root.get("floating_base") else { return };
+    let message = "the base of this robot floats, and floating bases are not supported here";
+    let help = "the section Floating bases of docs/robot-file.md lists the commands, derives and types that take them";
+    cx.report(Diagnostic::error(node.head(), message).label("a floating base").help(help));
+}

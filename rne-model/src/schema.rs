@@ -10,7 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, MAX_JOINTS, Node};
 use crate::drive::drives;
 use crate::expression::{Meaning, is_identifier, is_reserved};
-use crate::floating_base::{floating_base, name_of_base};
+use crate::floating_base::{self, name_of_base};
 use crate::frame::{carrier, frames};
 use crate::link::link;
 use crate::parallelogram::loops;
@@ -74,7 +74,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     loops(cx, node, (format, convention), &mut joints)?;
     let drives = drives(cx, node, format, &joints)?;
     let mut bodies = bodies(cx, node, format, &joints)?;
-    let mut floating_base = floating_base(cx, node, format)?;
+    let mut floating_base = floating_base::floating_base(cx, node, format)?;
     if let Some(node) = node.get("gravity") {
         lint::gravity_upwards(cx, node, gravity, &base);
     }
@@ -91,6 +91,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         }
         if !takes.trees {
             tree::refuse(cx, node, &joints, tip_on);
+            floating_base::refuse(cx, node);
         }
         if !takes.couplings {
             coupling::refuse(cx, node, &joints, &drives);
