@@ -164,7 +164,10 @@ fn all_derives_of_seven_joints_build() {
         let plans = PlanSet::default_of(&read);
         let is_left_out = |function: Function| {
             function == Function::ActuatorTorques
-                || matches!(function.capability(), Capability::PayloadDynamics | Capability::TipWrenches)
+                || matches!(
+                    function.capability(),
+                    Capability::PayloadDynamics | Capability::TipWrenches | Capability::FloatingBase
+                )
         };
         let functions = Function::ALL.into_iter().filter(|&function| !is_left_out(function));
         let programs: Result<Vec<Program>, _> =

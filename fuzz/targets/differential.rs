@@ -43,6 +43,8 @@ struct State {
     qdd: Vec<f64>,
     tau: Vec<f64>,
     wrench: Wrench<f64>,
+    /// The same, at the one tip.
+    at_tips: [[f64; 6]; 1],
     payload: [f64; 10],
     base: BaseMotion<f64>,
 }
@@ -64,13 +66,16 @@ impl State {
         };
         let mut payload = [3.0; 10];
         payload[1..].iter_mut().zip([centre, inertia, products].concat()).for_each(|(to, from)| *to = from);
-        Ok(Self { q, qd, qdd, tau, wrench, payload, base })
+        let ([fx, fy, fz], [nx, ny, nz]) = (wrench.force, wrench.moment);
+        let at_tips = [[fx, fy, fz, nx, ny, nz]];
+        Ok(Self { q, qd, qdd, tau, wrench, at_tips, payload, base })
     }
 
     fn arguments(&self) -> Arguments<'_, f64> {
-        let Self { q, qd, qdd, tau, wrench, payload, base } = self;
+        let Self { q, qd, qdd, tau, wrench, at_tips, payload, base } = self;
         Arguments {
             tau,
+            wrenches: at_tips,
             force: wrench.force,
             moment: wrench.moment,
             payload: *payload,
@@ -121,6 +126,11 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
     assert_eq!(interpreted.len(), expected.len(), "{function} of\n{text}");
     let is_equal = match function {
         Function::ForwardDynamics => accelerate(&arm, &state, &interpreted).expect("arrays of the right length"),
+        Function::ForwardDynamicsWithWrenches => {
+            let of_wrench = arm.wrench_torques(&state.q, &state.wrench).expect("arrays of the right length");
+            let tau = state.tau.iter().zip(of_wrench).map(|(tau, of_wrench)| tau - of_wrench).collect();
+            accelerate(&arm, &State { tau, ..state }, &interpreted).expect("arrays of the right length")
+        }
         Function::InverseMassMatrix => inverts(&arm, &state, &interpreted).expect("arrays of the right length"),
         _ => {
             let scale = scale(&expected);
@@ -189,7 +199,7 @@ fn operators_of_c(robot: &Robot, program: &Program) {
 
 /// What the runtime says, in the order of a program's outputs.
 fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Result<Vec<f64>, WrongLength> {
-    let State { q, qd, qdd, tau, wrench, payload, base } = state;
+    let State { q, qd, qdd, tau, wrench, payload, base, .. } = state;
     Ok(match function {
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd)?,
         Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench)?,
@@ -225,6 +235,13 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         }
         Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau)?.concat(),
         Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base)?,
+        Function::WrenchTorques => arm.wrench_torques(q, wrench)?,
+        Function::InverseDynamicsWithWrenches => arm.inverse_dynamics_with_wrenches(q, qd, qdd, &[*wrench])?,
+        Function::ForwardDynamicsWithWrenches => arm.forward_dynamics_with_wrenches(q, qd, tau, &[*wrench])?,
+        Function::InverseDynamicsOfFloatingBase => {
+            let (on_base, torques) = arm.inverse_dynamics_of_floating_base(q, qd, qdd, base, &[*wrench])?;
+            [on_base.force.to_vec(), on_base.moment.to_vec(), torques].concat()
+        }
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, &Payload::from_array(*payload))?,
         Function::BiasTorquesWithPayload => arm.bias_torques_with_payload(q, qd, &Payload::from_array(*payload))?,

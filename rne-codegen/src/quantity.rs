@@ -374,6 +374,12 @@ quantities! {
         "force that the robot exerts at tip i, in axes of the tip";
     TipMoment:                  "nt",        Vector,    0, false, "n", "N m",
         "moment that the robot exerts at tip i, about the origin of the tip";
+
+    // Of a base that nothing holds: i is 0.
+    BaseForce:                  "fb",        Vector,    6, true,  "f", "N",
+        "force that must act on the base beside gravity, in axes of frame 0";
+    BaseMoment:                 "nb",        Vector,    6, true,  "n", "N m",
+        "moment that must act on the base, about the origin of frame 0";
 }
 
 impl Quantity {

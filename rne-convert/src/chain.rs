@@ -26,6 +26,8 @@ pub(crate) struct Chain {
     pub(crate) base: Pose,
     /// The acceleration of gravity in the axes of the base, m/s².
     pub(crate) gravity: Vector,
+    /// The base, about the origin of its frame, where nothing holds it.
+    pub(crate) floating_base: Option<Body>,
     pub(crate) joints: Vec<ChainJoint>,
     /// The joint that moves the link of the tip, from 0.
     pub(crate) tip_on: usize,
@@ -130,11 +132,17 @@ pub(crate) fn extract(
     let mut chain = Chain {
         base: walk.base(base)?,
         gravity: Vector::decimal(gravity),
+        floating_base: selection.floating.then_some(Body::NONE),
         joints: Vec::new(),
         tip_on: 0,
         tip: Pose::identity(),
         frames: Vec::new(),
     };
+    if selection.floating && (base != urdf.root || !selection.whole) {
+        let message = "a floating base is the root link of a whole robot";
+        let help = "import the whole robot, and name no other base";
+        return Err(urdf.source.error(&urdf.links[base].span, message.to_owned(), help.to_owned()));
+    }
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;
     if selection.whole {
         walk.whole(base, tip, &mut chain)?;
@@ -378,8 +386,12 @@ impl Walk<'_> {
             let link = crossed.map_or(base, |index| self.urdf.joints[index].child);
             match on {
                 Some(joint) => {
-                    let body = self.body(link, (joint, pose));
+                    let body = self.body(link, (Some(joint), pose));
                     chain.joints[joint].body = chain.joints[joint].body + body;
+                }
+                None if chain.floating_base.is_some() => {
+                    let body = self.body(link, (None, pose));
+                    chain.floating_base = chain.floating_base.map(|base| base + body);
                 }
                 None => self.frames.push(ChainFrame { name: self.urdf.links[link].name.clone(), on, place: pose }),
             }
@@ -400,16 +412,17 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The body of a link alone, seen from the frame in which it stands at `pose`; `on` is the joint that moves it.
-    fn body(&mut self, index: usize, (on, pose): (usize, Pose)) -> Body {
+    /// The body of a link alone, seen from the frame in which it stands at `pose`; `on` is the joint that moves it,
+    /// `None` on a floating base.
+    fn body(&mut self, index: usize, (on, pose): (Option<usize>, Pose)) -> Body {
         let link = &self.urdf.links[index];
         self.told.links.insert(index);
-        self.frames.push(ChainFrame { name: link.name.clone(), on: Some(on), place: pose });
+        self.frames.push(ChainFrame { name: link.name.clone(), on, place: pose });
         if !has_mass(link) {
             return Body::NONE;
         }
         let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
-        if let Some(lumped) = self.told.lumped.get_mut(on) {
+        if let Some(lumped) = on.and_then(|on| self.told.lumped.get_mut(on)) {
             lumped.push(link.name.clone());
         }
         Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia).seen_from(pose)
@@ -469,7 +482,7 @@ impl Walk<'_> {
         let mut body = Body::NONE;
         let mut open = vec![(link, pose)];
         while let Some((index, pose)) = open.pop() {
-            body = body + self.body(index, (on, pose));
+            body = body + self.body(index, (Some(on), pose));
             let link = &self.urdf.links[index];
             let hanging = link.children.iter().filter(|&&joint| Some(joint) != next);
             let below: Vec<(usize, Pose)> = hanging

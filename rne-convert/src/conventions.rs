@@ -88,7 +88,8 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let tip = robot.tip();
     let tip_on = tip.on.unwrap_or(0);
     let tip = ends.get(tip_on).copied().unwrap_or_else(Pose::identity) * placement(&tip.placement);
-    Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip_on, tip, frames }
+    let gravity = Vector::decimal(robot.gravity);
+    Chain { base, gravity, floating_base: None, joints, tip_on, tip, frames }
 }
 
 pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {

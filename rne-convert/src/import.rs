@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 
 use rne_model::{
-    Angle, Bodies, Convention, FixedFrame, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy, Report, Robot,
-    Row, RunTime, Transform,
+    Angle, Bodies, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy,
+    Report, Robot, Row, RunTime, Transform,
 };
 
 use crate::chain::{Chain, Extracted, extract};
 use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
 use crate::frames::{as_identifiers, named_frames, transform};
+use crate::geometry::Pose;
 use crate::robot_file;
 use crate::selection::Selection;
 use crate::snap::Snapped;
@@ -133,6 +134,9 @@ impl Urdf {
         let mut robot = robot(&chain, &table, options.convention);
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
         robot.title = title(&self.name);
+        if let Some(base) = &mut robot.floating_base {
+            base.name = as_identifier(&told.base);
+        }
         let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
         let chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };
         let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
@@ -240,6 +244,10 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         gravity: gravity.rounded(10.0),
         base: transform(start),
         tool: transform(table.tool),
+        // the importer names it
+        floating_base: chain
+            .floating_base
+            .map(|body| FloatingBase { name: String::new(), link: body.to_link_at(Pose::identity()) }),
         tip_on: Some(chain.tip_on).filter(|on| on + 1 != chain.joints.len()),
         parameters: Vec::new(),
         joints: joints.collect(),
@@ -251,6 +259,12 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         run_time: RunTime::default(),
         rotors: false,
     }
+}
+
+/// The name of a link as that of a floating base.
+fn as_identifier(name: &str) -> String {
+    let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("base_{name}") }
 }
 
 /// A name for a robot file.

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_model::{
-    Body, Convention, Coupling, Drive, FixedFrame, Frame, Inertia, InertiaReference, Joint, JointKind, Limits, Link,
-    Motor, Robot, Rotor, Transform, exact_digits,
+    Body, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Inertia, InertiaReference, Joint, JointKind,
+    Limits, Link, Motor, Robot, Rotor, Transform, exact_digits,
 };
 
 use crate::snap::angle_text;
@@ -37,7 +37,7 @@ const WIDTH: usize = 110;
 pub fn write(robot: &Robot) -> String {
     let mut text = String::new();
     let is_old = robot.is_serial() && !robot.has_couplings() && robot.drives.is_empty() && robot.tips.is_empty();
-    let format = if is_old { 1 } else { 2 };
+    let format = if is_old && robot.floating_base.is_none() { 1 } else { 2 };
     let _ = writeln!(text, "format: {format}\nname: {}", robot.name);
     if let Some(title) = &robot.title {
         let _ = writeln!(text, "title: {}", scalar(title));
@@ -56,6 +56,14 @@ pub fn write(robot: &Robot) -> String {
     noted(&mut text, &format!("gravity: {}", list(&robot.gravity)), "m/s²");
     if robot.base != Transform::IDENTITY {
         noted(&mut text, &format!("base: {}", transform(&robot.base)), "m, rad");
+    }
+    if let Some(FloatingBase { name, link: Link { mass, com, inertia: tensor, .. } }) = &robot.floating_base {
+        let _ = writeln!(text, "floating_base:\n  name: {name}\n  link:");
+        noted(&mut text, &format!("    mass: {}", exact_digits(*mass)), "kg");
+        noted(&mut text, &format!("    com: {}", list(com)), "m");
+        if *tensor != Inertia::default() {
+            noted(&mut text, &format!("    inertia: {}", inertia(tensor)), "kg m²");
+        }
     }
     if let (false, Some(on)) = (robot.is_serial(), robot.tip().on) {
         let on = scalar(&robot.joints[on].name);

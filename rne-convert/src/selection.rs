@@ -25,6 +25,8 @@ pub struct Selection {
     /// Whether every movable joint after the base is taken: the robot is a tree, and `tip` is only where its tip frame
     /// is.
     pub whole: bool,
+    /// Whether nothing holds the root link of a whole robot: it becomes the floating base.
+    pub floating: bool,
 }
 
 impl Urdf {

@@ -28,6 +28,15 @@ pub type Wrenches<T> = Vec<Wrench<T>>;
 pub type Regressor<T> = Vec<Vec<[T; 10]>>;
 /// The momentum of each joint, and its rate.
 pub type MomentumAndRate<T> = [Vec<T>; 2];
+/// The wrench that must act on a base that nothing holds, and the torques.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloatingTorques<T> {
+    /// On the base, about the origin of frame 0.
+    pub wrench: Wrench<T>,
+    /// Of the actuators.
+    pub tau: Vec<T>,
+}
+
 /// ∂τ/∂q and ∂τ/∂q̇.
 pub type TorqueDerivatives<T> = Derivatives<T>;
 
@@ -85,4 +94,4 @@ macro_rules! records {
     )*};
 }
 
-records! { Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } }
+records! { Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau } }

@@ -90,7 +90,7 @@ impl Target<'_> {
     /// The arguments of the trait of a capability: the number of joints, and that of tips where it needs it.
     fn sizes(&self, capability: Capability, dof: &TokenStream) -> TokenStream {
         let tips = &self.tips;
-        if capability == Capability::TipWrenches { quote!(#dof, #tips) } else { quote!(#dof) }
+        if capability.has_tips() { quote!(#dof, #tips) } else { quote!(#dof) }
     }
 
     /// Writes a stub for a robot that is not known: every use of it compiles, so that the mistake that is reported
@@ -106,7 +106,7 @@ impl Target<'_> {
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
-        if capability == Capability::TipWrenches {
+        if capability.has_tips() {
             generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
         }
         let (impl_generics, ..) = generics.split_for_impl();
@@ -309,7 +309,9 @@ impl Target<'_> {
             Shape::Record(record, _) => {
                 let name = format_ident!("{}", record.name());
                 match record {
-                    Record::TorqueDerivatives | Record::MomentumAndRate => quote!(#krate::#name<#dof, T>),
+                    Record::TorqueDerivatives | Record::MomentumAndRate | Record::FloatingTorques => {
+                        quote!(#krate::#name<#dof, T>)
+                    }
                     Record::Pose | Record::Wrench => quote!(#krate::#name<T>),
                 }
             }

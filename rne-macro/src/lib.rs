@@ -216,6 +216,20 @@ pub fn derive_tip_wrenches(input: TokenStream) -> TokenStream {
     expand::capability(Capability::TipWrenches, input.into()).into()
 }
 
+/// Implements the trait `FloatingBase` for a struct: the torques of a robot whose base nothing holds, and the wrench that
+/// must act on the base.
+///
+/// The base is the link `floating_base` of the robot file; without that key the base has no mass. The tips are those of
+/// [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `INVERSE_DYNAMICS_OF_FLOATING_BASE_OPERATIONS`; `DOF`, names and limits come
+/// with `InverseDynamics`.
+#[proc_macro_derive(FloatingBase, attributes(robot))]
+pub fn derive_floating_base(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingBase, input.into()).into()
+}
+
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.
 ///
 /// The robot file needs a `motor` at one joint at least.

@@ -2,17 +2,18 @@
 
 use std::fmt;
 
-use crate::decode::{Context, list, not_negative, read_mapping, text};
+use crate::decode::{Context, read_mapping, text};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
 use crate::frame::{carrier, joint_names};
-use crate::link::inertia_reference;
 use crate::schema::fixed_transform;
-use crate::source::{quoted, six_digits};
+use crate::source::quoted;
 use crate::spelling::nearest_name;
 use crate::tree::needs_format_2;
-use crate::varying::{fixed, leave_out};
-use crate::{Entry, FixedFrame, Inertia, InertiaReference, Joint, Link, Robot, Transform, inertia, lint};
+use crate::varying::leave_out;
+use crate::{
+    Entry, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, Link, Robot, Transform, inertia, matter,
+};
 
 /// Bodies of a file.
 const MAX_BODIES: usize = 256;
@@ -22,7 +23,8 @@ const MAX_BODIES: usize = 256;
 pub struct Body {
     /// Its name, `[A-Za-z][A-Za-z0-9_]*`; no other body has it.
     pub name: String,
-    /// The link that carries it, and the place of its frame there. A body on the base has no effect.
+    /// The link that carries it, and the place of its frame there. A body on a base that is fixed to the world has no
+    /// effect.
     pub fixed: FixedFrame,
     /// Mass, centre of mass and inertia about the centre of mass, in its own frame.
     pub matter: Link,
@@ -35,6 +37,8 @@ pub struct Bodies {
     pub list: Vec<Body>,
     /// Each link that a body was added to, counted from 0: the link without bodies, and its inertia as written.
     bare: Vec<(usize, Link, (Inertia, InertiaReference))>,
+    /// The floating base without bodies.
+    bare_base: Option<Link>,
 }
 
 /// A name that no body of a robot has.
@@ -84,21 +88,32 @@ impl Robot {
                 (joint.row.link, joint.written_inertia) = (link, written);
             }
         }
+        if let (Some(base), Some(link)) = (&mut robot.floating_base, robot.bodies.bare_base.take()) {
+            base.link = link;
+        }
         robot.bodies.list.retain(|body| !names.contains(&body.name.as_str()));
-        robot.bodies.add_to(&mut robot.joints);
+        robot.bodies.add_to(&mut robot.joints, robot.floating_base.as_mut());
         Ok(robot)
     }
 }
 
 impl Bodies {
     /// Makes each body a part of its link.
-    pub(crate) fn add_to(&mut self, joints: &mut [Joint]) {
+    pub(crate) fn add_to(&mut self, joints: &mut [Joint], mut base: Option<&mut FloatingBase>) {
         for body in &self.list {
-            let Some((on, joint)) = body.fixed.on.and_then(|on| Some((on, joints.get_mut(on)?))) else { continue };
+            let matter = seen_from_link(&body.matter, &body.fixed.placement);
+            let Some(on) = body.fixed.on else {
+                if let Some(base) = base.as_mut() {
+                    self.bare_base.get_or_insert(base.link);
+                    base.link = together(&base.link, &matter);
+                }
+                continue;
+            };
+            let Some(joint) = joints.get_mut(on) else { continue };
             if self.bare.iter().all(|(known, ..)| *known != on) {
                 self.bare.push((on, joint.row.link, joint.written_inertia));
             }
-            joint.row.link = together(&joint.row.link, &seen_from_link(&body.matter, &body.fixed.placement));
+            joint.row.link = together(&joint.row.link, &matter);
             joint.written_inertia = (joint.row.link.inertia, InertiaReference::Com);
         }
     }
@@ -193,7 +208,7 @@ pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -
         if let Some(mistake) = mistake {
             valid = false;
             cx.report(mistake);
-        } else if body.fixed.on.is_none() {
+        } else if body.fixed.on.is_none() && root.get("floating_base").is_none() {
             let message =
                 format!("the body {} has no effect: it is on `base`, which does not move", quoted(&body.name));
             cx.report(Diagnostic::note(place("on"), message).label("on the base"));
@@ -209,7 +224,7 @@ pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -
         let help = "masses are in kg, lengths in m and inertias in kg m²; check the numbers of the bodies of this link";
         return cx.refuse(Diagnostic::error(place, message).label("too large with this body").help(help));
     }
-    valid.then_some(Bodies { list, bare: Vec::new() })
+    valid.then_some(Bodies { list, ..Bodies::default() })
 }
 
 /// The first body, counted from 0, with which its link is not finite any more, and the joint of that link.
@@ -253,35 +268,12 @@ fn body(cx: &Context, node: &Node, joints: &[String]) -> Option<Body> {
         name: required "name" body_name,
         on: required "on" |cx, node| carrier(cx, node, joints, "on"),
         at: or(Transform::IDENTITY) "at" fixed_transform,
-        mass: required "mass" not_negative("mass", fixed("the mass")),
-        com: or([0.0; 3]) "com" |cx, node| list(cx, node, "[x, y, z] (m)", |cx, node, _| centre(cx, node)),
-        written: or(Inertia::default()) "inertia" tensor,
-        about: or(InertiaReference::Com) "inertia_about" inertia_reference,
+        mass: required "mass" matter::mass,
+        com: or([0.0; 3]) "com" matter::com,
+        written: or(matter::NO_INERTIA) "inertia" matter::tensor,
+        about: or(matter::ABOUT_COM) "inertia_about" matter::reference,
     });
-    if let Some(node) = node.get("mass") {
-        lint::mass(cx, node, mass);
-    }
-    let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
-    let inertia = match about {
-        InertiaReference::Com => written,
-        InertiaReference::Origin => inertia::about_com(written, &mass, com),
-    };
-    let Some(moments) = inertia::principal_moments(&inertia) else {
-        let message = "the inertia about the centre of mass is not finite; mass, com and inertia are too large";
-        return cx.refuse(Diagnostic::error(place, message));
-    };
-    if moments[0] < -inertia::TOLERANCE * inertia::largest_magnitude(&written, mass, com) {
-        let message = format!(
-            "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
-             it must be zero or positive",
-            six_digits(moments[0])
-        );
-        let help = "check the signs and the order of the products of inertia, and the point that the tensor refers to";
-        return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(help));
-    }
-    lint::triangle_inequality(cx, place.clone(), moments);
-    lint::radius_of_gyration(cx, place, mass, moments);
-    let matter = Link { mass, com, inertia, first_moment: [0.0; 3] };
+    let matter = matter::link(cx, node, (mass, com), (written, about))?;
     Some(Body { name, fixed: FixedFrame { on, placement: at }, matter })
 }
 
@@ -298,23 +290,4 @@ fn body_name(cx: &Context, node: &Node) -> Option<String> {
         quoted(&name)
     );
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("choose another name"))
-}
-
-fn centre(cx: &Context, node: &Node) -> Option<f64> {
-    let value = fixed("the centre of mass")(cx, node)?;
-    lint::centre_of_mass(cx, node, value);
-    Some(value)
-}
-
-fn tensor(cx: &Context, node: &Node) -> Option<Inertia> {
-    let element = |cx: &Context<'_>, node: &Node| fixed("the inertia")(cx, node);
-    read_mapping!(cx, node, "an inertia", {
-        xx: or(0.0) "xx" element,
-        yy: or(0.0) "yy" element,
-        zz: or(0.0) "zz" element,
-        xy: or(0.0) "xy" element,
-        xz: or(0.0) "xz" element,
-        yz: or(0.0) "yz" element,
-    });
-    Some(Inertia { xx, yy, zz, xy, xz, yz })
 }

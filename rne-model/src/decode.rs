@@ -51,6 +51,8 @@ pub(crate) struct Context<'t> {
     pub(crate) settings: &'t [(&'t str, f64)],
     /// The mappings that the format has, of those the file opens; once each.
     pub(crate) mappings: RefCell<Vec<Mapping>>,
+    /// The name of the floating base, if the file has one: it means the same as `base`.
+    pub(crate) base_name: RefCell<Option<String>>,
     /// How many unknown words were compared with known ones.
     suggestions: Cell<usize>,
 }
@@ -100,6 +102,7 @@ impl<'t> Context<'t> {
             run_time,
             settings: &[],
             mappings: RefCell::default(),
+            base_name: RefCell::default(),
             suggestions: Cell::new(0),
         }
     }

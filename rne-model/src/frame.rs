@@ -195,6 +195,9 @@ fn frame_name(cx: &Context, node: &Node, joints: &[String]) -> Option<String> {
     } else if name == BASE {
         let message = "the frame name `base` is already the name of frame 0; choose another name";
         (message.to_owned(), "write `on: base` for a frame that is fixed to frame 0".to_owned())
+    } else if cx.base_name.borrow().as_ref() == Some(&name) {
+        let message = format!("the frame name {} is already the name of the floating base", quoted(&name));
+        (message, "choose another name; the floating base's name is also the name of frame 0".to_owned())
     } else if let Some(joint) = joints.iter().position(|joint| *joint == name) {
         let message = format!(
             "the frame name {} is already the name of joint {}; the names of frames and joints must differ",
@@ -216,6 +219,9 @@ pub(crate) fn carrier(cx: &Context, node: &Node, joints: &[String], key: &str) -
     if name != BASE {
         if joint.is_some() {
             return Some(joint);
+        }
+        if cx.base_name.borrow().as_ref() == Some(&name) {
+            return Some(None);
         }
         let listed = joints.iter().take(12).map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         let rest = if joints.len() > 12 { ", and the other joints of the file" } else { "" };

@@ -66,6 +66,8 @@ mod drive;
 #[cfg(feature = "std")]
 mod expression;
 #[cfg(feature = "std")]
+mod floating_base;
+#[cfg(feature = "std")]
 mod formula;
 #[cfg(feature = "std")]
 mod frame;
@@ -83,6 +85,8 @@ mod keys;
 mod link;
 #[cfg(feature = "std")]
 mod lint;
+#[cfg(feature = "std")]
+mod matter;
 #[cfg(feature = "std")]
 mod mirror;
 #[cfg(feature = "std")]
@@ -130,6 +134,8 @@ pub use double::{Double, decimal_digits};
 pub use drive::{Drive, Rotor};
 #[cfg(feature = "std")]
 pub use expression::number;
+#[cfg(feature = "std")]
+pub use floating_base::FloatingBase;
 #[cfg(feature = "std")]
 pub use formula::Formula;
 #[cfg(feature = "std")]

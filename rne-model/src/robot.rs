@@ -1,8 +1,8 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
 use crate::{
-    Angle, Bodies, Convention, Coupling, Drive, FixedFrame, Frame, FrameId, Friction, Inertia, JointKind, Link, Model,
-    Motor, Row, RunTime, Transform, inertia,
+    Angle, Bodies, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, FrameId, Friction, Inertia, JointKind,
+    Link, Model, Motor, Row, RunTime, Transform, inertia,
 };
 
 /// A validated robot, as its file describes it.
@@ -22,6 +22,8 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// World → frame 0. Places the arm; never turns gravity.
     pub base: Transform,
+    /// The link of frame 0 where nothing holds it; `None` for a base that is fixed to the world.
+    pub floating_base: Option<FloatingBase>,
     /// Link frame → tip frame: of the last row, or of [`tip_on`](Self::tip_on).
     pub tool: Transform,
     /// The joint whose link carries the tip frame, counted from 0; `None` for the last row.

@@ -10,6 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, MAX_JOINTS, Node};
 use crate::drive::drives;
 use crate::expression::{Meaning, is_identifier, is_reserved};
+use crate::floating_base::{self, name_of_base};
 use crate::frame::{carrier, frames};
 use crate::link::link;
 use crate::parallelogram::loops;
@@ -40,6 +41,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     }
     unknown_names(cx, node);
     unknown_settings(cx, node);
+    cx.base_name.replace(name_of_base(node));
     read_mapping!(cx, node, "a robot file", {
         format: required "format" format,
         name: required "name" robot_name,
@@ -50,6 +52,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         convention: required "convention" convention,
         gravity: required "gravity" gravity,
         base: or(Transform::IDENTITY) "base" |cx, node| transform(cx, node, Entry::BaseXyz),
+        _floating_base: optional "floating_base" |_, _| Some(()),
         tool: or(Transform::IDENTITY) "tool" tool,
         frames: or(Vec::new()) "frames" |cx, list| frames(cx, list, node),
         joints: required "joints" joints,
@@ -71,6 +74,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     loops(cx, node, (format, convention), &mut joints)?;
     let drives = drives(cx, node, format, &joints)?;
     let mut bodies = bodies(cx, node, format, &joints)?;
+    let mut floating_base = floating_base::floating_base(cx, node, format)?;
     if let Some(node) = node.get("gravity") {
         lint::gravity_upwards(cx, node, gravity, &base);
     }
@@ -88,12 +92,13 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         }
         if !takes.trees {
             tree::refuse(cx, node, &joints, tip_on);
+            floating_base::refuse(cx, node);
         }
         if !takes.couplings {
             coupling::refuse(cx, node, &joints, &drives);
         }
     }
-    bodies.add_to(&mut joints);
+    bodies.add_to(&mut joints, floating_base.as_mut());
     let run_time = cx.run_time.take();
     Some(Robot {
         name,
@@ -103,6 +108,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         convention,
         gravity,
         base,
+        floating_base,
         tool,
         tip_on,
         parameters,

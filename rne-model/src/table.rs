@@ -235,23 +235,32 @@ mod single {
         /// Converts the row to single precision; each number is rounded once.
         #[must_use]
         pub const fn to_f32(self) -> Row<f32> {
-            let (dh, link, i) = (self.dh, self.link, self.link.inertia);
+            let dh = self.dh;
             Row {
                 kind: self.kind,
                 dh: Dh { theta: dh.theta.to_f32(), d: dh.d as f32, a: dh.a as f32, alpha: dh.alpha.to_f32() },
-                link: Link {
-                    mass: link.mass as f32,
-                    com: vector(link.com),
-                    inertia: Inertia {
-                        xx: i.xx as f32,
-                        yy: i.yy as f32,
-                        zz: i.zz as f32,
-                        xy: i.xy as f32,
-                        xz: i.xz as f32,
-                        yz: i.yz as f32,
-                    },
-                    first_moment: vector(link.first_moment),
+                link: self.link.to_f32(),
+            }
+        }
+    }
+
+    impl Link<f64> {
+        /// Converts the link to single precision; each number is rounded once.
+        #[must_use]
+        pub const fn to_f32(self) -> Link<f32> {
+            let i = self.inertia;
+            Link {
+                mass: self.mass as f32,
+                com: vector(self.com),
+                inertia: Inertia {
+                    xx: i.xx as f32,
+                    yy: i.yy as f32,
+                    zz: i.zz as f32,
+                    xy: i.xy as f32,
+                    xz: i.xz as f32,
+                    yz: i.yz as f32,
                 },
+                first_moment: vector(self.first_moment),
             }
         }
     }

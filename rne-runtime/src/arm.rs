@@ -2,7 +2,7 @@
 
 use core::array;
 
-use rne_model::{FixedFrame, Model, Motor};
+use rne_model::{FixedFrame, Link, Model, Motor};
 
 use crate::at_tip::AtTip;
 use crate::link_frame::{Chain, LinkFrame, Table};
@@ -59,23 +59,25 @@ pub struct Arm<const DOF: usize, S = f64> {
     motors: [Option<Motor<S>>; DOF],
     rotors: bool,
     pub(crate) at: Option<FixedFrame<S>>,
+    floating_base: Option<Link<S>>,
 }
 
 impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     /// The robot of a plain table, without motors. Needs neither `std` nor an allocator.
     #[must_use]
     pub fn new(model: Model<DOF, S>) -> Self {
-        Self::prepared(model, [None; DOF], None)
+        Self::prepared(model, [None; DOF], None, None)
     }
 
     pub(crate) fn prepared(
         model: Model<DOF, S>,
         branches: [Option<FixedFrame<S>>; DOF],
         tip_on: Option<usize>,
+        floating_base: Option<Link<S>>,
     ) -> Self {
-        let table = table_of(&model, &branches, tip_on);
+        let table = Table { floating_base, ..table_of(&model, &branches, tip_on) };
         let (links, tip) = (array::from_fn(|index| LinkFrame::new(table, index)), Mount::of_tip(table));
-        Self { model, branches, tip_on, links, tip, motors: [None; DOF], rotors: false, at: None }
+        Self { model, branches, tip_on, links, tip, motors: [None; DOF], rotors: false, at: None, floating_base }
     }
 
     /// Returns this robot as a tree. Row `i` begins at `branches[i]` on an earlier link or on the base; `None` for a
@@ -87,8 +89,16 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
             branch.and_then(|branch| branch.on).is_none_or(|parent| parent < joint)
         };
         let is_tree = branches.iter().enumerate().all(is_earlier) && tip_on.is_none_or(|joint| joint < DOF);
-        let Self { model, motors, rotors, at, .. } = self;
-        is_tree.then(|| Self { motors, rotors, at, ..Self::prepared(model, branches, tip_on) })
+        let Self { model, motors, rotors, at, floating_base, .. } = self;
+        is_tree.then(|| Self { motors, rotors, at, ..Self::prepared(model, branches, tip_on, floating_base) })
+    }
+
+    /// Returns this robot on a base that nothing holds: `link` is the base, with its centre of mass and inertia in
+    /// frame 0. Functions of a fixed base are those of the robot while something holds that link still.
+    #[must_use]
+    pub fn with_floating_base(self, link: Link<S>) -> Self {
+        let Self { model, branches, tip_on, motors, rotors, at, .. } = self;
+        Self { motors, rotors, at, ..Self::prepared(model, branches, tip_on, Some(link)) }
     }
 
     /// Returns this robot with other motors, base to tip; `None` for a joint without a motor.
@@ -164,8 +174,10 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Known<DOF>, S> {
-        let table = table_of(&self.model, &self.branches, self.tip_on);
-        let chain = Chain { links: &self.links, tip: &self.tip, tip_link: table.tip().on, spins: Spins::NONE };
+        let floating_base = self.floating_base;
+        let table = Table { floating_base, ..table_of(&self.model, &self.branches, self.tip_on) };
+        let (links, tip, tip_link, spins) = (&self.links, &self.tip, table.tip().on, Spins::NONE);
+        let chain = Chain { links, tip, tip_link, spins, floating_base };
         let (motors, rotors, at) = (&self.motors, self.rotors, self.at.as_ref());
         let Model { gravity, base, .. } = &self.model;
         Mechanism { per_joint: Known, chain, table, motors, rotors, gravity, base, at }
@@ -178,7 +190,7 @@ fn table_of<'a, const DOF: usize, S>(
     tip_on: Option<usize>,
 ) -> Table<'a, S> {
     let Model { convention, rows, tool, .. } = model;
-    Table { convention: *convention, rows, branches, tool, tip_on }
+    Table { convention: *convention, rows, branches, tool, tip_on, floating_base: None }
 }
 
 impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {

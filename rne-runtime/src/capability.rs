@@ -352,6 +352,37 @@ pub trait TipWrenches<const DOF: usize, const TIPS: usize> {
     ) -> [T; DOF];
 }
 
+/// The torques of a robot whose base nothing holds, and what its base needs, for one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloatingTorques<const DOF: usize, T> {
+    /// Force (N) and moment (N m) about the origin of frame 0, in axes of frame 0, that must act ON the base beside
+    /// gravity so that it moves as told. They are zero in free flight.
+    pub wrench: Wrench<T>,
+    /// Torques or forces of the actuators, N m or N.
+    pub tau: [T; DOF],
+}
+
+/// Torques of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
+/// robot file; without that key the base has no mass, and the wrench is what the mount of the robot must bear.
+///
+/// The tips and their wrenches are those of [`TipWrenches`].
+pub trait FloatingBase<const DOF: usize, const TIPS: usize> {
+    /// Torques, and the wrench that must act on the base, when frame 0 moves as `base` says.
+    ///
+    /// `base` is what an inertial measurement unit reads: ω, ω̇, and the acceleration of the origin of frame 0 less
+    /// gravity, in axes of frame 0. Only the difference `acceleration` - `gravity` counts. No orientation and no linear
+    /// velocity enter.
+    #[must_use]
+    fn inverse_dynamics_of_floating_base<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> FloatingTorques<DOF, T>;
+}
+
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has
 /// the
 /// payload too. [`inverse_dynamics_with_payload`](InverseDynamics::inverse_dynamics_with_payload) belongs to

@@ -7,6 +7,8 @@
 //! column j                                                z_j × (s_j - w_j p_j)   (revolute),   w_j z_j   (prismatic)
 //! ```
 //!
+//! A base that nothing holds is a link, too: link 0, whose frame is frame 0.
+//!
 //! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
 
 use nalgebra::Vector3;
@@ -22,7 +24,7 @@ use crate::{DynArm, WrongLength};
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// One by the mass of all links.
     fn inverse_of_mass<T: Scalar>(self) -> T {
-        let mut total = T::zero();
+        let mut total = self.chain.base::<T>().mass;
         for row in self.table.rows {
             total += row.link.mass.to();
         }
@@ -43,12 +45,13 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
     pub(crate) fn centre_of_mass<T: Scalar>(self, q: &[T]) -> [T; 3] {
         let links = self.placements(self.turned_base(), q);
-        let (mut centre, inverse) = (Vector3::zeros(), self.inverse_of_mass());
+        let (base, inverse) = (self.chain.base::<T>(), self.inverse_of_mass::<T>());
+        let mut centre = base.com * (base.mass * inverse);
         for i in 0..self.table.rows.len() {
             centre += self.part(i, links.as_ref(), inverse).0;
         }
         // nor has an arm without joints
-        if self.table.rows.is_empty() {
+        if self.table.rows.is_empty() && self.chain.floating_base.is_none() {
             centre = centre.map(|zero: T| zero / T::zero());
         }
         (centre + Vector3::from(self.base.xyz).map(S::to)).into()

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use rne_model::{Convention, FixedFrame, Joint, Model, Motor, Robot, Row, Transform};
+use rne_model::{Convention, FixedFrame, Joint, Link, Model, Motor, Robot, Row, Transform};
 
 use crate::at_tip::AtTip;
 use crate::couplings::Couplings;
@@ -28,6 +28,7 @@ pub struct DynArm<S = f64> {
     rows: Vec<Row<S>>,
     branches: Vec<Option<FixedFrame<S>>>,
     tip_on: Option<usize>,
+    floating_base: Option<Link<S>>,
     links: Vec<LinkFrame<S>>,
     tip: Mount<S>,
     motors: Vec<Option<Motor<S>>>,
@@ -54,7 +55,8 @@ impl DynArm {
         let rows: Vec<Row> = robot.joints.iter().map(Joint::row_with_offset).collect();
         let branches: Vec<_> = robot.joints.iter().map(|joint| joint.branch).collect();
         let (convention, tool, tip_on) = (robot.convention, &robot.tool, robot.tip_on);
-        let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on };
+        let floating_base = robot.floating_base.as_ref().map(|base| base.link);
+        let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on, floating_base };
         let at = robot.at.map(|frame| robot.fixed_frame(frame));
         let (couplings, drives) = (Couplings::of(robot), Motors::of(robot));
         let rotors = robot.rotors;
@@ -68,11 +70,13 @@ impl<S: Constant> DynArm<S> {
     #[must_use]
     pub fn new<const DOF: usize>(model: &Model<DOF, S>) -> Self {
         let Model { convention, gravity, base, tool, rows } = model;
-        Self::of_table(Table { convention: *convention, rows, branches: &[], tool, tip_on: None }, *gravity, *base)
+        let convention = *convention;
+        let table = Table { convention, rows, branches: &[], tool, tip_on: None, floating_base: None };
+        Self::of_table(table, *gravity, *base)
     }
 
     fn of_table(table: Table<'_, S>, gravity: [S; 3], base: Transform<S>) -> Self {
-        let Table { convention, rows, tool, tip_on, .. } = table;
+        let Table { convention, rows, tool, tip_on, floating_base, .. } = table;
         Self {
             convention,
             gravity,
@@ -81,6 +85,7 @@ impl<S: Constant> DynArm<S> {
             rows: rows.to_vec(),
             branches: (0..rows.len()).map(|joint| table.branch(joint).copied()).collect(),
             tip_on,
+            floating_base,
             links: (0..rows.len()).map(|index| LinkFrame::new(table, index)).collect(),
             tip: Mount::of_tip(table),
             motors: vec![None; rows.len()],
@@ -344,6 +349,7 @@ impl<S: Constant> DynArm<S> {
             rows,
             branches,
             tip_on,
+            floating_base,
             links,
             tip,
             motors,
@@ -352,8 +358,9 @@ impl<S: Constant> DynArm<S> {
             at,
             ..
         } = self;
-        let table = Table { convention: *convention, rows, branches, tool, tip_on: *tip_on };
-        let chain = Chain { links, tip, tip_link: table.tip().on, spins: drives.spins() };
+        let (convention, tip_on, floating_base) = (*convention, *tip_on, *floating_base);
+        let table = Table { convention, rows, branches, tool, tip_on, floating_base };
+        let chain = Chain { links, tip, tip_link: table.tip().on, spins: drives.spins(), floating_base };
         let (per_joint, rotors, at) = (Counted(rows.len()), *rotors, at.as_ref());
         Mechanism { per_joint, chain, table, motors, rotors, gravity, base, at }
     }
@@ -370,7 +377,8 @@ impl DynArm<f64> {
         let motors = self.motors.iter().map(|motor| motor.map(Motor::to_f32)).collect();
         let (convention, tool, tip_on) = (self.convention, &self.tool.to_f32(), self.tip_on);
         let (rotors, couplings, at) = (self.rotors, self.couplings.to_f32(), self.at.map(FixedFrame::to_f32));
-        let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on };
+        let floating_base = self.floating_base.map(Link::to_f32);
+        let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on, floating_base };
         DynArm {
             motors,
             rotors,

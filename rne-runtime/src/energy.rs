@@ -56,7 +56,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn potential_energy<T: Scalar>(self, q: &[T]) -> T {
         let gravity = Vector3::from(*self.gravity).map(S::to::<T>);
         let links = self.placements(Placement::identity(), q);
-        let mut sum = T::zero();
+        let base = self.chain.base::<T>();
+        let mut sum = base.mass * gravity.dot(&base.com);
         for (i, row) in self.table.rows.iter().enumerate() {
             sum += row.link.mass.to::<T>() * gravity.dot(&self.centre(i, links.as_ref()));
             if let Some(moment) = self.first_moment(i, links.as_ref()) {

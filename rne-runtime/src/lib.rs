@@ -32,6 +32,8 @@ mod energy;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod error;
 #[cfg(feature = "arm")]
+mod floating_base;
+#[cfg(feature = "arm")]
 mod forward_dynamics;
 #[cfg(feature = "arm")]
 mod joint;
@@ -99,9 +101,10 @@ pub use base_motion::BaseMotion;
 pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
-    Actuation, AtFrame, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
+    Actuation, AtFrame, CentreOfMass, CoriolisMatrix, Energy, FloatingBase, FloatingTorques, ForwardDynamics,
+    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix,
+    MomentumAndRate, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives,
+    frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

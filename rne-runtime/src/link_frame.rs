@@ -15,7 +15,7 @@
 //! joint, belong to that joint: [`Mount`].
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Angle, Convention, FixedFrame, JointKind, QuarterTurns, Row, Transform};
+use rne_model::{Angle, Convention, FixedFrame, JointKind, Link, QuarterTurns, Row, Transform};
 
 use crate::joint::JointLaws;
 use crate::mount::Mount;
@@ -58,6 +58,8 @@ pub(crate) struct Table<'a, S> {
     pub(crate) tool: &'a Transform<S>,
     /// The link that carries the tip, if not the last one.
     pub(crate) tip_on: Option<usize>,
+    /// The link of frame 0, if nothing holds it.
+    pub(crate) floating_base: Option<Link<S>>,
 }
 
 impl<'a, S: Constant> Table<'a, S> {
@@ -85,6 +87,23 @@ impl<'a, S: Constant> Table<'a, S> {
     }
 }
 
+/// The constants of the base, in frame 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BaseLink<T> {
+    /// Mass, kg.
+    pub(crate) mass: T,
+    /// From the origin of frame 0 to the centre of mass.
+    pub(crate) com: Vector3<T>,
+    /// Inertia about the centre of mass, kg m².
+    pub(crate) inertia: Matrix3<T>,
+}
+
+impl<T: Scalar> BaseLink<T> {
+    fn massless() -> Self {
+        Self { mass: T::zero(), com: Vector3::zeros(), inertia: Matrix3::zeros() }
+    }
+}
+
 /// All links of a robot, whatever owns them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chain<'a, S> {
@@ -95,6 +114,8 @@ pub(crate) struct Chain<'a, S> {
     pub(crate) tip_link: Option<usize>,
     /// The rotors that turn on the links and on the base.
     pub(crate) spins: Spins<'a, S>,
+    /// The link of frame 0, if nothing holds it.
+    pub(crate) floating_base: Option<Link<S>>,
 }
 
 impl<S: Constant> LinkFrame<S> {
@@ -138,6 +159,24 @@ impl<S: Constant> LinkFrame<S> {
 }
 
 impl<T: Scalar> LinkFrame<T> {
+    /// The base as a link that no joint moves.
+    pub(crate) fn of_base(BaseLink { mass, com, inertia }: BaseLink<T>) -> Self {
+        let (zero, here) = (Vector3::zeros(), Matrix3::identity());
+        let (sin, cos) = (T::zero(), T::one());
+        Self {
+            kind: JointKind::Revolute,
+            parent: None,
+            mount: Mount { rotation: here, r: zero, lever: zero },
+            theta: Angle { radians: sin, sin, cos, right: Some(QuarterTurns::Zero) },
+            offset: zero,
+            com,
+            d: com,
+            inertia,
+            mass,
+            first_moment: None,
+        }
+    }
+
     /// R_i = Rx(α_{i-1}) Rz(θ_i): turns components in the axes of link i into those of link i-1.
     #[inline]
     pub(crate) fn rotation(&self, q: T) -> Matrix3<T> {
@@ -201,6 +240,13 @@ impl<'a, S: Constant> Chain<'a, S> {
     #[inline]
     pub(crate) fn links<T: Scalar>(self) -> impl ExactSizeIterator<Item = LinkFrame<T>> + DoubleEndedIterator + 'a {
         self.links.iter().map(|link| link.to())
+    }
+
+    /// The base as a link whose frame is frame 0: without mass where the world holds it.
+    pub(crate) fn base<T: Scalar>(self) -> BaseLink<T> {
+        let Some(Link { mass, com, inertia, .. }) = self.floating_base else { return BaseLink::massless() };
+        let com = Vector3::from(com.map(S::to));
+        BaseLink { mass: mass.to(), com, inertia: Matrix3::from(inertia.rows()).transpose().map(S::to) }
     }
 
     /// The mount of what a link carries: of its first joint, or of the tip where it carries no joint.

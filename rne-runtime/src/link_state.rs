@@ -96,15 +96,15 @@ impl<'a, S: Constant> Chain<'a, S> {
 }
 
 impl<T: Scalar> LinkMotion<T> {
-    /// The frame that carries the arm.
-    pub(crate) fn of_base(base: &BaseMotion<T>) -> Self {
-        Self {
-            omega: base.omega.into(),
-            omega_dot: base.omega_dot.into(),
-            acceleration: base.acceleration.into(),
-            gravity: base.gravity.into(),
-            ..Self::empty()
-        }
+    /// The base: c̈_0 = a + ω̇_0 × d_0 + ω_0 × (ω_0 × d_0), with the acceleration a of the origin of frame 0 and d_0
+    /// from there to the centre of mass.
+    pub(crate) fn of_base(motion: &BaseMotion<T>, d: Option<Vector3<T>>) -> Self {
+        let [omega, omega_dot, origin, gravity] =
+            [motion.omega, motion.omega_dot, motion.acceleration, motion.gravity].map(Vector3::from);
+        let at_origin = Self { omega, omega_dot, acceleration: origin, gravity, ..Self::empty() };
+        let Some(d) = d else { return at_origin };
+        let acceleration = (origin + omega_dot.cross(&d)) + omega.cross(&omega.cross(&d));
+        Self { d, acceleration, ..at_origin }
     }
 
     /// Link i where its joint has put it, its motion still unknown.

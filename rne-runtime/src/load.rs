@@ -34,7 +34,9 @@ impl<const DOF: usize> Arm<DOF> {
         let drives = robot.drives.len();
         let wrong = WrongJointCount { expected: DOF, found: robot.joints.len(), followers, drives };
         let model = robot.model().filter(|_| followers == 0 && drives == 0).ok_or(wrong)?;
-        let arm = Self::prepared(model, array::from_fn(|joint| robot.joints[joint].branch), robot.tip_on)
+        let floating_base = robot.floating_base.as_ref().map(|base| base.link);
+        let branches = array::from_fn(|joint| robot.joints[joint].branch);
+        let arm = Self::prepared(model, branches, robot.tip_on, floating_base)
             .with_motors(array::from_fn(|joint| robot.joints[joint].motor));
         Ok(if robot.rotors { arm.with_rotors() } else { arm })
     }

@@ -6,7 +6,7 @@ use rne_model::{FixedFrame, Motor, Transform};
 
 use crate::at_tip::AtTip;
 use crate::link_frame::{Chain, Table};
-use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
+use crate::link_state::{ForceMoment, JointMotions, LinkLoad, LinkMotion};
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
 use crate::{BaseMotion, Constant, Scalar};
@@ -51,6 +51,20 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         velocities
     }
 
+    /// Both passes of a robot whose base nothing holds: the wrench that must act on the base, about the origin of frame
+    /// 0, and the torques.
+    pub(crate) fn of_floating_base<T: Scalar>(
+        self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        tip: AtTip<'_, T>,
+    ) -> (ForceMoment<T>, J::Of<T>) {
+        let (_, loads, of_base) = self.all_passes(joints, base, tip);
+        let motion = seven_steps::base_motion(self.chain, base);
+        let wrench = seven_steps::base_wrench(self.chain, joints, &motion, &of_base);
+        (wrench, self.per_joint.of(|joint| loads.as_ref()[joint].tau))
+    }
+
     /// Both passes.
     pub(crate) fn passes<T: Scalar>(
         self,
@@ -58,9 +72,21 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         base: &BaseMotion<T>,
         tip: AtTip<'_, T>,
     ) -> (J::Of<LinkMotion<T>>, J::Of<LinkLoad<T>>) {
+        let (motions, loads, _) = self.all_passes(joints, base, tip);
+        (motions, loads)
+    }
+
+    /// Both passes, and what the joints of the base ask of it.
+    #[allow(clippy::type_complexity)] // motions and loads of the links
+    fn all_passes<T: Scalar>(
+        self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        tip: AtTip<'_, T>,
+    ) -> (J::Of<LinkMotion<T>>, J::Of<LinkLoad<T>>, LinkLoad<T>) {
         let motions = self.motions(joints, base);
         let mut loads = self.per_joint.all(&LinkLoad::empty());
-        seven_steps::backward(self.chain, joints, motions.as_ref(), tip, loads.as_mut());
+        let of_base = seven_steps::backward(self.chain, joints, motions.as_ref(), tip, loads.as_mut());
         for (index, (load, &qdd)) in loads.as_mut().iter_mut().zip(joints.qdd).enumerate() {
             if let Some(rotor) = self.rotor(index) {
                 load.tau += rotor.to::<T>() * qdd;
@@ -68,7 +94,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         }
         let of_carrier = |on: Option<usize>| on.map_or(base.omega_dot.into(), |link| motions.as_ref()[link].omega_dot);
         self.chain.spins.resist(joints.qdd, of_carrier, |joint, torque| loads.as_mut()[joint].tau += torque);
-        (motions, loads)
+        (motions, loads, of_base)
     }
 
     /// G² Jm of a rotor that belongs to the arm.

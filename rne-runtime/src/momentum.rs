@@ -135,7 +135,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let motions = self.motions(joints, &base);
         let velocities = self.velocities(joints, &base, &motions);
         let (motions, velocities) = (motions.as_ref(), velocities.as_ref());
-        let still = (LinkMotion::of_base(&base), Vector3::zeros());
+        let still = (LinkMotion::of_base(&base, None), Vector3::zeros());
         let e = Vector3::new(T::zero(), T::zero(), T::one());
         let spins = self.chain.spins;
         let mut carried = self.per_joint.all(&None);
@@ -147,7 +147,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let [mut momentum, mut rate] = [self.zeros::<T>(), self.zeros::<T>()];
         for (i, link) in self.chain.links::<T>().enumerate().rev() {
             let this = &motions[i];
-            let of_spins = spins.on(i).map(|spin| spins.momentum(spin, qd));
+            let of_spins = spins.on(Some(i)).map(|spin| spins.momentum(spin, qd));
             let body = Body::of(&link, this, &velocities[i], of_spins, carried.as_ref()[i].as_ref());
             let turning = this.omega.cross(&e);
             let (along, of_motion, of_gravity) = match link.kind {

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! p is the parent link, n the link of the tip; row i of a modified table carries the twist and the length before joint
-//! i. On the base the rotation of a standard table is 1, and c̄_p = 0. R_t and p_t are the tool's.
+//! i. On the base the rotation of a standard table is 1, and c̄_p = 0 where the world holds it. R_t and p_t are the tool's.
 //!
 //! In a tree a row may begin at a placement R_b, p_b in the link frame of its parent. It then stands before the row:
 //!
@@ -29,8 +29,8 @@ use crate::{Constant, Scalar};
 pub(crate) struct Mount<S> {
     /// Turns components in the axes of the joint at θ = 0, or of the tip frame, into components in those of the parent.
     pub(crate) rotation: Matrix3<S>,
-    /// From the parent's centre of mass to the joint's reference point J, or to the tip; of the base, from the origin
-    /// of frame 0.
+    /// From the parent's centre of mass to the joint's reference point J, or to the tip; from the origin of frame 0 on
+    /// a base that the world holds.
     pub(crate) r: Vector3<S>,
     /// To the same point from the end of the parent's offset.
     pub(crate) lever: Vector3<S>,
@@ -39,7 +39,7 @@ pub(crate) struct Mount<S> {
 impl<S: Constant> Mount<S> {
     /// Returns the mount of the joint of `table.rows[joint]`.
     pub(crate) fn of_joint(table: Table<'_, S>, joint: usize) -> Self {
-        let Table { convention, rows, .. } = table;
+        let Table { convention, rows, floating_base, .. } = table;
         let (dh, carrier) = (&rows[joint].dh, table.parent(joint).map(|parent| &rows[parent]));
         let length = Vector3::new(dh.a, S::zero(), S::zero());
         let (rotation, lever) = match (table.placement(joint).map(|it| (rotation_of(it), it.xyz)), convention, carrier)
@@ -56,7 +56,8 @@ impl<S: Constant> Mount<S> {
                 (turn * rotation_x(&dh.alpha), turn * length + Vector3::from(xyz))
             }
         };
-        Self { rotation, lever, r: from_com(convention, carrier, lever) }
+        let of_base = floating_base.map(|base| base.com);
+        Self { rotation, lever, r: from_com(convention, carrier, of_base, lever) }
     }
 
     /// Returns the mount of the tip frame.
@@ -75,7 +76,7 @@ impl<S: Constant> Mount<S> {
             }
             _ => (rotation, lever),
         };
-        Self { rotation, lever, r: from_com(convention, carrier, lever) }
+        Self { rotation, lever, r: from_com(convention, carrier, None, lever) }
     }
 
     /// Converts the constants to the scalar of a computation.
@@ -85,7 +86,17 @@ impl<S: Constant> Mount<S> {
     }
 }
 
-/// The lever, from the centre of mass of the link of `carrier`; the base has its own at the origin.
-fn from_com<S: Constant>(convention: Convention, carrier: Option<&Row<S>>, lever: Vector3<S>) -> Vector3<S> {
-    carrier.map_or(lever, |carrier| lever - turned_com(convention, carrier))
+/// The lever, from the centre of mass of the link of `carrier`, or from that of the base; a base that the world holds
+/// has its own at the origin.
+fn from_com<S: Constant>(
+    convention: Convention,
+    carrier: Option<&Row<S>>,
+    of_base: Option<[S; 3]>,
+    lever: Vector3<S>,
+) -> Vector3<S> {
+    match (carrier, of_base) {
+        (Some(carrier), _) => lever - turned_com(convention, carrier),
+        (None, Some(com)) => lever - Vector3::from(com),
+        (None, None) => lever,
+    }
 }

@@ -138,6 +138,11 @@ fn actuator<T: Scalar>(link: &LinkFrame<T>, joint: &ForceMoment<T>) -> T {
     link.kind.actuator(joint)
 }
 
+/// The motion of the base, where the forward pass starts.
+pub(crate) fn base_motion<S: Constant, T: Scalar>(chain: Chain<'_, S>, motion: &BaseMotion<T>) -> LinkMotion<T> {
+    LinkMotion::of_base(motion, chain.floating_base.map(|_| chain.base().com))
+}
+
 /// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. Links beyond the
 /// shortest argument stay as they are.
 pub(crate) fn forward<S: Constant, T: Scalar>(
@@ -146,7 +151,7 @@ pub(crate) fn forward<S: Constant, T: Scalar>(
     joints: JointMotions<'_, T>,
     motions: &mut [LinkMotion<T>],
 ) {
-    let base = LinkMotion::of_base(base);
+    let base = base_motion(chain, base);
     for (index, joint) in chain.joints(joints).enumerate().take(motions.len()) {
         let parent = joint.link.parent.map_or(base, |parent| motions[parent]);
         let mut this = LinkMotion::placed(&joint);
@@ -166,8 +171,9 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
     motions: &[LinkMotion<T>],
     velocities: &mut [Vector3<T>],
 ) {
-    let base_velocity = Vector3::from(base.velocity);
-    let base = LinkMotion::of_base(base);
+    let origin = Vector3::from(base.velocity);
+    let base = base_motion(chain, base);
+    let base_velocity = if chain.floating_base.is_some() { origin + base.omega.cross(&base.d) } else { origin };
     for (index, (joint, this)) in chain.joints(joints).zip(motions).enumerate() {
         let parent = joint.link.parent.map_or((&base, base_velocity), |parent| (&motions[parent], velocities[parent]));
         velocities[index] = velocity(&joint, parent.0, &parent.1, this);
@@ -176,26 +182,45 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
 
 /// The backward pass, steps 6 and 7, from the ends to the base: each link hands its wrench on to its parent. `tip` is
 /// what the links of the tips exert there.
+///
+/// The base is left with what its joints ask of it.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     joints: JointMotions<'_, T>,
     motions: &[LinkMotion<T>],
     tip: AtTip<'_, T>,
     loads: &mut [LinkLoad<T>],
-) {
+) -> LinkLoad<T> {
     tip.put(chain, motions, loads);
+    let mut base = LinkLoad::empty();
     for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
         let mut inertia = inertia_wrench(&link, this);
-        for spin in chain.spins.on(index) {
+        for spin in chain.spins.on(Some(index)) {
             inertia.moment += chain.spins.moment(spin, joints, this);
         }
         let joint = joint_wrench(&link, this, &inertia, loads[index].carried.as_ref());
         let tau = actuator(&link, &joint);
         loads[index] = LinkLoad { inertia, joint, tau, ..loads[index] };
-        if let Some(parent) = link.parent {
-            loads[parent].carry(&this.rotation, &link.mount.r, &joint);
-        }
+        let parent = link.parent.map_or(&mut base, |parent| &mut loads[parent]);
+        parent.carry(&this.rotation, &link.mount.r, &joint);
     }
+    base
+}
+
+/// Step 6 of the base: the force and moment that must act on it, the moment about the origin of frame 0, after the
+/// backward pass has left `load` on it.
+pub(crate) fn base_wrench<S: Constant, T: Scalar>(
+    chain: Chain<'_, S>,
+    joints: JointMotions<'_, T>,
+    this: &LinkMotion<T>,
+    load: &LinkLoad<T>,
+) -> ForceMoment<T> {
+    let base = LinkFrame::of_base(chain.base());
+    let mut inertia = inertia_wrench(&base, this);
+    for spin in chain.spins.on(None) {
+        inertia.moment += chain.spins.moment(spin, joints, this);
+    }
+    joint_wrench(&base, this, &inertia, load.carried.as_ref())
 }
 
 #[cfg(test)]
@@ -215,7 +240,8 @@ mod tests {
 
     /// Torques of links by their parents, all moved by the same numbers.
     fn torques(links: &[LinkFrame<f64>], tip: &Mount<f64>) -> Vec<f64> {
-        let chain = Chain { links, tip, tip_link: links.len().checked_sub(1), spins: Spins::NONE };
+        let (tip_link, spins) = (links.len().checked_sub(1), Spins::NONE);
+        let chain = Chain { links, tip, tip_link, spins, floating_base: None };
         let all = |value: f64| vec![value; links.len()];
         let (q, qd, qdd) = (all(0.4), all(-1.3), all(2.1));
         let base = BaseMotion { omega: [0.1, -0.4, 0.2], ..BaseMotion::fixed([0.3, 1.0, -9.81]) };
@@ -234,7 +260,8 @@ mod tests {
         for convention in [Convention::Standard, Convention::Modified] {
             for kind in [JointKind::Revolute, JointKind::Prismatic] {
                 let rows = [row(JointKind::Revolute, [0.5, 0.2, 0.7, 3.0]), row(kind, [0.3, 0.1, -1.1, 2.0])];
-                let table = Table { convention, rows: &rows, branches: &[], tool: &Transform::IDENTITY, tip_on: None };
+                let tool = &Transform::IDENTITY;
+                let table = Table { convention, rows: &rows, branches: &[], tool, tip_on: None, floating_base: None };
                 let tip = Mount::of_tip(table);
                 let [first, second] = [0, 1].map(|index| LinkFrame::new(table, index));
                 let (alone, chain) = (torques(&[first], &tip), torques(&[first, second], &tip));

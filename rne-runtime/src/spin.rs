@@ -43,9 +43,9 @@ impl<'a, S: Constant> Spins<'a, S> {
         self.spins.iter()
     }
 
-    /// The rotors that a link carries.
-    pub(crate) fn on(self, link: usize) -> impl Iterator<Item = &'a Spin<S>> {
-        self.spins.iter().filter(move |spin| spin.on == Some(link))
+    /// The rotors that a link carries, or the base.
+    pub(crate) fn on(self, link: Option<usize>) -> impl Iterator<Item = &'a Spin<S>> {
+        self.spins.iter().filter(move |spin| spin.on == link)
     }
 
     fn turns(self, spin: &Spin<S>) -> impl Iterator<Item = &'a (usize, S)> {

@@ -40,7 +40,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         self.mechanism().forward_dynamics(q, qd, tau, AtTip::Wrenches(&self.at_tips(tips, wrenches)))
     }
 
-    fn at_tips<T: Scalar, const TIPS: usize>(
+    pub(crate) fn at_tips<T: Scalar, const TIPS: usize>(
         &self,
         tips: &[FixedFrame<S>; TIPS],
         wrenches: &[Wrench<T>; TIPS],
@@ -95,7 +95,10 @@ impl<S: Constant> DynArm<S> {
         self.forward_dynamics_with(q, qd, tau, AtTip::Wrenches(&self.at_tips(wrenches)?))
     }
 
-    fn at_tips<T: Scalar>(&self, wrenches: &[Wrench<T>]) -> Result<Vec<crate::at_tip::WrenchAtTip<T>>, WrongLength> {
+    pub(crate) fn at_tips<T: Scalar>(
+        &self,
+        wrenches: &[Wrench<T>],
+    ) -> Result<Vec<crate::at_tip::WrenchAtTip<T>>, WrongLength> {
         let (expected, found) = (self.tips.len(), wrenches.len());
         if expected != found {
             return Err(WrongLength { argument: "wrenches", expected, found });

@@ -91,6 +91,11 @@ impl Neighbourhood {
         if self.0.carried_prismatics {
             put(&|plan| plan.carried_prismatics = !plan.carried_prismatics);
         }
+        if self.0.floating_base {
+            for moment in Moment::ALL {
+                put(&|plan| plan.base_moment = moment);
+            }
+        }
         let all: Vec<usize> = (0..self.0.joints.len()).collect();
         for [length, force] in self.scales(&all) {
             put(&|plan| {
@@ -165,7 +170,7 @@ impl Neighbourhood {
         if name.starts_with("scaled") {
             return self.0.joints[index].is_twisted;
         }
-        index > 0 || name != "axis_column"
+        index > 0 || self.0.floating_base || name != "axis_column"
     }
 
     fn of_unturned_frame(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
@@ -238,7 +243,7 @@ impl Neighbourhood {
     }
 
     fn of_gauge(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
-        if index == 0 || self.0.joints[index].kind != Revolute {
+        if index == 0 && !self.0.floating_base || self.0.joints[index].kind != Revolute {
             return;
         }
         for &first in RegroupingTarget::CHOICES[0] {
@@ -277,7 +282,7 @@ impl Neighbourhood {
             0..4 if self.0.gyrostat => plan.gyrostat = !plan.gyrostat,
             4..6 if self.0.turned_last_frame => plan.turned_last_frame = !plan.turned_last_frame,
             6..8 if self.0.carried_prismatics => plan.carried_prismatics = !plan.carried_prismatics,
-            8..34 if row.kind == Revolute && index > 0 => {
+            8..34 if row.kind == Revolute && (index > 0 || self.0.floating_base) => {
                 for (target, choices) in joint.targets.iter_mut().zip(RegroupingTarget::CHOICES) {
                     *target = if rng.bool() { RegroupingTarget::Own } else { choices[rng.usize(..choices.len())] };
                 }

@@ -218,3 +218,35 @@ fn random_plans_with_rotors_are_the_seven_steps() {
     }
     assert!(tried > rounds(45) * 4, "{tried}");
 }
+
+/// Bases that nothing holds: they take matter from the links that they carry, and every choice of a joint on them is
+/// one of a joint on a link.
+#[test]
+fn random_plans_of_floating_bases_are_the_seven_steps() {
+    const FUNCTION: Function = Function::InverseDynamicsOfFloatingBase;
+    let (mut robots, mut tried) = (0, 0);
+    for index in 0..rounds(60) {
+        let seed = 500 + u64::try_from(index).expect("small");
+        let yaml = trees::yaml(seed, 2 + index % 6);
+        let robot = Reader::new("tree").trees().read(&yaml).unwrap_or_else(|report| panic!("{report}\n{yaml}")).robot;
+        let mut steps = SevenSteps::new(&robot);
+        let mut plan = Plan::new(robot.dof());
+        if robot.floating_base.is_none() || !steps.must_be_given_by(&plan, FUNCTION, Algorithm::Rnea) {
+            continue;
+        }
+        robots += 1;
+        let neighbourhood = Neighbourhood::of(&robot);
+        let mut rng = fastrand::Rng::with_seed(seed);
+        for round in 0..16 {
+            let other = neighbourhood.random(&plan, &mut rng);
+            if steps.must_be_given_by(&other, FUNCTION, Algorithm::Rnea) {
+                if round % 5 == 0 {
+                    must_be_compiled(&robot, &other, FUNCTION);
+                }
+                plan = other;
+                tried += 1;
+            }
+        }
+    }
+    assert!(robots > 5 && tried > 8 * robots, "{tried} plans of {robots} robots");
+}

@@ -1,7 +1,7 @@
 //! Shipped robots with everything derived, and their functions by their names.
 
 use rne::{
-    Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, FloatingBase, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
     Pose, Regressor, Scalar, TipWrenches, Wrench,
 };
@@ -36,6 +36,7 @@ pub(crate) trait Everything<const DOF: usize>:
     + Actuation<DOF>
     + PayloadDynamics<DOF>
     + TipWrenches<DOF, 1>
+    + FloatingBase<DOF, 1>
 {
 }
 
@@ -102,6 +103,10 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
             let found = robot.momentum_and_rate(q, qd, tau);
             [found.momentum, found.rate].concat()
         }
+        Function::InverseDynamicsOfFloatingBase => {
+            let found = robot.inverse_dynamics_of_floating_base(q, qd, qdd, &base, &[Wrench { force, moment }]);
+            [found.wrench.force.to_vec(), found.wrench.moment.to_vec(), found.tau.to_vec()].concat()
+        }
         Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
         Function::ActuatorTorques => robot.actuator_torques(qd, qdd).to_vec(),
         Function::GravityTorquesWithPayload => {
@@ -145,6 +150,7 @@ macro_rules! robot {
                 rne::Actuation,
                 rne::PayloadDynamics,
                 rne::TipWrenches,
+                rne::FloatingBase,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

@@ -158,6 +158,9 @@ impl Driver<'_> {
                 | Function::KineticEnergy => "q, qd",
                 Function::ForwardDynamics | Function::MomentumAndRate => "q, qd, tau",
                 Function::InverseDynamicsOnMovingBase => "q, qd, qdd, omega, omega_dot, acceleration, gravity",
+                Function::InverseDynamicsOfFloatingBase => {
+                    &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
+                }
                 Function::ActuatorTorques => "qd, qdd",
             };
             let (result, address) = match function {
@@ -184,6 +187,7 @@ impl Driver<'_> {
                     (format!("{prefix}_momentum x"), "&x")
                 }
                 Function::JointWrenches => (format!("{prefix}_wrench x[{n}]"), "x"),
+                Function::InverseDynamicsOfFloatingBase => (format!("{prefix}_floating_torques x"), "&x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
             };
             let _ = writeln!(

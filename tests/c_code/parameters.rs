@@ -60,7 +60,7 @@ loaded!(LoadedReduced, "reduced");
 macro_rules! branches {
     ($name:ident, $form:literal) => {
         #[derive(InverseDynamics, MassMatrix, ForwardDynamics, Energy, Kinematics)]
-        #[robot(path = "branches.yaml", form = $form, inline)]
+        #[robot(path = "branches.yaml", form = $form, inline, allow_lints)]
         struct $name {
             m: f64,
             span: f64,

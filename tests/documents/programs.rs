@@ -68,6 +68,9 @@ pub(crate) fn stubs() -> String {
         let joints: Vec<String> = joints
             .map(|(name, kind)| match kind {
                 Argument::Wrench | Argument::Payload => format!("{name}: ArrayLike, "),
+                Argument::Wrenches if function.takes(Argument::Base) => {
+                    format!("{name}: ArrayLike | dict[str, ArrayLike] | None = ..., ")
+                }
                 Argument::Wrenches => format!("{name}: ArrayLike | dict[str, ArrayLike], "),
                 _ => format!("{name}: Joints, "),
             })
@@ -76,7 +79,9 @@ pub(crate) fn stubs() -> String {
         let base = if arguments.iter().any(|(_, kind)| *kind == Argument::Base) { BASE } else { "" };
         let returned = match returned {
             Returned::Number => "Floats | float",
-            Returned::TorqueDerivatives | Returned::MomentumAndRate => "tuple[Floats, Floats]",
+            Returned::TorqueDerivatives | Returned::MomentumAndRate | Returned::FloatingTorques => {
+                "tuple[Floats, Floats]"
+            }
             _ => "Floats",
         };
         // a pose of the tip has the name that it has at a frame, too

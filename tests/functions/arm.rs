@@ -387,6 +387,9 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),
         Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau).map(|numbers| numbers.concat()),
         Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base),
+        Function::InverseDynamicsOfFloatingBase => arm
+            .inverse_dynamics_of_floating_base(q, qd, qdd, base, &wrenches)
+            .map(|(wrench, tau)| [wrench.force.to_vec(), wrench.moment.to_vec(), tau].concat()),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),

@@ -109,6 +109,10 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
         | Function::ActuatorTorques
         | Function::WrenchTorques => rows().concat(),
         _ if function.returns_torques() => rows().concat(),
+        Function::InverseDynamicsOfFloatingBase => {
+            let (on_base, torques) = numbers.split_at(6);
+            [on_base, &times(&back, torques)].concat()
+        }
         Function::LinkPoses | Function::JointWrenches => {
             // those of the joints that follow no other: no other function has numbers of links
             let per_joint = numbers.len() / dof;

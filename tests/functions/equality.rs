@@ -14,7 +14,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 24] = [
+const SAME_BITS: [Function; 25] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -39,6 +39,7 @@ const SAME_BITS: [Function; 24] = [
     Function::MomentumAndRateWithPayload,
     Function::InverseDynamicsWithWrenches,
     Function::ForwardDynamicsWithWrenches,
+    Function::InverseDynamicsOfFloatingBase,
 ];
 
 /// Of the largest number of the result.
@@ -64,6 +65,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::InverseDynamicsWithPayload
         | Function::InverseDynamicsFromSinCos
         | Function::InverseDynamicsOnMovingBase
+        | Function::InverseDynamicsOfFloatingBase
         | Function::GravityTorques
         | Function::BiasTorques
         | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),

@@ -17,6 +17,7 @@ mod driver;
 mod energy;
 mod equality;
 mod first_moments;
+mod floating_base;
 mod frames;
 mod golden;
 mod kinematics;

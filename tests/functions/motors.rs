@@ -5,10 +5,10 @@
 use std::fmt::Write as _;
 
 use fastrand::Rng;
-use rne_codegen::{Compiler, Form, Function};
+use rne_codegen::{Argument, Compiler, Form, Function};
 use rne_model::{
-    Angle, Coupling, Dh, FixedFrame, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Reader, Robot, Row,
-    Transform,
+    Angle, Coupling, Dh, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Reader,
+    Robot, Row, Transform,
 };
 
 use crate::arm::{Arm, Maker};
@@ -64,19 +64,21 @@ fn with_bodies(robot: &Robot) -> Robot {
     let mut found = Robot { drives: Vec::new(), tip_on: robot.tip().on, ..robot.clone() };
     for (index, (rotor, turns)) in robot.spinning_rotors().enumerate() {
         let ([x, y, z], inertia) = (rotor.axis, rotor.inertia);
-        if let Some(on) = rotor.on {
-            let tensor = &mut found.joints[on].row.link.inertia;
-            let parts = [
-                (&mut tensor.xx, x * x),
-                (&mut tensor.yy, y * y),
-                (&mut tensor.zz, z * z),
-                (&mut tensor.xy, x * y),
-                (&mut tensor.xz, x * z),
-                (&mut tensor.yz, y * z),
-            ];
-            for (element, part) in parts {
-                *element -= inertia * part;
-            }
+        let without = || FloatingBase { name: "trunk".to_owned(), link: Link::default() };
+        let tensor = match rotor.on {
+            Some(on) => &mut found.joints[on].row.link.inertia,
+            None => &mut found.floating_base.get_or_insert_with(without).link.inertia,
+        };
+        let parts = [
+            (&mut tensor.xx, x * x),
+            (&mut tensor.yy, y * y),
+            (&mut tensor.zz, z * z),
+            (&mut tensor.xy, x * y),
+            (&mut tensor.xz, x * z),
+            (&mut tensor.yz, y * z),
+        ];
+        for (element, part) in parts {
+            *element -= inertia * part;
         }
         let mut follows: Vec<(usize, f64)> = Vec::new();
         for &(joint, n) in turns {
@@ -207,8 +209,7 @@ fn rotors_obey_lagrange() {
             let arm = Arm::new(&robot, maker);
             let state = State::random(seed, dof);
             let is_known = |function: &Function| {
-                !function.inverts_mass()
-                    && !matches!(function, Function::InverseDynamicsOnMovingBase | Function::JointWrenches)
+                !function.inverts_mass() && !function.takes(Argument::Base) && *function != Function::JointWrenches
             };
             for function in Function::ALL.into_iter().filter(is_known) {
                 let expected = expected(&robot, function, &state);

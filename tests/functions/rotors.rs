@@ -86,6 +86,7 @@ fn seven_steps_are_the_runtime_in_every_bit() {
             Function::InverseDynamicsWithWrench,
             Function::InverseDynamicsWithPayload,
             Function::InverseDynamicsOnMovingBase,
+            Function::InverseDynamicsOfFloatingBase,
             Function::MassMatrix,
             Function::ForwardDynamics,
             Function::InverseMassMatrix,

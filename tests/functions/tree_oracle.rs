@@ -216,7 +216,22 @@ fn bodies(robot: &Robot, payload: Option<&Payload<f64>>) -> Vec<Body> {
         inertia: tensor(&payload.inertia),
         first_moment: Vector3::zeros(),
     };
-    robot.joints.iter().enumerate().map(of_link).chain(payload.map(at_tip)).collect()
+    // the base stands last, so that links keep their places
+    let base = robot.floating_base.as_ref().map(|base| Body {
+        frame: FixedFrame { on: None, placement: Transform::IDENTITY },
+        mass: base.link.mass,
+        com: base.link.com.into(),
+        inertia: tensor(&base.link.inertia),
+        first_moment: Vector3::zeros(),
+    });
+    robot.joints.iter().enumerate().map(of_link).chain(payload.map(at_tip)).chain(base).collect()
+}
+
+/// Force, and moment about the origin of frame 0, that must act on the base beside gravity.
+pub(crate) fn base_wrench(robot: &Robot, motion: &Motion<'_>) -> [Vector3<f64>; 2] {
+    needed(robot, motion, None).iter().fold([Vector3::zeros(); 2], |[force, moment], it| {
+        [force + it.force, moment + it.moment + it.centre.cross(&it.force)]
+    })
 }
 
 /// What moves each link, and the payload, against gravity.

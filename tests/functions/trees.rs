@@ -140,6 +140,18 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             solved(DMatrix::from_fn(dof, 1, |joint, _| tau[joint] - bias[joint]))
         }
         Function::InverseDynamicsOnMovingBase => torques(q, qd, qdd, *base),
+        Function::InverseDynamicsOfFloatingBase => {
+            let [mut force, mut moment] = oracle::base_wrench(robot, &Motion { joints: [q, qd, qdd], base: *base });
+            let tips = robot.wrench_frames();
+            for (tip, wrench) in tips.iter().zip(at_tips(tips.len(), wrench)) {
+                let (r, p) = oracle::parts(&oracle::frame(robot, tip, &still)[0]);
+                let at_tip = r * Vector3::from(wrench.force);
+                force += at_tip;
+                moment += r * Vector3::from(wrench.moment) + p.cross(&at_tip);
+            }
+            let torques = sum(&torques(q, qd, qdd, *base), &of_wrenches());
+            [force.as_slice(), moment.as_slice(), &torques].concat()
+        }
         Function::GravityTorques | Function::GravityTorquesWithPayload => torques(q, &zeros, &zeros, fixed),
         Function::BiasTorques | Function::BiasTorquesWithPayload => torques(q, qd, &zeros, fixed),
         Function::MassMatrix | Function::MassMatrixWithPayload => flat(mass_matrix()),

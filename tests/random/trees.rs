@@ -1,5 +1,5 @@
 //! Random trees: links that carry none, one or many joints, rows that begin at placements, links without mass, motors,
-//! named frames, and a tip on any link.
+//! named frames, a tip on any link, and bases that nothing holds.
 
 use std::fmt::Write;
 
@@ -25,8 +25,12 @@ pub(crate) fn yaml(seed: u64, dof: usize) -> String {
         "format: 2\nname: tree_{seed}\nsource: random numbers, seed {seed}\nconvention: {convention}\n\
          gravity: {gravity}\n"
     );
-    if rng.bool() {
-        let _ = writeln!(text, "base: {{{}}}", placement(rng));
+    let base = rng.bool().then(|| format!("base: {{{}}}\n", placement(rng)));
+    // of numbers of its own, as the tips
+    let mut floating = Rng::with_seed(seed ^ 0xf1);
+    match link(&mut floating, sparsity).filter(|link| !link.contains("first_moment") && floating.f64() < 0.6) {
+        Some(link) => drop(writeln!(text, "floating_base: {{name: trunk, link: {link}}}")),
+        None => text.extend(base),
     }
     let _ = writeln!(text, "tool: {{on: j{}, {}}}", rng.usize(0..dof), placement(rng));
     let _ = writeln!(text, "frames:\n  - {{name: on_base, on: base, {}}}", placement(rng));

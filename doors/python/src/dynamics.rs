@@ -2,7 +2,7 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use rne_codegen::{Argument, Function};
 
 use crate::arm::Arm;
@@ -64,6 +64,10 @@ macro_rules! returned {
     };
     (TorqueDerivatives) => {
         "dq and dqd, two arrays of shape (n, n) or (N, n, n); `out` is one array of shape (2, n, n) or (N, 2, n, n)."
+    };
+    (FloatingTorques) => {
+        "the wrench on the base, force then moment, of shape (6,) or (N, 6), and the torques, of shape (n,) or (N, n); \
+         `out` is one array of shape (6 + n,) or (N, 6 + n)."
     };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
@@ -128,7 +132,8 @@ macro_rules! method {
     };
     // a base whose motion is not given stands still
     (
-        $variant:ident $name:ident (q: Positions, qd: Rates, qdd: Accelerations, base: Base)
+        $variant:ident $name:ident
+            (q: Positions, qd: Rates, qdd: Accelerations, base: Base $(, $wrenches:ident: Wrenches)?)
             $returned:ident $summary:literal $details:literal
     ) => {
         #[pymethods]
@@ -136,10 +141,13 @@ macro_rules! method {
             #[doc = $summary]
             ///
             #[doc = $details]
-            /// Each of them has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the robot's own.
+            /// Each vector of the base has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the robot's
+            /// own.
             ///
+            $(#[doc = about!(Wrenches)]
+            #[doc = concat!("Without `", stringify!($wrenches), "` no tip exerts anything.\n\n")])?
             #[doc = concat!("Returns ", returned!($returned))]
-            #[pyo3(signature = (q, qd, qdd, *, base_omega=None, base_omega_dot=None, base_acceleration=None,
+            #[pyo3(signature = (q, qd, qdd, $($wrenches=None,)? *, base_omega=None, base_omega_dot=None, base_acceleration=None,
                 base_gravity=None, parameters=None, out=None))]
             fn $name<'py>(
                 &self,
@@ -147,6 +155,7 @@ macro_rules! method {
                 q: &Bound<'py, PyAny>,
                 qd: &Bound<'py, PyAny>,
                 qdd: &Bound<'py, PyAny>,
+                $($wrenches: Option<&Bound<'py, PyAny>>,)?
                 base_omega: Option<&Bound<'py, PyAny>>,
                 base_omega_dot: Option<&Bound<'py, PyAny>>,
                 base_acceleration: Option<&Bound<'py, PyAny>>,
@@ -164,7 +173,13 @@ macro_rules! method {
                     ("base_gravity", base_gravity.unwrap_or(&gravity)),
                 ];
                 let base = base.map(|(name, value)| Given { name, parts: &[], elements: 3, value: value.clone() });
-                self.compute(py, Function::$variant, joints.into_iter().chain(base).collect(), parameters, out)
+                #[allow(unused_mut)] // a function without tips
+                let mut given: Vec<_> = joints.into_iter().chain(base).collect();
+                $(
+                    let nothing = PyDict::new(py).into_any();
+                    given.push(self.of_tips(stringify!($wrenches), $wrenches.unwrap_or(&nothing))?);
+                )?
+                self.compute(py, Function::$variant, given, parameters, out)
             }
         }
     };

@@ -23,7 +23,7 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
             Layout::Record(Record::Pose, _) => shape.extend([4, 4]),
             // force, then moment
             Layout::Record(Record::Wrench, _) => shape.push(6),
-            Layout::Record(Record::TorqueDerivatives | Record::MomentumAndRate, parts) => {
+            Layout::Record(Record::TorqueDerivatives | Record::MomentumAndRate | Record::FloatingTorques, parts) => {
                 shape.push(2);
                 if let Some(part) = parts.first() {
                     of(part, shape);
@@ -32,7 +32,12 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
         }
     }
     let mut found = Vec::new();
-    of(&function.layout(dof), &mut found);
+    let layout = function.layout(dof);
+    if let Layout::Record(Record::FloatingTorques, _) = layout {
+        // six numbers of the base, then one for each joint
+        return vec![layout.len()];
+    }
+    of(&layout, &mut found);
     if function == Function::Regressor {
         // a column per parameter: Y @ parameters are torques
         found = vec![dof, 10 * dof];
@@ -108,6 +113,13 @@ fn evaluate_in<'py, T: Element + Number>(
                 result.get_item(PyTuple::new(py, places.collect::<Vec<_>>())?)
             };
             Ok(PyTuple::new(py, [of(0)?, of(1)?])?.into_any())
+        }
+        Layout::Record(Record::FloatingTorques, _) => {
+            let of = |from: isize, to: isize| {
+                let part = PySlice::new(py, from, to, 1).into_any();
+                result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
+            };
+            Ok(PyTuple::new(py, [of(0, 6)?, of(6, isize::MAX)?])?.into_any())
         }
         _ => finished(result, whole.is_empty()),
     }

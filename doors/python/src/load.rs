@@ -125,7 +125,7 @@ pub(crate) fn load(
     };
     let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
-    let selection = Selection { base, tip, lock, lock_others, whole };
+    let selection = Selection { base, tip, lock, lock_others, whole, floating: false };
     let options = Options { selection, convention, snap, keep_unphysical, frames: true, ..Options::default() };
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;

@@ -47,6 +47,9 @@ pub(crate) struct Arguments {
     /// Convert the whole robot after the base, a tree of links, and not one arm; --tip then says where the tip is
     #[arg(long)]
     whole: bool,
+    /// With --whole: nothing holds the root link, which becomes the floating base
+    #[arg(long, requires = "whole", conflicts_with = "base")]
+    floating: bool,
     /// Denavit-Hartenberg convention of the new table: standard or modified [default: standard; modified for a tree]
     #[arg(long, value_name = "C", value_parser = convention(), hide_possible_values = true)]
     convention: Option<Convention>,
@@ -89,6 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         lock: arguments.lock.clone(),
         lock_others: arguments.lock_others,
         whole: arguments.whole,
+        floating: arguments.floating,
     };
     let usual = if arguments.whole { Convention::Modified } else { Convention::Standard };
     urdf.check_names(&selection).map_err(|report| Failure::unknown_name(&report))?;

@@ -173,6 +173,14 @@ impl<E: Told> Told for Vec<E> {
     }
 }
 
+/// The wrench on a floating base, and the torques.
+impl Told for (Wrench<f64>, Vec<f64>) {
+    fn tell(&self, numbers: &mut Vec<f64>) {
+        self.0.tell(numbers);
+        self.1.tell(numbers);
+    }
+}
+
 impl<E: Told, const N: usize> Told for [E; N] {
     fn tell(&self, numbers: &mut Vec<f64>) {
         for element in self {
@@ -246,7 +254,7 @@ fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Resul
             )))
         };
     }
-    if given.is_empty() {
+    if given.is_empty() && !function.returns_base_wrench() {
         let names = names.join(", ");
         return Err(Failure::usage(format_args!(
             "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: {names}",

@@ -53,17 +53,23 @@ pub(crate) struct Link<'s> {
     pub(crate) varying_turn: Option<[Symbol<'s>; 2]>,
     /// (a_i, 0, b_i) of a standard, (0, 0, b_i) of a modified row; b_i without the joint variable.
     pub(crate) offset: Vector<'s>,
-    /// Centre of mass from the end of the offset.
-    pub(crate) com: Vector<'s>,
     /// Turns components in the link frame of the table into components in frame i.
     pub(crate) table_axes: Matrix<'s>,
+    /// From the end of the offset.
+    pub(crate) body: Body<'s>,
+    /// G² Jm of the joint's rotor, if that belongs to the arm.
+    pub(crate) rotor: Option<Symbol<'s>>,
+}
+
+/// The matter of a link, or of the base, about a point of it.
+pub(crate) struct Body<'s> {
     pub(crate) mass: Symbol<'s>,
+    /// Centre of mass from this point.
+    pub(crate) com: Vector<'s>,
     /// About the centre of mass.
     pub(crate) inertia: Matrix<'s>,
     /// h, the first moment about the end of `com` that no mass accounts for; `None` of every body.
     pub(crate) first_moment: Option<Vector<'s>>,
-    /// G² Jm of the joint's rotor, if that belongs to the arm.
-    pub(crate) rotor: Option<Symbol<'s>>,
 }
 
 /// The constants of a robot.
@@ -84,6 +90,8 @@ pub(crate) struct Arm<'s> {
     pub(crate) gravity: Vector<'s>,
     /// World → frame 0.
     pub(crate) base: Placement<'s>,
+    /// The base, about the origin of frame 0, where nothing holds it.
+    pub(crate) floating_base: Option<Body<'s>>,
 }
 
 impl<'s> Arm<'s> {
@@ -110,6 +118,7 @@ impl<'s> Arm<'s> {
         let rows: Vec<Row> = robot.joints.iter().map(Joint::row_with_offset).collect();
         let twists: Vec<_> =
             rows.iter().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
+        let floating_base = floating_base(builder, robot);
         let mut links: Vec<Link<'s>> = Vec::with_capacity(joints);
         for (index, row) in rows.iter().enumerate() {
             let (joint, parent) = (index + 1, robot.parent(index));
@@ -128,7 +137,7 @@ impl<'s> Arm<'s> {
             };
             let is_first = links.iter().all(|link| link.parent != parent);
             let label = if is_first { 0 } else { joint };
-            let r = from_com(builder, &links, parent, (label, lever));
+            let r = from_com(builder, (&links, floating_base.as_ref()), parent, (label, lever));
             let mount = Mount { rotation, r, lever, label };
             let com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
             let inertia = inertia(builder, robot, index);
@@ -137,28 +146,31 @@ impl<'s> Arm<'s> {
                 Convention::Standard => (number(Entry::A(index), row.dh.a), Some(twists[index])),
                 Convention::Modified => (zero(), None),
             };
+            let varying_turn = varying(builder, robot, [Entry::ThetaSine(index), Entry::ThetaCosine(index)]);
+            let offset = Vector([length, zero(), number(Entry::D(index), row.dh.d)]);
+            let com = table_axes.map_or(com, |axes| axes * com);
+            let written_axes = table_axes.unwrap_or_else(|| identity(builder));
+            let (mass, rotor) = (mass(builder, robot, index), rotor(builder, robot, index));
+            let inertia = table_axes.map_or(inertia, |axes| (axes * inertia) * axes.transpose());
+            let inertia = builder.name_matrix(Quantity::Inertia, joint, inertia);
+            let first_moment = row.link.has_first_moment().then(|| {
+                let entry = |axis| number(Entry::FirstMoment(index, axis), row.link.first_moment[axis]);
+                let written = Vector([0, 1, 2].map(entry));
+                let turned = table_axes.map_or(written, |axes| axes * written);
+                builder.name_vector(Quantity::MasslessMoment, joint, turned)
+            });
+            let body = Body { mass, com, inertia, first_moment };
+            let (kind, theta) = (row.kind, row.dh.theta);
             links.push(Link {
                 parent,
                 mount,
-                kind: row.kind,
-                theta: row.dh.theta,
-                varying_turn: varying(builder, robot, [Entry::ThetaSine(index), Entry::ThetaCosine(index)]),
-                offset: Vector([length, zero(), number(Entry::D(index), row.dh.d)]),
-                com: table_axes.map_or(com, |axes| axes * com),
-                table_axes: table_axes.unwrap_or_else(|| identity(builder)),
-                mass: mass(builder, robot, index),
-                rotor: rotor(builder, robot, index),
-                inertia: builder.name_matrix(
-                    Quantity::Inertia,
-                    joint,
-                    table_axes.map_or(inertia, |axes| (axes * inertia) * axes.transpose()),
-                ),
-                first_moment: row.link.has_first_moment().then(|| {
-                    let entry = |axis| number(Entry::FirstMoment(index, axis), row.link.first_moment[axis]);
-                    let written = Vector([0, 1, 2].map(entry));
-                    let turned = table_axes.map_or(written, |axes| axes * written);
-                    builder.name_vector(Quantity::MasslessMoment, joint, turned)
-                }),
+                kind,
+                theta,
+                varying_turn,
+                offset,
+                body,
+                table_axes: written_axes,
+                rotor,
             });
         }
         let mut tips: Vec<(Option<usize>, Mount<'s>)> = Vec::with_capacity(placed.len());
@@ -173,7 +185,7 @@ impl<'s> Arm<'s> {
             // a frame carries no load, and its link has a lever to the next joint already
             let r = match frame {
                 Some(_) => builder.zeros(Cause::FreeTip),
-                None => from_com(builder, &links, link, (label, lever)),
+                None => from_com(builder, (&links, floating_base.as_ref()), link, (label, lever)),
             };
             let rotation = builder.name_matrix(Quantity::TipRotation, tip, rotation);
             tips.push((link, Mount { rotation, r, lever, label }));
@@ -190,6 +202,7 @@ impl<'s> Arm<'s> {
             tips,
             gravity: gravity(builder, robot),
             base: Placement::new(builder, robot, &robot.base, Entry::BaseXyz),
+            floating_base,
         }
     }
 
@@ -227,21 +240,36 @@ fn beginning<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Pl
     (!placement.is_identity()).then(|| Placement::constant(builder, &placement))
 }
 
-/// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever.
+/// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever; one
+/// whose motion is told, and that the world holds, is about the origin of frame 0.
 fn from_com<'s>(
     builder: &'s Builder,
-    links: &[Link<'s>],
+    (links, floating_base): (&[Link<'s>], Option<&Body<'s>>),
     parent: Option<usize>,
     (label, lever): (usize, Vector<'s>),
 ) -> Vector<'s> {
-    match parent {
-        Some(parent) => {
-            let line = builder.joint(parent + 1).carrying(label);
-            line.name_vector(Quantity::R, lever - links[parent].com)
-        }
-        None if builder.function.takes(Argument::Base) => lever,
-        None => builder.zeros(Cause::FixedBase),
+    let from = |line: usize, com| builder.joint(line).carrying(label).name_vector(Quantity::R, lever - com);
+    match (parent, floating_base) {
+        (Some(parent), _) => from(parent + 1, links[parent].body.com),
+        (None, Some(base)) => from(0, base.com),
+        (None, None) if builder.function.takes(Argument::Base) => lever,
+        (None, None) => builder.zeros(Cause::FixedBase),
     }
+}
+
+/// The base where nothing holds it: without mass, where the file has no `floating_base` and the function returns the
+/// wrench on the base.
+fn floating_base<'s>(builder: &'s Builder, robot: &Robot) -> Option<Body<'s>> {
+    let (function, base) = (builder.function, robot.floating_base.as_ref().map(|base| base.link));
+    let link = base.or_else(|| function.returns_base_wrench().then(rne_model::Link::default))?;
+    let rows = link.inertia.rows();
+    let inertia = rows.map(|row| row.map(|x| builder.constant(x, Cause::Arithmetic)));
+    Some(Body {
+        mass: builder.entry(Name::scalar(Quantity::Mass, 0), link.mass),
+        com: Vector(link.com.map(|x| builder.constant(x, Cause::Arithmetic))),
+        inertia: builder.name_matrix(Quantity::Inertia, 0, Matrix::from_rows(inertia)),
+        first_moment: None,
+    })
 }
 
 /// The mass of a link. A constant mass has its name as the cause.

@@ -7,6 +7,8 @@
 //! s_j = Σ s_k + μ_j c_j,   w_j = Σ w_k + μ_j        from the ends to the base; k: joints that link j carries
 //! ```
 //!
+//! A base that nothing holds is a link, too: link 0, whose frame is frame 0.
+//!
 //! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
 
 use rne_model::JointKind::{Prismatic, Revolute};
@@ -21,8 +23,9 @@ pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
     let centre = match parts(arm) {
         Ok((parts, inverse)) => {
             let links = links(builder, frames, centres);
+            let of_base = arm.floating_base.as_ref().map(|base| base.com * (base.mass * inverse));
             let sum = links.into_iter().zip(parts).enumerate().fold(
-                builder.zeros(Cause::Arithmetic),
+                of_base.unwrap_or_else(|| builder.zeros(Cause::Arithmetic)),
                 |sum, (index, (centre, part))| {
                     let moment = || with_first_moment(arm, frames, index, centre * part, inverse);
                     builder.joint(index + 1).within(Quantity::ComPosition, || sum + moment())
@@ -87,7 +90,7 @@ fn with_first_moment<'s>(
     moment: Vector<'s>,
     inverse: Symbol<'s>,
 ) -> Vector<'s> {
-    arm.links[index].first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
+    arm.links[index].body.first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
 }
 
 /// The part of the mass that each link has, and one by the mass: constants, unless a mass is given at run time. Of an
@@ -97,12 +100,13 @@ fn parts<'s>(arm: &Arm<'s>) -> Result<(Vec<Symbol<'s>>, Symbol<'s>), Symbol<'s>>
     let line = builder.joint(arm.links.len());
     line.within(Quantity::ComPosition, || {
         let nothing = builder.constant(0.0, Cause::Arithmetic);
-        let total = arm.links.iter().fold(nothing, |total, link| total + link.mass);
+        let of_base = arm.floating_base.as_ref().map_or(nothing, |base| base.mass);
+        let total = arm.links.iter().fold(of_base, |total, link| total + link.body.mass);
         let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
         let inverse = builder.quotient(one, total);
         if total.is_zero() {
             return Err(inverse);
         }
-        Ok((arm.links.iter().map(|link| link.mass * inverse).collect(), inverse))
+        Ok((arm.links.iter().map(|link| link.body.mass * inverse).collect(), inverse))
     })
 }

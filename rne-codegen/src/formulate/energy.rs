@@ -13,10 +13,10 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
         let omega = motion.turning.omega;
         twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || {
-            let momentum = link.inertia * omega;
-            let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + omega.dot(momentum);
+            let momentum = link.body.inertia * omega;
+            let of_link = motion.c_dot.dot(motion.c_dot) * link.body.mass + omega.dot(momentum);
             let twice = twice + of_link;
-            link.first_moment.map_or(twice, |h| {
+            link.body.first_moment.map_or(twice, |h| {
                 let half = motion.c_dot.dot(omega.cross(h));
                 twice + (half + half)
             })
@@ -41,13 +41,14 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
 /// `frames` in frame 0, where gravity is given.
 pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let builder = arm.builder;
-    let mut lost = builder.constant(0.0, Cause::Arithmetic);
+    let of_base = arm.floating_base.as_ref().map(|base| arm.gravity.dot(base.com) * base.mass);
+    let mut lost = of_base.unwrap_or_else(|| builder.constant(0.0, Cause::Arithmetic));
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
         let line = builder.joint(index + 1);
         let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
         lost = line.within(Quantity::PotentialEnergy, || {
-            let lost = lost + arm.gravity.dot(centre) * link.mass;
-            link.first_moment.map_or(lost, |h| lost + arm.gravity.dot(frame.rotation * h))
+            let lost = lost + arm.gravity.dot(centre) * link.body.mass;
+            link.body.first_moment.map_or(lost, |h| lost + arm.gravity.dot(frame.rotation * h))
         });
     }
     builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)

@@ -14,7 +14,7 @@ pub(crate) mod regressor;
 pub(crate) mod seven_steps;
 pub(crate) mod spin;
 
-pub(crate) use arm::{Arm, Link, Mount};
+pub(crate) use arm::{Arm, Body, Link, Mount};
 pub(crate) use joint::{Joint, JointState, Wrench};
 pub(crate) use kinematics::{Frame, Frames};
 pub(crate) use payload::{AtTip, Payload};
@@ -68,6 +68,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
+        Function::InverseDynamicsOfFloatingBase => derivation.floating_torques(),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -122,7 +123,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         };
         let base = if function.takes(Argument::Base) {
             let motion = [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration];
-            Motion::of_base(builder, motion.map(|quantity| vector(quantity, 0)), vector(Quantity::Gravity, 0))
+            Motion::of_base(&arm, motion.map(|quantity| vector(quantity, 0)), vector(Quantity::Gravity, 0))
         } else {
             Motion::of_fixed_base(builder, arm.gravity)
         };
@@ -284,6 +285,15 @@ impl<'s, 'r> Derivation<'s, 'r> {
         named.collect()
     }
 
+    fn floating_torques(&self) -> Outputs<'s> {
+        let (base, loads) =
+            seven_steps::inverse_dynamics_of_floating_base(&self.arm, &self.states, &self.base, &self.tip);
+        let torques: Vec<_> = loads.into_iter().map(|load| load.torque).collect();
+        let mut outputs = base.map_or_else(Vec::new, |base| on_base([base.force, base.moment]));
+        outputs.extend(self.gathered(Quantity::Torque, &torques));
+        outputs
+    }
+
     fn momentum_and_rate(&self) -> Outputs<'s> {
         let [momenta, rates] =
             momentum::momentum_and_rate(&self.arm, &self.states, &self.motions(), &self.base, &self.tip);
@@ -293,6 +303,12 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn actuator_torques(&self) -> Outputs<'s> {
         self.gathered(Quantity::ActuatorTorque, &actuation::torques(self.builder, self.robot, &self.states))
     }
+}
+
+/// The force and the moment on a base that nothing holds.
+pub(crate) fn on_base([force, moment]: [Vector<'_>; 2]) -> Outputs<'_> {
+    let parts = [(Quantity::BaseForce, force), (Quantity::BaseMoment, moment)];
+    parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)).collect()
 }
 
 /// M by its upper half: row i of `upper` holds the elements (i, i) to (i, n).

@@ -124,22 +124,22 @@ fn body<'s>(
     let Motion { d, c_dot, .. } = *motion;
     let omega = motion.turning.omega;
     let mass = line.within(Quantity::MomentBehind, || {
-        carries.iter().map(|k| k.mass).reduce(|sum, mass| sum + mass).map_or(link.mass, |sum| link.mass + sum)
+        carries.iter().map(|k| k.mass).reduce(|sum, mass| sum + mass).map_or(link.body.mass, |sum| link.body.mass + sum)
     });
     let sum = |of: fn(&Carried<'s>) -> Vector<'s>| carries.iter().map(of).reduce(|sum, vector| sum + vector);
     let first_moment = line.vector(Quantity::MomentBehind, || {
         let own = d * mass;
-        let own = link.first_moment.map_or(own, |h| own + h);
+        let own = link.body.first_moment.map_or(own, |h| own + h);
         with(with(own, sum(|k| k.r * k.mass)), sum(|k| k.first_moment))
     });
     let linear = line.vector(Quantity::LinearMomentum, || {
-        let own = c_dot * link.mass;
-        let own = link.first_moment.map_or(own, |h| own + omega.cross(h));
+        let own = c_dot * link.body.mass;
+        let own = link.body.first_moment.map_or(own, |h| own + omega.cross(h));
         with(own, sum(|k| k.linear))
     });
     let angular = line.vector(Quantity::AngularMomentumBehind, || {
-        let own = link.inertia * omega;
-        let own = link.first_moment.map_or(own, |h| own + h.cross(c_dot));
+        let own = link.body.inertia * omega;
+        let own = link.body.first_moment.map_or(own, |h| own + h.cross(c_dot));
         let own = of_spins.iter().fold(own, |own, momentum| own + *momentum);
         with(with(own, sum(|k| k.angular)) + d.cross(linear), sum(|k| k.r.cross(k.linear)))
     });

@@ -10,7 +10,7 @@
 //! as in a set of base parameters: its terms are written separately, because no real body has them.
 
 use crate::formulate::arm::identity;
-use crate::formulate::{Arm, AtTip, Joint, JointState, Mount, Spin, Wrench};
+use crate::formulate::{Arm, AtTip, Body, Joint, JointState, Mount, Spin, Wrench};
 use crate::ir::{Builder, Cause, JointLines, Matrix, Quantity, Symbol, Vector};
 
 /// How a link turns, in its frame: what steps 1 and 2 find.
@@ -48,20 +48,27 @@ struct Carried<'s> {
 }
 
 impl<'s> Motion<'s> {
-    /// The base, in frame 0. No function asks how fast the origin of frame 0 moves.
-    pub(crate) fn of_base(
-        builder: &'s Builder,
-        [omega, omega_dot, c_ddot]: [Vector<'s>; 3],
-        gravity: Vector<'s>,
-    ) -> Self {
-        let at_rest = builder.zeros(Cause::FixedBase);
-        let turning = Turning { rotation: identity(builder), omega, omega_dot };
-        Self { turning, d: at_rest, c_dot: at_rest, c_ddot, gravity }
+    /// The base, in frame 0, whose origin accelerates with `of_origin`. No function asks how fast this moves.
+    ///
+    /// Where nothing holds the base, d_0 leads to its centre of mass, and c̈_0 = a + ω̇_0 × d_0 + ω_0 × (ω_0 × d_0).
+    pub(crate) fn of_base(arm: &Arm<'s>, [omega, omega_dot, of_origin]: [Vector<'s>; 3], gravity: Vector<'s>) -> Self {
+        let turning = Turning { rotation: identity(arm.builder), omega, omega_dot };
+        let at_rest = arm.builder.zeros(Cause::FixedBase);
+        let Some(body) = &arm.floating_base else {
+            return Self { turning, d: at_rest, c_dot: at_rest, c_ddot: of_origin, gravity };
+        };
+        let (line, d) = (arm.builder.joint(0), body.com);
+        let omega_cross_d = line.vector(Quantity::OmegaCrossD, || omega.cross(d));
+        let c_ddot =
+            line.vector(Quantity::Acceleration, || of_origin + omega_dot.cross(d) + omega.cross(omega_cross_d));
+        Self { turning, d, c_dot: at_rest, c_ddot, gravity }
     }
 
     /// A base that does not move.
     pub(crate) fn of_fixed_base(builder: &'s Builder, gravity: Vector<'s>) -> Self {
-        Self::of_base(builder, [builder.zeros(Cause::FixedBase); 3], gravity)
+        let at_rest = builder.zeros(Cause::FixedBase);
+        let turning = Turning { rotation: identity(builder), omega: at_rest, omega_dot: at_rest };
+        Self { turning, d: at_rest, c_dot: at_rest, c_ddot: at_rest, gravity }
     }
 }
 
@@ -88,7 +95,19 @@ pub(crate) fn inverse_dynamics<'s>(
     tip: &AtTip<'s>,
 ) -> Vec<Load<'s>> {
     let motions = forward(arm, states, base);
-    backward(arm, states, (base, &motions), &tip.wrenches(arm, &motions))
+    backward(arm, states, (base, &motions), &tip.wrenches(arm, &motions)).0
+}
+
+/// The wrench that must act on a base that nothing holds, and the torques of all joints.
+pub(crate) fn inverse_dynamics_of_floating_base<'s>(
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    base: &Motion<'s>,
+    tip: &AtTip<'s>,
+) -> (Option<Wrench<'s>>, Vec<Load<'s>>) {
+    let motions = forward(arm, states, base);
+    let (loads, on_base) = backward(arm, states, (base, &motions), &tip.wrenches(arm, &motions));
+    (on_base, loads)
 }
 
 /// Steps 1 and 2: how link i turns.
@@ -141,20 +160,70 @@ pub(crate) fn forward<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: &Motio
     motions
 }
 
-/// Backward, parents last: the wrench at each joint, which its parent hands on.
+/// A rotor with its spin s and ṡ.
+type Spinning<'a, 's> = (&'a Spin<'s>, [Symbol<'s>; 2]);
+
+/// Step 6: the wrench that makes a body move as it does, with what it carries and the rotors that turn on it.
+///
+/// ```text
+/// f_i = m_i c̈_i                n_i = I_i ω̇_i + ω_i × (I_i ω_i)
+/// f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
+/// n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
+/// ```
+///
+/// f_i - m_i g_i is written m_i (c̈_i - g_i): one product instead of two. So torques do not need f_i by itself. Of a
+/// first moment h_i: f_i + ω̇_i × h_i + ω_i × (ω_i × h_i), n_i + h_i × c̈_i and n_{p,i} - h_i × g_i.
+fn wrench<'s>(
+    (line, at_joint, names): (JointLines<'s>, JointLines<'s>, [Quantity; 2]),
+    body: &Body<'s>,
+    motion: &Motion<'s>,
+    carries: &[Carried<'s>],
+    spins: &[Spinning<'_, 's>],
+) -> Wrench<'s> {
+    let Motion { turning: Turning { omega, omega_dot, .. }, d, c_ddot, gravity, .. } = *motion;
+    let of_moment = body.first_moment.map(|h| turning_force(line, &motion.turning, h));
+    line.vector(Quantity::InertiaForce, || with(c_ddot * body.mass, of_moment));
+    let angular_momentum = line.vector(Quantity::AngularMomentum, || body.inertia * omega);
+    let inertia_moment = line.vector(Quantity::InertiaMoment, || {
+        let moment = body.inertia * omega_dot + omega.cross(angular_momentum);
+        let moment = with(moment, body.first_moment.map(|h| h.cross(c_ddot)));
+        spins.iter().fold(moment, |moment, (spin, [rate, rate_dot])| {
+            moment + (spin.momentum(*rate_dot) + omega.cross(spin.momentum(*rate)))
+        })
+    });
+    let [of_force, of_moments] = names;
+    let force = at_joint.vector(of_force, || {
+        let own = with((c_ddot - gravity) * body.mass, of_moment);
+        with(own, carries.iter().map(|k| k.wrench.force).reduce(|sum, force| sum + force))
+    });
+    let moment = at_joint.vector(of_moments, || {
+        let of_joints = carries.iter().map(|k| k.wrench.moment).reduce(|sum, moment| sum + moment);
+        let moments = with(inertia_moment, of_joints) + d.cross(force);
+        let of_levers = carries.iter().map(|k| k.r.cross(k.wrench.force)).reduce(|sum, moment| sum + moment);
+        let moment = with(moments, of_levers);
+        body.first_moment.map_or(moment, |h| moment - h.cross(gravity))
+    });
+    Wrench { force, moment }
+}
+
+/// Backward, parents last: the wrench at each joint, which its parent hands on. At the end, the wrench that must act on
+/// a base that nothing holds.
 pub(crate) fn backward<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     (base, motions): (&Motion<'s>, &[Motion<'s>]),
     at_tips: &[Wrench<'s>],
-) -> Vec<Load<'s>> {
+) -> (Vec<Load<'s>>, Option<Wrench<'s>>) {
     // of each rotor: s and ṡ
     let spinning = |spin: &Spin<'s>| {
         let rate = spin.of_joints(Quantity::Spin, states, |state| state.qd);
         [rate, spin.of_joints(Quantity::SpinDot, states, |state| state.qdd)]
     };
-    let spins: Vec<_> = arm.spins.iter().map(|spin| (spin, spinning(spin))).collect();
+    let spins: Vec<Spinning<'_, 's>> = arm.spins.iter().map(|spin| (spin, spinning(spin))).collect();
+    let on =
+        |carrier: Option<usize>| -> Vec<_> { spins.iter().filter(|(spin, _)| spin.on == carrier).copied().collect() };
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
+    let mut on_base = Vec::new();
     for (&(link, tip), wrench) in arm.tips.iter().zip(at_tips) {
         if let Some(link) = link {
             carried[link].push(wrench.carried(arm.builder.joint(link + 1), tip.rotation, &tip));
@@ -163,38 +232,8 @@ pub(crate) fn backward<'s>(
     let mut loads = Vec::with_capacity(motions.len());
     for (joint, motion) in arm.joints(states).zip(motions).rev() {
         let Joint { lines: line, link, .. } = joint;
-        let Motion { turning: Turning { rotation, omega, omega_dot }, d, c_ddot, gravity, .. } = *motion;
-        let carries = &carried[joint.index];
-
-        // 6   f_i = m_i c̈_i                n_i = I_i ω̇_i + ω_i × (I_i ω_i)
-        //     f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
-        //     n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
-        // f_i - m_i g_i is written m_i (c̈_i - g_i): one product instead of two. So torques do not need f_i by itself.
-        //     of a first moment h_i     f_i + ω̇_i × h_i + ω_i × (ω_i × h_i)     n_i + h_i × c̈_i     n_{p,i} - h_i × g_i
-        let of_moment = link.first_moment.map(|h| turning_force(line, &motion.turning, h));
-        line.vector(Quantity::InertiaForce, || with(c_ddot * link.mass, of_moment));
-        let angular_momentum = line.vector(Quantity::AngularMomentum, || link.inertia * omega);
-        let inertia_moment = line.vector(Quantity::InertiaMoment, || {
-            let moment = link.inertia * omega_dot + omega.cross(angular_momentum);
-            let moment = with(moment, link.first_moment.map(|h| h.cross(c_ddot)));
-            let on_link = spins.iter().filter(|(spin, _)| spin.on == Some(joint.index));
-            on_link.fold(moment, |moment, (spin, [rate, rate_dot])| {
-                moment + (spin.momentum(*rate_dot) + omega.cross(spin.momentum(*rate)))
-            })
-        });
-        let at_joint = line.behind(link.parent);
-        let force = at_joint.vector(Quantity::JointForce, || {
-            let own = with((c_ddot - gravity) * link.mass, of_moment);
-            with(own, carries.iter().map(|k| k.wrench.force).reduce(|sum, force| sum + force))
-        });
-        let moment = at_joint.vector(Quantity::JointMoment, || {
-            let of_joints = carries.iter().map(|k| k.wrench.moment).reduce(|sum, moment| sum + moment);
-            let moments = with(inertia_moment, of_joints) + d.cross(force);
-            let of_levers = carries.iter().map(|k| k.r.cross(k.wrench.force)).reduce(|sum, moment| sum + moment);
-            let moment = with(moments, of_levers);
-            link.first_moment.map_or(moment, |h| moment - h.cross(gravity))
-        });
-        let wrench = Wrench { force, moment };
+        let lines = (line, line.behind(link.parent), [Quantity::JointForce, Quantity::JointMoment]);
+        let wrench = wrench(lines, &link.body, motion, &carried[joint.index], &on(Some(joint.index)));
 
         // 7   τ_i = e · n_{p,i} (prismatic: e · f_{p,i})      with the rotor, if that belongs to the arm: + G² Jm q̈_i
         // rotors of the list `motors`, which turn on links: [`super::spin`] has their terms in steps 6 and 7
@@ -209,12 +248,22 @@ pub(crate) fn backward<'s>(
         });
 
         loads.push(Load { wrench, torque });
-        if let Some(parent) = link.parent {
-            carried[parent].push(wrench.carried(arm.builder.joint(parent + 1), rotation, &link.mount));
+        let rotation = motion.turning.rotation;
+        match link.parent {
+            Some(parent) => {
+                carried[parent].push(wrench.carried(arm.builder.joint(parent + 1), rotation, &link.mount));
+            }
+            None if arm.floating_base.is_some() => {
+                on_base.push(wrench.carried(arm.builder.joint(0), rotation, &link.mount));
+            }
+            None => {}
         }
     }
     loads.reverse();
-    loads
+    let line = arm.builder.joint(0);
+    let lines = (line, line, [Quantity::BaseForce, Quantity::BaseMoment]);
+    let of_base = arm.floating_base.as_ref().map(|body| wrench(lines, body, base, &on_base, &on(None)));
+    (loads, of_base)
 }
 
 /// ω̇ × h + ω × (ω × h)

@@ -1,6 +1,6 @@
 //! The capabilities of a robot: each is a trait that a struct derives.
 
-use super::Function;
+use super::{Argument, Function};
 use crate::named::named;
 
 named! {
@@ -36,6 +36,8 @@ named! {
         PayloadDynamics = "PayloadDynamics",
         /// The arm with a wrench at each named tip.
         TipWrenches = "TipWrenches",
+        /// The robot whose base nothing holds.
+        FloatingBase = "FloatingBase",
     }
 }
 
@@ -43,5 +45,11 @@ impl Capability {
     /// The methods of its trait.
     pub fn functions(self) -> impl Iterator<Item = Function> {
         Function::ALL.into_iter().filter(move |function| function.capability() == self)
+    }
+
+    /// Whether its methods take a wrench at each tip.
+    #[must_use]
+    pub fn has_tips(self) -> bool {
+        self.functions().any(|function| function.takes(Argument::Wrenches))
     }
 }

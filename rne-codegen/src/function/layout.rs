@@ -14,6 +14,7 @@ pub enum Shape {
 const VECTOR: Shape = Shape::Array(Length::Joints, &Shape::Number);
 const MATRIX: Shape = Shape::Array(Length::Joints, &VECTOR);
 const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
+const WRENCH: Shape = Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE]);
 const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
 
 /// The shapes of results, by the names that they have in the list of functions.
@@ -45,6 +46,8 @@ pub enum Returned {
     TorqueDerivatives,
     /// Two vectors.
     MomentumAndRate,
+    /// A force and a moment, and a number per joint.
+    FloatingTorques,
 }
 
 impl Returned {
@@ -61,13 +64,14 @@ impl Returned {
             Self::SpatialRows => &Shape::Array(Length::Fixed(6), &VECTOR),
             Self::Pose => &POSE,
             Self::Poses => &Shape::Array(Length::Joints, &POSE),
-            Self::Wrenches => &Shape::Array(Length::Joints, &Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE])),
+            Self::Wrenches => &Shape::Array(Length::Joints, &WRENCH),
             Self::Regressor => &Shape::Array(
                 Length::Joints,
                 &Shape::Array(Length::Joints, &Shape::Array(Length::Fixed(10), &Shape::Number)),
             ),
             Self::TorqueDerivatives => &Shape::Record(Record::TorqueDerivatives, &[MATRIX, MATRIX]),
             Self::MomentumAndRate => &Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
+            Self::FloatingTorques => &Shape::Record(Record::FloatingTorques, &[WRENCH, VECTOR]),
         }
     }
 }
@@ -116,6 +120,8 @@ pub enum Record {
     TorqueDerivatives,
     /// M q̇ and its rate.
     MomentumAndRate,
+    /// The wrench on the base, and the torques.
+    FloatingTorques,
 }
 
 impl Record {
@@ -127,6 +133,7 @@ impl Record {
             Self::Wrench => "Wrench",
             Self::TorqueDerivatives => "TorqueDerivatives",
             Self::MomentumAndRate => "MomentumAndRate",
+            Self::FloatingTorques => "FloatingTorques",
         }
     }
 
@@ -138,6 +145,7 @@ impl Record {
             Self::Wrench => ["force", "moment"],
             Self::TorqueDerivatives => ["dq", "dqd"],
             Self::MomentumAndRate => ["momentum", "rate"],
+            Self::FloatingTorques => ["wrench", "tau"],
         }
     }
 }

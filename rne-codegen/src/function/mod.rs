@@ -120,10 +120,27 @@ impl Function {
         self.entry().returns_torques
     }
 
+    /// The function whose operations the plan of a robot is to make few: the torques, and with them the wrench on the
+    /// base where nothing holds it.
+    #[must_use]
+    pub fn of_plan(robot: &Robot) -> Self {
+        match robot.floating_base {
+            Some(_) if !robot.has_spinning_rotors() => Self::InverseDynamicsOfFloatingBase,
+            _ => Self::InverseDynamics,
+        }
+    }
+
+    /// Whether it returns the wrench that must act on a base that nothing holds.
+    #[must_use]
+    pub const fn returns_base_wrench(self) -> bool {
+        matches!(self, Self::InverseDynamicsOfFloatingBase)
+    }
+
     /// Whether rotors that belong to the arm change what it returns.
     #[must_use]
     pub fn feels_rotors(self) -> bool {
-        self.entry().feels_rotors || self.returns_torques() && self.takes(Argument::Accelerations)
+        let has_torques = self.returns_torques() || self.returns_base_wrench();
+        self.entry().feels_rotors || has_torques && self.takes(Argument::Accelerations)
     }
 
     /// Whether what it returns are the accelerations of the joints.

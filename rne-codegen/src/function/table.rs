@@ -159,6 +159,14 @@ macro_rules! functions {
             ) -> Vector:
                 "Accelerations for positions `q`, velocities `qd`, torques `tau` and a wrench at each tip.",
                 "wrenches: as in inverse_dynamics_with_wrenches. qdd: as in forward_dynamics.";
+            InverseDynamicsOfFloatingBase = inverse_dynamics_of_floating_base(
+                q: Positions, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
+            ) -> FloatingTorques:
+                "Torques, and the wrench that must act on the base, when nothing holds the base and it moves as told.",
+                "base: as in inverse_dynamics_on_moving_base; only its acceleration less its gravity counts, which is \
+                 what an inertial measurement unit reads. wrenches: as in inverse_dynamics_with_wrenches. wrench: \
+                 force (N) and moment (N m) that must act ON the base beside gravity, about the origin of frame 0, in \
+                 its axes; zero in free flight. tau: of the actuators.";
         }
     };
 }
@@ -476,6 +484,22 @@ pub(crate) const TABLE: &[Entry] = &[
     Entry { output: "tau", ..Entry::of(Function::WrenchTorques, Capability::Kinematics) },
     Entry { ..Entry::torques(Function::InverseDynamicsWithWrenches, Capability::TipWrenches) },
     Entry { function: Function::ForwardDynamicsWithWrenches, capability: Capability::TipWrenches, ..FORWARD_DYNAMICS },
+    Entry {
+        output: "torques",
+        listed: "returned: force and moment on the base, then the torques",
+        own: &[
+            Own::of(Quantity::BaseForce, |_| "force that must act on the base".to_owned()),
+            Own::of(Quantity::BaseMoment, |_| {
+                "moment that must act on the base, about the origin of frame 0".to_owned()
+            }),
+        ],
+        answer: Answer::Tables(&[
+            AnswerTable::of("force on the base (N), in axes of frame 0", Labels::Names(&["force"]), AXES),
+            AnswerTable::of("moment on the base (N m), about the origin of frame 0", Labels::Names(&["moment"]), AXES),
+            AnswerTable::of("torques (N m, prismatic: N)", Labels::Names(&["tau"]), Labels::Joints),
+        ]),
+        ..Entry::of(Function::InverseDynamicsOfFloatingBase, Capability::FloatingBase)
+    },
 ];
 
 /// Entries stand in the order of the variants, and none lacks what C and listings say.

@@ -25,7 +25,7 @@ impl BaseBranch {
     pub(crate) fn of(joint_frames: &JointFrames) -> Vec<Self> {
         let turn_together =
             !joint_frames.coupled.is_empty() || joint_frames.rows.iter().any(|row| !row.gyrostats.is_empty());
-        if !joint_frames.coordinates.is_every_joint() || turn_together {
+        if !joint_frames.coordinates.is_every_joint() || turn_together || joint_frames.base.is_some() {
             return Vec::new();
         }
         let rows = &joint_frames.rows;
@@ -55,6 +55,7 @@ impl BaseBranch {
         let has_last = self.rows.end == parameters.links.len();
         Parameters {
             links: parameters.links[self.rows.clone()].to_vec(),
+            base: parameters.base,
             origin_shifts: parameters.origin_shifts[self.rows.clone()].to_vec(),
             sphere: parameters.sphere.filter(|_| has_last),
             lambda: parameters.lambda[self.rows.clone()].to_vec(),

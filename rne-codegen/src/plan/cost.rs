@@ -37,6 +37,8 @@ pub struct OpenChoices {
     pub turned_last_frame: bool,
     /// Whether prismatic links can keep the axes of the revolute link before.
     pub carried_prismatics: bool,
+    /// Whether nothing holds the base, so that it is a link.
+    pub floating_base: bool,
 }
 
 /// The choices that one joint leaves open.
@@ -77,10 +79,11 @@ pub(crate) struct Evaluator {
 }
 
 /// The tables of a robot under every choice of frames that applies to it.
-pub(crate) fn frames(robot: &Robot) -> Vec<FramedRobot> {
+pub(crate) fn frames(robot: &Robot, function: Function) -> Vec<FramedRobot> {
+    let floating = function.returns_base_wrench();
     let choices = [false, true]
         .into_iter()
-        .flat_map(|carried| [false, true].map(|turned_last| FrameChoice { turned_last, carried }));
+        .flat_map(|carried| [false, true].map(|turned_last| FrameChoice { turned_last, carried, floating }));
     choices
         .filter_map(|frames| {
             let joint_frames = JointFrames::new(robot, frames)?;
@@ -91,8 +94,8 @@ pub(crate) fn frames(robot: &Robot) -> Vec<FramedRobot> {
 }
 
 /// The table of a robot under the frames of one plan.
-pub(crate) fn frame(robot: &Robot, plan: &Plan) -> Option<FramedRobot> {
-    let frames = plan.frames();
+pub(crate) fn frame(robot: &Robot, plan: &Plan, function: Function) -> Option<FramedRobot> {
+    let frames = FrameChoice { floating: function.returns_base_wrench(), ..plan.frames() };
     let joint_frames = JointFrames::new(robot, frames)?;
     let offers = Offers::new(&joint_frames);
     Some(FramedRobot { frames, joint_frames, offers })
@@ -100,7 +103,7 @@ pub(crate) fn frame(robot: &Robot, plan: &Plan) -> Option<FramedRobot> {
 
 impl FramedRobot {
     pub(crate) fn is_of(&self, plan: &Plan) -> bool {
-        self.frames == plan.frames()
+        self.frames == (FrameChoice { floating: self.frames.floating, ..plan.frames() })
     }
 
     pub(crate) fn parameters(&self, plan: &Plan) -> Option<Parameters> {
@@ -148,14 +151,14 @@ impl Formulation {
     pub fn by_plan(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Result<Self, CompileError> {
         let sphere = plan.gyrostat && !function.takes(Argument::Payload);
         let plan = &Plan { gyrostat: sphere, ..plan.clone() };
-        let written = frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
+        let written = frame(robot, plan, function).and_then(|frame| frame.written(plan, function, algorithm));
         written.ok_or_else(|| CompileError::PlanDoesNotFit { robot: robot.name.clone() })
     }
 }
 
 impl Evaluator {
     pub(crate) fn new(robot: &Robot, function: Function) -> Self {
-        let frames = frames(robot);
+        let frames = frames(robot, function);
         let embedding = frames.first().map(|frame| frame.joint_frames.embedding).unwrap_or_default();
         Self {
             branches: frames.iter().map(|frame| BaseBranch::of(&frame.joint_frames)).collect(),
@@ -170,14 +173,16 @@ impl Evaluator {
     /// The choices that the robot leaves open.
     pub(crate) fn open_choices(&self) -> OpenChoices {
         let has = |test: fn(&FrameChoice) -> bool| self.frames.iter().any(|frame| test(&frame.frames));
-        let Some(FramedRobot { joint_frames, offers, .. }) = self.frames.first() else { return OpenChoices::default() };
+        let Some(FramedRobot { frames, joint_frames, offers }) = self.frames.first() else {
+            return OpenChoices::default();
+        };
         let rows = &joint_frames.rows;
         let joints = rows.iter().zip(&offers.origin_shifts).enumerate().map(|(index, (row, shifts))| OpenJoint {
             kind: row.kind,
             is_parallel: is_parallel(rows, index),
             is_twisted: row.alpha.quarters().is_none(),
             origin_shifts: shifts.iter().map(|(rule, _)| *rule).collect(),
-            scaled: branches::scaled(rows, index),
+            scaled: if frames.floating { Vec::new() } else { branches::scaled(rows, index) },
             alike: Vec::new(),
         });
         let mut joints: Vec<OpenJoint> = joints.collect();
@@ -190,6 +195,7 @@ impl Evaluator {
             gyrostat: offers.gyrostat,
             turned_last_frame: has(|frames| frames.turned_last),
             carried_prismatics: has(|frames| frames.carried),
+            floating_base: frames.floating,
         }
     }
 

@@ -34,7 +34,7 @@ impl<'v> Descent<'v> {
     /// Starts from the plain plan of a robot; no plan that uses a trick of `without` is counted.
     #[must_use]
     pub fn new(robot: &Robot, without: &[Trick]) -> Self {
-        let mut evaluator = Evaluator::new(robot, Function::InverseDynamics);
+        let mut evaluator = Evaluator::new(robot, Function::of_plan(robot));
         let plan = without.iter().fold(Plan::new(robot.joints.len()), |plan, trick| trick.left_out_of(&plan));
         // the plain plan applies to every robot
         let best = (evaluator.cost(&plan).unwrap_or_default(), plan);
@@ -65,7 +65,7 @@ impl<'v> Descent<'v> {
         self.veto = Some(Box::new(veto));
     }
 
-    /// The cost of `inverse_dynamics` by a plan; `None` where the plan does not fit the robot, or uses a trick that is
+    /// The cost of the torques by a plan; `None` where the plan does not fit the robot, or uses a trick that is
     /// left out.
     pub fn cost(&mut self, plan: &Plan) -> Option<Cost> {
         if self.without.iter().any(|trick| trick.is_in(plan)) {
@@ -153,7 +153,7 @@ impl<'v> Descent<'v> {
 }
 
 /// Candidates of a greedy search that concern all joints.
-const OF_THE_ARM: usize = 12;
+const OF_THE_ARM: usize = 14;
 
 /// The candidates of a greedy search, in their order; `None` after the last.
 fn greedy_candidate(open: &OpenChoices, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
@@ -196,6 +196,9 @@ fn greedy_candidate(open: &OpenChoices, plan: &Plan, candidate: usize, round: us
             }
         }
         11 => all(&mut other, &|joint| joint.switches.origin_unturned = true),
+        12 | 13 if !open.floating_base => {}
+        12 => other.base_moment = Moment::Diagonal,
+        13 => other.base_moment = Moment::Inertia,
         _ => {
             let (index, choice) = ((candidate - OF_THE_ARM) % dof, (candidate - OF_THE_ARM) / dof);
             let joint = &mut other.joints[index];

@@ -30,7 +30,7 @@ const SEVERAL: [&str; 8] =
     ["puma560", "stanford", "ur5", "scara_cobra600", "planar3", "panda", "cylindrical_rpp", "dense6_2p"];
 
 fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Option<Formulation> {
-    frame(robot, plan)?.written(plan, function, Algorithm::Rnea)
+    frame(robot, plan, function)?.written(plan, function, Algorithm::Rnea)
 }
 
 /// A program that has not been proved, with what its constants are exactly and how they are read.

@@ -6,11 +6,11 @@ use crate::formulate::ldlt::System;
 use crate::formulate::{self, Outputs, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
-use crate::reduced::backward::torques;
+use crate::reduced::backward::{torques, torques_of_floating_base};
 use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
-use crate::reduced::{Arm, aba, crba, momentum};
+use crate::reduced::{Arm, Wrench, aba, crba, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +52,13 @@ impl Algorithm {
         !Self::of(function).is_empty()
     }
 
+    /// Whether the choices of a plan matter to a function of a robot. A rotor of the list `motors` turns with a base that
+    /// nothing holds, which no recursion of the reduced form has.
+    #[must_use]
+    pub fn is_planned_for(function: Function, robot: &Robot) -> bool {
+        Self::is_planned(function) && !(function.returns_base_wrench() && robot.has_spinning_rotors())
+    }
+
     /// The ways of a function; none for what has no reduced recursion.
     #[must_use]
     pub const fn of(function: Function) -> &'static [Self] {
@@ -62,7 +69,8 @@ impl Algorithm {
             | Function::InverseDynamicsWithWrench
             | Function::InverseDynamicsFromSinCos
             | Function::BiasTorques
-            | Function::InverseDynamicsWithWrenches => &[Algorithm::Rnea],
+            | Function::InverseDynamicsWithWrenches
+            | Function::InverseDynamicsOfFloatingBase => &[Algorithm::Rnea],
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload]
             }
@@ -217,6 +225,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             | Function::InverseDynamicsWithWrenches,
             algorithm,
         ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
+        (Function::InverseDynamicsOfFloatingBase, _) => {
+            let (Wrench { force, moment }, of_joints) = torques_of_floating_base(arm);
+            [formulate::on_base([force, moment]), by_joint(Quantity::Torque, of_joints)].concat()
+        }
         // `Algorithm::of` matches them all
         _ => return None,
     })

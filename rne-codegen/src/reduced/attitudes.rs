@@ -31,11 +31,13 @@ struct Attitude {
 type Axes = (Option<usize>, Square);
 
 /// For each link, the link that has its second moments, and the rotation from its axes to those of that link; `None`
-/// for a link that never turns. A prismatic link gives them to its parent, so it is its own here.
+/// for a link that never turns; on a base that nothing holds it turns as the base. A prismatic link gives them to its parent, so it is its own here.
 pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>> {
     let rows = &joint_frames.rows;
+    // that of a base that nothing holds, which stands behind the links
+    let of_base = joint_frames.base.map(|_| Some((rows.len(), IDENTITY)));
     if joint_frames.coordinates.is_every_joint() {
-        return (0..rows.len()).map(|index| Some((index, IDENTITY))).collect();
+        return (0..rows.len()).map(|index| Some((index, IDENTITY))).chain(of_base).collect();
     }
     let mut attitudes: Vec<Attitude> = Vec::new();
     let mut axes: Vec<Axes> = Vec::with_capacity(rows.len());
@@ -49,8 +51,10 @@ pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>
         }
         let (at, rotation) = attitude(joint_frames, &mut attitudes, index, of_parent);
         axes.push((at, rotation));
-        holders.push(at.map(|at| (attitudes[at].first, rotation)));
+        let holder = at.map(|at| attitudes[at].first).or_else(|| joint_frames.base.map(|_| rows.len()));
+        holders.push(holder.map(|holder| (holder, rotation)));
     }
+    holders.extend(of_base);
     holders
 }
 

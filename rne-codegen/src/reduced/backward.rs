@@ -9,20 +9,20 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Axis, Builder, Name, Number, Quantity, Symbol, Vector};
-use crate::reduced::forward::plus;
+use crate::reduced::forward::{motion_of_base, motions, plus};
 use crate::reduced::gyrostats::{of_other_joints, resistance};
 use crate::reduced::inward::full;
 use crate::reduced::joint_frames::Tip;
 use crate::reduced::regrouping::is_parallel;
 use crate::reduced::siblings::gathered;
 use crate::reduced::{
-    Arm, Gradient, JointFrame, JointPlan, Load, Moment, Motion, Moved, Parameters, PseudoInertia, ScaledTwist, Side,
-    SymbolicTurn, Wrench,
+    Arm, Gradient, JointFrame, JointPlan, Load, Moment, Motion, Moved, PseudoInertia, ScaledTwist, Side, SymbolicTurn,
+    Wrench,
 };
 
 /// The wrench that a link exerts on its parent, about the origin of its frame.
 #[derive(Clone, Copy)]
-struct Child<'s> {
+pub(crate) struct Child<'s> {
     /// The link that exerts it.
     of: usize,
     wrench: Wrench<'s>,
@@ -34,7 +34,23 @@ struct Child<'s> {
 
 /// The torques, base to tip, with what the last link carries.
 pub(crate) fn torques<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Symbol<'s>> {
-    inward(arm, moved, payload).into_iter().map(|carried| carried.torque).collect()
+    inward(arm, moved, payload).0.into_iter().map(|carried| carried.torque).collect()
+}
+
+/// The wrench that must act on a base that nothing holds, about the origin of frame 0, and the torques, base to tip.
+pub(crate) fn torques_of_floating_base<'s>(arm: &Arm<'_, 's>) -> (Wrench<'s>, Vec<Symbol<'s>>) {
+    let builder = arm.builder;
+    let (carried, children) = inward(arm, &motions(arm), None);
+    let (motion, matter) = (motion_of_base(arm), &arm.parameters.base);
+    let scale = |scales: &[Number]| scales.first().copied().unwrap_or(Number::ONE);
+    let (lambda, mu) = (scale(&arm.parameters.lambda), scale(&arm.parameters.mu));
+    builder.at(Quantity::BaseForce, 0);
+    name_matter(builder, 0, matter);
+    let mut wrench = first_moment(builder, matter, (lambda, mu), &motion, builder.vector(matter.h));
+    wrench.moment = wrench.moment + second_moment(builder, matter, &motion, arm.plan.base_moment);
+    let wrench = wrench.plus(gathered(builder, children.iter().map(|child| (child.wrench, child.arm)).collect()));
+    let per_force = mu.inverse().unwrap_or(Number::ONE);
+    (Wrench { force: wrench.force.times(per_force), ..wrench }, carried.into_iter().map(|it| it.torque).collect())
 }
 
 /// A joint's torque, and the wrench at the joint: of the link and all that it carries, about the origin of its frame. A
@@ -45,8 +61,12 @@ pub(crate) struct Carried<'s> {
     pub(crate) unturned: Wrench<'s>,
 }
 
-/// The way back, base to tip.
-pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Carried<'s>> {
+/// The way back, base to tip, and what the joints of the base exert on it.
+pub(crate) fn inward<'s>(
+    arm: &Arm<'_, 's>,
+    moved: &[Moved<'s>],
+    payload: Option<Load<'s>>,
+) -> (Vec<Carried<'s>>, Vec<Child<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
     let tips = tip_wrenches(arm);
     let mut found = Vec::with_capacity(rows.len());
@@ -91,7 +111,8 @@ pub(crate) fn inward<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option
         children.extend(next);
     }
     found.reverse();
-    found
+    children.retain(|child| rows[child.of].parent.is_none());
+    (found, children)
 }
 
 /// The wrench that the link of each tip exerts there, about the origin of its frame and in its axes; with the link.
@@ -153,10 +174,11 @@ fn own_wrench<'s>(
     name_matter(builder, index + 1, matter);
     let (mut own, mut unturned) = (Wrench::zero(builder), Wrench::zero(builder));
     let h = builder.vector(matter.h);
+    let scales = (arm.parameters.lambda[index], arm.parameters.mu[index]);
     if on.first_moment_unturned && is_revolute {
-        unturned = first_moment(arm, index, &link.unturned, link.group_turn.about_z(h));
+        unturned = first_moment(builder, matter, scales, &link.unturned, link.group_turn.about_z(h));
     } else {
-        own = first_moment(arm, index, &link.own, h);
+        own = first_moment(builder, matter, scales, &link.own, h);
     }
     if let Some(load) = payload {
         // second moments of both at once
@@ -173,11 +195,15 @@ fn own_wrench<'s>(
 }
 
 /// F = m a + U h and h × a.
-fn first_moment<'s>(arm: &Arm<'_, 's>, index: usize, motion: &Motion<'s>, h: Vector<'s>) -> Wrench<'s> {
-    let Parameters { links, lambda, mu, .. } = arm.parameters;
-    let (lambda, mu) = (lambda[index], mu[index]);
+fn first_moment<'s>(
+    builder: &'s Builder,
+    matter: &PseudoInertia,
+    (lambda, mu): (Number, Number),
+    motion: &Motion<'s>,
+    h: Vector<'s>,
+) -> Wrench<'s> {
     let per_length = lambda.inverse().unwrap_or(Number::ONE);
-    let mass = arm.builder.number(links[index].mass * mu * per_length);
+    let mass = builder.number(matter.mass * mu * per_length);
     Wrench {
         force: motion.acceleration * mass + motion.gradient.of(h.times(mu)),
         moment: h.times(per_length).cross(motion.acceleration),
@@ -298,7 +324,7 @@ fn turn<'s>(
     builder.name_vector(Quantity::ReducedForce, joint, own.force);
     builder.name_vector(Quantity::ReducedMoment, joint, own.moment);
     let torque = own.moment.0[2] + unturned.moment.0[2];
-    if row.parent.is_none() {
+    if arm.joint_frames.carrier(index).is_none() {
         return (torque, None);
     }
     let in_unturned = !unturned.is_zero() || (parallel && on.group_wrench);

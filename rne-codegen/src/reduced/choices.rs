@@ -22,6 +22,8 @@ pub struct Plan {
     pub length_scale: Scale,
     /// μ is one over this.
     pub force_scale: Scale,
+    /// The moment of a base that nothing holds (section 3.3).
+    pub base_moment: Moment,
     /// The choices of each joint, base to tip.
     pub joints: Vec<JointPlan>,
 }
@@ -312,6 +314,7 @@ impl Plan {
             carried_prismatics: false,
             length_scale: Scale::Default,
             force_scale: Scale::Default,
+            base_moment: Moment::Second,
             joints: vec![JointPlan::default(); dof],
         }
     }
@@ -327,6 +330,7 @@ impl Plan {
             (self.carried_prismatics, "prismatic links keep the axes of the revolute link before".to_owned()),
             (self.length_scale != Scale::Default, format!("lengths are measured in {}", self.length_scale)),
             (self.force_scale != Scale::Default, format!("forces are measured by {}", self.force_scale)),
+            (self.base_moment != Moment::default(), format!("moment of the base: {}", self.base_moment)),
         ];
         lines.extend(of_the_arm.into_iter().filter(|(made, _)| *made).map(|(_, words)| words));
         for (index, joint) in self.joints.iter().enumerate() {
@@ -363,6 +367,6 @@ impl Plan {
     }
 
     pub(crate) fn frames(&self) -> FrameChoice {
-        FrameChoice { turned_last: self.turned_last_frame, carried: self.carried_prismatics }
+        FrameChoice { turned_last: self.turned_last_frame, carried: self.carried_prismatics, floating: false }
     }
 }

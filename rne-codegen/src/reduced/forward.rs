@@ -10,7 +10,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::ir::{Builder, ExactAngle, Matrix, Number, Quantity, Symbol, Vector};
+use crate::ir::{Axis, Builder, ExactAngle, Matrix, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
 use crate::reduced::siblings::point_acceleration;
@@ -158,7 +158,8 @@ impl<'a> Arm<'a, '_> {
         let [x, y, z] = row.offset;
         let origin_shifts = &self.parameters.origin_shifts;
         let before = row.parent.map_or(Number::ZERO, |parent| origin_shifts[parent]);
-        let d = if row.parent.is_none() { Number::ZERO } else { row.d + origin_shifts[index] };
+        let is_held = self.joint_frames.carrier(index).is_none();
+        let d = if is_held { Number::ZERO } else { row.d + origin_shifts[index] };
         ([x, y, z - before].map(|length| length * scale), d * scale)
     }
 
@@ -180,14 +181,31 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
+/// The motion of a base that nothing holds, in frame 0: as the function is told.
+pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
+    let builder = arm.builder;
+    let told = |quantity| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))));
+    let [omega, omega_dot] = [Quantity::Omega, Quantity::OmegaDot].map(told);
+    builder.at(Quantity::OriginAcceleration, 0);
+    let lambda = arm.parameters.lambda.first().copied().unwrap_or(Number::ONE);
+    let acceleration = (told(Quantity::Acceleration) - told(Quantity::Gravity)).times(lambda);
+    let acceleration = builder.name_vector(Quantity::OriginAcceleration, 0, acceleration);
+    builder.at(Quantity::Gradient, 0);
+    let gradient = Gradient::new(omega, omega_dot);
+    builder.name_matrix(Quantity::Gradient, 0, Matrix::from_rows(gradient.u));
+    Motion { omega, omega_dot, acceleration, gradient }
+}
+
 /// The motion of all links.
 pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
     let zeros = arm.builder.no_vector();
+    let floating = arm.joint_frames.base.map(|_| motion_of_base(arm));
     let mut moved: Vec<Moved<'s>> = Vec::with_capacity(arm.rows().len());
     for (index, row) in arm.rows().iter().enumerate() {
-        let before = match row.parent {
-            Some(parent) => moved[parent].own,
-            None => Motion {
+        let before = match (row.parent, floating) {
+            (Some(parent), _) => moved[parent].own,
+            (None, Some(base)) => base,
+            (None, None) => Motion {
                 omega: zeros,
                 omega_dot: zeros,
                 acceleration: arm
@@ -215,7 +233,10 @@ fn joint_point<'s>(
     p: [Number; 3],
 ) -> (Vector<'s>, Vector<'s>, bool) {
     let Some(parent) = arm.rows()[index].parent else {
-        return (before.acceleration, arm.builder.no_vector(), false);
+        if arm.joint_frames.base.is_none() {
+            return (before.acceleration, arm.builder.no_vector(), false);
+        }
+        return (point_acceleration(arm, index, &before, p), arm.builder.no_vector(), false);
     };
     let link = &moved[parent];
     let unturned = arm.plan.joints[parent].switches.origin_unturned && arm.rows()[parent].kind == Revolute;

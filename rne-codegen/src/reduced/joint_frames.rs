@@ -69,6 +69,8 @@ pub(crate) struct JointFrames {
     pub(crate) embedding: Embedding,
     /// Sines and cosines of the constant angles of the file, none negative.
     pub(crate) known: Vec<Number>,
+    /// The matter of a base that nothing holds, about the origin of frame 0 and in its axes.
+    pub(crate) base: Option<PseudoInertia>,
 }
 
 /// Choices that change the rows themselves.
@@ -78,6 +80,8 @@ pub(crate) struct FrameChoice {
     pub(crate) turned_last: bool,
     /// Prismatic links keep the axes of the last revolute link (section 5.9).
     pub(crate) carried: bool,
+    /// Nothing holds the base: it is a link, whose axes are those of frame 0 (section 17). The function decides.
+    pub(crate) floating: bool,
 }
 
 impl JointFrame {
@@ -136,7 +140,11 @@ impl JointFrames {
     /// each must have a root for every one that is wanted, and value and image of every number must agree about what is
     /// zero.
     pub(crate) fn new(robot: &Robot, frames: FrameChoice) -> Option<Self> {
-        if frames == FrameChoice::default()
+        if frames.floating && robot.has_spinning_rotors() {
+            // a rotor would turn with the base
+            return None;
+        }
+        if frames == (FrameChoice { floating: frames.floating, ..FrameChoice::default() })
             && let Some(joint_frames) = Self::read(robot, frames, Embedding::default())
         {
             return Some(joint_frames);
@@ -156,6 +164,12 @@ impl JointFrames {
         usable
             .flat_map(|unknown| (0..48).map(move |seed| Embedding { seed, unknown }))
             .find_map(|embedding| Self::read(robot, frames, embedding).filter(Self::agrees))
+    }
+
+    /// The link that carries a joint, counted from 0: one behind the last for a base that nothing holds, `None` for a
+    /// base that the world holds.
+    pub(crate) fn carrier(&self, index: usize) -> Option<usize> {
+        self.rows[index].parent.or_else(|| self.base.map(|_| self.rows.len()))
     }
 
     /// The same rows where nothing weighs.
@@ -186,9 +200,14 @@ impl JointFrames {
 
     fn read(robot: &Robot, frames: FrameChoice, embedding: Embedding) -> Option<Self> {
         let mut joint_frames = Self::as_written(robot, embedding)?;
+        if frames.floating {
+            joint_frames.base = Some(matter_of_base(robot, embedding));
+        }
         joint_frames.straighten();
         joint_frames.turn_carriers();
-        joint_frames.normalise_first();
+        if !frames.floating {
+            joint_frames.normalise_first();
+        }
         if frames.carried && !joint_frames.carry_prismatics() {
             return None;
         }
@@ -272,12 +291,14 @@ impl JointFrames {
         let gravity = robot.gravity.map(decimal);
         let of_base = |row: &JointFrame| if row.parent.is_none() { gravity } else { Triple::default() };
         let gravity = rows.iter().map(of_base).collect();
-        Some(Self { rows, coordinates: Coordinates::of(robot), gravity, tips, rotors, coupled, embedding, known })
+        let (coordinates, base) = (Coordinates::of(robot), None);
+        Some(Self { rows, coordinates, gravity, tips, rotors, coupled, embedding, known, base })
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
     fn straighten(&mut self) {
         let flip = about_x(ExactAngle { sin: Number::ZERO, cos: -Number::ONE });
+        let is_floating = self.base.is_some();
         for index in 0..self.rows.len() {
             let parent = self.rows[index].parent.map(|parent| self.rows[parent].reversed);
             let row = &mut self.rows[index];
@@ -286,7 +307,7 @@ impl JointFrames {
                 row.offset = apply(&flip, row.offset);
                 row.gamma = row.gamma.back();
             }
-            if parent.is_some() && row.alpha.quarters() == Some(QuarterTurns::Two) {
+            if (parent.is_some() || is_floating) && row.alpha.quarters() == Some(QuarterTurns::Two) {
                 row.alpha = ExactAngle::NONE;
                 row.reversed = !row.reversed;
             }
@@ -459,6 +480,15 @@ impl JointFrames {
         self.turn_tips(|on| (first..end).contains(&on), &back);
         true
     }
+}
+
+/// Of a robot file without `floating_base` the base has no matter.
+fn matter_of_base(robot: &Robot, embedding: Embedding) -> PseudoInertia {
+    let decimal = |x: f64| embedding.decimal(x);
+    robot.floating_base.as_ref().map_or_else(PseudoInertia::default, |base| {
+        let inertia = base.link.inertia.rows().map(|row| row.map(decimal));
+        PseudoInertia::of_body(decimal(base.link.mass), base.link.com.map(decimal), inertia, decimal(0.5))
+    })
 }
 
 /// R = Rz(φ1) Rx(α) Rz(φ2). The sine of α may be one of those `known`.

@@ -25,7 +25,7 @@ pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
     let weightless = Arm { joint_frames: &joint_frames, ..*arm };
     let (moved, carried) = builder.moving(Moving::RatesForAccelerations, || {
         let moved = motions(&weightless);
-        let carried = inward(&weightless, &moved, arm.load(false));
+        let carried = inward(&weightless, &moved, arm.load(false)).0;
         (moved, carried)
     });
     let rates = carried.iter().zip(&moved).zip(gravity).enumerate().map(|(index, ((carried, link), gravity))| {

@@ -22,6 +22,8 @@ const SCALES: std::ops::Range<f64> = 1e-3..1e3;
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters {
     pub(crate) links: Vec<PseudoInertia>,
+    /// That of a base that nothing holds, with what it has been given.
+    pub(crate) base: PseudoInertia,
     /// How far the origin of each frame has been slid along its axis.
     pub(crate) origin_shifts: Vec<Number>,
     /// I_zz of a last link that is a spinning sphere without mass.
@@ -77,11 +79,11 @@ impl Offers {
             Self { origin_shifts: Vec::new(), lengths: Vec::new(), gyrostat: has_sphere(joint_frames), rods };
         let plain = Plan::new(rows.len());
         let links = regrouped(joint_frames, &vec![Number::ZERO; rows.len()], &plain, &offers)
-            .map_or_else(Vec::new, |(links, _)| links);
+            .map_or_else(Vec::new, |(links, ..)| links);
         for (index, row) in rows.iter().enumerate() {
             let mut origin_shifts: Vec<(OriginShift, Number)> = Vec::new();
             for rule in OriginShift::ALL {
-                let Some(value) = origin_shift(rows, &links, index, rule) else { continue };
+                let Some(value) = origin_shift(joint_frames, &links, index, rule) else { continue };
                 let is_new = origin_shifts.iter().all(|(_, other)| other.residue != value.residue);
                 if is_new && value.to_f64().abs() <= LONGEST_SLIDE * reach {
                     origin_shifts.push((rule, value));
@@ -108,32 +110,33 @@ pub(crate) fn parameters(joint_frames: &JointFrames, offers: &Offers, plan: &Pla
     let origin_shifts =
         plan.joints.iter().enumerate().map(|(index, joint)| offers.origin_shift(index, joint.origin_shift));
     let origin_shifts: Vec<Number> = origin_shifts.collect::<Option<_>>()?;
-    let (links, sphere) = regrouped(joint_frames, &origin_shifts, plan, offers)?;
+    let (links, base, sphere) = regrouped(joint_frames, &origin_shifts, plan, offers)?;
     let (lambda, mu) = scales(joint_frames, &links, plan)?.into_iter().unzip();
-    Some(Parameters { links, origin_shifts, sphere, lambda, mu })
+    Some(Parameters { links, base, origin_shifts, sphere, lambda, mu })
 }
 
-/// The links with matter moved along the arm, and the sphere that is left of the last.
+/// The links with matter moved along the arm, the base with its own, and the sphere that is left of the last link.
 fn regrouped(
     joint_frames: &JointFrames,
     origin_shifts: &[Number],
     plan: &Plan,
     offers: &Offers,
-) -> Option<(Vec<PseudoInertia>, Option<Number>)> {
+) -> Option<(Vec<PseudoInertia>, PseudoInertia, Option<Number>)> {
     let rows = &joint_frames.rows;
     let slid = |(row, origin_shift): (&JointFrame, &Number)| {
         if origin_shift.is_zero() { row.matter } else { row.matter.moved([Number::ZERO, Number::ZERO, -*origin_shift]) }
     };
     let mut links: Vec<PseudoInertia> = rows.iter().zip(origin_shifts).map(slid).collect();
+    links.push(joint_frames.base.unwrap_or_default());
     let mut sphere = None;
     let mut end = rows.len();
     if plan.gyrostat {
         // a massless sphere c·1 is left, which the link before absorbs but for its spin
         end -= 1;
-        let parent = rows[end].parent.filter(|_| offers.gyrostat)?;
+        let parent = joint_frames.carrier(end).filter(|_| offers.gyrostat)?;
         let link = links[end];
         let c = link.s[0][0];
-        let (p, u) = line(rows, origin_shifts, end);
+        let (p, u) = line(joint_frames, origin_shifts, end);
         links[parent] = links[parent]
             + PseudoInertia::rod([link.mass, link.h[2], link.s[2][2] - c], p, u)
             + PseudoInertia { s: IDENTITY.map(|row| row.map(|x| x * c)), ..PseudoInertia::default() };
@@ -141,36 +144,42 @@ fn regrouped(
         sphere = Some(c + c);
     }
     if !plan.regrouped {
-        return Some((links, sphere));
+        let base = links.pop()?;
+        return Some((links, base, sphere));
     }
     let mut links = Links { list: links, holders: holders(joint_frames) };
     for index in 0..end {
         let s = std::mem::take(&mut links.list[index].s);
         links.add(index, PseudoInertia { s, ..PseudoInertia::default() });
     }
-    for index in (0..end).rev() {
-        let carried =
-            |kind| (index + 1..end).rev().filter(move |&at| rows[at].parent == Some(index) && rows[at].kind == kind);
+    // the base is the last of those that carry joints
+    for index in (0..end).rev().chain(joint_frames.base.map(|_| rows.len())) {
+        let carried = |kind| {
+            let is_carried = move |at: &usize| joint_frames.carrier(*at) == Some(index) && rows[*at].kind == kind;
+            (0..end).rev().filter(is_carried)
+        };
         for sliding in carried(Prismatic) {
             // it turns as the link before: all second moments belong to that
             let s = std::mem::take(&mut links.list[sliding].s);
             links.add(index, PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[sliding].rotation()));
         }
-        share_rods(rows, origin_shifts, plan, offers, &mut links, &carried(Revolute).collect::<Vec<_>>())?;
-        match (rows[index].parent, rows[index].kind) {
-            (None, Prismatic) => links.list[index].s = Square::default(),
-            (None, Revolute) => share_rods(rows, origin_shifts, plan, offers, &mut links, &[index])?,
-            _ => {}
+        share_rods(joint_frames, origin_shifts, plan, offers, &mut links, &carried(Revolute).collect::<Vec<_>>())?;
+        match rows.get(index).filter(|_| joint_frames.carrier(index).is_none()).map(|row| row.kind) {
+            Some(Prismatic) => links.list[index].s = Square::default(),
+            Some(Revolute) => share_rods(joint_frames, origin_shifts, plan, offers, &mut links, &[index])?,
+            None => {}
         }
     }
     let mut links = links.list;
-    for (_, first) in rows.iter().zip(&mut links).filter(|(row, _)| row.parent.is_none() && row.kind == Revolute) {
+    let is_first = |index: usize| joint_frames.carrier(index).is_none() && rows[index].kind == Revolute;
+    for (_, first) in links.iter_mut().take(rows.len()).enumerate().filter(|(index, _)| is_first(*index)) {
         // only the inertia about its axis acts
         let about_axis = first.s[0][0] + first.s[1][1];
         first.s = Square::default();
         first.s[0][0] = about_axis;
     }
-    Some((links, sphere))
+    let base = links.pop()?;
+    Some((links, base, sphere))
 }
 
 /// The links while matter moves between them.
@@ -216,7 +225,7 @@ impl Links {
 
 /// Moves three rods of matter from each of some revolute links on one parent to that, so that all targets vanish.
 fn share_rods(
-    rows: &[JointFrame],
+    joint_frames: &JointFrames,
     origin_shifts: &[Number],
     plan: &Plan,
     offers: &Offers,
@@ -224,8 +233,8 @@ fn share_rods(
     carried: &[usize],
 ) -> Option<()> {
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
-    let Some(parent) = carried.first().map(|&link| rows[link].parent) else { return Some(()) };
-    let lines: Vec<(Triple, Triple)> = carried.iter().map(|&link| line(rows, origin_shifts, link)).collect();
+    let Some(parent) = carried.first().map(|&link| joint_frames.carrier(link)) else { return Some(()) };
+    let lines: Vec<(Triple, Triple)> = carried.iter().map(|&link| line(joint_frames, origin_shifts, link)).collect();
     // the equations: the targets vanish
     let mut equations = Vec::with_capacity(3 * carried.len());
     for (place, &link) in carried.iter().enumerate() {
@@ -287,11 +296,11 @@ fn solved(mut rows: Vec<Vec<Number>>) -> Option<Vec<Number>> {
 }
 
 /// The axis of a row in axes of its parent: the origin of its frame, and its direction.
-fn line(rows: &[JointFrame], origin_shifts: &[Number], index: usize) -> (Triple, Triple) {
-    let row = &rows[index];
+fn line(joint_frames: &JointFrames, origin_shifts: &[Number], index: usize) -> (Triple, Triple) {
+    let row = &joint_frames.rows[index];
     let u = row.along_axis(Number::ONE);
     let before = row.parent.map_or(Number::ZERO, |parent| origin_shifts[parent]);
-    let d = if row.parent.is_none() { Number::ZERO } else { row.d + origin_shifts[index] };
+    let d = if joint_frames.carrier(index).is_none() { Number::ZERO } else { row.d + origin_shifts[index] };
     let [x, y, z] = row.offset;
     ([x + d * u[0], y + d * u[1], z - before + d * u[2]], u)
 }
@@ -305,12 +314,18 @@ fn has_sphere(joint_frames: &JointFrames) -> bool {
 }
 
 /// The slide by a rule, from the links of the plain gauge.
-fn origin_shift(rows: &[JointFrame], links: &[PseudoInertia], index: usize, rule: OriginShift) -> Option<Number> {
+fn origin_shift(
+    joint_frames: &JointFrames,
+    links: &[PseudoInertia],
+    index: usize,
+    rule: OriginShift,
+) -> Option<Number> {
+    let (rows, is_held) = (&joint_frames.rows, joint_frames.carrier(index).is_none());
     let row = &rows[index];
     if rule == OriginShift::None {
         return Some(Number::ZERO);
     }
-    if row.carried || row.parent.is_none() && row.kind == Prismatic {
+    if row.carried || is_held && row.kind == Prismatic {
         return None;
     }
     let ratio = |a: Number, b: Number| Some(a * b.inverse()?);
@@ -333,7 +348,7 @@ fn origin_shift(rows: &[JointFrame], links: &[PseudoInertia], index: usize, rule
         }
         _ => return None,
     };
-    (row.parent.is_some() || rule != OriginShift::MinusD).then_some(origin_shift)
+    (!is_held || rule != OriginShift::MinusD).then_some(origin_shift)
 }
 
 fn length(v: Triple) -> f64 {
@@ -358,7 +373,8 @@ fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> O
         let is_plain = (joint.length_scale, joint.force_scale) == (Scale::Default, Scale::Default);
         scales.push(match row.parent {
             Some(parent) if is_plain => scales[parent],
-            None if is_plain => of_arm,
+            // what a base that nothing holds carries is one branch
+            None if is_plain || joint_frames.base.is_some() => of_arm,
             None => scale(rows, links, joint.length_scale, joint.force_scale)?,
             Some(_) => return None,
         });

@@ -184,6 +184,9 @@ const fn about(record: Record) -> &'static str {
             "Rows of the rotation from the axes of a frame to those of the world, and the frame's origin there, m."
         }
         Record::Wrench => "Force, N, and moment, N m.",
+        Record::FloatingTorques => {
+            "Force and moment that must act on the base beside gravity, about the origin of frame 0, and the torques."
+        }
         Record::MomentumAndRate => "Momenta of the joints, M q̇, and their rates without external torques.",
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }

@@ -81,9 +81,13 @@ pub(crate) fn element_type(prefix: &str, precision: Precision, element: &Layout)
 
 /// A parameter for a result: the address of a record, or an array.
 fn declared(file: &File, layout: &Layout, name: &str) -> String {
-    let (lengths, of) = elements_of(layout);
     let star = if matches!(layout, Layout::Record(..)) { "*" } else { "" };
-    format!("{} {star}{name}{lengths}", element_type(file.prefix, file.precision, of))
+    variable(file, layout, &format!("{star}{name}"))
+}
+
+fn variable(file: &File, layout: &Layout, name: &str) -> String {
+    let (lengths, of) = elements_of(layout);
+    format!("{} {name}{lengths}", element_type(file.prefix, file.precision, of))
 }
 
 /// The name of a record's type.
@@ -97,6 +101,7 @@ fn record_name(prefix: &str, record: Record) -> String {
         Record::Wrench => "wrench",
         Record::TorqueDerivatives => "torque_derivatives",
         Record::MomentumAndRate => "momentum",
+        Record::FloatingTorques => "floating_torques",
     };
     format!("{prefix}_{name}")
 }
@@ -108,20 +113,20 @@ pub(super) fn parameters_type(file: &File) -> String {
 
 /// The fields of a record as they are declared.
 pub(super) fn fields(file: &File, record: Record, parts: &[Layout]) -> Vec<String> {
-    record.fields().iter().zip(parts).map(|(name, part)| declared(file, part, name)).collect()
+    record.fields().iter().zip(parts).map(|(name, part)| variable(file, part, name)).collect()
 }
 
-/// Every record that the functions return, once.
+/// Every record that the functions return, once; one that is part of another stands before it.
 pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
-    let mut records: Vec<(Record, Vec<Layout>)> = Vec::new();
-    for program in file.programs {
-        let layout = program.function.layout(program.dof);
-        if let (_, Layout::Record(record, parts)) = elements_of(&layout)
-            && records.iter().all(|(other, _)| other != record)
-        {
+    fn put(layout: &Layout, records: &mut Vec<(Record, Vec<Layout>)>) {
+        let (_, Layout::Record(record, parts)) = elements_of(layout) else { return };
+        parts.iter().for_each(|part| put(part, records));
+        if records.iter().all(|(other, _)| other != record) {
             records.push((*record, parts.clone()));
         }
     }
+    let mut records = Vec::new();
+    file.programs.iter().for_each(|program| put(&program.function.layout(program.dof), &mut records));
     records
 }
 

@@ -115,7 +115,8 @@ fn difference(node: &Node) -> Result<f64, Mistake> {
 }
 
 fn plan(node: &Node) -> Result<Plan, Mistake> {
-    let keys = ["gyrostat", "turned_last_frame", "carried_prismatics", "length_scale", "force_scale", "joints"];
+    let keys =
+        ["gyrostat", "turned_last_frame", "carried_prismatics", "length_scale", "force_scale", "base_moment", "joints"];
     let plan = Fields::open(node, "`plan`", &keys)?;
     Ok(Plan {
         regrouped: true,
@@ -124,6 +125,7 @@ fn plan(node: &Node) -> Result<Plan, Mistake> {
         carried_prismatics: plan.optional("carried_prismatics", switch)?,
         length_scale: plan.optional("length_scale", parsed)?,
         force_scale: plan.optional("force_scale", parsed)?,
+        base_moment: plan.optional("base_moment", moment)?,
         joints: plan.required("joints", |node| list(node, joint))?,
     })
 }
@@ -139,7 +141,6 @@ fn joint(node: &Node) -> Result<JointPlan, Mistake> {
         Side::Joint => Err(Mistake::new(node.span.clone(), "`inward_offset` must be `link` or `parent`, not `joint`")),
         side => Ok(side),
     };
-    let moment = |node: &Node| word(node, "moment", &named(&Moment::ALL, Moment::name));
     Ok(JointPlan {
         targets: joint.optional("targets", |node| array(node, target))?,
         origin_shift: joint.optional("origin_shift", shift)?,
@@ -150,6 +151,10 @@ fn joint(node: &Node) -> Result<JointPlan, Mistake> {
         force_scale: joint.optional("force_scale", parsed)?,
         switches: joint.optional("on", switches)?,
     })
+}
+
+fn moment(node: &Node) -> Result<Moment, Mistake> {
+    word(node, "moment", &named(&Moment::ALL, Moment::name))
 }
 
 fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<(T, &'static str)> {
@@ -212,8 +217,8 @@ fn written_accuracy(Accuracy { double, single, single_of_seven_steps }: Accuracy
 
 fn written_plan(plan: &Plan) -> Value {
     // regrouping is no choice of a plan file
-    let Plan { regrouped: _, gyrostat, turned_last_frame, carried_prismatics, length_scale, force_scale, joints } =
-        plan;
+    let Plan { regrouped: _, gyrostat, turned_last_frame, carried_prismatics, .. } = plan;
+    let Plan { length_scale, force_scale, base_moment, joints, .. } = plan;
     let switch = |on: &bool| Value::Plain(on.to_string());
     let scale = |scale: &Scale| Value::Text(scale.to_string());
     let entries = [
@@ -222,6 +227,7 @@ fn written_plan(plan: &Plan) -> Value {
         chosen("carried_prismatics", carried_prismatics, switch),
         chosen("length_scale", length_scale, scale),
         chosen("force_scale", force_scale, scale),
+        chosen("base_moment", base_moment, |moment| name(moment.name())),
         Some(("joints", Value::List(joints.iter().map(written_joint).collect()))),
     ];
     Value::Mapping(entries.into_iter().flatten().collect())

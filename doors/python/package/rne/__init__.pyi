@@ -253,6 +253,13 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations for positions `q`, velocities `qd`, torques `tau` and a wrench at each tip."""
+    def inverse_dynamics_of_floating_base(
+        self, q: Joints, qd: Joints, qdd: Joints, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Torques, and the wrench that must act on the base, when nothing holds the base and it moves as told."""
     # <!-- end -->
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,

@@ -14,7 +14,7 @@ const FUNCTIONS: [Function; 5] = [
 
 /// The program of a function by one of its algorithms; `None` where the plan does not apply.
 fn written(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Unproved> {
-    Some(lowered(robot, function, frame(robot, plan)?.written(plan, function, algorithm)?))
+    Some(lowered(robot, function, frame(robot, plan, function)?.written(plan, function, algorithm)?))
 }
 
 #[test]

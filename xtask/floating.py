@@ -1,0 +1,112 @@
+"""Torques of robots on floating bases beside Pinocchio, which reads the same URDF.
+
+Usage: python floating.py RNE FOLDER [--write]     where RNE is the binary and FOLDER has the URDFs that ROBOTS names.
+
+`rne import --whole --floating --no-snap` makes the robot file. States are random: any orientation of the base, and
+linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a quaternion and as
+spatial vectors in axes of the base. With --write the robot files and the values go to tests/functions/floating.
+"""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import pinocchio as pin
+
+TOLERANCE = 1e-12
+STATES = 3
+FUNCTION = "inverse_dynamics_of_floating_base"
+
+# Name of the URDF, and the licence, if its numbers stand in this repository.
+ROBOTS = [
+    ("grid_hyq", "MIT"),
+    ("erd_anymal_c", "BSD-3-Clause"),
+    ("grid_atlas", "MIT"),
+    ("h1", "BSD-3-Clause"),
+    ("erd_solo12", None),
+    ("go2_unitree", None),
+    ("g1_29dof", None),
+    ("erd_simple_humanoid", None),
+]
+
+
+def state(random, names):
+    """Joints, and the base in its own axes: v of its origin, ω, the acceleration of this point, ω̇, and gravity."""
+    dof = len(names)
+    joints = {"q": random.uniform(-1, 1, dof), "qd": random.uniform(-2, 2, dof), "qdd": random.uniform(-5, 5, dof)}
+    turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    velocity, omega, acceleration, omega_dot = random.normal(size=(4, 3))
+    gravity = turn.T @ [0, 0, -9.81]
+    told = {"omega": omega, "omega_dot": omega_dot, "acceleration": acceleration, "gravity": gravity}
+    return joints, told, (turn, velocity)
+
+
+def expected(model, names, joints, told, placed):
+    """Force and moment on the base, then the torques."""
+    turn, velocity = placed
+    q, v, a = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nv)
+    q[3:7] = pin.Quaternion(turn).coeffs()
+    v[:3], v[3:6] = velocity, told["omega"]
+    # spatial: the acceleration of the point of the base less ω × v
+    a[:3], a[3:6] = told["acceleration"] - np.cross(told["omega"], velocity), told["omega_dot"]
+    rows = []
+    for name, position, rate, rate_dot in zip(names, joints["q"], joints["qd"], joints["qdd"]):
+        joint = model.joints[model.getJointId(name)]
+        if joint.nq == 2:
+            q[joint.idx_q], q[joint.idx_q + 1] = np.cos(position), np.sin(position)
+        else:
+            q[joint.idx_q] = position
+        v[joint.idx_v], a[joint.idx_v] = rate, rate_dot
+        rows.append(joint.idx_v)
+    model.armature = np.zeros(model.nv)
+    torques = pin.rnea(model, model.createData(), q, v, a)
+    return np.concatenate([torques[:6], torques[rows]])
+
+
+def found(rne, file, joints, told):
+    """The same of the runtime library."""
+    options = {**joints, "base-omega": told["omega"], "base-omega-dot": told["omega_dot"],
+               "base-acceleration": told["acceleration"], "gravity": told["gravity"]}
+    options = [f"--{key}={','.join(repr(float(x)) for x in value)}" for key, value in options.items()]
+    done = subprocess.run([rne, "eval", file, "--function", FUNCTION, *options, "--json"], capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    result = json.loads(done.stdout)["result"]
+    return np.array(result["wrench"]["force"] + result["wrench"]["moment"] + result["tau"])
+
+
+def main():
+    rne, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    write = pathlib.Path(__file__).parent.parent / "tests/functions/floating" if "--write" in sys.argv else None
+    failed = []
+    with tempfile.TemporaryDirectory() as temporary:
+        for name, licence in ROBOTS:
+            urdf, file = folder / f"{name}.urdf", pathlib.Path(temporary) / f"{name}.yaml"
+            subprocess.run([rne, "import", urdf, "--whole", "--floating", "--no-snap", "--keep-unphysical", "-o", file],
+                           check=True, capture_output=True)
+            names = re.findall(r"- name: (\S+)\n", file.read_text())
+            model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
+            random, worst, states = np.random.default_rng(1), 0.0, []
+            for _ in range(STATES):
+                joints, told, placed = state(random, names)
+                values = expected(model, names, joints, told, placed)
+                worst = max(worst, np.abs(found(rne, file, joints, told) - values).max() / np.abs(values).max())
+                states.append({key: list(map(float, value)) for key, value in {**joints, **told, "expected": values}.items()})
+            print(f"{name}: {len(names)} joints, largest error {worst:.1e}", flush=True)
+            if worst > TOLERANCE:
+                failed.append(name)
+            elif write and licence:
+                (write / f"{name}.yaml").write_text(file.read_text())
+                golden = {"by": f"Pinocchio {pin.__version__}", "licence": licence, "states": states}
+                (write / f"{name}.golden.json").write_text(json.dumps(golden, indent=0) + "\n")
+    if failed:
+        sys.exit(f"failed: {', '.join(failed)}")
+
+
+if __name__ == "__main__":
+    main()
