@@ -88,8 +88,8 @@ fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
 }
 
 /// How probable it is that a leaf is the tip, by its name: `tool0` is the tip by convention (ROS REP 199, and
-/// ROS-Industrial before it), then names with `tcp` (tool centre point) or `tool`. What follows another joint, as the
-/// second finger of a gripper, comes last.
+/// ROS-Industrial before it), then names with `tcp` (tool centre point) or `tool`. A leaf that follows another joint,
+/// such as the second finger of a gripper, comes last.
 fn rank(urdf: &Urdf, base: usize, leaf: usize) -> u8 {
     let name = urdf.links[leaf].name.to_lowercase();
     let follows = last_movable(urdf, base, leaf).is_some_and(|joint| urdf.joints[joint].mimic.is_some());
