@@ -144,7 +144,7 @@ fn trees() {
     // the row that branches off, and not an earlier one that begins at a place of its own
     let refused = |text: &str| Reader::new("x").read(text).unwrap_err().short();
     let placed = tree.replace("alpha: 0}", "alpha: 0, b: 1}");
-    assert_eq!(refused(&placed), refused(&tree));
+    assert_eq!(refused(&placed).lines().next(), refused(&tree).lines().next());
     let only_placed = file("modified", "", &row("name: b", ", b: 1"));
     let found = refused(&only_placed);
     assert!(found.starts_with("x:9:73: error: joint 2 (`b`) begins at `b`, which only rows of trees have"), "{found}");
