@@ -261,8 +261,11 @@ impl Arm {
     /// that follows others, which has no element in `q`, unless `extra` is True.
     #[pyo3(signature = (names, extra=false))]
     fn order<'py>(&self, names: &Bound<'py, PyAny>, extra: bool) -> PyResult<Bound<'py, PyAny>> {
-        let followers: BTreeMap<_, _> =
-            self.followers().into_iter().map(|(name, (ratios, _))| (name, ratios.into_keys().collect::<Vec<_>>())).collect();
+        let followers: BTreeMap<_, _> = self
+            .followers()
+            .into_iter()
+            .map(|(name, (ratios, _))| (name, ratios.into_keys().collect::<Vec<_>>()))
+            .collect();
         names.py().import("rne.names")?.call_method1("order", (self.joints(), names, extra, followers))
     }
 
