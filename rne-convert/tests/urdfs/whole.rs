@@ -226,7 +226,7 @@ fn a_serial_arm_is_no_tree() {
     assert!(tree.text.starts_with("format: 2\n"), "{}", tree.text);
 }
 
-/// Of several leaves, one with the name of a tip, and a finger that follows another one last.
+/// Among several leaves, a leaf with the name of a tip comes first, and a finger that follows another one last.
 #[test]
 fn the_tip_is_the_leaf_that_is_called_so() {
     let follower = format!("{FREE}<mimic joint=\"a\"/>");
