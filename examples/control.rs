@@ -1,8 +1,8 @@
 //! The functions of the section Control of the README.
 
-use rne::{InverseDynamics, Kinematics, Payload};
+use rne::{FrameKinematics, InverseDynamics, Kinematics, Payload};
 
-#[derive(InverseDynamics, Kinematics)]
+#[derive(InverseDynamics, Kinematics, FrameKinematics)]
 #[robot(path = "../robots/puma560.yaml", form = "reduced")]
 struct MyArm;
 
@@ -13,6 +13,7 @@ fn main() {
     let gravity = MyArm.gravity_torques(&q); // N m
     let tau = MyArm.inverse_dynamics_with_payload(&q, &qd, &qdd, &tool); // the payload is known at run time
     let jacobian = MyArm.jacobian(&q); // of the tip, in world axes
+    let of_elbow = MyArm.jacobian_of::<{ MyArm::frame("j3") }, _>(&q); // of a link or a frame by name, as "camera"
 
-    println!("{gravity:.4?}\n{tau:.4?}\n{jacobian:.4?}");
+    println!("{gravity:.4?}\n{tau:.4?}\n{jacobian:.4?}\n{of_elbow:.4?}");
 }

@@ -10,6 +10,10 @@ struct Puma560;
 #[robot(path = "../docs/tree.yaml")]
 struct Tree;
 
+#[derive(InverseDynamics)]
+#[robot(path = "../docs/gripper.yaml")]
+struct Gripper;
+
 /// Alphabetic from behind, as no table is.
 const THEIRS: [&str; 6] = ["j6", "j5", "j4", "j3", "j2", "j1"];
 const ORDER: [usize; 6] = Puma560::order(THEIRS);
@@ -56,4 +60,22 @@ fn names_at_run_time_give_an_error() {
     names[2] = "wrist";
     assert_eq!(joint_order(&Puma560::JOINTS, &names, false), Err(JointOrderError::Unknown("wrist")));
     assert_eq!(joint_order(&Puma560::JOINTS, &names, true), Err(JointOrderError::Missing("j4")));
+}
+
+/// A joint that follows another one is no coordinate, and the message says so.
+#[test]
+fn a_follower_in_the_list_is_named_as_one() {
+    const ALL: [&str; 4] = ["finger_b", "shoulder", "elbow", "finger_a"];
+    const ORDER: [usize; 3] = Gripper::order_with_others(ALL);
+    assert_eq!(ORDER, [1, 2, 3]);
+    let message = |names: [&'static str; 3]| {
+        let stopped = std::panic::catch_unwind(|| Gripper::order(names)).expect_err("an error");
+        stopped.downcast_ref::<String>().cloned().unwrap_or_default()
+    };
+    assert_eq!(
+        message(["shoulder", "elbow", "finger_b"]),
+        "`finger_b` follows `finger_a`, so q has no element for it; leave it out, or call `order_with_others`"
+    );
+    let unknown = message(["shoulder", "elbow", "finger_c"]);
+    assert!(unknown.starts_with("`finger_c` in the list is not a joint of the robot"), "{unknown}");
 }

@@ -1,5 +1,5 @@
-//! `docs/robot-file.md`, and `docs/every-key.yaml` with the examples of trees, couplings, loops and motors, have the
-//! keys that the format has, no more and no fewer. The list of keys is that of rne-model's schema.
+//! `docs/robot-file.md`, and `docs/every-key.yaml` with the examples of `format: 2`, have the keys that the format has, no
+//! more and no fewer. The list of keys is that of rne-model's schema.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,10 +13,24 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The mappings of the format: those of a file with every key, and of files with couplings, a loop, motors and bodies.
+/// A file with every key of `format: 1`, and those that have the keys of `format: 2`.
+const FILES: [&str; 6] = [
+    "docs/every-key.yaml",
+    "docs/tree.yaml",
+    "docs/gripper.yaml",
+    "docs/palletiser.yaml",
+    "docs/dual_arm.yaml",
+    "robots/trees/mini_cheetah.yaml",
+];
+
+/// Keys of `format: 2` in mappings that `format: 1` has, too.
+const KEYS_OF_FORMAT_2: [&str; 10] =
+    ["parent", "at", "gamma", "b", "on", "couplings", "loops", "motors", "bodies", "tips"];
+
+/// The mappings of the format, of all files.
 fn format() -> Vec<Mapping> {
-    let mut all = mappings(&read("docs/every-key.yaml"));
-    for file in ["docs/gripper.yaml", "docs/palletiser.yaml", "robots/trees/mini_cheetah.yaml", "docs/dual_arm.yaml"] {
+    let mut all = mappings(&read(FILES[0]));
+    for file in &FILES[1..] {
         let others = mappings(&read(file)).into_iter();
         let others: Vec<Mapping> = others.filter(|other| all.iter().all(|known| known.name != other.name)).collect();
         all.extend(others);
@@ -101,32 +115,38 @@ fn collect(value: &Value, found: &mut Vec<BTreeSet<String>>) {
 #[test]
 fn a_file_with_every_key_has_every_key() {
     let mut found = Vec::new();
-    // what only a tree or couplings have stands in files of their own
-    for file in [
-        "docs/every-key.yaml",
-        "docs/tree.yaml",
-        "docs/gripper.yaml",
-        "docs/palletiser.yaml",
-        "robots/trees/mini_cheetah.yaml",
-    ] {
+    collect(&serde_yaml::from_str(&read(FILES[0])).expect("YAML"), &mut found);
+    for mapping in mappings(&read(FILES[0])) {
+        let keys: BTreeSet<String> = mapping.keys.iter().map(|key| key.name.to_owned()).collect();
+        let here: BTreeSet<String> = found.iter().filter(|names| names.is_subset(&keys)).flatten().cloned().collect();
+        let missing: Vec<&String> = keys.difference(&here).collect();
+        let is_of_format_2 = |key: &&String| KEYS_OF_FORMAT_2.contains(&key.as_str());
+        assert!(missing.iter().all(is_of_format_2), "{} has no {missing:?} of {}", FILES[0], mapping.name);
+    }
+    for file in &FILES[1..] {
         collect(&serde_yaml::from_str(&read(file)).expect("YAML"), &mut found);
     }
     let format = format();
     assert!(format.len() >= 8, "{format:?}");
     for mapping in format {
         let keys: BTreeSet<String> = mapping.keys.iter().map(|key| key.name.to_owned()).collect();
-        // it takes two links to have `com` and `first_moment`, and four files to have couplings, loops, motors and tips
+        // it takes two links to have `com` and `first_moment`, and five files to have the lists of `format: 2`
         let of_this_kind = found.iter().filter(|names| names.is_subset(&keys));
         let most = of_this_kind.clone().map(BTreeSet::len).max().unwrap_or(0);
         let all: BTreeSet<String> = of_this_kind.flatten().cloned().collect();
-        assert!(most + 5 >= keys.len(), "docs/every-key.yaml has no {} with nearly all of {keys:?}", mapping.name);
-        assert_eq!(all, keys, "docs/every-key.yaml: {}", mapping.name);
+        assert!(most + 5 >= keys.len(), "{FILES:?} have no {} with nearly all of {keys:?}", mapping.name);
+        assert_eq!(all, keys, "{FILES:?}: {}", mapping.name);
     }
 }
 
 #[test]
 fn the_page_explains_every_key() {
     let page = read("docs/robot-file.md");
+    let (_, files) = page.split_once("\n## A file with every key\n").expect("the section");
+    for file in FILES {
+        let link = file.strip_prefix("docs/").map_or_else(|| format!("(../{file})"), |file| format!("({file})"));
+        assert!(files.contains(&link), "docs/robot-file.md, A file with every key: no {link}");
+    }
     for mapping in format() {
         let heading = format!("\n### Keys of {}\n", mapping.name);
         let (_, section) = page.split_once(&heading).unwrap_or_else(|| panic!("docs/robot-file.md: no{heading}"));

@@ -88,7 +88,7 @@ fn wrenches_do_the_work_of_the_torques() {
         };
         let omega = [spin(2, 1), spin(0, 2), spin(1, 0)];
         work += (0..3).map(|k| omega[k] * wrench.moment[k]).sum::<f64>();
-        let mut wrenches = [Wrench::zero(); 2];
+        let mut wrenches = [Wrench::default(); 2];
         wrenches[tip] = wrench;
         assert!((added(&wrenches) - work).abs() < 1e-7, "tip {tip}: {} is not {work}", added(&wrenches));
     }

@@ -1,5 +1,5 @@
 //! Slips on the command line whose usual message would mislead: blanks in a list of numbers, an option without its
-//! value, a value that looks like an option, an option of another command.
+//! value, a value that looks like an option, an option of another command, a function that commands do not have.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
@@ -20,7 +20,8 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     let name = words.first()?;
     let command = grammar.get_subcommands().find(|command| command.get_name() == name)?;
     let words = &words[1..];
-    let text = with_blanks(command, words).or_else(|| without_value(command, words)).or_else(|| {
+    let text = with_blanks(command, words).or_else(|| without_value(command, words));
+    let text = text.or_else(|| of_libraries(error)).or_else(|| {
         let is_stray = error.kind() == ErrorKind::UnknownArgument;
         is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
     })?;
@@ -94,6 +95,18 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
         let is_refused = is_dashed && value.is_none() && !arg.is_allow_hyphen_values_set();
         let is_refused = is_refused && !(arg.is_allow_negative_numbers_set() && word.parse::<f64>().is_ok());
         is_refused.then(|| format!("`{word}` is not a valid value of {}", described(arg)))
+    })
+}
+
+/// Functions of matrices, which Rust and Python have: `--function operational_space_inertia`.
+fn of_libraries(error: &clap::Error) -> Option<String> {
+    const FUNCTIONS: [&str; 2] = ["operational_space_inertia", "dynamically_consistent_inverse"];
+    let Some(ContextValue::String(value)) = error.get(ContextKind::InvalidValue) else { return None };
+    FUNCTIONS.contains(&value.as_str()).then(|| {
+        format!(
+            "`{value}` is a function of Rust and Python only, because its arguments are matrices: see the section \
+             Operational space of docs/functions.md; rne eval computes the arguments, `mass_matrix` and `jacobian`"
+        )
     })
 }
 
@@ -180,6 +193,15 @@ mod tests {
         assert_eq!(latex, "error: rne eval has no option --latex, which is an option of rne show");
         // an option of no command
         assert_eq!(said("eval planar2 --payloads 1,0,0,0"), None);
+    }
+
+    #[test]
+    fn functions_of_libraries() {
+        for name in ["operational_space_inertia", "dynamically_consistent_inverse"] {
+            let said = said(&format!("eval panda --function {name}")).expect("refused");
+            assert!(said.starts_with(&format!("error: `{name}` is a function of Rust and Python only")), "{said}");
+        }
+        assert_eq!(said("eval panda --function operational_space"), None);
     }
 
     #[test]

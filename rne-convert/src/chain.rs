@@ -37,6 +37,16 @@ pub(crate) struct Chain {
     pub(crate) frames: Vec<ChainFrame>,
 }
 
+impl Chain {
+    /// Whether each link carries one joint, the last one the tip, and no joint follows another: a table without
+    /// branches has all of it.
+    pub(crate) fn is_serial(&self) -> bool {
+        let follows_the_last =
+            |(index, joint): (usize, &ChainJoint)| joint.parent == index.checked_sub(1) && joint.coupling.is_none();
+        self.joints.iter().enumerate().all(follows_the_last) && self.tip_on + 1 == self.joints.len()
+    }
+}
+
 /// A frame that is fixed to a link of a chain.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainFrame {

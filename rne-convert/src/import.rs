@@ -125,12 +125,18 @@ impl Urdf {
         let gravity = self.gravity.unwrap_or(options.gravity);
         let (chain, mut told) = extract(self, &options.selection, gravity, options.snap)?;
         told.remarks.splice(0..0, self.remarks.iter().cloned());
-        if options.selection.whole && options.convention == Convention::Standard {
+        // a serial arm on a floating base keeps the frame of that
+        let is_tree = !chain.is_serial() || chain.floating_base.is_some();
+        if is_tree && options.convention == Convention::Standard {
             let message = "a tree is written with modified rows, which may begin at gamma and b";
             let help = "choose the convention `modified`";
             return Err(self.source.error(&(0..0), message.to_owned(), help.to_owned()));
         }
-        let table = if options.selection.whole { tree_table(&chain) } else { table(&chain, options.convention) };
+        if options.selection.whole && !is_tree {
+            let remark = "no link carries two joints, so the robot is a serial arm and its file has `format: 1`";
+            told.remarks.push(remark.to_owned());
+        }
+        let table = if is_tree { tree_table(&chain) } else { table(&chain, options.convention) };
         let mut robot = robot(&chain, &table, options.convention);
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
         robot.title = title(&self.name);

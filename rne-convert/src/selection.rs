@@ -89,8 +89,20 @@ fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
     listed.take(LISTED).collect::<Vec<_>>().join("\n") + &more
 }
 
-/// The name that the tip of an arm has by convention: ROS REP 199, and ROS-Industrial before it.
-const TIP: &str = "tool0";
+/// How probable it is that a leaf is the tip, by its name: `tool0` is the tip by convention (ROS REP 199, and
+/// ROS-Industrial before it), then names with `tcp` (tool centre point) or `tool`. A leaf that follows another joint,
+/// such as the second finger of a gripper, comes last.
+fn rank(urdf: &Urdf, base: usize, leaf: usize) -> u8 {
+    let name = urdf.links[leaf].name.to_lowercase();
+    let follows = last_movable(urdf, base, leaf).is_some_and(|joint| urdf.joints[joint].mimic.is_some());
+    match name.as_str() {
+        _ if follows => 0,
+        "tool0" => 4,
+        name if name.contains("tcp") => 3,
+        name if name.contains("tool") => 2,
+        _ => 1,
+    }
+}
 
 /// The end of a chain.
 pub(crate) struct End {
@@ -111,9 +123,10 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
     }
     // leaves without a movable joint are sensors on the base, or marks on it
     let moved: Vec<usize> = leaves.iter().filter(|(_, joints)| *joints > 0).map(|(leaf, _)| *leaf).collect();
+    // of leaves that are equally probable, the last one
     let end = |mut others: Vec<usize>| {
-        let named = others.iter().position(|&leaf| urdf.links[leaf].name == TIP);
-        let link = others.remove(named.unwrap_or(others.len() - 1));
+        let likeliest = (0..others.len()).max_by_key(|&at| rank(urdf, base, others[at]));
+        let link = others.remove(likeliest.unwrap_or(others.len() - 1));
         Ok(End { link, others })
     };
     if selection.whole && !moved.is_empty() {

@@ -85,7 +85,7 @@ impl Attribute {
             (None, None) => errors.at(
                 &item.ident,
                 "the robot is missing: write the attribute `#[robot(path = \"…\")]` with the path of the robot file, \
-                 relative to this source file",
+                 relative to this source file, or `#[robot(builtin = \"puma560\")]` with the name of a shipped robot",
             ),
         }
         Self {

@@ -18,6 +18,16 @@ impl Target<'_> {
         let names: Vec<String> =
             robot.independent_joints().map(|joint| format!("`{}`", one_line(&joint.name))).collect();
         let remark = format!("; the joints of {} are {}", robot.name, names.join(", "));
+        let followers = robot.joints.iter().filter_map(|joint| {
+            let coupling = joint.coupling.as_ref()?;
+            let followed = |(followed, _): &(usize, f64)| format!("`{}`", one_line(&robot.joints[*followed].name));
+            let followed = coupling.follows.iter().map(followed).collect::<Vec<_>>().join(" and ");
+            let words =
+                format!("` follows {followed}, so q has no element for it; leave it out, or call `order_with_others`");
+            let name = &joint.name;
+            Some(quote!([#name, #words]))
+        });
+        let followers = quote!([#(#followers),*]);
         let functions = [("order", ORDER, false), ("order_with_others", ORDER_WITH_OTHERS, true)];
         let functions = functions.map(|(name, about, takes_others)| {
             let name = Ident::new(name, Span::call_site());
@@ -27,7 +37,7 @@ impl Target<'_> {
                 #vis const fn #name<const __NAMES: #usize>(names: [&#str; __NAMES]) -> [#usize; #dof] {
                     match #krate::joint_order(&Self::JOINTS, &names, #takes_others) {
                         ::core::result::Result::Ok(order) => order,
-                        ::core::result::Result::Err(error) => error.stop(&Self::JOINTS, #remark),
+                        ::core::result::Result::Err(error) => error.stop(&Self::JOINTS, #remark, &#followers),
                     }
                 }
             }
@@ -123,8 +133,9 @@ impl Target<'_> {
 
 const ORDER: &str = "The places of the joints in the list of names of another program, each name of the list being a \
     joint of this robot: `order[i]` is the place of joint `i`, so `q = order.map(|place| theirs[place])`. In a \
-    constant, a name that is missing, unknown or there twice is a compile error.\n\n# Panics\n\n\
+    constant, a name that is missing, unknown or there twice is a compile error. A joint that follows another one has \
+    no element in `q`: leave it out, or call `order_with_others`.\n\n# Panics\n\n\
     At run time, where the compiler stops in a constant; `rne::joint_order` returns an error instead.";
 
-const ORDER_WITH_OTHERS: &str = "As `order`, for a list that may also have names of other joints, such as a gripper's.\
-    \n\n# Panics\n\nAs `order`, but not for a name that is unknown.";
+const ORDER_WITH_OTHERS: &str = "As `order`, for a list that may also have names of other joints, such as a gripper's, \
+    or of joints that follow others.\n\n# Panics\n\nAs `order`, but not for a name that is unknown.";

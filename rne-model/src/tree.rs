@@ -144,23 +144,31 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
     cx.refuse(Diagnostic::error(place, message).label("`tool` must name a link").help(help))
 }
 
-/// Refuses a tree for a function that takes serial arms only.
+/// Refuses a tree for a function that takes serial arms only: at the first row that is not on the link of the row
+/// before, or at the tip, or else at the first row that begins at a place of its own.
 pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], tip_on: Option<usize>) {
     let items = match root.get("joints").map(|joints| &joints.content) {
         Some(Content::Sequence(items)) => items.as_slice(),
         _ => &[],
     };
-    let branch = items.iter().zip(joints).enumerate().find(|(_, (_, joint))| joint.branch.is_some());
-    let of_joint = branch.map(|(index, (item, joint))| {
-        let place = keys(item).first().map_or(item.head(), |(_, node)| node.head());
-        (place, format!("joint {} ({})", index + 1, quoted(&joint.name)))
+    let branches = || items.iter().zip(joints).enumerate().filter(|(_, (_, joint))| joint.branch.is_some());
+    let named = |index: usize, joint: &Joint| format!("joint {} ({})", index + 1, quoted(&joint.name));
+    let fork = branches().find(|(index, _)| parent(joints, *index) != index.checked_sub(1));
+    let of_fork = fork.map(|(index, (item, joint))| {
+        let what = format!("{} is not on the link of the row before: the robot is a tree", named(index, joint));
+        (item.get("parent").unwrap_or(item).head(), what)
     });
-    let on = root.get("tool").and_then(|tool| tool.get("on"));
-    let of_tip = tip_on.map(|_| (on.unwrap_or(root).head(), "the tip".to_owned()));
-    let Some((place, what)) = of_joint.or(of_tip) else { return };
-    let message =
-        format!("{what} does not follow the row before: the robot is a tree, and trees are not supported here");
+    let of_tip = tip_on.map(|_| {
+        let on = root.get("tool").and_then(|tool| tool.get("on"));
+        (on.unwrap_or(root).head(), "the tip is not on the last link: the robot is a tree".to_owned())
+    });
+    let of_placement = branches().next().map(|(index, (item, joint))| {
+        let (key, node) = keys(item).pop().unwrap_or(("at", item));
+        (node.head(), format!("{} begins at `{key}`, which only rows of trees have", named(index, joint)))
+    });
+    let Some((place, what)) = of_fork.or(of_tip).or(of_placement) else { return };
     let help = "the section Trees of docs/robot-file.md lists the commands, derives and types that take trees; \
                 everything else takes serial arms";
+    let message = format!("{what}, and trees are not supported here");
     cx.report(Diagnostic::error(place, message).label("a tree").help(help));
 }

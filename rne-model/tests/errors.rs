@@ -140,7 +140,16 @@ fn trees() {
     assert_eq!([0, 1, 2].map(|joint| robot.parent(joint)), [None, Some(0), Some(0)]);
     assert_eq!((robot.tip().on, robot.is_serial()), (Some(1), false));
     let refused = Reader::new("x").read(&tree).unwrap_err().short();
-    assert!(refused.starts_with("x:10:21: error: joint 3 (`c`) does not follow the row before"), "{refused}");
+    assert!(refused.starts_with("x:10:21: error: joint 3 (`c`) is not on the link of the row before"), "{refused}");
+    // the row that branches off, and not an earlier one that begins at a place of its own
+    let refused = |text: &str| Reader::new("x").read(text).unwrap_err().short();
+    let placed = tree.replace("alpha: 0}", "alpha: 0, b: 1}");
+    assert_eq!(refused(&placed).lines().next(), refused(&tree).lines().next());
+    let only_placed = file("modified", "", &row("name: b", ", b: 1"));
+    let found = refused(&only_placed);
+    assert!(found.starts_with("x:9:73: error: joint 2 (`b`) begins at `b`, which only rows of trees have"), "{found}");
+    let found = refused(&file("modified", "tool: {on: a}", &row("name: b", "")));
+    assert!(found.starts_with("x:6:12: error: the tip is not on the last link: the robot is a tree"), "{found}");
     // a chain in the words of a tree is that chain
     let chain = file("modified", "tool: {on: b}", &row("name: b, parent: a", ""));
     assert!(Reader::new("x").read(&chain).unwrap().robot.is_serial());

@@ -203,6 +203,10 @@ pub trait FrameKinematics<const DOF: usize, const FRAMES: usize> {
 
     /// The geometric Jacobian of a frame: J q̇ is the velocity of its origin (three rows, m/s) above the angular
     /// velocity of its link (three rows, rad/s), in world axes.
+    ///
+    /// The frame is a constant of the call and not an argument: `arm.jacobian_of::<{ MyArm::frame("camera") }, _>(&q)`.
+    #[doc(alias = "frame_jacobian")]
+    #[doc(alias = "getFrameJacobian")]
     #[must_use]
     fn jacobian_of<const FRAME: usize, T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 6]
     where

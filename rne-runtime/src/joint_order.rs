@@ -81,13 +81,22 @@ impl JointOrderError<'_> {
     }
 
     /// Stops with the message of the error, `remark`, and the joint that a name probably means: the functions `order`
-    /// of derived robots, which stop the build with it.
+    /// of derived robots, which stop the build with it. `followers` has the names of the joints that follow others, and
+    /// what to say of each.
     ///
     /// # Panics
     /// Always.
     #[doc(hidden)]
-    pub const fn stop(&self, joints: &[&str], remark: &str) -> ! {
+    pub const fn stop(&self, joints: &[&str], remark: &str, followers: &[[&str; 2]]) -> ! {
         let (name, words) = self.words();
+        let mut at = 0;
+        while at < followers.len() && matches!(self, Self::Unknown(_)) {
+            let [follower, words] = followers[at];
+            if frame_index(&[follower], name).is_some() {
+                panic!("{}", Text::EMPTY.with("`").with(name).with(words).as_str());
+            }
+            at += 1;
+        }
         let text = Text::EMPTY.with("`").with(name).with(words).with(remark);
         let text = if matches!(self, Self::Unknown(_)) { text.with_nearest(joints, name) } else { text };
         panic!("{}", text.as_str())

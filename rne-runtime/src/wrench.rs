@@ -13,6 +13,13 @@ pub struct Wrench<T> {
     pub moment: [T; 3],
 }
 
+/// A free tip, as [`Wrench::zero`].
+impl<T: Scalar> Default for Wrench<T> {
+    fn default() -> Self {
+        Self::zero()
+    }
+}
+
 impl<T: Scalar> Wrench<T> {
     /// A free tip: no force, no moment.
     #[must_use]

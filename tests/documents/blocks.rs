@@ -1,6 +1,6 @@
 //! Blocks of documents, and what each contains.
 
-use crate::programs::{code, control, embedded, functions, stubs};
+use crate::programs::{code, control, embedded, functions, stubs, two_hands};
 use crate::tables::{headline, operations, robots, sources, trees, tricks};
 use crate::{read, root};
 
@@ -10,12 +10,23 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("doors/python/package/rne/__init__.pyi", &["stubs"]),
     ("README.md", &["headline", "example", "control", "twelve_lines"]),
     ("docs/firmware.md", &["torque", "config", "embedded"]),
-    ("docs/functions.md", &["functions"]),
+    ("docs/functions.md", &["functions", "two_hands"]),
     ("docs/performance.md", &["operations", "tricks"]),
     ("docs/ros2.md", &["ros2_controller"]),
     (
         "docs/robot-file.md",
-        &["frames", "tree", "gripper", "palletiser", "wam7_motors", "dual_arm", "two_bars", "desk_arm", "every_key"],
+        &[
+            "frames",
+            "tree",
+            "gripper",
+            "palletiser",
+            "wam7_motors",
+            "two_hands",
+            "dual_arm",
+            "two_bars",
+            "desk_arm",
+            "every_key",
+        ],
     ),
     ("docs/teaching.md", &["code"]),
     ("robots/README.md", &["sources", "robots", "trees"]),
@@ -26,6 +37,7 @@ fn block(name: &str) -> String {
     match name {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
         "control" => control(),
+        "two_hands" => two_hands(),
         "ros2_controller" => {
             format!("```cpp\n{}```\n", read(&root().join("doors/capi/examples/ros2_control/gravity_controller.cpp")))
         }

@@ -8,18 +8,31 @@ use rne_emit::{Selection, listing};
 use crate::tables::plans;
 use crate::{inverse_dynamics, read, robot, root};
 
-/// The derive and the calls of an example, with the robot file of the commands above them.
-pub(crate) fn control() -> String {
-    let program = read(&root().join("examples/control.rs"));
+/// The derive of an example, and its lines from `start` to the one that prints.
+fn example(name: &str, start: &str) -> (String, String) {
+    let program = read(&root().join(format!("examples/{name}.rs")));
     let between = |start: &str, end: &str| {
         let lines = program.lines().skip_while(|line| !line.contains(start)).take_while(|line| !line.contains(end));
         let lines = lines.map(str::trim).filter(|line| !line.is_empty());
         lines.fold(String::new(), |text, line| text + line + "\n")
     };
-    let derive = between("#[derive", "fn main").replace("../robots/puma560.yaml", "arm.yaml");
-    let calls = between("let gravity", "println!");
-    assert!(derive.contains("path = \"arm.yaml\"") && calls.lines().count() == 3, "{derive}{calls}");
+    (between("#[derive", "fn main"), between(start, "println!"))
+}
+
+/// The derive and the calls of an example, with the robot file of the commands above them.
+pub(crate) fn control() -> String {
+    let (derive, calls) = example("control", "let gravity");
+    let derive = derive.replace("../robots/puma560.yaml", "arm.yaml");
+    assert!(derive.contains("path = \"arm.yaml\"") && calls.lines().count() == 4, "{derive}{calls}");
     format!("```rust\n{derive}{calls}```\n")
+}
+
+/// The derive and the calls of an example with two tips, for a file in the folder of the page.
+pub(crate) fn two_hands() -> String {
+    let (derive, calls) = example("two_hands", "let mut w");
+    let derive = derive.replace("../docs/", "");
+    assert!(derive.contains("path = \"dual_arm.yaml\"") && calls.lines().count() == 3, "{derive}{calls}");
+    format!("```rust,ignore\n{derive}{calls}```\n")
 }
 
 /// The emitted code of the first steps of joint 3 of the PUMA 560.

@@ -257,11 +257,16 @@ impl Arm {
     /// `order[i]` is the place of joint i in `names`: `q = theirs[arm.order(names)]` has the order of the arm, and
     /// `theirs[arm.order(names)] = q` writes back. For arrays of shape (N, m), write `theirs[:, arm.order(names)]`.
     ///
-    /// A joint that is missing or in the list twice is a ValueError. So is a name that is not of this arm, unless
-    /// `extra` is True.
+    /// A joint that is missing or in the list twice is a ValueError. So is a name that is not of this arm, and a joint
+    /// that follows others, which has no element in `q`, unless `extra` is True.
     #[pyo3(signature = (names, extra=false))]
     fn order<'py>(&self, names: &Bound<'py, PyAny>, extra: bool) -> PyResult<Bound<'py, PyAny>> {
-        names.py().import("rne.names")?.call_method1("order", (self.joints(), names, extra))
+        let followers: BTreeMap<_, _> = self
+            .followers()
+            .into_iter()
+            .map(|(name, (ratios, _))| (name, ratios.into_keys().collect::<Vec<_>>()))
+            .collect();
+        names.py().import("rne.names")?.call_method1("order", (self.joints(), names, extra, followers))
     }
 
     /// `standard` or `modified`: how the rows of the table are read.

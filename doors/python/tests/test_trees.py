@@ -113,6 +113,14 @@ def test_a_whole_urdf_has_the_torques_of_its_arms():
 GRIPPER = Path(__file__).parents[3] / "docs/gripper.yaml"
 
 
+def test_a_follower_has_no_place_in_an_order():
+    arm = rne.load(GRIPPER)
+    names = ["finger_b", "shoulder", "elbow", "finger_a"]
+    with pytest.raises(ValueError, match="`finger_b` follows `finger_a`, so q has no element for it; leave it out"):
+        arm.order(names)
+    assert arm.order(names, extra=True).tolist() == [1, 2, 3]
+
+
 def test_a_gripper_has_the_torques_of_free_fingers():
     arm = rne.load(GRIPPER)
     assert arm.joints == ["shoulder", "elbow", "finger_a"] and arm.dof == 3

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
 use rne_codegen::{Argument, Capability, Function};
-use rne_model::Robot;
+use rne_model::{Robot, nearest_name};
 
 use crate::outcome::Failure;
 use crate::values::numbers::List;
@@ -255,19 +255,24 @@ fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Resul
         };
     }
     if given.is_empty() && !function.returns_base_wrench() {
-        let names = names.join(", ");
         return Err(Failure::usage(format_args!(
-            "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: {names}",
-            robot.name
+            "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: `{}`",
+            robot.name,
+            names.join("`, `")
         )));
     }
     for (index, TipWrench { tip, numbers: List(numbers) }) in given.iter().enumerate() {
         let Some(place) = names.iter().position(|name| name == tip) else {
-            let names = names.join(", ");
-            return Err(Failure::usage(format_args!("{} has no tip {tip}; its tips are {names}", robot.name)));
+            let meant = nearest_name(tip, &names).map(|meant| format!("; did you mean `{meant}`?"));
+            return Err(Failure::usage(format_args!(
+                "{} has no tip `{tip}`; its tips are `{}`{}",
+                robot.name,
+                names.join("`, `"),
+                meant.unwrap_or_default()
+            )));
         };
         if given[..index].iter().any(|other| other.tip == *tip) {
-            return Err(Failure::usage(format_args!("--tip-wrench gives the wrench at {tip} twice")));
+            return Err(Failure::usage(format_args!("--tip-wrench gives the wrench at `{tip}` twice")));
         }
         wrenches[place] = Wrench { force: triple(numbers, 0), moment: triple(numbers, 3) };
     }

@@ -139,7 +139,11 @@ fn commands_for_serial_arms_refuse_a_tree_at_its_line() {
         &["convert", "--convention", "standard"],
     ] {
         let arguments = [&command[..1], &[TREE], &command[1..]].concat();
-        fails(1, &arguments, &["docs/tree.yaml:14:13", "the robot is a tree", "docs/robot-file.md"]);
+        fails(
+            1,
+            &arguments,
+            &["docs/tree.yaml:27:13", "joint 4 (`finger_b`)", "the robot is a tree", "docs/robot-file.md"],
+        );
     }
 }
 
@@ -164,7 +168,8 @@ fn tips_frames_and_bodies_are_named() {
     let bare = torques(&["--without", "camera"]);
     assert!(near(free[0] - bare[0], 8e-4 + 0.6 * 0.12 * 0.12), "{bare:?}");
     for (options, said) in [
-        (["--tip-wrench", "hand=0,0,0,0,0,2"], "dual_arm has no tip hand; its tips are left_hand, right_hand"),
+        (["--tip-wrench", "hand=0,0,0,0,0,2"], "dual_arm has no tip `hand`; its tips are `left_hand`, `right_hand`"),
+        (["--tip-wrench", "lefthand=0,0,0,0,0,2"], "`right_hand`; did you mean `left_hand`?"),
         (["--tip-wrench", "left_hand=1,2"], "a wrench has 6 numbers, not 2"),
         (["--without", "camra"], "did you mean `camera`?"),
         (["--function", "inverse_dynamics_with_wrenches"], "needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz"),

@@ -189,3 +189,59 @@ fn joints_before_the_base_are_held_by_name() {
     let locked = Selection { lock_others: true, ..selection };
     assert_eq!(imported(&torso(FREE), &Options { selection: locked, ..options() }).dof(), 4);
 }
+
+/// Without a fork, the file is that of an arm: what takes serial arms takes it.
+#[test]
+fn a_serial_arm_is_no_tree() {
+    let arm = robot(&[
+        bare(&["base", "tool0"]),
+        link("upper", 2.0, "0.2 0 0", [0.003, 0.03, 0.03]),
+        link("fore", 1.0, "0.1 0 0", [0.001, 0.01, 0.01]),
+        joint(
+            "shoulder",
+            "continuous",
+            ("base", "upper"),
+            "xyz=\"0.1 0 0.1575\" rpy=\"0 0 0.5\"",
+            "<axis xyz=\"0 0 1\"/>",
+        ),
+        joint("elbow", "continuous", ("upper", "fore"), "xyz=\"0.4 0 0\" rpy=\"0.3 0 0\"", "<axis xyz=\"0 1 0\"/>"),
+        joint("to_tool", "fixed", ("fore", "tool0"), "xyz=\"0.3 0 0\"", ""),
+    ]);
+    let import = |whole: bool, convention: Convention| {
+        let selection = Selection { whole, ..Selection::default() };
+        converted(&arm, &Options { selection, convention, ..options() })
+    };
+    for convention in BOTH {
+        let Imported { robot, text, account, .. } = import(true, convention);
+        assert!(text.starts_with("format: 1\n") && robot.is_serial(), "{text}");
+        assert!(account.rounding.torque < 1e-13 && account.rounding.position < 1e-13, "{:?}", account.rounding);
+        let note = "no link carries two joints, so the robot is a serial arm and its file has `format: 1`";
+        assert!(account.remarks.iter().any(|remark| remark == note) && text.contains(note), "{text}");
+        let alone = import(false, convention).robot;
+        assert_eq!((robot.joints, robot.base, robot.tool), (alone.joints, alone.base, alone.tool));
+    }
+    // a tip before the last joint needs a tree
+    let selection = Selection { tip: Some("upper".to_owned()), ..options().selection };
+    let tree = Urdf::read("arm.urdf", &arm).unwrap().import(&Options { selection, ..options() }).unwrap();
+    assert!(tree.text.starts_with("format: 2\n"), "{}", tree.text);
+}
+
+/// Among several leaves, a leaf with the name of a tip comes first, and a finger that follows another one last.
+#[test]
+fn the_tip_is_the_leaf_that_is_called_so() {
+    let follower = format!("{FREE}<mimic joint=\"a\"/>");
+    for (tool, expected) in [("tool0", "tool0"), ("hand_TCP", "hand_TCP"), ("tool_plate", "tool_plate"), ("x", "x")] {
+        let text = torso(&follower).replace("tool0", tool);
+        let urdf = Urdf::read("torso.urdf", &text).unwrap();
+        assert_eq!(urdf.import(&options()).unwrap().account.tip, expected);
+    }
+    // without the right arm, the second finger is the last leaf
+    let text = torso(&follower);
+    let (before, _) = text.split_once("<joint name=\"right\"").expect("the right arm");
+    let text = before.replace("<link name=\"tool0\"/>\n", "") + "</robot>";
+    let (before, after) = text.split_once("<link name=\"right\">").expect("the right arm");
+    let text = before.to_owned() + after.split_once("</link>\n").expect("an end").1;
+    assert_eq!(Urdf::read("torso.urdf", &text).unwrap().import(&options()).unwrap().account.tip, "finger_a");
+    let named = text.replace("\"finger_b\"", "\"finger_tool\"");
+    assert_eq!(Urdf::read("torso.urdf", &named).unwrap().import(&options()).unwrap().account.tip, "finger_a");
+}

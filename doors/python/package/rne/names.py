@@ -71,13 +71,19 @@ def of_tips(wrenches, tips, argument):
     return flat.tolist() if follows else flat
 
 
-def order(joints, names, extra):
-    """The place of each joint in a list of names, as an array of integers (n,)."""
+def order(joints, names, extra, followers):
+    """The place of each joint in a list of names, as an array of integers (n,).
+
+    `followers` has the names of the joints that follow others, and the names of these others.
+    """
     if isinstance(names, str):
         raise TypeError(f"`names` is the text {names!r}; write a list of names")
     names = list(names)
     known = ", ".join(joints)
     for name in names:
+        if name in followers and not extra:
+            followed = " and ".join(f"`{joint}`" for joint in followers[name])
+            raise ValueError(f"`names`: `{name}` follows {followed}, so q has no element for it; leave it out, or give extra=True")
         if name not in joints and not extra:
             raise ValueError(f"`names`: there is no joint `{name}`; this arm has {known}; extra=True allows other names")
     for joint in joints:
