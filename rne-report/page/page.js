@@ -217,8 +217,8 @@ class Page {
     this.layerButtons = new Map();
     for (const [quantity] of LAYERS) {
       if (!quantities[quantity]) continue;
-      const before = this.inspection.isTree() ? "h, which carries joint i," : "i-1";
-      const meaning = quantities[quantity].meaning.replace("h = i - 1", before);
+      const before = this.inspection.isTree() ? "p, the parent of link i," : "i-1";
+      const meaning = quantities[quantity].meaning.replace("p, the parent (i - 1 in a chain),", before);
       const button = element(
         "button",
         {
