@@ -91,11 +91,12 @@ class Drawing {
     if (!isThere) return;
     label.textContent = text;
     const { words } = this.arm;
+    const size = words.sizeOf(label);
     const sides = [offset, -offset].map((of, index) => {
       const way = this.beside(a, b, of);
       const box = { left: Math.min(way.c.x, way.d.x), right: Math.max(way.c.x, way.d.x), top: Math.min(way.c.y, way.d.y), bottom: Math.max(way.c.y, way.d.y) };
       const isOutside = box.left < 4 || box.top < 4 || box.right > words.width - 4 || box.bottom > words.height - 4;
-      const costs = way.places.map(({ point, anchor }) => words.cost(words.inside(label, point, anchor).box));
+      const costs = way.places.map(({ point, anchor }) => words.cost(words.inside(label, point, anchor, size).box));
       const hidden = words.boxes.filter((of) => way.lines.some((line) => crosses(line, of))).length;
       return { ...way, cost: Math.min(...costs) + (isOutside ? 100 : 0) + 20 * hidden + 2 * index };
     });
@@ -116,7 +117,7 @@ class Drawing {
     const tick = (end) => [{ x: end.x - (x + out.x) * 3, y: end.y - (y + out.y) * 3 }, { x: end.x + (x + out.x) * 3, y: end.y + (y + out.y) * 3 }];
     const lines = [[at(a, 0.3), at(a, 1.15)], [at(b, 0.3), at(b, 1.15)], [c, d]];
     const anchor = out.x > 0.3 ? "start" : out.x < -0.3 ? "end" : "middle";
-    const places = [8, 20, 34].flatMap((far) =>
+    const places = [8, 20, 34, 48].flatMap((far) =>
       [0.5, 0.3, 0.7, 0.1, 0.9].map((share) => ({
         point: { x: c.x + (d.x - c.x) * share + out.x * far, y: c.y + (d.y - c.y) * share + out.y * far + 4 + 5 * out.y },
         anchor,
