@@ -295,7 +295,7 @@ def address(driver, page):
     # what is wrong is said, and the rest is shown
     at("#q=1,2,3&qd=1,x&qdd=0.5,0.25&cell=7.1&nonsense=3")
     said, state = driver.execute_script("return [document.getElementById('address-notice').textContent, rne.view().state]")
-    for part in ("q has 3 numbers, and 2 are needed", "qd has something that is no number", "there is no cell 7.1"):
+    for part in ("q has 3 numbers; 2 are needed", "“x” in qd is no number", "there is no cell 7.1"):
         check(part in said, f"address: {part!r} is not said: {said!r}")
     check(state["qdd"] == [0.5, 0.25], f"address: q̈ is {state['qdd']}")
     # what a part of a state leaves open is said, until it changes
@@ -458,6 +458,87 @@ def teaching(driver, rne, page, folder):
           == ["Ada  L.", 1, "acceleration", "y"], f"exercise: its text is marked {marks}")
     quiet(driver, "teaching")
     print("  figure, lecture, cells and a text to hand in")
+
+
+# addresses at which words of a figure were cut at its edge
+FIGURES = {
+    "planar2": ["", "#lecture&cell=2.4", "#q=2.8,0.3&lecture", "#q=1.5,0&lecture", "#q=-1.6,0&lecture", "#q=3.1,0&lecture",
+                "#q=0.6,1.3&lecture", "#q=0.6,1.3&qd=1,-0.5&qdd=0,0&cell=2.4&exercise"],
+    "planar3": ["", "#q=0.4,-0.6,0.9&lecture", "#q=2.9,0.2,0.2&lecture", "#q=1.57,0,0&lecture"],
+}
+
+
+def figures(driver, pages):
+    """The figure of a planar arm is whole, and none of its words is on another."""
+    for size in ((1280, 720), (390, 844)):
+        seen_on(driver, *size)
+        for robot, fragments in FIGURES.items():
+            for fragment in fragments:
+                driver.get("about:blank")
+                driver.get(pages[robot].as_uri() + fragment)
+                awaited(driver, 20, lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
+                cut, covered = driver.execute_script(
+                    """
+                    const box = (of) => of.getBoundingClientRect();
+                    const seen = (of) => [...document.querySelectorAll(of)].filter(at => at.checkVisibility() && box(at).width > 0);
+                    const arm = box(document.getElementById("arm"));
+                    const past = (at) => Math.max(arm.left - at.left, arm.top - at.top, at.right - arm.right, at.bottom - arm.bottom);
+                    const words = seen("#arm text");
+                    const cut = [...words, ...seen("#arm .solid .body, #arm .drawn")].filter(of => past(box(of)) > 0.5);
+                    const isOn = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 2
+                      && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4;
+                    const covered = words.flatMap((a, at) => words.slice(at + 1).filter(b => isOn(box(a), box(b)))
+                      .map(b => [a.textContent, b.textContent]));
+                    return [cut.map(of => of.textContent || of.getAttribute("class")), covered];
+                    """)
+                where = f"{robot}{fragment} at {size[0]}x{size[1]}"
+                check(not cut, f"figure: {where} cuts {cut}")
+                check(not covered, f"figure: {where} writes on each other {covered}")
+    seen_on(driver, *SCREENS["desk"])
+    print("  figures are whole")
+
+
+def dots(driver, page, media):
+    """Dots stand above their letters, and do not lie on them."""
+    opened(driver, page)
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": media})
+    driver.execute_script("document.querySelector('[data-cell=\"2-4\"]').click()")
+    gaps = driver.execute_script(
+        """
+        return [...document.querySelectorAll("#cell mover")].filter(of => of.checkVisibility({ contentVisibilityAuto: true })).map(of => {
+          const [letter, dots] = [...of.children].map(part => part.getBoundingClientRect());
+          return (letter.top - dots.bottom) / parseFloat(getComputedStyle(of).fontSize);
+        });
+        """)
+    check(gaps and min(gaps) > 0.05, f"{page.stem}: dots stand {min(gaps, default=0):.2f} of a letter above it")
+    struck = driver.execute_script("return getComputedStyle(document.querySelector('.struck')).printColorAdjust")
+    check(media != "print" or struck == "exact", f"{page.stem}: on paper the lines of struck terms are {struck}")
+    sliders = driver.execute_script("return [...document.querySelectorAll('input[type=range]')].filter(of => of.checkVisibility()).length")
+    check((sliders == 0) == (media == "print"), f"{page.stem}: {sliders} sliders are shown on {media}")
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+def large(driver, page):
+    """The cells of a large tree have room for their numbers, and the state of its joints stays in its card."""
+    for size in ((1280, 720), (390, 844)):
+        seen_on(driver, *size)
+        opened(driver, page)
+        cut, outside, tall = driver.execute_script(
+            """
+            const box = (of) => of.getBoundingClientRect();
+            const cut = [...document.querySelectorAll("#grid button")].filter(of => box(of.firstChild).width > of.clientWidth
+              || of.firstChild.scrollWidth > of.clientWidth || of.scrollWidth > of.clientWidth).map(of => of.dataset.cell);
+            const card = document.querySelector(".motion-panel");
+            const outside = [...card.querySelectorAll("input")].filter(of => of.checkVisibility() && box(of).right > box(card).right);
+            return [cut, outside.map(of => of.dataset.name || of.dataset.of), box(card).height];
+            """)
+        where = f"{page.stem} at {size[0]}x{size[1]}"
+        check(not cut, f"{where}: cells are too narrow for their numbers: {cut}")
+        check(not outside, f"{where}: fields stand outside their card: {outside}")
+        check(tall < 600, f"{where}: the state is {tall} pixels high")
+        narrow(driver, where)
+    seen_on(driver, *SCREENS["desk"])
+    print("  a large tree fits")
 
 
 def thumbs(driver, page):
@@ -735,6 +816,12 @@ def exercise(driver, robot):
         return
     shown = driver.find_element(By.CSS_SELECTOR, '[data-component="w1_z"]').text
     check("0.7" not in shown, f"{robot}: the exercise shows what it asks for: {shown!r}")
+    if robot == "planar2":
+        driver.find_element(By.CSS_SELECTOR, '[data-cell="2-1"]').click()
+        driver.find_element(By.CSS_SELECTOR, '[data-component="w2_z"] .first-term').click()
+        told = driver.find_element(By.CSS_SELECTOR, '[data-component="w2_z"] .answer').text
+        check("The first term is" in told and "0.7" in told, f"{robot}: the first term of w2_z is told as {told!r}")
+        driver.find_element(By.CSS_SELECTOR, '[data-cell="1-1"]').click()
     for typed, told in (("-0.7", "sign"), ("0.7", "")):
         field = driver.find_element(By.CSS_SELECTOR, '[data-exercise="w1_z"]')
         field.clear()
@@ -815,13 +902,18 @@ def main():
     pictures = pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else folder
     pictures.mkdir(parents=True, exist_ok=True)
     pages = {}
-    for robot in ROBOTS:
+    for robot in [*ROBOTS, "planar3", "baxter"]:
         pages[robot] = folder / f"{robot}.html"
         pages[robot].unlink(missing_ok=True)
         subprocess.run([rne, "report", robot, "-o", str(pages[robot])], check=True, capture_output=True)
     driver = browser(*SCREENS["desk"])
     try:
-        for robot, page in pages.items():
+        figures(driver, pages)
+        for media in ("screen", "print"):
+            dots(driver, pages["puma560"], media)
+        large(driver, pages["baxter"])
+        for robot in ROBOTS:
+            page = pages[robot]
             print(f"{robot}: {page.stat().st_size} bytes")
             check(page.stat().st_size <= LARGEST, f"{robot}: more than {LARGEST} bytes")
             inspection = json.loads(

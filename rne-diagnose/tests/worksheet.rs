@@ -601,6 +601,49 @@ fn slips_on_one_line() {
     assert!(told(4, Quantity::Gravity, &|g| g.copy_from_slice(&before)).contains("it is not turned by R4ᵀ"));
 }
 
+/// Vectors that are right, but in the axes of frame i of a standard table: Rz(θ) Rx(α) turns them from frame to frame.
+#[test]
+fn axes_of_the_table_are_named() {
+    let robot = six("standard");
+    let at = state(6);
+    let sheet = Worksheet::new(&robot, &at, Axes::Link).unwrap();
+    let theta = |row: usize| sheet.line(row, Quantity::Theta).unwrap().values[0];
+    let alphas: Vec<f64> = robot.rows().map(|row| row.dh.alpha.radians).collect();
+    let mut to_table = ONE;
+    let mut given = all_values(&sheet);
+    given.retain(|value| value.quantity.step() > 0);
+    let base = Worksheet::new(&robot, &at, Axes::Base).unwrap();
+    for joint in 1..=6 {
+        // from the axes of frame i to those of frame 0
+        to_table = product(to_table, product(rz(theta(joint)), rx(alphas[joint - 1])));
+        for value in given.iter_mut().filter(|value| value.joint == joint) {
+            let line = base.line(joint, value.quantity).unwrap();
+            if let [x, y, z] = line.values[..] {
+                value.value = turn(transposed(to_table), [x, y, z])[value.component];
+            }
+        }
+    }
+    let first = sheet.compare(&robot, &at, &given, 4).unwrap().first.unwrap();
+    let reason = first.reasons.first().unwrap();
+    assert!(reason.says.contains("axes of frame i of the table"), "{reason:?}");
+    assert_eq!(reason.reach, Reach::Everything);
+    assert!(reason.right.as_ref().unwrap().contains("fixed to link i, z along joint i"), "{reason:?}");
+    // with a mistake of its own in the last line, the axes still are the first reason
+    let tau = given.iter_mut().rfind(|value| value.quantity == Quantity::Tau).unwrap();
+    tau.value += 100.0;
+    let first = sheet.compare(&robot, &at, &given, 4).unwrap().first.unwrap();
+    let reason = first.reasons.first().unwrap();
+    assert_eq!((reason.says.contains("frame i of the table"), reason.reach), (true, Reach::UpToHere), "{reason:?}");
+    // other axes that have a name
+    let mut given = all_values(&sheet);
+    given.retain(|value| value.quantity.step() > 0);
+    for value in &mut given {
+        value.value = base.line(value.joint, value.quantity).unwrap().values[value.component];
+    }
+    let first = sheet.compare(&robot, &at, &given, 4).unwrap().first.unwrap();
+    assert!(first.reasons[0].says.contains("`base`: those of frame 0"), "{:?}", first.reasons);
+}
+
 /// Of the misprints that no torque shows, the worksheet does.
 #[test]
 fn misprints_of_step_3_are_named() {

@@ -32,4 +32,5 @@ pub use crate::comparison::{Comparison, comparison_svg};
 pub use crate::history::{Peak, TorqueHistory};
 pub use crate::panels::{Band, Panel, PanelCurve, panels, panels_over};
 pub use crate::parts::TorqueParts;
+pub use crate::scale::significant;
 pub use crate::trajectory::{Trajectory, TrajectoryError};

@@ -84,7 +84,8 @@ pub(crate) fn label(value: f64) -> String {
 }
 
 /// A number with `digits` significant digits, without idle zeros.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.0$e}", digits - 1).parse().unwrap_or(value);
     let text = if rounded != 0.0 && (rounded.abs() < 1e-4 || rounded.abs() >= 1e6) {
         format!("{rounded:e}")

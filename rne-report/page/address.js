@@ -18,14 +18,15 @@ function readAddress(fragment) {
       continue;
     }
     asked.given.add(key);
-    const numbers = decodeURIComponent(value).split(",").map(numberOf);
+    const texts = decodeURIComponent(value).split(",");
+    const numbers = texts.map(numberOf);
     if (key === "look" && VIEWS.includes(value)) asked.look = value;
     else if (key === "cell" && /^\d+\.\d$/.test(value)) asked.cell = value.split(".").map(Number);
     else if (!KEYS.includes(key)) asked.unknown.push(key);
     else if (key === "cell") asked.wrong.push(`cell=${value} is no cell: write cell=JOINT.STEP`);
     else if (numbers.every(Number.isFinite)) asked.lists[key] = numbers;
     else if (key === "look") asked.wrong.push(`look=${value} is no view: it is ${VIEWS.join(", ")}, or three numbers`);
-    else asked.wrong.push(`${key} has something that is no number`);
+    else asked.wrong.push(`“${texts.find((_, at) => !Number.isFinite(numbers[at]))}” in ${key} is no number`);
   }
   if (asked.unknown.length)
     asked.wrong.push(`${asked.unknown.join(", ")} is not known: the keys are ${KEYS.join(", ")}; the words are ${WORDS.join(", ")}, no-masses`);
@@ -39,7 +40,8 @@ function showAddress(page, fragment) {
   const fits = (key, count) => {
     if (!lists[key]) return false;
     if (lists[key].length === count) return true;
-    wrong.push(`${key} has ${lists[key].length} numbers, and ${count} are needed`);
+    const numbers = lists[key].length === 1 ? "1 number" : `${lists[key].length} numbers`;
+    wrong.push(`${key} has ${numbers}; ${count} ${count === 1 ? "is" : "are"} needed`);
     return false;
   };
   const state = structuredClone(page.initial);

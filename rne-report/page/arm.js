@@ -46,6 +46,9 @@ function arrowOfKey(key) {
 /** From where the arm can be looked at by a button. */
 const VIEWS = ["front", "top", "3D"];
 
+/** The radius of the base, in those of its joint. */
+const BASE_DISC = 2.6;
+
 class Arm {
   constructor(root, inspection, value, chosen) {
     this.root = root;
@@ -63,8 +66,10 @@ class Arm {
     const near = Math.abs(this.up[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1];
     this.east = unit(cross(cross(this.up, near), this.up));
     this.north = cross(this.up, this.east);
+    // the joints from the base to a link
+    this.depths = Array.from({ length: dof + 1 }, (_, link) => inspection.pathTo(link).length);
     this.groups = {};
-    for (const name of ["floor", "axes", "solids", "coms", "drawing", "frames", "labels", "arrows"]) {
+    for (const name of ["floor", "axes", "solids", "coms", "drawing", "frames", "arrows", "labels", "words"]) {
       this.groups[name] = svg("g", { class: name });
       root.append(this.groups[name]);
     }
@@ -126,9 +131,10 @@ class Arm {
     this.down = this.plainArrow("gravity", "g");
     this.tip = { f: this.plainArrow("force", "tip force"), n: this.plainArrow("moment", "tip moment") };
     this.wrench = { f: [0, 0, 0], n: [0, 0, 0] };
+    this.words = new Labels();
     this.look = { yaw: -0.9, pitch: 0.32, zoom: 1 };
     this.home = this.look;
-    this.drawing = new Drawing(this, this.groups.drawing);
+    this.drawing = new Drawing(this, this.groups.drawing, this.groups.words);
     this.showDrawing = true;
     listenToHand(this);
   }
@@ -170,9 +176,9 @@ class Arm {
   drawPlain([shaft, head, text], from, to, isAxial = false) {
     const heads = arrowhead(from, to, isAxial);
     shaft.setAttribute("d", heads ? segment(from, heads.neck) : "");
-    head.setAttribute("d", heads ? heads.path : dotAt(from));
-    text.setAttribute("x", round(to.x + 7));
-    text.setAttribute("y", round(to.y + 4));
+    head.setAttribute("d", heads ? heads.path : ringAt(from));
+    this.words.addLine(from, to, 3);
+    this.words.put(text, this.words.inside(text, { x: to.x + 7, y: to.y + 4 }, "start"));
   }
 
   /** Gravity, in the corner, and the wrench at the tip. */
@@ -284,8 +290,8 @@ class Arm {
     const depth = dot(of, toViewer);
     const scale = this.isFlat ? this.pixels : (this.pixels * far) / Math.max(far - depth, far / 10);
     return {
-      x: this.width / 2 + dot(of, right) * scale,
-      y: this.height * 0.53 - dot(of, over) * scale,
+      x: this.width / 2 + (dot(of, right) - this.middle.x) * scale,
+      y: this.height * (this.isFlat ? 0.5 : 0.53) - (dot(of, over) - this.middle.y) * scale,
       depth,
       scale,
     };
@@ -307,20 +313,77 @@ class Arm {
     this.extent = Math.max(this.size, reach * 1.02);
     this.view = this.seenFrom();
     this.isFlat = this.isFigure();
-    // a figure has no floor that needs room
-    const share = this.isFlat ? 0.47 : 0.39;
-    this.pixels = (share * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.middle = { x: 0, y: 0 };
+    if (this.isFlat) this.fitFigure(pose);
+    else this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);
-    this.drawing.draw(pose, q, this.isFlat && this.showDrawing);
+    this.drawVectors(pose, q);
+  }
+
+  /** Arrows and, of a figure, dimensions, whose words keep away from them and from the arm. */
+  drawVectors(pose, q) {
+    this.q = q;
+    this.words.begin(this.width, this.height);
     this.drawArrows(pose);
     this.drawForces(pose);
+    const isDrawn = this.isFlat && this.showDrawing;
+    if (isDrawn) this.addArm(pose);
+    this.drawing.draw(pose, q, isDrawn);
+  }
+
+  /** Words keep away from links, joints and centres of mass. */
+  addArm(pose) {
+    const around = (point, radius) => this.words.addBox({ left: point.x - radius, right: point.x + radius, top: point.y - radius, bottom: point.y + radius });
+    for (let joint = 1; joint <= this.inspection.dof; joint++) {
+      const [at, elbow, com] = [pose.joints[joint], pose.elbows[joint], pose.coms[joint]].map((point) => this.project(point));
+      const ends = this.inspection.carriedBy(joint).map((end) => this.project(pose.joints[end]));
+      const thick = this.thickness(joint) * 0.62 * this.pixels;
+      this.words.addLine(at, elbow, thick);
+      for (const end of ends.length ? ends : [com]) this.words.addLine(elbow, end, thick);
+      around(at, 8);
+      if (this.showComs) around(com, 6);
+    }
+  }
+
+  /**
+   * The scale and the middle of a figure. They stay while the arm fits the picture with room for its dimensions, so
+   * that the base stands still; a picture of another size or from another side begins anew.
+   */
+  fitFigure(pose) {
+    const { yaw, pitch, zoom } = this.look;
+    const { right, over } = this.view;
+    const disc = this.thickness(0) * BASE_DISC;
+    const ends = [...pose.joints, ...pose.elbows, ...pose.coms].map((point) => [point, this.thickness(0)]);
+    ends.push([this.inspection.robot.base.xyz, disc]);
+    const reach = (along) => {
+      const values = ends.map(([point, around]) => [dot(minusV(point, this.centre), along), around]);
+      return [Math.min(...values.map(([value, around]) => value - around)), Math.max(...values.map(([value, around]) => value + around))];
+    };
+    const [x, y] = [reach(right), reach(over)];
+    const edge = this.showDrawing ? this.drawing.far() + 20 : 16;
+    const [wide, high] = [Math.max(this.width - 2 * edge, 60), Math.max(this.height - 2 * edge, 60)];
+    const seen = [this.width, this.height, yaw, pitch, edge].join();
+    const fits = ([low, top], middle, room) => Math.max(top - middle, middle - low) * this.figure.pixels <= room / 2 + 1e-6;
+    const isFit = this.figure?.seen === seen && fits(x, this.figure.x, wide) && fits(y, this.figure.y, high);
+    if (!this.figure || (!isFit && zoom === 1) || this.figure.seen !== seen) {
+      const most = (0.47 * Math.min(this.width, this.height * 1.1)) / this.size;
+      const pixels = Math.min(wide / (x[1] - x[0]), high / (y[1] - y[0]), most);
+      this.figure = { seen, pixels, x: (x[0] + x[1]) / 2, y: (y[0] + y[1]) / 2 };
+    }
+    this.middle = { x: this.figure.x, y: this.figure.y };
+    this.pixels = this.figure.pixels * zoom;
+  }
+
+  /** Half the width of a link's joint, in m: the more joints from the base, the thinner. */
+  thickness(joint) {
+    return this.size * (0.062 - 0.03 * (this.depths[joint] / Math.max(...this.depths, 4)));
   }
 
   drawFloor() {
     // it stands still while the arm moves
-    const seen = [this.look.yaw, this.look.pitch, this.pixels, this.extent, this.width, this.height].join();
+    const seen = [this.look.yaw, this.look.pitch, this.pixels, this.extent, this.width, this.height, this.middle.x, this.middle.y].join();
     if (seen === this.floorSeen) return;
     this.floorSeen = seen;
     const span = this.size * 0.95;
@@ -336,13 +399,9 @@ class Arm {
   }
 
   drawSolids(pose) {
-    const { dof } = this.inspection;
-    // the joints from the base to a link
-    const depths = Array.from({ length: dof + 1 }, (_, link) => this.inspection.pathTo(link).length);
-    const thick = (joint) => this.size * (0.062 - 0.03 * (depths[joint] / Math.max(...depths, 4)));
     for (const solid of this.solids) {
       const { joint, kind } = solid;
-      const radius = thick(joint);
+      const radius = this.thickness(joint);
       if (kind === "link") {
         const from = joint === 0 ? this.inspection.robot.base.xyz : pose.joints[joint];
         const carried = this.inspection.carriedBy(joint).map((end) => pose.joints[end]);
@@ -359,7 +418,7 @@ class Arm {
         const axis = kind === "base" ? this.baseAxis : column(pose.rotations[joint], 2);
         const at = kind === "base" ? this.inspection.robot.base.xyz : pose.joints[joint];
         const half = kind === "base" ? radius * 0.35 : radius * 1.25;
-        const wide = kind === "base" ? radius * 2.6 : radius;
+        const wide = kind === "base" ? radius * BASE_DISC : radius;
         const side = unit(cross(axis, Math.abs(axis[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0]));
         const other = cross(axis, side);
         const corners = joint > 0 && this.inspection.isPrismatic(joint) ? 4 : 20;
@@ -448,7 +507,6 @@ class Arm {
       if (arrow.numbers) largest[arrow.quantity] = Math.max(largest[arrow.quantity] || 0, norm(arrow.numbers));
     }
     // letters that would stand on each other: the lit ones are written, and then the first
-    this.written = [];
     for (const arrow of [...this.arrows.values()].sort(
       (a, b) => Number(Boolean(b.isLit)) - Number(Boolean(a.isLit)),
     )) {
@@ -479,13 +537,16 @@ class Arm {
     const heads = arrowhead(from, to, arrow.isAxial);
     arrow.hit.setAttribute("d", segment(from, to));
     arrow.shaft.setAttribute("d", heads ? segment(from, heads.neck) : "");
-    arrow.head.setAttribute("d", heads ? heads.path : dotAt(from));
-    arrow.text.setAttribute("x", round(to.x + 8 * heads_x(from, to)));
-    arrow.text.setAttribute("y", round(to.y + 4 + 10 * heads_y(from, to)));
-    const isFree = this.written.every((other) => Math.abs(other.x - to.x) > 20 || Math.abs(other.y - to.y) > 13);
-    if (isFree) this.written.push(to);
-    arrow.text.toggleAttribute("hidden", !isFree && !arrow.isLit);
-    arrow.text.setAttribute("text-anchor", to.x < from.x - 2 ? "end" : "start");
+    arrow.head.setAttribute("d", heads ? heads.path : ringAt(from));
+    this.words.addLine(from, to, 3);
+    arrow.text.removeAttribute("hidden");
+    // an arrow that points at the viewer is a ring around the number of the joint
+    const beside = heads ? { x: to.x + 8 * heads_x(from, to), y: to.y + 4 + 10 * heads_y(from, to) } : { x: to.x + 13, y: to.y - 8 };
+    const place = this.words.inside(arrow.text, beside, to.x < from.x - 2 ? "end" : "start");
+    const isInside = to.x >= 0 && to.x <= this.width && to.y >= 0 && to.y <= this.height;
+    const isWritten = isInside && (arrow.isLit || this.words.boxes.every((box) => !overlaps(box, place.box)));
+    if (isWritten) this.words.put(arrow.text, place);
+    arrow.text.toggleAttribute("hidden", !isWritten);
     const chosen = of.axes ? this.chosen.turn(frame) : null;
     const told = chosen ? turn(chosen, numbers) : numbers;
     let part = "";
@@ -524,7 +585,7 @@ class Arm {
     this.triads.forEach((triad, joint) => triad.forEach(({ line }) => line.classList.toggle("lit", joint === frame)));
     if (this.pose) {
       this.drawMarks(this.pose);
-      this.drawArrows(this.pose);
+      this.drawVectors(this.pose, this.q);
     }
   }
 
@@ -545,6 +606,7 @@ class Arm {
 
   reset() {
     this.look = this.home;
+    this.figure = null;
     this.changed();
   }
 

@@ -347,7 +347,12 @@ class Cards {
     input.addEventListener("keydown", (event) => {
       if (event.key === "Enter") check();
     });
-    return element("span", { class: "question" }, input, said);
+    const hint = element("button", { type: "button", class: "first-term", title: "of several that are not 0" }, "show the first term");
+    hint.addEventListener("click", () => {
+      said.textContent = this.page.exercise.firstTerm(name) ?? "There is only one term, or its axes are others than those of the equation.";
+      said.className = "answer";
+    });
+    return element("span", { class: "question" }, input, hint, said);
   }
 }
 

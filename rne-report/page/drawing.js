@@ -3,31 +3,30 @@
 /** Digits of a length in the figure. */
 const lengthText = (value) => minus(String(Number(value.toPrecision(3))));
 
-/** About where a text of 14 pixels stands. */
-function boxOf({ x, y }, anchor, text) {
-  const wide = text.length * 7.5;
-  const left = anchor === "start" ? x : anchor === "end" ? x - wide : x - wide / 2;
-  return { left, right: left + wide, top: y - 13, bottom: y + 4 };
-}
-
 class Drawing {
-  constructor(arm, root) {
+  /** Lines are drawn in `root`, and words in `letters`, which stands above everything else. */
+  constructor(arm, root, letters) {
     this.arm = arm;
     this.marks = [];
     for (let joint = 1; joint <= arm.inspection.dof; joint++) {
       const mark = {};
       for (const name of ["reference", "arc", "head", "size", "com"]) mark[name] = svg("path", { class: `drawn ${name}` });
-      for (const name of ["angle", "length", "centre"]) mark[`${name}Text`] = svg("text", { class: `drawn-text ${name}` });
       mark.node = svg("g", { "data-drawing": joint }, ...Object.values(mark));
+      for (const name of ["angle", "length", "centre"]) mark[`${name}Text`] = svg("text", { class: `drawn-text ${name}` });
+      mark.words = svg("g", {}, mark.angleText, mark.lengthText, mark.centreText);
       root.append(mark.node);
+      letters.append(mark.words);
       this.marks.push(mark);
     }
   }
 
+  /** How far from the arm the line of a length is, in pixels: nearer in a small picture. */
+  far() {
+    return Math.min(this.arm.width, this.arm.height) < 380 ? 28 : 40;
+  }
+
   draw(pose, q, isShown) {
-    // the boxes of words, so that none is written on another
-    this.boxes = [];
-    for (const mark of this.marks) mark.node.toggleAttribute("hidden", !isShown);
+    for (const mark of this.marks) for (const node of [mark.node, mark.words]) node.toggleAttribute("hidden", !isShown);
     if (!isShown) return;
     this.marks.forEach((mark, index) => this.drawAngle(mark, pose, q, index + 1));
     this.marks.forEach((mark, index) => this.drawLengths(mark, pose, index + 1));
@@ -58,10 +57,16 @@ class Drawing {
       mark.arc.setAttribute("d", `M${points.map((point) => `${round(point.x)} ${round(point.y)}`).join("L")}`);
       const head = arrowhead(points[Math.max(0, steps - 2)], points[steps], false);
       if (head && Math.abs(turn) * radius * here.scale > 12) mark.head.setAttribute("d", head.path);
-      const word = on(turn / 2, radius * 1.12);
       mark.angleText.append(`θ`, svg("tspan", { class: "sub", dy: "0.3em" }, String(joint)), svg("tspan", { dy: "-0.3em" }, ` = ${minus(((theta * 180) / Math.PI).toFixed(1))}°`));
-      const side = word.x >= here.x ? 1 : -1;
-      this.write(mark.angleText, { x: word.x + 6 * side, y: word.y + 4 }, side > 0 ? "start" : "end");
+      const { words } = this.arm;
+      words.addLine(here, on(0, radius * 1.7));
+      points.slice(1).forEach((point, step) => words.addLine(points[step], point));
+      // beside the arc where it can be, or else around the joint
+      const arc = [0.5, 0.25, 0.75, 0, 1].map((share) => on(turn * share, radius * 1.15));
+      const places = [0, 14, -12].flatMap((dy) => arc.map(({ x, y }) => beside(here, { x, y: y + dy })));
+      for (const far of [1.3, 2, 2.8, 3.6])
+        for (let hour = 0; hour < 12; hour++) places.push(beside(here, on(turn / 2 + (hour * Math.PI) / 6, radius * far)));
+      words.write(mark.angleText, places);
     }
   }
 
@@ -72,50 +77,61 @@ class Drawing {
     const length = Math.abs(row.a);
     const name = inspection.robot.convention === "modified" ? null : `a${joint}`;
     const [next] = inspection.carriedBy(joint);
-    this.dimension(mark.size, mark.lengthText, at, next ? pose.joints[next] : pose.frames[joint].at, -40, name && length > 0 ? `${name} = ${lengthText(row.a)} m` : null);
+    this.dimension(mark.size, mark.lengthText, at, next ? pose.joints[next] : pose.frames[joint].at, -this.far(), name && length > 0 ? `${name} = ${lengthText(row.a)} m` : null);
     const far = norm(minusV(pose.coms[joint], at));
     this.dimension(mark.com, mark.centreText, at, pose.coms[joint], 18, row.mass > 0 && far > 1e-9 ? `com ${lengthText(far)} m` : null);
   }
 
   /** A line beside a length, with its ends and its words; away to the left for a positive offset, in pixels. */
-  dimension(line, words, from, to, offset, text) {
+  dimension(line, label, from, to, offset, text) {
     const [a, b] = [this.arm.project(from), this.arm.project(to)];
-    const { length } = direction(a, b);
-    const isThere = text !== null && length > 20;
+    const isThere = text !== null && direction(a, b).length > 20;
     line.toggleAttribute("hidden", !isThere);
-    words.toggleAttribute("hidden", !isThere);
+    label.toggleAttribute("hidden", !isThere);
     if (!isThere) return;
-    const sides = [offset, -offset].map((of) => this.beside(a, b, of, text));
-    const isFree = ({ box }) => this.boxes.every((other) => box.right < other.left || other.right < box.left || box.bottom < other.top || other.bottom < box.top);
-    this.dimensionAt(line, words, [a, b], sides.find(isFree) || sides[0], text);
+    label.textContent = text;
+    const { words } = this.arm;
+    const size = words.sizeOf(label);
+    const sides = [offset, -offset].map((of, index) => {
+      const way = this.beside(a, b, of);
+      const box = { left: Math.min(way.c.x, way.d.x), right: Math.max(way.c.x, way.d.x), top: Math.min(way.c.y, way.d.y), bottom: Math.max(way.c.y, way.d.y) };
+      const isOutside = box.left < 4 || box.top < 4 || box.right > words.width - 4 || box.bottom > words.height - 4;
+      const costs = way.places.map(({ point, anchor }) => words.cost(words.inside(label, point, anchor, size).box));
+      const hidden = words.boxes.filter((of) => way.lines.some((line) => crosses(line, of))).length;
+      return { ...way, cost: Math.min(...costs) + (isOutside ? 100 : 0) + 20 * hidden + 2 * index };
+    });
+    const way = sides[0].cost <= sides[1].cost ? sides[0] : sides[1];
+    line.setAttribute("d", way.path);
+    for (const [one, other] of way.lines) words.addLine(one, other);
+    words.write(label, way.places);
   }
 
-  /** Where the words of a dimension stand that is so far to the left of the way, in pixels. */
-  beside(a, b, offset, text) {
-    const { x, y } = direction(a, b);
-    const way = { x: y * Math.sign(offset), y: -x * Math.sign(offset) };
-    const far = Math.abs(offset) + 8;
-    const middle = { x: (a.x + b.x) / 2 + way.x * far, y: (a.y + b.y) / 2 + way.y * far + 4 };
-    const anchor = way.x > 0.3 ? "start" : way.x < -0.3 ? "end" : "middle";
-    return { offset, middle, anchor, box: boxOf(middle, anchor, text) };
-  }
-
-  dimensionAt(line, words, [a, b], { offset, middle, anchor }, text) {
+  /** The line of a dimension that is so far to the left of the way, in pixels, and where its words may stand. */
+  beside(a, b, offset) {
     const { x, y } = direction(a, b);
     // to the left of the way on the screen, whose y points down
     const [nx, ny] = [y * offset, -x * offset];
-    const beside = (end, share) => ({ x: end.x + nx * share, y: end.y + ny * share });
-    const [c, d] = [beside(a, 1), beside(b, 1)];
-    const tick = (end) => segment({ x: end.x - x * 3 - nx / Math.abs(offset) * 3, y: end.y - y * 3 - ny / Math.abs(offset) * 3 }, { x: end.x + x * 3 + nx / Math.abs(offset) * 3, y: end.y + y * 3 + ny / Math.abs(offset) * 3 });
-    line.setAttribute("d", segment(beside(a, 0.3), beside(a, 1.15)) + segment(beside(b, 0.3), beside(b, 1.15)) + segment(c, d) + tick(c) + tick(d));
-    words.textContent = text;
-    this.write(words, middle, anchor);
+    const out = { x: nx / Math.abs(offset), y: ny / Math.abs(offset) };
+    const at = (end, share) => ({ x: end.x + nx * share, y: end.y + ny * share });
+    const [c, d] = [at(a, 1), at(b, 1)];
+    const tick = (end) => [{ x: end.x - (x + out.x) * 3, y: end.y - (y + out.y) * 3 }, { x: end.x + (x + out.x) * 3, y: end.y + (y + out.y) * 3 }];
+    const lines = [[at(a, 0.3), at(a, 1.15)], [at(b, 0.3), at(b, 1.15)], [c, d]];
+    const anchor = out.x > 0.3 ? "start" : out.x < -0.3 ? "end" : "middle";
+    const places = [8, 20, 34, 48].flatMap((far) =>
+      [0.5, 0.3, 0.7, 0.1, 0.9].map((share) => ({
+        point: { x: c.x + (d.x - c.x) * share + out.x * far, y: c.y + (d.y - c.y) * share + out.y * far + 4 + 5 * out.y },
+        anchor,
+      })),
+    );
+    // beyond its ends
+    for (const [end, way] of [[c, -1], [d, 1]])
+      places.push({ point: { x: end.x + x * way * 12, y: end.y + y * way * 12 + 4 }, anchor: x * way > 0.3 ? "start" : x * way < -0.3 ? "end" : "middle" });
+    return { c, d, lines, places, path: [...lines, tick(c), tick(d)].map(([one, other]) => segment(one, other)).join("") };
   }
+}
 
-  write(words, { x, y }, anchor) {
-    this.boxes.push(boxOf({ x, y }, anchor, words.textContent));
-    words.setAttribute("x", round(x));
-    words.setAttribute("y", round(y));
-    words.setAttribute("text-anchor", anchor);
-  }
+/** Where words stand beside a point that is seen from another: on its far side. */
+function beside(from, point) {
+  const side = point.x >= from.x ? 1 : -1;
+  return { point: { x: point.x + 6 * side, y: point.y + 4 }, anchor: side > 0 ? "start" : "end" };
 }

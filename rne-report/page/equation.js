@@ -22,12 +22,15 @@ function filledElement(of, attributes, children) {
 
 const DOTS = { "\u0307": "˙", "\u0308": "¨" };
 
-/** A letter such as ω̈ or (Iω): dots as accents, so that they stand over the letter in every font. */
+/**
+ * A letter such as ω̈ or (Iω). Dots are scripts above the letter and no accents: with a font such as DejaVu Math TeX Gyre
+ * an accent lies on the letter, and q̇ looks like q.
+ */
 function letter(text) {
   const pieces = [];
   for (const c of text.normalize("NFD")) {
     if (DOTS[c] && pieces.length) {
-      pieces.push(math("mover", { accent: "true" }, pieces.pop(), math("mo", { stretchy: "false" }, DOTS[c])));
+      pieces.push(math("mover", {}, pieces.pop(), math("mo", { stretchy: "false", scriptlevel: "+0" }, DOTS[c])));
     } else if (/[()×]/.test(c)) {
       pieces.push(math("mo", { stretchy: "false", ...(c === "×" ? {} : { lspace: "0", rspace: "0" }) }, c));
     } else {

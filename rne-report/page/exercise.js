@@ -80,6 +80,15 @@ class Exercise {
     return { isRight: false, text: "Not yet, and no usual slip gives this number: compute term by term." };
   }
 
+  /** The first term of an equation with its value, or null where there is only one or the axes are others. */
+  firstTerm(name) {
+    if (this.axes?.isOther(name)) return null;
+    const terms = [];
+    collect(this.inspection.components.get(name).general, 1, terms);
+    const values = terms.map(({ tree, sign }) => ({ tree, value: sign * this.equations.evaluate(tree) })).filter(({ value }) => value !== 0);
+    return values.length < 2 ? null : `The first term is ${codeOf(values[0].tree)}: it adds ${short(values[0].value)}.`;
+  }
+
   /** Each usual slip in a component, in words, with the value that it gives. */
   slips(name) {
     const { general, cell } = this.inspection.components.get(name);

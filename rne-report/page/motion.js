@@ -76,7 +76,7 @@ class Sliders {
         "th",
         { scope: "row" },
         String(index + 1),
-        element("span", { class: "joint-name", dir: "auto" }, joint.name),
+        element("span", { class: "joint-name", dir: "auto", title: joint.name }, joint.name),
         joint.follows ? element("span", { class: "follows" }, `follows ${followed(joint, joints)}`) : null,
       );
       row.append(name);

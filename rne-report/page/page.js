@@ -217,8 +217,8 @@ class Page {
     this.layerButtons = new Map();
     for (const [quantity] of LAYERS) {
       if (!quantities[quantity]) continue;
-      const before = this.inspection.isTree() ? "h, which carries joint i," : "i-1";
-      const meaning = quantities[quantity].meaning.replace("h = i - 1", before);
+      const before = this.inspection.isTree() ? "p, the parent of link i," : "i-1";
+      const meaning = quantities[quantity].meaning.replace("p, the parent (i - 1 in a chain),", before);
       const button = element(
         "button",
         {
@@ -432,11 +432,15 @@ class Page {
     const begins = new Set(branches.slice(1).map(([joint]) => joint));
     const edge = (joint) => (begins.has(joint) ? "branch" : null);
     const columns = Array.from({ length: dof }, (_, index) => index + 1);
+    // of more joints than fit beside each other the table is as wide as it has to be, and scrolls
+    this.isWide = dof > 7;
+    byId("grid").classList.toggle("wide", this.isWide);
+    byId("grid").style.setProperty("--joints", dof);
     const head = element(
       "tr",
       {},
       element("td", {}, "operations of joint"),
-      ...columns.map((joint) => element("th", { scope: "col", class: edge(joint) }, String(joint))),
+      ...columns.map((joint) => element("th", { scope: "col", class: edge(joint), title: this.inspection.robot.joints[joint - 1].name }, String(joint))),
     );
     const ofBranch = ([joint, ...more]) => {
       const parent = this.inspection.parentOf(joint);
@@ -444,10 +448,10 @@ class Page {
       return element(
         "th",
         { scope: "colgroup", colspan: 1 + more.length, class: edge(joint), title: `from joint ${joint}, ${names}` },
-        parent === 0 ? "on the base" : `on link ${parent}`,
+        parent === 0 ? "base" : `link ${parent}`,
       );
     };
-    const heads = begins.size ? [element("tr", { class: "branches" }, element("td", {}, "branch"), ...branches.map(ofBranch)), head] : [head];
+    const heads = begins.size ? [element("tr", { class: "branches" }, element("td", {}, "branch on"), ...branches.map(ofBranch)), head] : [head];
     const body = element("tbody");
     STEPS.forEach((title, index) => {
       const row = element(
@@ -523,8 +527,8 @@ class Page {
       button.tabIndex = button.dataset.cell === `${cell.joint}-${cell.step}` ? 0 : -1;
       const which = this.form === "unfolded" ? "unfolded" : "folded";
       const isNeedless = which === "folded" && !button.isNeeded;
-      button.firstChild.textContent = isNeedless ? "not needed" : String(button.counts[which]);
-      button.firstChild.classList.toggle("not-needed", isNeedless);
+      button.firstChild.textContent = isNeedless ? (this.isWide ? "–" : "not needed") : String(button.counts[which]);
+      button.firstChild.classList.toggle("not-needed", isNeedless && !this.isWide);
       button.style.setProperty("--share", (button.counts[which] / this.most[which]).toFixed(3));
     }
     const content = this.form === "reduced" ? this.cards.reducedCode() : this.cards.cellContent(cell);

@@ -10,7 +10,8 @@ const round = (value) => Math.round(value * 10) / 10;
 const segment = (a, b) => `M${round(a.x)} ${round(a.y)}L${round(b.x)} ${round(b.y)}`;
 const polygon = (points) => `M${points.map((point) => `${round(point.x)} ${round(point.y)}`).join("L")}Z`;
 const mean = (points) => points.reduce((sum, point) => sum + point.depth, 0) / points.length;
-const dotAt = (at) => `M${round(at.x - 3)} ${round(at.y)}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0Z`;
+/** A ring: an arrow that points at the viewer, around what is at its place. */
+const ringAt = (at) => `M${round(at.x - 11)} ${round(at.y)}a11 11 0 1 0 22 0a11 11 0 1 0 -22 0Zm2 0a9 9 0 1 1 18 0a9 9 0 1 1 -18 0Z`;
 
 function direction(from, to) {
   const [x, y] = [to.x - from.x, to.y - from.y];

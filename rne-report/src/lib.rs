@@ -29,7 +29,7 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 21] = [
+pub const SCRIPTS: [(&str, &str); 22] = [
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
     ("number.js", include_str!("../page/number.js")),
@@ -38,6 +38,7 @@ pub const SCRIPTS: [(&str, &str); 21] = [
     ("pose.js", include_str!("../page/pose.js")),
     ("axes.js", include_str!("../page/axes.js")),
     ("shape.js", include_str!("../page/shape.js")),
+    ("label.js", include_str!("../page/label.js")),
     ("gesture.js", include_str!("../page/gesture.js")),
     ("drawing.js", include_str!("../page/drawing.js")),
     ("arm.js", include_str!("../page/arm.js")),

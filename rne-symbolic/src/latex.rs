@@ -42,7 +42,7 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
         LatexStyle::Body => {
             let mut text = format!("% {}; needs amsmath\n", latex_text(title));
             for section in sections(form, Script::Latex).iter().filter(|section| is_of_equations(&section.items)) {
-                let _ = writeln!(text, "% {}", mixed(&section.title));
+                let _ = writeln!(text, "\\paragraph{{{}}}", mixed(&section.title));
                 content(&mut text, &section.items, COLUMNS);
             }
             text
@@ -104,7 +104,11 @@ fn content(text: &mut String, items: &[Item], columns: usize) {
 /// The rows of an item; none of words.
 fn rows_of(item: &Item, columns: usize) -> Vec<String> {
     let Item::Formula { left, width, right } = item else { return Vec::new() };
-    let lines = right.lines(width + 3, 4, columns).into_iter().enumerate();
+    let lines = match columns {
+        COLUMNS_OF_SLIDE => right.outer_lines(width + 3, 4, columns),
+        _ => right.lines(width + 3, 4, columns),
+    };
+    let lines = lines.into_iter().enumerate();
     lines
         .map(|(at, (_, line))| if at == 0 { format!("  {left} &= {line}") } else { format!("  &\\quad {line}") })
         .collect()

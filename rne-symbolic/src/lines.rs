@@ -69,6 +69,16 @@ impl Pieces {
     /// Breaks a formula into lines of at most `most` columns, the first of them after `head` columns; with each line
     /// the depth in which it begins.
     pub(crate) fn lines(&self, head: usize, indent: usize, most: usize) -> Vec<(usize, String)> {
+        self.lines_with(head, indent, most, 4)
+    }
+
+    /// Like [`Self::lines`], but a line ends outside all parentheses wherever it can, however short it is then.
+    pub(crate) fn outer_lines(&self, head: usize, indent: usize, most: usize) -> Vec<(usize, String)> {
+        self.lines_with(head, indent, most, usize::MAX)
+    }
+
+    /// A line that ends outside all parentheses may be as short as one part in `least` of what fits.
+    fn lines_with(&self, head: usize, indent: usize, most: usize, least: usize) -> Vec<(usize, String)> {
         let mut lines = Vec::new();
         let mut rest = self.0.as_slice();
         let mut start = head;
@@ -82,7 +92,7 @@ impl Pieces {
                     *at == 0 || column <= most
                 })
                 .count();
-            let end = if fitting == rest.len() { fitting } else { Self::best_break(rest, fitting) };
+            let end = if fitting == rest.len() { fitting } else { Self::best_break(rest, fitting, least) };
             let (line, after) = rest.split_at(end);
             lines.push((first.depth, line.iter().map(|piece| piece.text.as_str()).collect::<Vec<_>>().join(" ")));
             start = indent + 2 * after.first().map_or(0, |piece| piece.depth);
@@ -92,14 +102,15 @@ impl Pieces {
     }
 
     /// The outermost place to break at, unless that leaves most of the line empty; the last one of equals.
-    fn best_break(pieces: &[Piece], fitting: usize) -> usize {
+    fn best_break(pieces: &[Piece], fitting: usize, least: usize) -> usize {
         let widths: usize = pieces[..fitting].iter().map(|piece| piece.width + 1).sum();
         let mut column = 0;
         let mut best = (usize::MAX, fitting.max(1));
         for at in 1..=fitting {
             column += pieces[at - 1].width + 1;
             let depth = pieces.get(at).map_or(0, |piece| piece.depth);
-            if 4 * column >= widths && depth <= best.0 {
+            let share = if depth == 0 { least } else { 4 };
+            if share.saturating_mul(column) >= widths && depth <= best.0 {
                 best = (depth, at);
             }
         }

@@ -62,6 +62,15 @@ struct Letters<'r> {
     angles: Vec<(Angle, Turn)>,
 }
 
+/// The parameter of a formula that is this parameter alone.
+fn parameter_of(formula: &Formula) -> Option<usize> {
+    match formula {
+        Formula::Parameter(index) => Some(*index),
+        Formula::Negative(x) => parameter_of(x),
+        _ => None,
+    }
+}
+
 impl Letters<'_> {
     fn parameter(&mut self, index: usize, kind: Kind) -> Polynomial {
         let known = self.parameters.get(index).copied().flatten();
@@ -105,6 +114,13 @@ impl Letters<'_> {
         }
         // a sum to divide by, or a formula that grew too long: a letter stands for it
         let formula = written.and_then(|written| self.formula(written, kind));
+        // a parameter that is the number itself has its unit
+        let alone = written.and_then(parameter_of).and_then(|index| self.parameters.get(index).copied().flatten());
+        if let Some(Symbol::Constant(at)) = alone {
+            if let Some(constant) = self.constants.0.get_mut(at).filter(|constant| constant.unit.is_empty()) {
+                constant.unit = unit;
+            }
+        }
         if let Some(formula) = formula.filter(|formula| !formula.is_too_long()) {
             return formula;
         }

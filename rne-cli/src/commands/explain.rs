@@ -117,7 +117,8 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
         return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
     }
     // the components of a vector before a name that is nearly the same
-    let components = ["x", "y", "z", "xx", "xy", "xz", "yy", "yz", "zz"].map(|axis| format!("{name}_{axis}"));
+    let components = ["x", "y", "z", "xx", "xy", "xz", "yy", "yz", "zz"]
+        .map(|axis| format!("{}_{axis}", code_name(name).unwrap_or_else(|| name.clone())));
     let components: Vec<&str> =
         components.iter().map(String::as_str).filter(|name| inspection.names.contains_key(*name)).collect();
     let near = did_you_mean(name, inspection.names.keys().map(String::as_str)).filter(|_| components.is_empty());
@@ -129,6 +130,26 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
          code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",
         robot.name
     )))
+}
+
+/// The name in the code of a vector that is spelt out, such as w1 for omega1.
+fn code_name(name: &str) -> Option<String> {
+    let words = [
+        ("omega_dot", "dw"),
+        ("omegadot", "dw"),
+        ("domega", "dw"),
+        ("omega", "w"),
+        ("acceleration", "ddc"),
+        ("velocity", "dc"),
+        ("gravity", "g"),
+        ("force", "f"),
+        ("moment", "n"),
+    ];
+    words.iter().find_map(|(word, letter)| {
+        let joint = name.strip_prefix(word)?.trim_start_matches('_');
+        let is_joint = !joint.is_empty() && joint.bytes().all(|byte| byte.is_ascii_digit());
+        is_joint.then(|| format!("{letter}{joint}"))
+    })
 }
 
 const EXIT_STATUS: &str = "\

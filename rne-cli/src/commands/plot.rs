@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_model::{Robot, exact_digits};
-use rne_plot::{TorqueHistory, Trajectory, svg};
+use rne_plot::{TorqueHistory, Trajectory, significant, svg};
 
 use crate::files::chosen_arm::{ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
@@ -144,7 +144,7 @@ fn peaks(robot: &Robot, history: &TorqueHistory) -> String {
         let unit = joint.row.kind.effort_unit();
         cells.push([
             format!("  {}", joint.name),
-            rounded(peak.tau, 3),
+            significant(peak.tau, 3).replace('\u{2212}', "-"),
             unit.to_owned(),
             format!("{} s", rounded(peak.time, 3)),
             format!("{:.0} %", 100.0 * peak.velocity_share),

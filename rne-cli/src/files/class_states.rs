@@ -142,6 +142,19 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
         mistakes.push(0..0, "the file is empty: there is no header", Some(&help));
         return mistakes.finish(ClassStates::Seed(0));
     };
+    // a key for another robot is one mistake, not one for each column
+    let joint = |cell: &Cell<'_>| -> Option<usize> {
+        cell.text.to_ascii_lowercase().strip_prefix('q')?.trim_start_matches('d').parse().ok()
+    };
+    let of_key = header.cells.iter().filter_map(joint).max().unwrap_or(dof);
+    if of_key != dof {
+        let joints = |count: usize| if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") };
+        return Err(Failure::input(format_args!(
+            "{name}: the key is for an arm of {}; {} has {dof}",
+            joints(of_key),
+            robot.name
+        )));
+    }
     let columns = columns(header, dof, &help, &mut mistakes);
     if rows.is_empty() && !mistakes.are_there() {
         mistakes.push(header.span.clone(), "there is no state below the header", Some(&help));

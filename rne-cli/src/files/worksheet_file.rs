@@ -55,6 +55,12 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
         return Err(Failure::input(format_args!("{name} has more than {LONGEST} bytes: is this a worksheet?")));
     }
     let text = text_of(&name, &bytes)?;
+    let keys = ["convention:", "joints:", "format:"];
+    if keys.iter().filter(|key| text.lines().any(|line| line.starts_with(**key))).count() > 1 {
+        return Err(Failure::input(format_args!(
+            "{name} is a robot file, not a worksheet; name the worksheets after the robot file"
+        )));
+    }
     let mut mistakes = Mistakes::new(&name, text);
     let is_json = text.trim_start().starts_with(['{', '[']);
     let mut head = Head::default();

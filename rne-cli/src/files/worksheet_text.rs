@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use rne_diagnose::worksheet::{Line, Worksheet};
+use rne_diagnose::worksheet::{Axes, Line, Worksheet};
 use rne_emit::Heading;
-use rne_model::{Robot, exact_digits, six_digits};
+use rne_model::{Convention, Robot, exact_digits, six_digits};
 use serde::Serialize;
 
 use crate::outcome::Failure;
@@ -86,6 +86,15 @@ fn arm(robot: &Robot) -> String {
     format!("# {}\n", lines.join("\n# "))
 }
 
+/// The axes of the vectors as a comment: in a standard table those of link i are not those of frame i.
+fn axes(robot: &Robot, axes: Axes) -> String {
+    let of_table = match (axes, robot.convention) {
+        (Axes::Link, Convention::Standard) => "; frame i of the table is these axes turned by alpha_i about x",
+        _ => "",
+    };
+    format!("# axes of the vectors: {} = {}{of_table}\n", axes.name(), axes.explained())
+}
+
 /// A student's worksheet as CSV: the arm and the state are filled in, and with `answers` everything else, too. `comma`
 /// writes numbers with a decimal comma and semicolons between the columns.
 pub(crate) fn of_student(
@@ -103,7 +112,7 @@ pub(crate) fn of_student(
         let steps: Vec<String> = steps.iter().map(ToString::to_string).collect();
         let _ = write!(text, ", steps {}", steps.join(" "));
     }
-    let _ = writeln!(text, ", student {student}\n{}{columns}", arm(robot));
+    let _ = writeln!(text, ", student {student}\n{}{}{columns}", arm(robot), axes(robot, sheet.axes));
     for row in rows(sheet, Narrowed::default()) {
         let is_state = ["q", "qd", "qdd"].contains(&row.quantity);
         if !is_state && !steps.contains(&row.step) {

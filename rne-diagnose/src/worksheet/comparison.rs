@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rne_model::Robot;
 use rne_runtime::WrongLength;
 
-use super::{Computed, Line, Quantity, ROUNDING, Situation, Worksheet, followed, local, norm, slipped};
+use super::{Computed, Line, Quantity, ROUNDING, Situation, Worksheet, followed, local, norm, other_axes, slipped};
 use crate::{Diagnosis, Observation, diagnose};
 
 /// A value that somebody found for a component of a line.
@@ -256,6 +256,9 @@ impl<'a> Ordered<'a> {
         let mut reasons: Vec<Reason> =
             everything.map(|slipped| of_slip(slipped.slip, Reach::Everything)).take(MOST).collect();
         if reasons.is_empty() {
+            reasons.extend(self.of_other_axes(robot, at, line)?);
+        }
+        if reasons.iter().all(|reason| reason.reach != Reach::Everything) {
             reasons.extend(self.of_the_line(line, component));
             reasons.extend(self.of_torques(robot, at)?);
             let so_far = slipped.iter().filter(|slipped| explains(&slipped.values, line));
@@ -263,6 +266,30 @@ impl<'a> Ordered<'a> {
             reasons.truncate(MOST);
         }
         Ok(reasons)
+    }
+
+    /// The other axes in which somebody may have written all vectors: those that explain every value, or every value up
+    /// to a line and more than half of those that differ.
+    fn of_other_axes(&self, robot: &Robot, at: &Situation, line: usize) -> Result<Vec<Reason>, WrongLength> {
+        let wrong: Vec<Place> =
+            self.values.keys().copied().filter(|&place| !self.agrees(place, self.sheet.value(place))).collect();
+        let mut found = Vec::new();
+        for other in other_axes::all(robot, at, self.sheet)? {
+            let agrees = |place: Place| self.agrees(place, other.values[place.0][place.1]);
+            let explained = wrong.iter().filter(|&&place| agrees(place)).count();
+            let reach = match self.values.keys().find(|&&place| !agrees(place)) {
+                None => Reach::Everything,
+                Some(first) if first.0 > line && 2 * explained > wrong.len() => Reach::UpToHere,
+                Some(_) => continue,
+            };
+            let own = self.sheet.axes;
+            let right = format!("the axes of the worksheet are `{}`: {}", own.name(), own.explained());
+            found.push(Reason { says: other.says, right: Some(right), reach });
+        }
+        let best = found.iter().any(|reason| reason.reach == Reach::Everything);
+        found.retain(|reason| !best || reason.reach == Reach::Everything);
+        found.truncate(1);
+        Ok(found)
     }
 
     /// The mistakes on the line alone that explain it.

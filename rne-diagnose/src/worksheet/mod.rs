@@ -7,6 +7,7 @@ mod comparison;
 mod followed;
 mod formulas;
 mod local;
+mod other_axes;
 mod quantity;
 mod slipped;
 
@@ -39,6 +40,16 @@ impl Axes {
             Self::Link => "link",
             Self::Joint => "joint",
             Self::Base => "base",
+        }
+    }
+
+    /// The axes in words, for people who fill in a worksheet.
+    #[must_use]
+    pub const fn explained(self) -> &'static str {
+        match self {
+            Self::Link => "fixed to link i, z along joint i",
+            Self::Joint => "fixed to link i - 1, z along joint i",
+            Self::Base => "those of frame 0",
         }
     }
 
