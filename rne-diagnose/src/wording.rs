@@ -7,6 +7,7 @@ use crate::slip::Slip;
 impl Slip {
     /// The mistake of the other computation, in a clause: "gravity points the other way".
     #[must_use]
+    #[allow(clippy::too_many_lines)] // an arm for each slip
     pub fn says(self, robot: &Robot) -> String {
         let (this, other) = match robot.convention {
             Convention::Standard => ("standard", "modified"),

@@ -39,7 +39,7 @@ pub(crate) fn floating_base(cx: &Context, root: &Node, format: u32) -> Option<Op
     }
     read_mapping!(cx, node, "a floating base", {
         name: required "name" |cx, node| base_name(cx, node, root),
-        link: required "link" |cx, node| base_link(cx, node),
+        link: required "link" base_link,
     });
     Some(Some(FloatingBase { name, link }))
 }

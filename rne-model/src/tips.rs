@@ -49,13 +49,10 @@ pub(crate) fn tips(cx: &Context, root: &Node, format: u32, frames: &[Frame]) -> 
     if format == 1 {
         return cx.refuse(needs_format_2("tips", node));
     }
-    let items = match &node.content {
-        Content::Sequence(items) => items,
-        _ => {
-            let message = format!("found {} where a list of names is needed", node.described());
-            let help = "write the names of the frames that carry wrenches, such as `tips: [left, right]`";
-            return cx.refuse(Diagnostic::error(node.head(), message).label("a list of names is needed").help(help));
-        }
+    let Content::Sequence(items) = &node.content else {
+        let message = format!("found {} where a list of names is needed", node.described());
+        let help = "write the names of the frames that carry wrenches, such as `tips: [left, right]`";
+        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of names is needed").help(help));
     };
     let mut tips = Vec::new();
     for item in items {

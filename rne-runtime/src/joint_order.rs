@@ -92,9 +92,8 @@ impl JointOrderError<'_> {
         let mut at = 0;
         while at < followers.len() && matches!(self, Self::Unknown(_)) {
             let [follower, words] = followers[at];
-            if frame_index(&[follower], name).is_some() {
-                panic!("{}", Text::EMPTY.with("`").with(name).with(words).as_str());
-            }
+            let is_follower = frame_index(&[follower], name).is_some();
+            assert!(!is_follower, "{}", Text::EMPTY.with("`").with(name).with(words).as_str());
             at += 1;
         }
         let text = Text::EMPTY.with("`").with(name).with(words).with(remark);

@@ -116,10 +116,10 @@ impl Letters<'_> {
         let formula = written.and_then(|written| self.formula(written, kind));
         // a parameter that is the number itself has its unit
         let alone = written.and_then(parameter_of).and_then(|index| self.parameters.get(index).copied().flatten());
-        if let Some(Symbol::Constant(at)) = alone {
-            if let Some(constant) = self.constants.0.get_mut(at).filter(|constant| constant.unit.is_empty()) {
-                constant.unit = unit;
-            }
+        if let Some(Symbol::Constant(at)) = alone
+            && let Some(constant) = self.constants.0.get_mut(at).filter(|constant| constant.unit.is_empty())
+        {
+            constant.unit = unit;
         }
         if let Some(formula) = formula.filter(|formula| !formula.is_too_long()) {
             return formula;

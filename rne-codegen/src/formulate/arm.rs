@@ -173,23 +173,7 @@ impl<'s> Arm<'s> {
                 rotor,
             });
         }
-        let mut tips: Vec<(Option<usize>, Mount<'s>)> = Vec::with_capacity(placed.len());
-        for (index, (link, at)) in placed.into_iter().enumerate() {
-            let (rotation, lever) = match (robot.convention, link.map(|link| &twists[link])) {
-                (Convention::Standard, Some(&twist)) => (twist * at.rotation, twist * at.translation),
-                _ => (at.rotation, at.translation),
-            };
-            let tip = joints + 1 + index;
-            let is_first = links.iter().all(|other| other.parent != link) && tips.iter().all(|(on, _)| *on != link);
-            let label = if is_first { 0 } else { tip };
-            // a frame carries no load, and its link has a lever to the next joint already
-            let r = match frame {
-                Some(_) => builder.zeros(Cause::FreeTip),
-                None => from_com(builder, (&links, floating_base.as_ref()), link, (label, lever)),
-            };
-            let rotation = builder.name_matrix(Quantity::TipRotation, tip, rotation);
-            tips.push((link, Mount { rotation, r, lever, label }));
-        }
+        let tips = mounted((builder, robot), (&links, floating_base.as_ref()), &twists, placed);
         let (tip_link, tip) = tips[0];
         let spins = Spin::all(builder, robot, &twists);
         Self {
@@ -232,6 +216,34 @@ impl<'s> Arm<'s> {
         }
         false
     }
+}
+
+/// Where tips are mounted on their links. Of a frame in the place of the tip there is one.
+fn mounted<'s>(
+    (builder, robot): (&'s Builder, &Robot),
+    (links, floating_base): (&[Link<'s>], Option<&Body<'s>>),
+    twists: &[Matrix<'s>],
+    placed: Vec<(Option<usize>, Placement<'s>)>,
+) -> Vec<(Option<usize>, Mount<'s>)> {
+    let frame = builder.function.frame(robot);
+    let mut tips: Vec<(Option<usize>, Mount<'s>)> = Vec::with_capacity(placed.len());
+    for (index, (link, at)) in placed.into_iter().enumerate() {
+        let (rotation, lever) = match (robot.convention, link.map(|link| &twists[link])) {
+            (Convention::Standard, Some(&twist)) => (twist * at.rotation, twist * at.translation),
+            _ => (at.rotation, at.translation),
+        };
+        let tip = links.len() + 1 + index;
+        let is_first = links.iter().all(|other| other.parent != link) && tips.iter().all(|(on, _)| *on != link);
+        let label = if is_first { 0 } else { tip };
+        // a frame carries no load, and its link has a lever to the next joint already
+        let r = match frame {
+            Some(_) => builder.zeros(Cause::FreeTip),
+            None => from_com(builder, (links, floating_base), link, (label, lever)),
+        };
+        let rotation = builder.name_matrix(Quantity::TipRotation, tip, rotation);
+        tips.push((link, Mount { rotation, r, lever, label }));
+    }
+    tips
 }
 
 /// Where a row of a tree begins in the link frame of its parent, if not there. Run-time parameters do not change it.

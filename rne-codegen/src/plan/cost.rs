@@ -26,6 +26,7 @@ pub(crate) struct FramedRobot {
 
 /// The choices that a robot leaves open.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[allow(clippy::struct_excessive_bools)] // independent choices
 pub struct OpenChoices {
     /// The choices of each joint, base to tip.
     pub joints: Vec<OpenJoint>,

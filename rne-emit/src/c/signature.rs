@@ -120,13 +120,17 @@ pub(super) fn fields(file: &File, record: Record, parts: &[Layout]) -> Vec<Strin
 pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
     fn put(layout: &Layout, records: &mut Vec<(Record, Vec<Layout>)>) {
         let (_, Layout::Record(record, parts)) = elements_of(layout) else { return };
-        parts.iter().for_each(|part| put(part, records));
+        for part in parts {
+            put(part, records);
+        }
         if records.iter().all(|(other, _)| other != record) {
             records.push((*record, parts.clone()));
         }
     }
     let mut records = Vec::new();
-    file.programs.iter().for_each(|program| put(&program.function.layout(program.dof), &mut records));
+    for program in file.programs {
+        put(&program.function.layout(program.dof), &mut records);
+    }
     records
 }
 
