@@ -58,7 +58,7 @@ fn a_gripper_is_certified() {
     }
     let file = folder("couplings_certified").join("gripper.md");
     let file = file.to_str().expect("UTF-8");
-    fine(&["certify", GRIPPER, "--cc", "arm-none-eabi-gcc", "-o", file]);
+    assert_eq!(rne(&["certify", GRIPPER, "--states", "5", "-o", file]).status, 0);
     let text = std::fs::read_to_string(file).expect("a certificate");
     assert!(text.contains("gripper") && text.contains("instructions"), "{text}");
 }
@@ -67,4 +67,31 @@ fn a_gripper_is_certified() {
 fn what_takes_no_followers_says_so() {
     fails(2, &["eval", GRIPPER, "--function", "regressor", "--q", "0,0,0"], &["`finger_b` follows other joints"]);
     fails(1, &["excite", GRIPPER], &["docs/gripper.yaml:32:3", "joints that follow others are not supported here"]);
+}
+
+/// The limits of the second finger are those of the first, through the ratio; its effort limits no torque.
+#[test]
+fn limits_of_a_follower_are_in_the_code() {
+    let folder = folder("couplings_limits");
+    let text = std::fs::read_to_string(std::path::Path::new(crate::call::ROOT).join(GRIPPER)).expect("it is there");
+    let file = folder.join("grip.yaml");
+    let second = "dh: {theta: 0, d: 0, a: 0, alpha: -pi/2}";
+    let with = |limits: &str| {
+        let text = text.replace(second, &format!("limits: {{{limits}}}\n    {second}"));
+        std::fs::write(&file, text.replace("{finger_a: 1}", "{finger_a: -2}")).expect("written");
+        file.to_str().expect("UTF-8")
+    };
+    let code = rne(&["emit", with("position: [-0.06, 0.5], velocity: 0.5"), "--lang", "c"]).out;
+    let end = |name: &str| {
+        let line = code.lines().find(|line| line.starts_with(&format!("#define GRIPPER_{name} "))).expect("a limit");
+        line.rsplit_once(", ").map(|(_, last)| last.trim_end_matches('}').to_owned())
+    };
+    // 0.06 / 2 of finger_b is nearer than 0.04 of finger_a, and 0 is nearer than -0.25
+    let ends = ["POSITION_LOWER", "POSITION_UPPER", "VELOCITY_LIMIT"].map(end);
+    assert_eq!(ends, ["0.0f", "0.03f", "0.25f"].map(|number| Some(number.to_owned())), "{code}");
+    let said = "no joint has an effort limit, but for joints that follow others";
+    fails(1, &["emit", with("effort: 5"), "--lang", "c", "--limits"], &[said, "effort: 40"]);
+    fails(1, &["emit", GRIPPER, "--lang", "c", "--limits"], &["no joint has an effort limit; write it"]);
+    let checked = rne(&["check", with("effort: 5")]);
+    assert!(checked.out.contains("the effort limit of `finger_b` limits no torque"), "{checked:?}");
 }
