@@ -52,7 +52,8 @@ mod tests {
 
     #[test]
     fn rules_are_counted() {
-        let printed = "a.c:3: misra-c2012-19.2\na.h:8: misra-c2012-2.5\na.c:4: unusedFunction\na.c:9: misra-c2012-19.2\n";
+        let printed =
+            "a.c:3: misra-c2012-19.2\na.h:8: misra-c2012-2.5\na.c:4: unusedFunction\na.c:9: misra-c2012-19.2\n";
         let found: Vec<_> = violations(printed).into_iter().collect();
         let places = |places: &[&str]| places.iter().map(|&place| place.to_owned()).collect::<Vec<_>>();
         assert_eq!(found, [("19.2".to_owned(), places(&["a.c:3", "a.c:9"])), ("2.5".to_owned(), places(&["a.h:8"]))]);

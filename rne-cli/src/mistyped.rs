@@ -208,7 +208,10 @@ mod tests {
             let lang = said(&format!("{command} planar2 --lang C")).expect("refused");
             assert!(lang.contains("`C` is not a valid value of --lang") && lang.ends_with("did you mean c?"), "{lang}");
             let observer = said(&format!("{command} planar2 --function observer")).expect("refused");
-            assert!(observer.contains("write --function momentum_and_rate, or --observer of rne certify"), "{observer}");
+            assert!(
+                observer.contains("write --function momentum_and_rate, or --observer of rne certify"),
+                "{observer}"
+            );
         }
     }
 

@@ -66,7 +66,8 @@ pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
     let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names };
     if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
         let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
-        let follower = if has_follower { ", but for joints that follow others and have no torque of their own" } else { "" };
+        let follower =
+            if has_follower { ", but for joints that follow others and have no torque of their own" } else { "" };
         return Err(Failure::input(format_args!(
             "{}: no joint has an effort limit{follower}; write it in `limits` of the joint, for example `limits: \
              {{effort: 40}}` (N m or N)",

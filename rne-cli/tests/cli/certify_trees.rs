@@ -193,7 +193,9 @@ fn the_checker_says_what_it_does_not_support() {
     }
     let folder = folder("checker_supports");
     let path = folder.to_str().expect("UTF-8");
-    for (robot, key) in [("docs/gripper.yaml", "couplings"), ("wam7_coupled", "motors"), ("docs/dual_arm.yaml", "bodies")] {
+    for (robot, key) in
+        [("docs/gripper.yaml", "couplings"), ("wam7_coupled", "motors"), ("docs/dual_arm.yaml", "bodies")]
+    {
         let certified = rne(&["certify", robot, "--states", "5", "--evidence", path, "--force"]);
         assert_eq!(certified.status, 0, "{certified:?}");
         let note = format!("note: check_c.py does not support robots with {key}");
