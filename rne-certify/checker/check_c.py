@@ -20,7 +20,8 @@ this script, reads the source; it refuses anything else that stands there.
 
 The primes have 127 bits. A wrong term survives one point with a probability below 1e-33; there are 8 points.
 Not checked: the header, the compiler and the processor; without a robot file, that the table in the trace is that of the arm.
-Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read or is not supported (couplings, loops, motors, bodies).
+Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read, or the robot is not supported: it has
+couplings, loops, motors or bodies.
 """
 import json
 import math

@@ -50,8 +50,8 @@ const TORQUE: f64 = 10.0;
 /// Positions of a sliding joint without limits, m.
 const SLIDE: f64 = 1.0;
 
-/// The payload of each state, for functions that take one: mass, kg; centre of mass, m; inertia about it xx, yy, zz, xy,
-/// xz, yz, kg m².
+/// The payload of each state, for functions that take one: mass, kg; centre of mass, m; inertia about it xx, yy, zz,
+/// xy, xz, yz, kg m².
 pub const PAYLOAD: [f32; 10] = [1.5, 0.01, -0.02, 0.06, 0.003, 0.004, 0.002, 2e-4, -1e-4, 3e-4];
 /// The force, N, and the moment, N m, at each tip in each state, for functions that take them.
 pub const WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];

@@ -225,8 +225,8 @@ fn program_call(program: &Program, symbol: &str) -> Result<Call, Failure> {
 
 fn not_called(program: &Program) -> Failure {
     Failure::usage(format_args!(
-        "rne certify cannot call {}: it takes functions of positions, velocities, accelerations, torques, a payload and \
-         wrenches that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
+        "rne certify cannot call {}: it takes functions of positions, velocities, accelerations, torques, a payload \
+         and wrenches that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
          forward_dynamics. {TYPED}--observer{TYPED:#} certifies the momentum observer",
         program.function
     ))

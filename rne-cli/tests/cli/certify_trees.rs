@@ -55,7 +55,7 @@ fn trees_violate_no_rule_of_misra_without_a_deviation() {
     }
 }
 
-/// The certificate of a tree is checked, and its command writes the same header: with names, on request also for an arm.
+/// The command of a certificate writes the same header: with names for a tree, and on request for an arm.
 #[test]
 fn names_are_part_of_a_certificate() {
     if !has_tools() {
