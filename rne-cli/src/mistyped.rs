@@ -98,6 +98,9 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
     })
 }
 
+/// The function whose C code contains the observer.
+const OBSERVER: &str = "momentum_and_rate";
+
 /// A value that is a valid one but for capital letters, `--lang C`, or a function that has another name.
 fn of_other_name(error: &clap::Error) -> Option<String> {
     let text = |kind| match error.get(kind) {
@@ -106,7 +109,6 @@ fn of_other_name(error: &clap::Error) -> Option<String> {
     };
     let (option, value) = (text(ContextKind::InvalidArg)?, text(ContextKind::InvalidValue)?);
     let Some(ContextValue::Strings(valid)) = error.get(ContextKind::ValidValue) else { return None };
-    const OBSERVER: &str = "momentum_and_rate";
     if value.eq_ignore_ascii_case("observer") && valid.iter().any(|name| name == OBSERVER) {
         return Some(format!(
             "`{value}` is no function; the C code of {OBSERVER} contains the momentum observer: write \

@@ -49,7 +49,7 @@ results of this computer, and bounds their error. It fails if the code branches,
 computes in double precision or calls a function of others.
 
 Needed: arm-none-eabi-gcc with objdump; used if installed: qemu-system-arm,
-cppcheck; without them, a note. docs/assurance.md says how to install them, and what each number
+cppcheck. docs/assurance.md says how to install them, and what each number
 means. For a file of `rne emit`, repeat its options.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
@@ -283,7 +283,7 @@ fn is_ours(text: &str) -> bool {
         || text.starts_with("{\n  \"command\": \"rne certify")
 }
 
-/// The certificate, and remarks: tools that are missing, what the checker does not support, warnings of the robot file.
+/// The certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Coupled)?;
     let robot = arguments.rotors.of(checked.robot);

@@ -1,5 +1,7 @@
 //! Functions that `rne certify` certifies: a program, an update of the observer, friction or limits of the joints.
 
+use std::fmt::Write as _;
+
 use rne_certify::accuracy::{self, Error, Sample};
 use rne_certify::board::{self, Call};
 use rne_certify::certificate::{Accuracy, NamedError};
@@ -179,10 +181,11 @@ fn fixed(function: Function) -> String {
     let mut words = String::new();
     if function.takes(Argument::Payload) {
         let payload = list(&accuracy::PAYLOAD);
-        words += &format!(" At each state the payload is {payload}: mass (kg), centre of mass (m), inertia (kg m²).");
+        let _ =
+            write!(words, " At each state the payload is {payload}: mass (kg), centre of mass (m), inertia (kg m²).");
     }
     if function.takes(Argument::Wrench) || function.takes(Argument::Wrenches) {
-        words += &format!(" At each state each wrench is {}: force (N), moment (N m).", list(&accuracy::WRENCH));
+        let _ = write!(words, " At each state each wrench is {}: force (N), moment (N m).", list(&accuracy::WRENCH));
     }
     words
 }

@@ -61,7 +61,9 @@ pub(crate) fn version(program: &str) -> Result<String, Failure> {
     let said = text(Command::new(program).arg("--version"))?;
     let line = said.lines().next().map(str::trim).filter(|line| !line.is_empty());
     line.map(str::to_owned).ok_or_else(|| {
-        Failure::usage(format_args!("{program} does not say its version (--version): it is no compiler"))
+        Failure::usage(format_args!(
+            "{program} prints nothing for --version, so it is no compiler; name another with {TYPED}--cc{TYPED:#}"
+        ))
     })
 }
 
@@ -80,6 +82,11 @@ pub(crate) fn version_of_gcc(program: &str) -> Result<String, Failure> {
     let target = target.trim();
     if target.starts_with("arm") {
         return Ok(version);
+    }
+    if target.is_empty() {
+        return Err(Failure::usage(format_args!(
+            "{program} is no compiler: it prints nothing for -dumpmachine, which asks for the target; {remedy}"
+        )));
     }
     Err(Failure::usage(format_args!("{program} is no compiler for Arm: its target is {target}; {remedy}")))
 }
