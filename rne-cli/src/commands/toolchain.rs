@@ -67,7 +67,7 @@ pub(crate) fn version(program: &str) -> Result<String, Failure> {
     })
 }
 
-/// The version of GCC for Arm; an error says why another program is none.
+/// The version of GCC for Arm; an error says what another program is.
 pub(crate) fn version_of_gcc(program: &str) -> Result<String, Failure> {
     let version = version(program)?;
     let said = text(Command::new(program).arg("--version"))?;
