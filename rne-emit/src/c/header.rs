@@ -126,7 +126,9 @@ fn tips(file: &File, upper: &str) -> String {
         let JointIdentifier { upper_case, .. } = JointIdentifier::of(name, index);
         let link = frame.on.and_then(|on| file.robot.joints.get(on));
         let link = link.map_or("the base".to_owned(), |joint| format!("the link of {}", inert::c_comment(&joint.name)));
-        let _ = writeln!(text, "    /// {name}, on {link}\n    {upper}_TIP_{upper_case} = {index},");
+        // without the list, the bytes stay what they were
+        let on = if file.robot.tips.is_empty() { String::new() } else { format!(", on {link}") };
+        let _ = writeln!(text, "    /// {name}{on}\n    {upper}_TIP_{upper_case} = {index},");
     }
     text + "};\n\n"
 }
