@@ -20,7 +20,8 @@ this script, reads the source; it refuses anything else that stands there.
 
 The primes have 127 bits. A wrong term survives one point with a probability below 1e-33; there are 8 points.
 Not checked: the header, the compiler and the processor; without a robot file, that the table in the trace is that of the arm.
-Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read.
+Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read, or the robot is not supported: it has
+couplings, loops, motors or bodies.
 """
 import json
 import math
@@ -32,7 +33,7 @@ from decimal import Decimal
 sys.dont_write_bytecode = True  # no folder __pycache__ beside this script
 import robot_table
 from c_source import File, Source
-from robot_table import PI, Wrong, cosine, sine
+from robot_table import PI, NotSupported, Wrong, cosine, sine
 
 POINTS = 8
 FUNCTIONS = {  # with the arrays that they take; what they do not take is zero
@@ -331,6 +332,23 @@ def check(file, traced, trace):
         points += 1
     return f"{function}: {joints} torques are those of the table at {POINTS} points; {len(literals)} constants are right"
 
+def missing(trace):
+    """What a trace lacks, in words; None if it has the form of a trace."""
+    def lacks(mapping, what, **kinds):
+        if not isinstance(mapping, dict):
+            return f"{what} is no mapping"
+        for key, kind in kinds.items():
+            if not isinstance(mapping.get(key), kind):
+                return f"{what} has no {kind.__name__} '{key}'"
+    if found := lacks(trace, "the file", prefix=str, real=str, functions=list, table=dict):
+        return found
+    if found := lacks(trace["table"], "the table", convention=str, gravity=list, joints=list):
+        return found
+    row = dict.fromkeys(("type", "theta", "d", "a", "alpha", "mass", "inertia_about"), str)
+    found = [lacks(joint, "a joint", com=list, inertia=list, **row) for joint in trace["table"]["joints"]]
+    found += [lacks(of, "a function", function=str, steps=list, constants=dict) for of in trace["functions"]]
+    return next(filter(None, found), None)
+
 def main():
     if len(sys.argv) not in (3, 4):
         print(__doc__)
@@ -344,7 +362,12 @@ def main():
     except (OSError, ValueError) as error:
         print(f"error: {error}")
         return 2
+    if what := missing(trace):
+        print(f"error: {sys.argv[2]} is no trace that rne certify --evidence writes: {what}")
+        return 2
     try:
+        if trace.get("not_supported"):
+            raise NotSupported(f"the robot has {', '.join(trace['not_supported'])}, which this script does not compute")
         robot_table.complete(trace["table"])
         if robot is not None:
             count = robot_table.compare(trace["table"], robot)
@@ -358,6 +381,9 @@ def main():
             raise Wrong("the trace names no function")
         if others:
             print(f"not checked, because the trace does not name them: {', '.join(others)}")
+    except NotSupported as error:
+        print(f"not supported: {error}")
+        return 2
     except Wrong as error:
         print(f"wrong: {error}")
         return 1

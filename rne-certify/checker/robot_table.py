@@ -23,6 +23,9 @@ decimal.getcontext().prec = 60
 class Wrong(Exception):
     """Something in a file is wrong, or this script does not know it."""
 
+class NotSupported(Exception):
+    """The robot has something that these scripts do not compute."""
+
 # --- numbers with 60 digits ---------------------------------------------------------------------------------------
 
 def arctan_of_inverse(n):
@@ -289,7 +292,10 @@ def table_of(text):
     robot = document.block(0) if document.peek() else {}
     if document.peek() is not None:
         raise document.wrong("this script reads no such line")
-    only(robot, "format name title source notes parameters convention gravity base tool frames joints", "the file")
+    unsupported = [key for key in ("couplings", "loops", "motors", "bodies") if key in robot]
+    if unsupported:
+        raise NotSupported(f"the robot file has the key {', '.join(unsupported)}, which this script does not compute")
+    only(robot, "format name title source notes parameters convention gravity base tool frames tips joints", "the file")
     is_tree, is_modified = robot.get("format") == "2", robot.get("convention") == "modified"
     if robot.get("format") not in ("1", "2") or robot.get("convention") not in ("standard", "modified"):
         raise Wrong("the robot file needs format: 1 or format: 2, and a convention")
@@ -376,6 +382,9 @@ def main():
             table = table_of(file.read())
     except (OSError, ValueError) as error:
         print(f"error: {error}")
+        return 2
+    except NotSupported as error:
+        print(f"not supported: {error}")
         return 2
     except (Wrong, KeyError, TypeError, AttributeError) as error:
         print(f"wrong: {error}")

@@ -5,7 +5,7 @@
 //! interval is at least the error. So the bound holds at the states of the sample. It says nothing of other states.
 
 use rne_codegen::{Argument, Arguments, Interpreter, Program};
-use rne_model::{JointKind, Robot};
+use rne_model::{JointKind, Limits, Robot};
 use serde::Serialize;
 
 use crate::interval::Interval;
@@ -50,19 +50,25 @@ const TORQUE: f64 = 10.0;
 /// Positions of a sliding joint without limits, m.
 const SLIDE: f64 = 1.0;
 
+/// The payload of each state, for functions that take one: mass, kg; centre of mass, m; inertia about it xx, yy, zz,
+/// xy, xz, yz, kg m².
+pub const PAYLOAD: [f32; 10] = [1.5, 0.01, -0.02, 0.06, 0.003, 0.004, 0.002, 2e-4, -1e-4, 3e-4];
+/// The force, N, and the moment, N m, at each tip in each state, for functions that take them.
+pub const WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];
+
 /// The ranges of the joints: the limits of the robot file, and defaults where it has none.
 #[must_use]
 pub fn ranges(robot: &Robot) -> Vec<Range> {
-    let range = |joint: &rne_model::Joint| Range {
-        position: joint.limits.position.unwrap_or(match joint.row.kind {
+    let range = |(joint, limits): (&rne_model::Joint, Limits)| Range {
+        position: limits.position.unwrap_or(match joint.row.kind {
             JointKind::Revolute => (-std::f64::consts::PI, std::f64::consts::PI),
             JointKind::Prismatic => (-SLIDE, SLIDE),
         }),
-        velocity: joint.limits.velocity.unwrap_or(SPEED),
+        velocity: limits.velocity.unwrap_or(SPEED),
         acceleration: ACCELERATION,
-        torque: joint.limits.effort.unwrap_or(TORQUE),
+        torque: limits.effort.unwrap_or(TORQUE),
     };
-    robot.independent_joints().map(range).collect()
+    robot.independent_joints().zip(robot.coordinate_limits()).map(range).collect()
 }
 
 /// The errors of the numbers that a program returns; `None` if the interpreter cannot run it with the arguments of
@@ -118,7 +124,18 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
         |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
     let [q, qd, last, parameters] = [q, qd, last, &parameters].map(enclose);
     let zero = Interval::exactly(0.0);
-    let arguments = Arguments { tau: &last, parameters: &parameters, ..Arguments::of_joints(&q, &qd, &last, zero) };
+    let exactly = |x: f32| Interval::exactly(f64::from(x));
+    let [fx, fy, fz, nx, ny, nz] = WRENCH.map(exactly);
+    let wrenches = vec![WRENCH.map(exactly); robot.tip_count()];
+    let arguments = Arguments {
+        tau: &last,
+        parameters: &parameters,
+        force: [fx, fy, fz],
+        moment: [nx, ny, nz],
+        payload: PAYLOAD.map(exactly),
+        wrenches: &wrenches,
+        ..Arguments::of_joints(&q, &qd, &last, zero)
+    };
     interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
 }
 
@@ -132,7 +149,17 @@ pub fn single_precision(
     sin_cos: impl Fn(f32) -> (f32, f32),
 ) -> Option<Vec<f32>> {
     let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
-    let arguments = Arguments { tau: last, parameters: &parameters, ..Arguments::of_joints(q, qd, last, 0.0) };
+    let [fx, fy, fz, nx, ny, nz] = WRENCH;
+    let wrenches = vec![WRENCH; robot.tip_count()];
+    let arguments = Arguments {
+        tau: last,
+        parameters: &parameters,
+        force: [fx, fy, fz],
+        moment: [nx, ny, nz],
+        payload: PAYLOAD,
+        wrenches: &wrenches,
+        ..Arguments::of_joints(q, qd, last, 0.0)
+    };
     interpreter.run(&arguments, single, sin_cos)
 }
 

@@ -75,7 +75,11 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
         arguments.iter().enumerate().map(|(index, argument)| each(index, argument)).collect()
     };
     let types = list(&|_, (kind, _)| format!("{kind}, "));
-    let parameters = list(&|index, (kind, _)| format!("{kind}a{index}, "));
+    // the name of a pointer to arrays stands in its parentheses
+    let parameters = list(&|index, (kind, _)| match kind.split_once("(*)") {
+        Some((element, lengths)) => format!("{element}(*a{index}){lengths}, "),
+        None => format!("{kind}a{index}, "),
+    });
     let names = list(&|index, _| format!("a{index}, "));
     let voids = list(&|index, _| format!("    (void)a{index};\n"));
     let values = list(&|_, (_, value)| format!("{value}, "));

@@ -11,7 +11,8 @@ pub const NOT_DECIDED: [&str; 28] = [
 ];
 
 /// Rules that emitted code violates, and why.
-pub const DEVIATIONS: [(&str, &str); 4] = [
+pub const DEVIATIONS: [(&str, &str); 5] = [
+    ("2.4", "advisory; enumerations without a tag: the indices of the joints and of the tips, for the caller"),
     ("2.5", "advisory; macros that the source does not use: the limits of the joints, for the caller"),
     ("8.7", "advisory; momentum_and_rate, which the observer calls, is also for the caller"),
     (
@@ -26,13 +27,15 @@ pub const DEVIATIONS: [(&str, &str); 4] = [
     ),
 ];
 
-/// How often each rule is violated, from the lines that cppcheck prints with `--template={id}`.
+/// The rules that are violated, each with the places, from the lines that cppcheck prints with
+/// `--template={file}:{line}: {id}`.
 #[must_use]
-pub fn violations(printed: &str) -> BTreeMap<String, usize> {
-    let mut violations = BTreeMap::new();
-    let ids = printed.split_whitespace().filter_map(|word| word.strip_prefix("misra-c2012-"));
-    for rule in ids {
-        *violations.entry(rule.trim_end_matches(']').to_owned()).or_default() += 1;
+pub fn violations(printed: &str) -> BTreeMap<String, Vec<String>> {
+    let mut violations = BTreeMap::<String, Vec<String>>::new();
+    for line in printed.lines() {
+        if let Some((place, rule)) = line.split_once(": misra-c2012-") {
+            violations.entry(rule.trim().to_owned()).or_default().push(place.to_owned());
+        }
     }
     violations
 }
@@ -49,9 +52,11 @@ mod tests {
 
     #[test]
     fn rules_are_counted() {
-        let printed = "misra-c2012-19.2\nmisra-c2012-2.5\nunusedFunction\nmisra-c2012-19.2\n";
+        let printed =
+            "a.c:3: misra-c2012-19.2\na.h:8: misra-c2012-2.5\na.c:4: unusedFunction\na.c:9: misra-c2012-19.2\n";
         let found: Vec<_> = violations(printed).into_iter().collect();
-        assert_eq!(found, [("19.2".to_owned(), 2), ("2.5".to_owned(), 1)]);
+        let places = |places: &[&str]| places.iter().map(|&place| place.to_owned()).collect::<Vec<_>>();
+        assert_eq!(found, [("19.2".to_owned(), places(&["a.c:3", "a.c:9"])), ("2.5".to_owned(), places(&["a.h:8"]))]);
         assert!(deviation("19.2").is_some() && deviation("17.2").is_none());
     }
 }

@@ -21,7 +21,7 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     let command = grammar.get_subcommands().find(|command| command.get_name() == name)?;
     let words = &words[1..];
     let text = with_blanks(command, words).or_else(|| without_value(command, words));
-    let text = text.or_else(|| of_libraries(error)).or_else(|| {
+    let text = text.or_else(|| of_libraries(error)).or_else(|| of_other_name(error)).or_else(|| {
         let is_stray = error.kind() == ErrorKind::UnknownArgument;
         is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
     })?;
@@ -108,6 +108,27 @@ fn of_libraries(error: &clap::Error) -> Option<String> {
              Operational space of docs/functions.md; rne eval computes the arguments, `mass_matrix` and `jacobian`"
         )
     })
+}
+
+/// The function whose C code contains the observer.
+const OBSERVER: &str = "momentum_and_rate";
+
+/// A value that is a valid one but for capital letters, `--lang C`, or a function that has another name.
+fn of_other_name(error: &clap::Error) -> Option<String> {
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let (option, value) = (text(ContextKind::InvalidArg)?, text(ContextKind::InvalidValue)?);
+    let Some(ContextValue::Strings(valid)) = error.get(ContextKind::ValidValue) else { return None };
+    if value.eq_ignore_ascii_case("observer") && valid.iter().any(|name| name == OBSERVER) {
+        return Some(format!(
+            "`{value}` is no function; the C code of {OBSERVER} contains the momentum observer: write \
+             {TYPED}--function {OBSERVER}{TYPED:#}, or {TYPED}--observer{TYPED:#} of {TYPED}rne certify{TYPED:#}"
+        ));
+    }
+    let meant = valid.iter().find(|name| name.eq_ignore_ascii_case(value))?;
+    Some(format!("`{value}` is not a valid value of {TYPED}{option}{TYPED:#}; did you mean {TYPED}{meant}{TYPED:#}?"))
 }
 
 /// Finds the commands that have an option which this command does not have: `eval --seed 1`. The parser would propose
@@ -202,6 +223,19 @@ mod tests {
             assert!(said.starts_with(&format!("error: `{name}` is a function of Rust and Python only")), "{said}");
         }
         assert_eq!(said("eval panda --function operational_space"), None);
+    }
+
+    #[test]
+    fn values_of_another_name() {
+        for command in ["emit", "certify"] {
+            let lang = said(&format!("{command} planar2 --lang C")).expect("refused");
+            assert!(lang.contains("`C` is not a valid value of --lang") && lang.ends_with("did you mean c?"), "{lang}");
+            let observer = said(&format!("{command} planar2 --function observer")).expect("refused");
+            assert!(
+                observer.contains("write --function momentum_and_rate, or --observer of rne certify"),
+                "{observer}"
+            );
+        }
     }
 
     #[test]

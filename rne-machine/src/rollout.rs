@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 use rne_codegen::Function;
-use rne_model::{Entry, Joint, Robot};
+use rne_model::{Entry, Joint, Limits, Robot};
 use rne_runtime::VectorUnit;
 use rne_runtime::machine::{self, RolloutJoint, SmoothFriction, Source};
 
@@ -111,17 +111,16 @@ impl Rollout {
     /// Limits and friction of the joints of a robot.
     fn joints<T: Number>(&self, robot: &Robot) -> Result<Vec<RolloutJoint<T>>, RolloutError> {
         let limit = |holds: bool, limit: Option<f64>| limit.filter(|_| holds).map(T::from_f64);
-        let of_joint = |(index, joint): (usize, &Joint)| {
-            let position = joint.limits.position.filter(|_| self.limits.position);
+        let of_joint = |(index, limits): (usize, Limits)| {
+            let position = limits.position.filter(|_| self.limits.position);
             Ok(RolloutJoint {
-                effort: limit(self.limits.effort, joint.limits.effort),
-                friction: self.friction_of(robot, index, joint)?,
-                velocity: limit(self.limits.velocity, joint.limits.velocity),
+                effort: limit(self.limits.effort, limits.effort),
+                friction: self.friction_of(robot, index, &robot.joints[index])?,
+                velocity: limit(self.limits.velocity, limits.velocity),
                 position: position.map(|(lower, upper)| [lower, upper].map(T::from_f64)),
             })
         };
-        // a follower has no motor, and its limits are those of the joint that it follows
-        robot.coordinates().map(|index| of_joint((index, &robot.joints[index]))).collect()
+        robot.coordinates().zip(robot.coordinate_limits()).map(of_joint).collect()
     }
 
     fn friction_of<T: Number>(

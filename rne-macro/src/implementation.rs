@@ -438,7 +438,8 @@ impl Target<'_> {
 
 impl Constants {
     fn of(robot: &Robot, programs: &[Program]) -> Self {
-        let limits = || robot.independent_joints().map(|joint| &joint.limits);
+        let of_joints = robot.coordinate_limits();
+        let limits = || of_joints.iter();
         Self {
             description: Some(description::robot(robot)),
             name: robot.name.clone(),

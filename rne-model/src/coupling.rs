@@ -5,10 +5,10 @@ use crate::decode::{Context, read_mapping, text};
 use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, Node};
 use crate::frame::joint_names;
-use crate::source::quoted;
+use crate::source::{quoted, six_digits};
 use crate::tree::needs_format_2;
 use crate::varying::fixed;
-use crate::{Drive, Entry, Joint, JointKind, lint};
+use crate::{Drive, Entry, Joint, JointKind, Limits, Robot, lint};
 
 /// How a joint follows others: its position is Σ ratio · q + offset, with the positions q of the joints that it
 /// follows. Such a joint, a follower, is not among the coordinates of the robot: q, q̇, q̈ and τ have no element for it.
@@ -19,6 +19,87 @@ pub struct Coupling {
     pub follows: Vec<(usize, f64)>,
     /// The position of the joint where those that it follows are at 0, rad or m.
     pub offset: f64,
+}
+
+impl Coupling {
+    /// The limits of the one joint that the follower follows, by which the follower keeps within its own limits of
+    /// position and speed; `None` where it follows several. An effort limit of the follower limits no torque of this
+    /// joint, because gravity and inertia act on the follower, too.
+    fn limits_of_followed(&self, follower: Limits) -> Option<(usize, Limits)> {
+        let &[(joint, ratio)] = self.follows.as_slice() else { return None };
+        let position = follower.position.map(|(lower, upper)| {
+            // + 0.0 makes a zero of a negative zero
+            let [a, b] = [lower, upper].map(|end| (end - self.offset) / ratio + 0.0);
+            (a.min(b), a.max(b))
+        });
+        let velocity = follower.velocity.map(|velocity| velocity / ratio.abs());
+        Some((joint, Limits { position, velocity, effort: None }))
+    }
+}
+
+impl Limits {
+    /// The narrower of both limits each; without a position within both, the own ones.
+    fn narrowed(self, other: Self) -> Self {
+        let position = match (self.position, other.position) {
+            (Some((lower, upper)), Some((low, high))) if low.max(lower) <= high.min(upper) => {
+                Some((low.max(lower), high.min(upper)))
+            }
+            (own, other) => own.or(other),
+        };
+        let velocity = [self.velocity, other.velocity].into_iter().flatten().reduce(f64::min);
+        Self { position, velocity, effort: self.effort }
+    }
+}
+
+impl Robot {
+    /// Limits of the coordinates, in the order of q: those of the joint, narrowed so that each joint that follows it
+    /// alone is within its own limits of position and speed. Effort limits are those of the joint, and limits of a
+    /// joint that follows several are in none of them.
+    #[must_use]
+    pub fn coordinate_limits(&self) -> Vec<Limits> {
+        let limits = |index: usize| {
+            let of_followers = self.joints.iter().filter_map(|joint| {
+                let (followed, limits) = joint.coupling.as_ref()?.limits_of_followed(joint.limits)?;
+                (followed == index).then_some(limits)
+            });
+            of_followers.fold(self.joints[index].limits, Limits::narrowed)
+        };
+        self.coordinates().map(limits).collect()
+    }
+}
+
+/// Limits of followers that limit nothing: positions and speeds of one that follows several joints, efforts, and
+/// positions that the followed joint cannot have.
+pub(crate) fn lint_limits(cx: &Context, root: &Node, joints: &[Joint]) {
+    let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
+    for (item, joint) in items.iter().zip(joints) {
+        let (Some(coupling), Some(node)) = (&joint.coupling, item.get("limits")) else { continue };
+        let name = quoted(&joint.name);
+        let Some((followed, of_followed)) = coupling.limits_of_followed(joint.limits) else {
+            let message = format!("the limits of {name} limit no other joint, because it follows several joints");
+            let help = "code and commands do not use these limits; check the position of this joint yourself";
+            cx.report(Diagnostic::note(node.head(), message).label("limits of a follower").help(help));
+            continue;
+        };
+        let (followed, other) = (&joints[followed].limits, quoted(&joints[followed].name));
+        if let (Some((lower, upper)), Some((low, high))) = (followed.position, of_followed.position)
+            && low.max(lower) > high.min(upper)
+        {
+            let [low, high] = [low, high].map(six_digits);
+            let message = format!(
+                "{name} is within its position limits where {other} is from {low} to {high}, but the limits of {other} \
+                 allow no such position"
+            );
+            let help = "check the limits, the ratio and the offset; code and commands use the limits of the joint that \
+                        is followed";
+            cx.report(Diagnostic::lint(node.head(), message).label("no position is within both").help(help));
+        }
+        if joint.limits.effort.is_some() && followed.effort.is_none() {
+            let message = format!("the effort limit of {name} limits no torque, because {name} follows {other}");
+            let help = format!("write the limit of the torque that moves both into `limits` of {other}");
+            cx.report(Diagnostic::note(node.head(), message).label("effort limit of a follower").help(help));
+        }
+    }
 }
 
 /// Magnitudes of ratios: squares of larger ones, times an inertia, are no numbers of single precision.

@@ -329,6 +329,10 @@ pub(crate) fn light_for_reach(cx: &Context, root: &Node, joints: &[Joint]) {
         let travel = travel.map_or(0.0, |(lower, upper)| lower.abs().max(upper.abs()));
         libm::hypot(joint.row.dh.a, joint.row.dh.d) + travel
     };
+    // such a length is in millimetres, and a lint says so
+    if joints.iter().any(|joint| joint.row.dh.a.abs().max(joint.row.dh.d.abs()) > LONGEST) {
+        return;
+    }
     let (mass, reach) =
         joints.iter().fold((0.0, 0.0), |(mass, length), joint| (mass + joint.row.link.mass, length + reach(joint)));
     if mass <= 0.0 || !reach.is_finite() || mass >= LIGHTEST * reach * reach * reach {

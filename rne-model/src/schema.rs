@@ -86,6 +86,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         lint::placeholders(cx, node, &joints);
         lint::missing_friction(cx, node);
         mirror::twins(cx, node, &joints);
+        coupling::lint_limits(cx, node, &joints);
         // the reach of a tree is not the sum of its rows
         if joints.iter().all(|joint| joint.branch.is_none()) {
             lint::light_for_reach(cx, node, &joints);

@@ -95,3 +95,45 @@ fn degrees_and_millimetres_in_an_offset_are_remarked() {
         assert_eq!(lints(meant), [], "{meant}");
     }
 }
+
+/// The limits of a hand whose finger `b` follows `a` by -1/2 q + 0.1, in closed form: q = (0.1 - b) / (1/2).
+#[test]
+fn limits_of_a_follower_limit_the_joint_that_it_follows() {
+    let file = |of_a: &str, of_b: &str, follows: &str| {
+        let text = format!("{FILE}  - {{joint: b, follows: {{{follows}}}, offset: 0.1}}\n")
+            .replacen("link: {mass: 1}", &format!("link: {{mass: 1}}{of_a}"), 1)
+            .replacen("a: 0.2, alpha: 0}, link: {mass: 1}", &format!("a: 0.2, alpha: 0}}, link: {{mass: 1}}{of_b}"), 1);
+        let read = Reader::new("hand.yaml").trees().couplings().read(&text);
+        read.unwrap_or_else(|report| panic!("{}", report.short()))
+    };
+    let of_b = ", limits: {position: [0, 0.35], velocity: 1, effort: 3}";
+    let close = |found: (f64, f64), expected: (f64, f64)| {
+        assert!((found.0 - expected.0).abs() + (found.1 - expected.1).abs() < 1e-15, "{found:?} {expected:?}");
+    };
+    for (of_a, position, velocity) in [
+        ("", (-0.5, 0.2), 2.0),
+        (", limits: {position: [-1, 0.15], velocity: 1.5}", (-0.5, 0.15), 1.5),
+        (", limits: {position: [-0.2, 0.7], velocity: 4}", (-0.2, 0.2), 2.0),
+    ] {
+        let checked = file(of_a, of_b, "a: -1/2");
+        let limits = checked.robot.coordinate_limits();
+        assert_eq!(limits.len(), 3, "a, c, d");
+        close(limits[0].position.expect("a limit"), position);
+        assert_eq!((limits[0].velocity, limits[0].effort), (Some(velocity), None), "an effort is no torque of a");
+        assert_eq!(limits[1..], [rne_model::Limits::default(); 2]);
+        let said = checked.lints.short();
+        assert!(said.contains("the effort limit of `b` limits no torque, because `b` follows `a`"), "{said}");
+    }
+    // a lower end of zero stays a zero without a sign
+    let zero = file("", ", limits: {position: [0.1, 0.35]}", "a: -1").robot.coordinate_limits()[0].position;
+    assert!(zero.is_some_and(|(_, upper)| upper == 0.0 && upper.is_sign_positive()), "{zero:?}");
+    // what limits nothing is told
+    let several = file("", of_b, "a: 1, c: 1");
+    assert_eq!(several.robot.coordinate_limits(), [rne_model::Limits::default(); 3]);
+    let said = several.lints.short();
+    assert!(said.contains("the limits of `b` limit no other joint, because it follows several joints"), "{said}");
+    let apart = file(", limits: {position: [1, 2]}", of_b, "a: -1/2");
+    assert_eq!(apart.robot.coordinate_limits()[0].position, Some((1.0, 2.0)));
+    let said = apart.lints.short();
+    assert!(said.contains("`a` is from -0.5 to 0.2, but the limits of `a` allow no such position"), "{said}");
+}

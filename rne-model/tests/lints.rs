@@ -113,6 +113,9 @@ fn a_sum_of_masses_that_is_small_for_the_reach_is_told() {
     // a travel of 1 m each is reach, too
     let said = arm(6, 2.0, 0.0, "prismatic").to_string();
     assert!(said.contains("a reach of 6 m"), "{said}");
+    // lengths in millimetres say nothing about masses
+    let said = arm(6, 2.0, 260.0, "revolute").to_string();
+    assert!(said.contains("millimetres?") && !said.contains("masses missing"), "{said}");
     for (joints, mass, length, kind) in
         // heavy enough, short enough, arms of textbooks, a snake, no reach at all
         [

@@ -108,7 +108,8 @@ impl Arm {
     }
 
     pub(crate) fn limits(&self, joint: usize) -> Result<Limits, Failure> {
-        let limits = self.compiled.robot().independent_joint(joint).ok_or_else(|| self.no_joint(joint))?.limits;
+        let limits =
+            self.compiled.robot().coordinate_limits().get(joint).copied().ok_or_else(|| self.no_joint(joint))?;
         let (lower, upper) = limits.position.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let or_none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         Ok(Limits { lower, upper, velocity: or_none(limits.velocity), effort: or_none(limits.effort) })

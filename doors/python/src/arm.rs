@@ -292,7 +292,7 @@ impl Arm {
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let infinite = (f64::NEG_INFINITY, f64::INFINITY);
         let limits: Vec<(f64, f64)> =
-            self.robot().independent_joints().map(|joint| joint.limits.position.unwrap_or(infinite)).collect();
+            self.robot().coordinate_limits().iter().map(|limits| limits.position.unwrap_or(infinite)).collect();
         py.import("numpy")?.call_method1("array", (limits,))
     }
 
@@ -300,7 +300,7 @@ impl Arm {
     #[getter]
     fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits: Vec<f64> =
-            self.robot().independent_joints().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY)).collect();
+            self.robot().coordinate_limits().iter().map(|limits| limits.velocity.unwrap_or(f64::INFINITY)).collect();
         py.import("numpy")?.call_method1("array", (limits,))
     }
 
@@ -308,7 +308,7 @@ impl Arm {
     #[getter]
     fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits: Vec<f64> =
-            self.robot().independent_joints().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY)).collect();
+            self.robot().coordinate_limits().iter().map(|limits| limits.effort.unwrap_or(f64::INFINITY)).collect();
         py.import("numpy")?.call_method1("array", (limits,))
     }
 

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyTuple};
 use rne::compiled::{CompiledArm, FrictionWidth, Number, Rollout, RolloutLimits};
 use rne_codegen::Argument;
-use rne_model::{Joint, Robot};
+use rne_model::Robot;
 
 use crate::arm::Arm;
 use crate::arrays::{Given, Held, are_single, memory, refuse_masked, room, states, writable};
@@ -145,7 +145,7 @@ fn agree(name: &str, shape: &[usize], samples: Option<usize>, steps: usize, dof:
 /// Warns where limits or friction are asked for and no joint has any.
 fn warn_of_nothing(py: Python<'_>, robot: &Robot, rollout: &Rollout) -> PyResult<()> {
     let RolloutLimits { effort, velocity, position } = rollout.limits;
-    let has_limit = robot.joints.iter().any(|Joint { limits, .. }| {
+    let has_limit = robot.coordinate_limits().iter().any(|limits| {
         effort && limits.effort.is_some()
             || velocity && limits.velocity.is_some()
             || position && limits.position.is_some()

@@ -17,8 +17,10 @@ use rne_codegen::{Form, Function, Program};
 use rne_emit::{CCode, Precision, Prefix};
 use rne_model::Robot;
 
-use crate::commands::certify_code::{build, emulate};
+use crate::commands::certify_check::check;
+use crate::commands::certify_code::{Code, build, emulate};
 use crate::commands::certify_subject::Subject;
+use crate::commands::certify_tools::{self, Tool};
 use crate::commands::emit::Real;
 use crate::commands::emit_c::{self, Request};
 use crate::commands::{certify_trace, toolchain};
@@ -28,7 +30,7 @@ use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::{self, Compiler};
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{GOOD, TYPED};
+use crate::palette::TYPED;
 use crate::values::choice;
 
 /// Certify code for a microcontroller: cycles, stack, error
@@ -91,19 +93,25 @@ pub(crate) struct Arguments {
     /// Certify limit_torques, too
     #[arg(long)]
     limits: bool,
+    /// The code has the indices of `rne emit --names`
+    #[arg(long)]
+    names: bool,
     /// The code also has the tests of `rne emit --tests`
     #[arg(long)]
     tests: bool,
     /// The comments of the code are ASCII
     #[arg(long)]
     ascii: bool,
+    /// Fail without these tools: qemu, cppcheck, or both
+    #[arg(long, value_enum, value_name = "TOOLS", value_delimiter = ',', hide_possible_values = true)]
+    pub(super) require: Vec<Tool>,
     /// Number of random states
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     pub(super) states: usize,
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
-    /// Also write the C code, its header and a trace for the independent checker to this folder
+    /// Also write C code, header and trace to this folder
     #[arg(long, value_name = "FOLDER")]
     pub(super) evidence: Option<PathBuf>,
     /// Number type of C in FOLDER: float (default), double
@@ -118,7 +126,7 @@ pub(crate) struct Arguments {
     /// Overwrite OUT even if it is no certificate
     #[arg(long, requires = "output")]
     pub(super) force: bool,
-    /// Write nothing; check that this certificate is what rne would write now
+    /// Check that OUT is what rne would write now
     #[arg(long, value_name = "OUT", conflicts_with_all = ["output", "evidence"])]
     pub(super) check: Option<PathBuf>,
 }
@@ -187,7 +195,7 @@ impl Arguments {
             precision,
             friction: self.friction,
             limits: self.limits,
-            names: !robot.is_serial(),
+            names: self.names || !robot.is_serial(),
             tests: self.tests,
             ascii: self.ascii,
         };
@@ -201,9 +209,9 @@ fn core(text: &str) -> Result<Core, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     fits_together(arguments)?;
-    let (certificate, lints) = certificate(arguments)?;
+    let (certificate, remarks) = certificate(arguments)?;
     let mut outcome = written(arguments, &certificate)?;
-    outcome.remark += &lints;
+    outcome.remark += &remarks;
     Ok(outcome)
 }
 
@@ -240,6 +248,7 @@ fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
     let of_c = [
         ("--friction", arguments.friction),
         ("--limits", arguments.limits),
+        ("--names", arguments.names),
         ("--tests", arguments.tests),
         ("--ascii", arguments.ascii),
     ];
@@ -274,48 +283,13 @@ fn is_ours(text: &str) -> bool {
         || text.starts_with("{\n  \"command\": \"rne certify")
 }
 
-/// Compares a file with the certificate of now, line by line.
-fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
-    let shown = file.display();
-    let found = match output_file::existing(file) {
-        Existing::Text(found) if found.trim().is_empty() => {
-            return Err(Failure::input(format_args!(
-                "{shown} is empty; {TYPED}-o{TYPED:#} writes a certificate there"
-            )));
-        }
-        Existing::Text(found) => found,
-        Existing::Nothing => return Err(Failure::input(format_args!("there is no file {shown}"))),
-        _ => return Err(Failure::input(format_args!("{shown} is no certificate of rne"))),
-    };
-    if found == text {
-        return Ok(Outcome::remark(format!("{GOOD}up to date:{GOOD:#} {shown}\n")));
-    }
-    // other figures before other hashes
-    let (mut differences, mut hashes): (Vec<String>, Vec<String>) = Default::default();
-    let mut section = "the head";
-    let (old, new): (Vec<&str>, Vec<&str>) = (found.lines().collect(), text.lines().collect());
-    for index in 0..old.len().max(new.len()) {
-        let [a, b] = [&old, &new].map(|lines| lines.get(index).copied().unwrap_or("the end of the file"));
-        section = a.strip_prefix("## ").unwrap_or(section);
-        if a != b {
-            let is_hash = |line: &str| line.split('`').any(|word| word.len() == 64);
-            let list = if is_hash(a) || is_hash(b) { &mut hashes } else { &mut differences };
-            list.push(format!("line {} ({section}):\n  file: {a}\n  now:  {b}", index + 1));
-        }
-    }
-    differences.append(&mut hashes);
-    let count = differences.len();
-    differences.truncate(5);
-    Err(Failure::input(format_args!(
-        "{shown} is not what rne would write now; {count} lines differ:\n{}",
-        differences.join("\n")
-    )))
-}
-
-/// The certificate, and a remark where the robot file has warnings.
+/// The certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Coupled)?;
     let robot = arguments.rotors.of(checked.robot);
+    if arguments.lang == Language::C && (arguments.names || !robot.is_serial()) {
+        checked.identifiers.map_err(|report| Failure::from(&report))?;
+    }
     let compiled = Compiler::new(&arguments.file, &robot);
     let programs = arguments.programs().into_iter().map(|function| compiled.compile(function, arguments.form));
     let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
@@ -324,17 +298,15 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let call = |subject: &Subject| subject.call(prefix.as_str(), robot.dof());
     let calls: Vec<Call> = subjects.iter().map(call).collect::<Result<_, _>>()?;
     let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
-    let version = toolchain::version(&compiler)?;
-    if arguments.lang == Language::C && !toolchain::is_gcc(&compiler) {
-        return Err(Failure::usage(format_args!(
-            "{compiler} is no GCC ({version}); {TYPED}--cc{TYPED:#} takes GCC for Arm: its option -fstack-usage and \
-             its binary utilities give the numbers of the certificate"
-        )));
-    }
+    let version = match arguments.lang {
+        Language::C => toolchain::version_of_gcc(&compiler)?,
+        Language::Rust => toolchain::version(&compiler)?,
+    };
     let objdump = match arguments.lang {
         Language::C => toolchain::objdump_of(&compiler),
         Language::Rust => toolchain::objdump_of(""),
     };
+    let ([qemu, cppcheck], mut remarks) = certify_tools::versions(arguments.lang, &arguments.require)?;
     let mut tools = BTreeMap::from([
         ("rne".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
         (compiler.clone(), version),
@@ -343,10 +315,9 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let folder = tempfile::tempdir().map_err(Failure::input)?;
     let folder = folder.path();
     if let Some(evidence) = &arguments.evidence {
-        certify_trace::write(arguments, evidence, &robot, &programs, &bytes)?;
+        remarks += &certify_trace::write(arguments, evidence, &robot, &programs, &bytes)?;
     }
     let code = build(arguments, &robot, &programs, &compiler, &calls, &bytes, folder)?;
-    let qemu = toolchain::version_of("qemu-system-arm");
     tools.extend(qemu.iter().map(|version| ("qemu-system-arm".to_owned(), version.clone())));
     let sample = Sample { states: arguments.states, seed: arguments.seed };
     let certified = |((subject, call), elf): ((&Subject, &Call), &String)| {
@@ -367,17 +338,11 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let certified = subjects.iter().zip(&calls).zip(&code.images).map(certified);
     let mut certified = certified.collect::<Result<Vec<Certified>, Failure>>()?.into_iter();
     let first = certified.next().ok_or_else(|| Failure::usage("no function is named"))?;
-    let misra = match toolchain::version_of("cppcheck").filter(|_| arguments.lang == Language::C) {
+    let misra = match cppcheck {
         None => None,
         Some(version) => {
             tools.insert("cppcheck".to_owned(), version);
-            let found = misra::violations(&toolchain::misra(folder, rne_emit::without_c_tests(&code.text))?);
-            if let Some((rule, _)) = found.iter().find(|(rule, _)| misra::deviation(rule).is_none()) {
-                return Err(Failure::input(format_args!(
-                    "cppcheck reports rule {rule} of MISRA C:2012, for which no deviation is recorded"
-                )));
-            }
-            Some(found)
+            Some(violations(folder, &code)?)
         }
     };
     let mut hashes = code.hashes;
@@ -414,7 +379,20 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         misra,
         trace,
     };
-    Ok((certificate, robot_file::lint_remark(&checked.lints, &arguments.file)))
+    Ok((certificate, remarks + &robot_file::lint_remark(&checked.lints, &arguments.file)))
+}
+
+/// How often the code violates each rule of MISRA C:2012, where a deviation is recorded for all of them.
+fn violations(folder: &Path, code: &Code) -> Result<BTreeMap<String, usize>, Failure> {
+    let source = rne_emit::without_c_tests(&code.text);
+    let found = misra::violations(&toolchain::misra(folder, &code.source, source)?);
+    if let Some((rule, places)) = found.iter().find(|(rule, _)| misra::deviation(rule).is_none()) {
+        return Err(Failure::input(format_args!(
+            "cppcheck reports rule {rule} of MISRA C:2012, for which no deviation is recorded, at {}",
+            places.join(", ")
+        )));
+    }
+    Ok(found.into_iter().map(|(rule, places)| (rule, places.len())).collect())
 }
 
 /// The cost of a call: of the function and of those that it calls.
@@ -465,6 +443,7 @@ fn of_emit(arguments: &Arguments) -> String {
         (" --rotors", arguments.rotors.rotors),
         (" --friction", arguments.friction),
         (" --limits", arguments.limits),
+        (" --names", arguments.names),
         (" --tests", arguments.tests),
         (" --ascii", arguments.ascii),
     ] {

@@ -1,12 +1,14 @@
 //! Functions that `rne certify` certifies: a program, an update of the observer, friction or limits of the joints.
 
+use std::fmt::Write as _;
+
 use rne_certify::accuracy::{self, Error, Sample};
 use rne_certify::board::{self, Call};
 use rne_certify::certificate::{Accuracy, NamedError};
 use rne_certify::joint_functions::{BEYOND, JointFunction};
 use rne_certify::observer::{self, LowPass};
-use rne_codegen::{Argument, Interpreter, Layout, Program};
-use rne_model::{JointKind, Robot};
+use rne_codegen::{Argument, Function, Interpreter, Layout, Program};
+use rne_model::{JointKind, Limits, Robot};
 
 use crate::outcome::Failure;
 use crate::palette::TYPED;
@@ -49,9 +51,7 @@ impl Subject<'_> {
             )));
         }
         Ok(match self {
-            Self::Program(program) => {
-                Call::of_arrays(&format!("{prefix}_{}", self.name()), &arrays(program)?, program.outputs.len())
-            }
+            Self::Program(program) => program_call(program, &format!("{prefix}_{}", self.name()))?,
             Self::Observer(_, low_pass) => low_pass.call(prefix, dof),
             Self::Joints(function) => function.call(prefix, dof),
         })
@@ -125,7 +125,7 @@ impl Subject<'_> {
     fn how(&self, Sample { states, seed }: Sample) -> String {
         let random = format!("The function runs at {states} random states (seed {seed}).");
         match self {
-            Self::Program(_) => random,
+            Self::Program(program) => random + &fixed(program.function),
             Self::Observer(_, low_pass) => format!(
                 "The observer has a low-pass with a gain of {} Hz and a period of {} s. It runs through {states} \
                  updates (seed {seed}) in motions of {} updates. In a motion, each joint follows a sine within the \
@@ -148,12 +148,11 @@ impl Subject<'_> {
 
     /// The ranges of the states, a line per joint.
     fn ranges(&self, robot: &Robot) -> Vec<String> {
-        let range = |(index, (range, joint)): (usize, (accuracy::Range, &rne_model::Joint))| {
+        let range = |(index, ((range, joint), limits)): (usize, ((accuracy::Range, &rne_model::Joint), Limits))| {
             let (unit, torque_is, torque_unit) = match joint.row.kind {
                 JointKind::Revolute => ("rad", "torque", "N m"),
                 JointKind::Prismatic => ("m", "force", "N"),
             };
-            let limits = joint.limits;
             let of = |is_given: bool| if is_given { "limits of the robot file" } else { "no limit in the robot file" };
             let accuracy::Range { position: (low, high), velocity, acceleration, torque } = range;
             let position = format!("position {low:.4} to {high:.4} {unit} ({})", of(limits.position.is_some()));
@@ -171,27 +170,67 @@ impl Subject<'_> {
             };
             format!("joint {}: {}", index + 1, parts.join(", "))
         };
-        accuracy::ranges(robot).into_iter().zip(&robot.joints).enumerate().map(range).collect()
+        let joints = accuracy::ranges(robot).into_iter().zip(robot.independent_joints());
+        joints.zip(robot.coordinate_limits()).enumerate().map(range).collect()
     }
 }
 
-/// The arrays that a function takes, as members of a state of the board.
-fn arrays(program: &Program) -> Result<Vec<&'static str>, Failure> {
-    let function = program.function;
-    let array = |argument: &Argument| match argument {
-        Argument::Positions => Some("q"),
-        Argument::Rates => Some("qd"),
-        Argument::Accelerations | Argument::Torques => Some("qdd"),
-        _ => None,
-    };
-    let arrays: Option<Vec<&str>> = function.arguments().iter().map(array).collect();
-    let is_array = matches!(function.layout(program.dof), Layout::Array(_, of) if matches!(*of, Layout::Number));
-    match arrays {
-        Some(arrays) if is_array => Ok(arrays),
-        _ => Err(Failure::usage(format_args!(
-            "rne certify cannot call {function}: it takes functions of positions, velocities, accelerations and \
-             torques that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
-             forward_dynamics. {TYPED}--observer{TYPED:#} certifies the momentum observer"
-        ))),
+/// The payload and the wrenches that are the same at each state, in words.
+fn fixed(function: Function) -> String {
+    let list = |numbers: &[f32]| numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let mut words = String::new();
+    if function.takes(Argument::Payload) {
+        let payload = list(&accuracy::PAYLOAD);
+        let _ =
+            write!(words, " At each state the payload is {payload}: mass (kg), centre of mass (m), inertia (kg m²).");
     }
+    if function.takes(Argument::Wrench) || function.takes(Argument::Wrenches) {
+        let _ = write!(words, " At each state each wrench is {}: force (N), moment (N m).", list(&accuracy::WRENCH));
+    }
+    words
+}
+
+/// The call of a function with arrays of a state of the board, and with the payload and the wrenches of
+/// [`accuracy`].
+fn program_call(program: &Program, symbol: &str) -> Result<Call, Failure> {
+    let function = program.function;
+    let numbers = |numbers: &[f32]| numbers.iter().map(|x| format!("{x:?}f")).collect::<Vec<_>>().join(", ");
+    let mut call = Call { function: symbol.to_owned(), length: program.outputs.len(), ..Call::default() };
+    for argument in function.arguments() {
+        let (kind, name) = match argument {
+            Argument::Positions => ("const float *", "s->q"),
+            Argument::Rates => ("const float *", "s->qd"),
+            Argument::Accelerations | Argument::Torques => ("const float *", "s->qdd"),
+            Argument::Payload => {
+                call.before.push(format!("const float payload[10] = {{{}}};", numbers(&accuracy::PAYLOAD)));
+                ("const float *", "payload")
+            }
+            Argument::Wrench => {
+                let (force, moment) = accuracy::WRENCH.split_at(3);
+                call.before.push(format!("const float force[3] = {{{}}};", numbers(force)));
+                call.before.push(format!("const float moment[3] = {{{}}};", numbers(moment)));
+                call.arguments.push(("const float *".to_owned(), "force".to_owned()));
+                ("const float *", "moment")
+            }
+            Argument::Wrenches => {
+                let tips = program.tips.len();
+                let rows = vec![format!("{{{}}}", numbers(&accuracy::WRENCH)); tips].join(", ");
+                call.before.push(format!("const float wrenches[{tips}][6] = {{{rows}}};"));
+                ("const float (*)[6]", "wrenches")
+            }
+            Argument::Sines | Argument::Cosines | Argument::Base => return Err(not_called(program)),
+        };
+        call.arguments.push((kind.to_owned(), name.to_owned()));
+    }
+    let is_array = matches!(function.layout(program.dof), Layout::Array(_, of) if matches!(*of, Layout::Number));
+    if is_array { Ok(call) } else { Err(not_called(program)) }
+}
+
+fn not_called(program: &Program) -> Failure {
+    Failure::usage(format_args!(
+        "rne certify cannot call {}: it takes functions of positions, velocities, accelerations, torques, a payload \
+         and wrenches that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
+         forward_dynamics. {TYPED}--observer{TYPED:#} certifies the momentum observer",
+        program.function
+    ))
 }

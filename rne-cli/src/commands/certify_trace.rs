@@ -14,19 +14,30 @@ use crate::files::output_file::{self, Existing};
 use crate::files::output_folder;
 use crate::files::plan_file::Compiler;
 use crate::outcome::Failure;
-use crate::palette::TYPED;
+use crate::palette::{TITLE, TYPED};
 
 /// The functions that the checker computes.
 const CHECKED: [Function; 3] = [Function::InverseDynamics, Function::BiasTorques, Function::GravityTorques];
 
-/// Writes the C code, its header and the trace of its constants.
+/// The keys of the robot file that the checker does not support.
+fn not_supported(robot: &Robot) -> Vec<&'static str> {
+    let keys = [
+        ("couplings", robot.has_couplings()),
+        ("motors", !robot.drives.is_empty()),
+        ("bodies", !robot.bodies.list.is_empty()),
+    ];
+    keys.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| key).collect()
+}
+
+/// Writes the C code, its header and the trace of its constants; returns a note where the checker does not support the
+/// robot.
 pub(super) fn write(
     arguments: &Arguments,
     evidence: &Path,
     robot: &Robot,
     programs: &[Program],
     bytes: &[u8],
-) -> Result<(), Failure> {
+) -> Result<String, Failure> {
     let is_known = programs.iter().all(|program| CHECKED.contains(&program.function));
     if arguments.lang != Language::C || !is_known || robot.has_rotors() {
         return Err(Failure::usage(format_args!(
@@ -47,12 +58,16 @@ pub(super) fn write(
         };
         functions.push(function(program, &derivation, &prefix));
     }
-    let trace = json!({
+    let mut trace = json!({
         "prefix": prefix.to_string(),
         "real": precision.c_type(),
         "functions": functions,
         "table": table(robot),
     });
+    let unsupported = not_supported(robot);
+    if !unsupported.is_empty() {
+        trace["not_supported"] = json!(unsupported);
+    }
     let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
     output_folder::make(evidence)?;
     let (code, stem) = (arguments.c_code(robot, programs, bytes, precision)?, stem(arguments, robot));
@@ -77,7 +92,14 @@ pub(super) fn write(
             return Err(Failure::usage(format_args!("{} is not changed: rne did not write it", path.display())));
         }
     }
-    output_file::replace_all(&files).map(drop)
+    output_file::replace_all(&files)?;
+    if unsupported.is_empty() {
+        return Ok(String::new());
+    }
+    Ok(format!(
+        "{TITLE}note{TITLE:#}: check_c.py does not support robots with {}, so it does not check this code\n",
+        unsupported.join(", ")
+    ))
 }
 
 /// The constants of a function with their expressions.

@@ -315,7 +315,11 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     }
     let is_asked = |function: &Function| match asked.as_slice() {
         [] if !arguments.frames.is_empty() => function.of_frame().is_some(),
-        [] => Function::TORQUES.contains(function),
+        // tips are there for their wrenches
+        [] => {
+            Function::TORQUES.contains(function)
+                || (*function == Function::InverseDynamicsWithWrenches && !robot.tips.is_empty())
+        }
         asked => asked.contains(&FunctionOrAll::One(*function)),
     };
     Function::ALL.into_iter().filter(is_asked).collect()

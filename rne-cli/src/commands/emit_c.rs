@@ -64,10 +64,13 @@ pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
     let origin = Origin::new(name, &rne_certify::sha256(request.bytes));
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
     let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names };
-    if limits && robot.joints.iter().all(|joint| joint.limits.effort.is_none()) {
+    if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
+        let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
+        let follower =
+            if has_follower { ", but for joints that follow others and have no torque of their own" } else { "" };
         return Err(Failure::input(format_args!(
-            "{}: no joint has an effort limit; write it in `limits` of the joint, for example `limits: {{effort: 40}}` \
-             (N m or N)",
+            "{}: no joint has an effort limit{follower}; write it in `limits` of the joint, for example `limits: \
+             {{effort: 40}}` (N m or N)",
             file.display()
         )));
     }

@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     output_folder::is_free(&folder, "a firmware")?;
     let dependency = dependency(arguments.rne_path.as_deref())?;
     let robot_file = robot_of(arguments);
-    let (checked, bytes) = robot_file::read_with_run_time(&robot_file, &[], Frames::Dropped, Shape::Chain)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&robot_file, &[], Frames::Dropped, Shape::Coupled)?;
     let robot = checked.robot;
     let yaml = String::from_utf8(bytes).map_err(|error| Failure::input(error.utf8_error()))?;
     let plan = plan_file::read(&robot_file, &robot)?.map(|read| read.text);

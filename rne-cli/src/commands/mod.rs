@@ -4,8 +4,10 @@
 //! commands, and `prediction_errors` is what `identify` and `watch` share.
 
 mod certify;
+mod certify_check;
 mod certify_code;
 mod certify_subject;
+mod certify_tools;
 mod certify_trace;
 mod check;
 mod closed_form;

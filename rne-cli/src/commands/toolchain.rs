@@ -56,15 +56,39 @@ pub(crate) fn version_of(program: &str) -> Option<String> {
     Some(String::from_utf8_lossy(&output.stdout).lines().next()?.trim().to_owned())
 }
 
-/// Whether a program is a compiler of GNU, by the lines that `--version` prints.
-pub(crate) fn is_gcc(program: &str) -> bool {
-    let said = Command::new(program).arg("--version").output();
-    said.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("Free Software Foundation"))
-}
-
 /// The first line of `--version`; an error says how to install the program.
 pub(crate) fn version(program: &str) -> Result<String, Failure> {
-    Ok(text(Command::new(program).arg("--version"))?.lines().next().unwrap_or_default().trim().to_owned())
+    let said = text(Command::new(program).arg("--version"))?;
+    let line = said.lines().next().map(str::trim).filter(|line| !line.is_empty());
+    line.map(str::to_owned).ok_or_else(|| {
+        Failure::usage(format_args!(
+            "{program} prints nothing for --version, so it is no compiler; name another with {TYPED}--cc{TYPED:#}"
+        ))
+    })
+}
+
+/// The version of GCC for Arm; an error says what another program is.
+pub(crate) fn version_of_gcc(program: &str) -> Result<String, Failure> {
+    let version = version(program)?;
+    let said = text(Command::new(program).arg("--version"))?;
+    let remedy = format!(
+        "{TYPED}--cc{TYPED:#} takes GCC for Arm, such as arm-none-eabi-gcc: its option -fstack-usage and its binary \
+         utilities give the numbers of the certificate"
+    );
+    if !said.contains("Free Software Foundation") {
+        return Err(Failure::usage(format_args!("{program} is no GCC ({version}); {remedy}")));
+    }
+    let target = text(Command::new(program).arg("-dumpmachine"))?;
+    let target = target.trim();
+    if target.starts_with("arm") {
+        return Ok(version);
+    }
+    if target.is_empty() {
+        return Err(Failure::usage(format_args!(
+            "{program} is no compiler: it prints nothing for -dumpmachine, which asks for the target; {remedy}"
+        )));
+    }
+    Err(Failure::usage(format_args!("{program} is no compiler for Arm: its target is {target}; {remedy}")))
 }
 
 /// The SHA-256 of a program.
@@ -140,17 +164,16 @@ pub(crate) fn emulated(core: Core, folder: &Path, elf: &str) -> Result<String, F
     )
 }
 
-/// The text that the addon `misra` of cppcheck prints about a source.
-pub(crate) fn misra(folder: &Path, source: &str) -> Result<String, Failure> {
-    const FILE: &str = "misra.c";
-    fs::write(folder.join(FILE), source).map_err(Failure::input)?;
+/// The text that the addon `misra` of cppcheck prints about a source, which is written to the file of the folder.
+pub(crate) fn misra(folder: &Path, file: &str, source: &str) -> Result<String, Failure> {
+    fs::write(folder.join(file), source).map_err(Failure::input)?;
     let output = output(Command::new("cppcheck").current_dir(folder).args([
         "--addon=misra",
         "--std=c99",
         "--enable=style",
         "--quiet",
-        "--template={id}",
-        FILE,
+        "--template={file}:{line}: {id}",
+        file,
     ]))?;
     Ok([output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat())
 }

@@ -8,8 +8,9 @@ use rne_model::{Robot, six_digits};
 /// the same: limits are no part of the dynamics.
 pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
     let mut text = String::new();
-    for (index, (joint, &q)) in robot.independent_joints().zip(q).enumerate() {
-        let Some((lower, upper)) = joint.limits.position else { continue };
+    let joints = robot.independent_joints().zip(robot.coordinate_limits());
+    for (index, ((joint, limits), &q)) in joints.zip(q).enumerate() {
+        let Some((lower, upper)) = limits.position else { continue };
         // a limit that is given as an expression and a position that is given as its digits
         let rounding = 1e-12 * lower.abs().max(upper.abs());
         if lower - rounding <= q && q <= upper + rounding {

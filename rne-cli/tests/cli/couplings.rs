@@ -2,6 +2,7 @@
 
 use crate::call::{fails, fine, folder, rne};
 use crate::certify::has_tools;
+use std::fmt::Write as _;
 
 const GRIPPER: &str = "docs/gripper.yaml";
 
@@ -58,7 +59,7 @@ fn a_gripper_is_certified() {
     }
     let file = folder("couplings_certified").join("gripper.md");
     let file = file.to_str().expect("UTF-8");
-    fine(&["certify", GRIPPER, "--cc", "arm-none-eabi-gcc", "-o", file]);
+    assert_eq!(rne(&["certify", GRIPPER, "--states", "5", "-o", file]).status, 0);
     let text = std::fs::read_to_string(file).expect("a certificate");
     assert!(text.contains("gripper") && text.contains("instructions"), "{text}");
 }
@@ -97,7 +98,7 @@ fn a_gripper_is_identified_from_its_torques() {
             }
         }
         let row = lists.iter().flatten().map(|x| format!("{x:.12}")).collect::<Vec<_>>();
-        text += &format!("{time},{}\n", row.join(","));
+        let _ = writeln!(text, "{time},{}", row.join(","));
         times.push(time);
         rows.push(row);
     }
@@ -109,7 +110,7 @@ fn a_gripper_is_identified_from_its_torques() {
         "time,shoulder_position,elbow_position,finger_a_position,shoulder_effort,elbow_effort,finger_a_effort\n"
             .to_owned();
     for ((time, row), torque) in times.iter().zip(&rows).zip(torques.lines().skip(1)) {
-        text += &format!("{time},{},{},{},{torque}\n", row[0], row[1], row[2]);
+        let _ = writeln!(text, "{time},{},{},{},{torque}", row[0], row[1], row[2]);
     }
     std::fs::write(&log, text).expect("a log");
     let said = fine(&["identify", GRIPPER, &name(&log), "-o", &name(&out), "--force"]);
@@ -120,4 +121,31 @@ fn a_gripper_is_identified_from_its_torques() {
     let described = fine(&["log", &name(&log), "--robot", GRIPPER]);
     assert!(described.contains("finger_a") && !described.contains("finger_b"), "{described}");
     fails(2, &["identify", "mini_cheetah", &name(&log), "--rotors"], &["leave out --rotors"]);
+}
+
+/// The limits of the second finger are those of the first, through the ratio; its effort limits no torque.
+#[test]
+fn limits_of_a_follower_are_in_the_code() {
+    let folder = folder("couplings_limits");
+    let text = std::fs::read_to_string(std::path::Path::new(crate::call::ROOT).join(GRIPPER)).expect("it is there");
+    let file = folder.join("grip.yaml");
+    let second = "dh: {theta: 0, d: 0, a: 0, alpha: -pi/2}";
+    let with = |limits: &str| {
+        let text = text.replace(second, &format!("limits: {{{limits}}}\n    {second}"));
+        std::fs::write(&file, text.replace("{finger_a: 1}", "{finger_a: -2}")).expect("written");
+        file.to_str().expect("UTF-8")
+    };
+    let code = rne(&["emit", with("position: [-0.06, 0.5], velocity: 0.5"), "--lang", "c"]).out;
+    let end = |name: &str| {
+        let line = code.lines().find(|line| line.starts_with(&format!("#define GRIPPER_{name} "))).expect("a limit");
+        line.rsplit_once(", ").map(|(_, last)| last.trim_end_matches('}').to_owned())
+    };
+    // 0.06 / 2 of finger_b is nearer than 0.04 of finger_a, and 0 is nearer than -0.25
+    let ends = ["POSITION_LOWER", "POSITION_UPPER", "VELOCITY_LIMIT"].map(end);
+    assert_eq!(ends, ["0.0f", "0.03f", "0.25f"].map(|number| Some(number.to_owned())), "{code}");
+    let said = "no joint has an effort limit, but for joints that follow others";
+    fails(1, &["emit", with("effort: 5"), "--lang", "c", "--limits"], &[said, "effort: 40"]);
+    fails(1, &["emit", GRIPPER, "--lang", "c", "--limits"], &["no joint has an effort limit; write it"]);
+    let checked = rne(&["check", with("effort: 5")]);
+    assert!(checked.out.contains("the effort limit of `finger_b` limits no torque"), "{checked:?}");
 }

@@ -78,6 +78,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     // it fetches Cyclone DDS, and measures for a minute
     ("cargo xtask ros2", "xtask/src/main.rs", "Ros2(ros2::Ros2)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
+    // of an object that a compiler of the user has made
+    ("arm-none-eabi-nm -u my_arm.o", "rne-cli/tests/cli/certify_trees.rs", "Command::new(\"arm-none-eabi-nm\")"),
     // in a firmware that rne has written
     ("rustup target add thumbv7em-none-eabihf", "firmware/example/run", "rustup target add $target"),
     ("sudo apt-get install --yes qemu-system-arm", "firmware/example/run", "packages=(qemu-system-arm)"),

@@ -86,6 +86,10 @@ fn a_firmware_is_for_any_robot() {
     assert!(main.contains("const JOINTS: usize = 7;") && yaml == shipped("panda"), "{main}");
     let (main, yaml, _) = of(&["panda", "--robot", "planar2", "-o", "deep/er"], "deep/er");
     assert!(main.contains("const JOINTS: usize = 2;") && yaml == shipped("planar2"), "{main}");
+    // a robot with branches whose second finger follows the first
+    let gripper = format!("{ROOT}/docs/gripper.yaml");
+    let (main, yaml, _) = of(&["grip", "--robot", &gripper], "grip");
+    assert!(main.contains("const JOINTS: usize = 3;") && yaml == read(&gripper), "{main}");
     // a file without a plan
     fs::write(empty.join("arm.yaml"), shipped("planar1")).expect("written");
     let (main, yaml, files) = of(&["my-arm", "--robot", "arm.yaml"], "my-arm");

@@ -4,6 +4,7 @@ mod ascii;
 mod call;
 mod certify;
 mod certify_joints;
+mod certify_trees;
 mod check;
 mod closed_form;
 mod couplings;

@@ -180,3 +180,24 @@ fn tips_frames_and_bodies_are_named() {
     assert!(shown.contains("tip right_hand, in the link frame of right_elbow: (0.3, 0, 0) m"), "{shown}");
     assert!(shown.contains("body camera, 0.6 kg: a part of the link of waist"), "{shown}");
 }
+
+/// Code of a robot with tips has the function that takes a wrench at each, and says on which link they are.
+#[test]
+fn code_of_tips_takes_a_wrench_at_each() {
+    const FILE: &str = "docs/dual_arm.yaml";
+    let code = fine(&["emit", FILE, "--lang", "c", "--tests"]);
+    for part in [
+        "/// left_hand, on the link of left_elbow\n    DUAL_ARM_TIP_LEFT_HAND = 0,",
+        "void dual_arm_inverse_dynamics_with_wrenches(",
+        "const float wrenches[2][6]",
+    ] {
+        assert!(code.contains(part), "{part}: {code}");
+    }
+    // compilers that know no comments of C++ read an apostrophe as an open character
+    let (_, tests) = code.split_once("#ifdef RNE_TEST").expect("tests");
+    let of_comments = tests.lines().filter(|line| line.trim_start().starts_with("//"));
+    assert!(of_comments.clone().count() > 1 && of_comments.clone().all(|line| !line.contains('\'')), "{tests}");
+    let rust = fine(&["emit", FILE]);
+    assert!(rust.contains("pub fn inverse_dynamics_with_wrenches<"), "{rust}");
+    assert!(!fine(&["emit", "docs/tree.yaml", "--lang", "c"]).contains("with_wrenches"));
+}

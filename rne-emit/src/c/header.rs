@@ -121,9 +121,14 @@ fn tips(file: &File, upper: &str) -> String {
         return String::new();
     }
     let mut text = "/// Indices of the tips in arrays of wrenches, by their names.\nenum {\n".to_owned();
-    for (index, name) in file.robot.tip_names().into_iter().enumerate() {
+    let tips = file.robot.tip_names().into_iter().zip(file.robot.wrench_frames());
+    for (index, (name, frame)) in tips.enumerate() {
         let JointIdentifier { upper_case, .. } = JointIdentifier::of(name, index);
-        let _ = writeln!(text, "    /// {name}\n    {upper}_TIP_{upper_case} = {index},");
+        let link = frame.on.and_then(|on| file.robot.joints.get(on));
+        let link = link.map_or("the base".to_owned(), |joint| format!("the link of {}", inert::c_comment(&joint.name)));
+        // without the list, the bytes stay what they were
+        let on = if file.robot.tips.is_empty() { String::new() } else { format!(", on {link}") };
+        let _ = writeln!(text, "    /// {name}{on}\n    {upper}_TIP_{upper_case} = {index},");
     }
     text + "};\n\n"
 }
@@ -135,7 +140,8 @@ fn limits(file: &File, upper: &str) -> String {
         Precision::Single => f64::from(f32::MAX),
         Precision::Double => f64::MAX,
     };
-    let limits = || file.robot.independent_joints().map(|joint| joint.limits);
+    let of_joints = file.robot.coordinate_limits();
+    let limits = || of_joints.iter();
     let kinds: [(&str, &str, f64, Vec<Option<f64>>); 4] = [
         (
             "POSITION_LOWER",

@@ -229,7 +229,7 @@ fn inverse_root(file: &File) -> String {
     let [half, more] = [0.5, 1.5].map(|number| file.precision.literal(number).unwrap_or_default());
     let mut text = format!(
         "// 1 / sqrt(x) of x above 0, without a library and without a branch: half of the exponent by\n\
-         // the bits, then Newton's steps.\n\
+         // the bits, then steps of Newton.\n\
          static {real} {prefix}_inverse_root({real} x)\n{{\n    const {real} h = {half} * x;\n    \
          {prefix}_number guess;\n    {real} y;\n    guess.number = x;\n    \
          guess.bits = {magic} - (guess.bits >> 1u);\n    y = guess.number;\n"

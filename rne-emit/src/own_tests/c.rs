@@ -54,7 +54,8 @@ pub fn c_tests(
     format!(
         "{GUARD}\n\
          // A program that tests this code: with -DRNE_TEST it compiles alone, and returns 0 where all is well.\n\
-         // Values are those of rne's runtime, which knows nothing of this code; laws are those of mechanics.\n\n\
+         // Values are those of the runtime library of rne, which shares no code with this file; laws are those of\n\
+         // mechanics.\n\n\
          #include <stdio.h>\n\n{states}{zeros}\nstatic unsigned test_failures = 0u;\n\n\
          static double test_largest(const {real} *numbers, unsigned count, double largest)\n{{\n    \
          unsigned i;\n    for (i = 0u; i < count; ++i) {{\n        \
