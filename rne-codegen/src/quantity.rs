@@ -290,9 +290,9 @@ quantities! {
     AngularMomentum:            "h",         Vector,    6, false, "(Iω)", "N m s", "I ω";
     InertiaMoment:              "n",         Vector,    6, true,  "n", "N m", "n = I ω̇ + ω × I ω";
     JointForce:                 "f",         Links,     6, true,  "f", "N",
-        "force exerted by link p, the parent (i - 1 in a chain), on link i";
+        "force exerted by link h = i - 1 on link i";
     JointMoment:                "n",         Links,     6, true,  "n", "N m",
-        "moment exerted by link p, the parent (i - 1 in a chain), on link i, about joint i";
+        "moment exerted by link h = i - 1 on link i, about joint i";
     ReducedForce:               "f",         Vector,    6, true,  "f", "N",
         "force on the link and all behind it, of regrouped matter";
     ReducedMoment:              "n",         Vector,    6, true,  "n", "N m",

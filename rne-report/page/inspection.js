@@ -172,10 +172,10 @@ class Inspection {
   /** What a name is, in words with its own numbers. */
   words({ of, joint }) {
     const parent = this.parentOf(joint);
-    const numbers = { "p, the parent (i - 1 in a chain),": parent, "i-1": parent, i: joint };
+    const numbers = { "h = i - 1": parent, "i-1": parent, i: joint };
     return of.meaning
       .replace(/^[^ ]*: /, "")
-      .replace(/\b(link|joint|frame) (p, the parent \(i - 1 in a chain\),|i-1\b|i\b)/g, (_, what, which) => `${what} ${numbers[which]}`);
+      .replace(/\b(link|joint|frame) (h = i - 1|i-1\b|i\b)/g, (_, what, which) => `${what} ${numbers[which]}`);
   }
 
   /** The component of the lecture that a name is, or is a part of. */

@@ -218,7 +218,7 @@ class Page {
     for (const [quantity] of LAYERS) {
       if (!quantities[quantity]) continue;
       const before = this.inspection.isTree() ? "p, the parent of link i," : "i-1";
-      const meaning = quantities[quantity].meaning.replace("p, the parent (i - 1 in a chain),", before);
+      const meaning = quantities[quantity].meaning.replace("h = i - 1", before);
       const button = element(
         "button",
         {

@@ -278,7 +278,7 @@ fn addresses_that_the_page_does_not_know_are_told() {
         ("#cel=2.4", &["cel is not known", "q, qd, qdd, f, n, cell, look"]),
         ("#exercize", &["exercize is not known", "exercise, lecture"]),
         ("#cell=2", &["cell=2 is no cell", "cell=JOINT.STEP"]),
-        ("#q=a,1", &["q has something that is no number"]),
+        ("#q=a,1", &["“a” in q is no number"]),
     ];
     let addresses: Vec<Value> = cases.iter().map(|(address, _)| Value::from(*address)).collect();
     let Some(said) = by_node(SCRIPT, &addresses) else { return };

@@ -16,7 +16,7 @@ use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
 use crate::values::choice::{convention, robot_name};
 
-/// Convert an arm in a URDF, or in an MJCF file of MuJoCo, to a robot file
+/// Convert a URDF, or an MJCF file of MuJoCo, to a robot file
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

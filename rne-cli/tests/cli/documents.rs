@@ -69,6 +69,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask light", ".ci/run", "step cargo xtask light\n"),
     // its page is checked, and it breaks sources
     ("cargo xtask mutate", "tests/documents/pages.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
+    // it searches for minutes
+    ("cargo xtask tree-counts", "xtask/src/main.rs", "TreeCounts("),
     // it measures times
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
     // it fetches Pinocchio

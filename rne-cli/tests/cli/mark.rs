@@ -257,7 +257,7 @@ fn states_of_a_class() {
     for (text, parts) in [
         ("", &["the file is empty"][..]),
         ("q1,qd1\n", &["no state below"]),
-        ("q2\n1\n", &[":1:1", "no column `q1`"]),
+        ("q2\n1\n", &["the key is for an arm of 2 joints; planar1 has 1"]),
         ("q1\tqd1\n1\t2\n", &["separated by tabs"]),
         ("q1\n0.3\n0.4\n", &[":3:1", "no column `name`"]),
         ("q1,q1\n1,1\n", &[":1:4", "occurs twice"]),

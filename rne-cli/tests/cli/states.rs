@@ -63,10 +63,12 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
     match value {
         Value::Array(parts) => parts.iter().for_each(|part| flat(part, numbers)),
         // in their order, which is not that of their names
-        Value::Object(parts) => ["rotation", "translation", "force", "moment", "dq", "dqd", "momentum", "rate"]
-            .iter()
-            .filter_map(|name| parts.get(*name))
-            .for_each(|part| flat(part, numbers)),
+        Value::Object(parts) => {
+            ["rotation", "translation", "wrench", "force", "moment", "tau", "dq", "dqd", "momentum", "rate"]
+                .iter()
+                .filter_map(|name| parts.get(*name))
+                .for_each(|part| flat(part, numbers))
+        }
         number => numbers.push(number.as_f64().expect("a number")),
     }
 }
@@ -100,6 +102,11 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
     give("--base-omega-dot", list("base_omega_dot"));
     give("--base-acceleration", list("base_acceleration"));
     give("--gravity", list("base_gravity"));
+    if function.takes(Argument::Wrenches) {
+        let from = columns.iter().position(|column| column == "tip_fx").expect("a force");
+        let wrench: Vec<String> = state[from..from + 6].iter().map(f64::to_string).collect();
+        give("--tip-wrench", Some(format!("tip={}", wrench.join(","))));
+    }
     if function.takes(Argument::Payload) {
         let from = columns.iter().position(|column| column == "m").expect("a mass");
         let payload: Vec<String> = state[from..from + 10].iter().map(f64::to_string).collect();

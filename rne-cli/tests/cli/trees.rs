@@ -133,11 +133,7 @@ fn the_checker_accepts_the_code_of_a_tree_and_no_other_tree() {
 /// What computes by the formulas of a chain, or writes a chain, says so.
 #[test]
 fn commands_for_serial_arms_refuse_a_tree_at_its_line() {
-    for command in [
-        &["export", "--urdf"][..],
-        &["worksheet", "--seed", "1", "-o", "sheets"],
-        &["convert", "--convention", "standard"],
-    ] {
+    for command in [&["worksheet", "--seed", "1", "-o", "sheets"][..], &["convert", "--convention", "standard"]] {
         let arguments = [&command[..1], &[TREE], &command[1..]].concat();
         fails(
             1,
