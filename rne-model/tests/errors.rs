@@ -147,7 +147,7 @@ fn trees() {
     assert_eq!(refused(&placed).lines().next(), refused(&tree).lines().next());
     let only_placed = file("modified", "", &row("name: b", ", b: 1"));
     let found = refused(&only_placed);
-    assert!(found.starts_with("x:9:73: error: joint 2 (`b`) begins at `b`, which only rows of trees have"), "{found}");
+    assert!(found.starts_with("x:9:69: error: joint 2 (`b`) begins at `b`, which only rows of trees have"), "{found}");
     let found = refused(&file("modified", "tool: {on: a}", &row("name: b", "")));
     assert!(found.starts_with("x:6:12: error: the tip is not on the last link: the robot is a tree"), "{found}");
     // a chain in the words of a tree is that chain

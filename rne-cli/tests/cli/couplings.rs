@@ -104,7 +104,8 @@ fn a_gripper_is_identified_from_its_torques() {
     }
     std::fs::write(&states, text).expect("a table");
     let torques = place.join("torques.csv");
-    fine(&["eval", GRIPPER, "--states", &name(&states), "-o", &name(&torques), "--force"]);
+    let wrote = rne(&["eval", GRIPPER, "--states", &name(&states), "-o", &name(&torques), "--force"]);
+    assert_eq!(wrote.status, 0, "{wrote:?}");
     let torques = std::fs::read_to_string(torques).expect("torques");
     let mut text =
         "time,shoulder_position,elbow_position,finger_a_position,shoulder_effort,elbow_effort,finger_a_effort\n"
@@ -113,8 +114,9 @@ fn a_gripper_is_identified_from_its_torques() {
         let _ = writeln!(text, "{time},{},{},{},{torque}", row[0], row[1], row[2]);
     }
     std::fs::write(&log, text).expect("a log");
-    let said = fine(&["identify", GRIPPER, &name(&log), "-o", &name(&out), "--force"]);
-    assert!(said.contains("all 3 joints"), "{said}");
+    let called = rne(&["identify", GRIPPER, &name(&log), "-o", &name(&out), "--force"]);
+    assert_eq!(called.status, 0, "{called:?}");
+    assert!(called.out.contains("all 3 joints"), "{called:?}");
     let file = std::fs::read_to_string(&out).expect("a robot file");
     assert!(file.contains("couplings:\n  - {joint: finger_b, follows: {finger_a: 1}}"), "{file}");
     fine(&["check", &name(&out)]);
