@@ -1,5 +1,5 @@
-//! `docs/robot-file.md`, and `docs/every-key.yaml` with the examples of `format: 2`, have the keys that the format has, no
-//! more and no fewer. The list of keys is that of rne-model's schema.
+//! `docs/robot-file.md`, and `docs/every-key.yaml` with the examples of `format: 2`, have the keys that the format has,
+//! no more and no fewer. The list of keys is that of rne-model's schema.
 
 use std::collections::BTreeSet;
 use std::path::Path;

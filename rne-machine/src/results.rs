@@ -33,7 +33,7 @@ pub type MomentumAndRate<T> = [Vec<T>; 2];
 pub struct FloatingTorques<T> {
     /// On the base, about the origin of frame 0.
     pub wrench: Wrench<T>,
-    /// Of the actuators.
+    /// Torques of the actuators.
     pub tau: Vec<T>,
 }
 
@@ -94,4 +94,6 @@ macro_rules! records {
     )*};
 }
 
-records! { Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau } }
+records! {
+    Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau }
+}

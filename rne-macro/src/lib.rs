@@ -216,8 +216,8 @@ pub fn derive_tip_wrenches(input: TokenStream) -> TokenStream {
     expand::capability(Capability::TipWrenches, input.into()).into()
 }
 
-/// Implements the trait `FloatingBase` for a struct: the torques of a robot whose base nothing holds, and the wrench that
-/// must act on the base.
+/// Implements the trait `FloatingBase` for a struct: the torques of a robot whose base nothing holds, and the wrench
+/// that must act on the base.
 ///
 /// The base is the link `floating_base` of the robot file; without that key the base has no mass. The tips are those of
 /// [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.

@@ -9,7 +9,8 @@
 //! ```
 //!
 //! p is the parent link, n the link of the tip; row i of a modified table carries the twist and the length before joint
-//! i. On the base the rotation of a standard table is 1, and c̄_p = 0 where the world holds it. R_t and p_t are the tool's.
+//! i. On the base the rotation of a standard table is 1, and c̄_p = 0 where the world holds it. R_t and p_t are the
+//! tool's.
 //!
 //! In a tree a row may begin at a placement R_b, p_b in the link frame of its parent. It then stands before the row:
 //!

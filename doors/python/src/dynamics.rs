@@ -141,14 +141,14 @@ macro_rules! method {
             #[doc = $summary]
             ///
             #[doc = $details]
-            /// Each vector of the base has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the robot's
-            /// own.
+            /// Each vector of the base has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the
+            /// robot's own.
             ///
             $(#[doc = about!(Wrenches)]
             #[doc = concat!("Without `", stringify!($wrenches), "` no tip exerts anything.\n\n")])?
             #[doc = concat!("Returns ", returned!($returned))]
-            #[pyo3(signature = (q, qd, qdd, $($wrenches=None,)? *, base_omega=None, base_omega_dot=None, base_acceleration=None,
-                base_gravity=None, parameters=None, out=None))]
+            #[pyo3(signature = (q, qd, qdd, $($wrenches=None,)? *, base_omega=None, base_omega_dot=None,
+                base_acceleration=None, base_gravity=None, parameters=None, out=None))]
             fn $name<'py>(
                 &self,
                 py: Python<'py>,

@@ -448,9 +448,11 @@ fn positions_outside_of_the_limits_are_noted() {
 #[test]
 fn a_mass_matrix_that_is_not_positive_definite_is_told() {
     let file = folder("eval_indefinite").join("arm.yaml");
-    let text = "format: 1\nname: arm\nsource: own\nconvention: modified\ngravity: [0, 0, 0]\njoints:\n  \
-                - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 0, inertia: {zz: -1}, physical: \
-                false}}\n  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 0, inertia: {zz: 1}}}\n";
+    let row = "{type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 0, inertia: {zz:";
+    let text = &format!(
+        "format: 1\nname: arm\nsource: own\nconvention: modified\ngravity: [0, 0, 0]\njoints:\n  - {row} -1}}, \
+         physical: false}}}}\n  - {row} 1}}}}}}\n"
+    );
     let name = file.to_str().expect("UTF-8");
     let arguments = ["eval", name, "--function", "forward_dynamics", "--q", "0,0", "--tau", "1,1"];
     fs::write(&file, text).expect("a robot file");

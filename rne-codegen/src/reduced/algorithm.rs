@@ -52,8 +52,8 @@ impl Algorithm {
         !Self::of(function).is_empty()
     }
 
-    /// Whether the choices of a plan matter to a function of a robot. A rotor of the list `motors` turns with a base that
-    /// nothing holds, which no recursion of the reduced form has.
+    /// Whether the choices of a plan matter to a function of a robot. A rotor of the list `motors` turns with a base
+    /// that nothing holds, which no recursion of the reduced form has.
     #[must_use]
     pub fn is_planned_for(function: Function, robot: &Robot) -> bool {
         Self::is_planned(function) && !(function.returns_base_wrench() && robot.has_spinning_rotors())

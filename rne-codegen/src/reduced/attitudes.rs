@@ -30,8 +30,9 @@ struct Attitude {
 /// The axes of a link: those of an attitude (`None`: the base), turned.
 type Axes = (Option<usize>, Square);
 
-/// For each link, the link that has its second moments, and the rotation from its axes to those of that link; `None`
-/// for a link that never turns; on a base that nothing holds it turns as the base. A prismatic link gives them to its parent, so it is its own here.
+/// For each link, the link that has its second moments, and the rotation from its axes to the axes of this holder;
+/// `None` for a link that never turns. On a base that nothing holds, such a link turns as the base. A prismatic link
+/// gives its second moments to its parent, so it is its own holder here.
 pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>> {
     let rows = &joint_frames.rows;
     // that of a base that nothing holds, which stands behind the links

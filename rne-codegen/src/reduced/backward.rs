@@ -269,7 +269,7 @@ fn turned_second_moment<'s>(
     full([u + number(yy), number(xx) - u, number(zz), turned_xy, turned_xz, turned_yz])
 }
 
-/// What several links on one link exert in its axes, as one.
+/// The wrenches that several links exert on one link, in the axes of this link, as one wrench.
 fn together<'s>(builder: &'s Builder, carried: Vec<Child<'s>>) -> Vec<Child<'s>> {
     let (mut unturned, own): (Vec<_>, Vec<_>) = carried.into_iter().partition(|child| child.unturned);
     if own.len() < 2 {

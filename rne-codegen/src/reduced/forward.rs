@@ -181,7 +181,7 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// The motion of a base that nothing holds, in frame 0: as the function is told.
+/// The motion of a base that nothing holds, in frame 0, from the arguments of the function.
 pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
     let told = |quantity| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))));

@@ -166,7 +166,7 @@ impl JointFrames {
             .find_map(|embedding| Self::read(robot, frames, embedding).filter(Self::agrees))
     }
 
-    /// The link that carries a joint, counted from 0: one behind the last for a base that nothing holds, `None` for a
+    /// The link that carries a joint, counted from 0: the number of links for a base that nothing holds, `None` for a
     /// base that the world holds.
     pub(crate) fn carrier(&self, index: usize) -> Option<usize> {
         self.rows[index].parent.or_else(|| self.base.map(|_| self.rows.len()))
@@ -482,7 +482,7 @@ impl JointFrames {
     }
 }
 
-/// Of a robot file without `floating_base` the base has no matter.
+/// The matter of the base: none where the robot file has no `floating_base`.
 fn matter_of_base(robot: &Robot, embedding: Embedding) -> PseudoInertia {
     let decimal = |x: f64| embedding.decimal(x);
     robot.floating_base.as_ref().map_or_else(PseudoInertia::default, |base| {

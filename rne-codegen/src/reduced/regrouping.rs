@@ -22,7 +22,7 @@ const SCALES: std::ops::Range<f64> = 1e-3..1e3;
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters {
     pub(crate) links: Vec<PseudoInertia>,
-    /// That of a base that nothing holds, with what it has been given.
+    /// The matter of a base that nothing holds, with the matter that its joints have given it.
     pub(crate) base: PseudoInertia,
     /// How far the origin of each frame has been slid along its axis.
     pub(crate) origin_shifts: Vec<Number>,
@@ -207,14 +207,14 @@ impl Links {
         Some((holder, if holder == link { s } else { s.turned(&rotation) }))
     }
 
-    /// What a link has at an entry, or the one that has its second moments.
+    /// The number of a link at an entry, or of the link that has its second moments.
     fn had(&self, link: usize, entry: Entry) -> Number {
         let holder =
             if entry.is_of_second_moments() { self.holders[link].map(|(holder, _)| holder) } else { Some(link) };
         holder.map_or(Number::ZERO, |holder| self.list[holder].get(entry))
     }
 
-    /// What a link gets at an entry by some matter, or the one that has its second moments.
+    /// The number that some matter adds to a link at an entry, or to the link that has its second moments.
     fn given(&self, link: usize, entry: Entry, matter: &PseudoInertia) -> Number {
         if !entry.is_of_second_moments() {
             return matter.get(entry);
