@@ -67,7 +67,7 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
             ["rotation", "translation", "wrench", "force", "moment", "tau", "dq", "dqd", "momentum", "rate"]
                 .iter()
                 .filter_map(|name| parts.get(*name))
-                .for_each(|part| flat(part, numbers))
+                .for_each(|part| flat(part, numbers));
         }
         number => numbers.push(number.as_f64().expect("a number")),
     }
