@@ -1,5 +1,5 @@
-//! Slips that were made on purpose, with every shipped robot and with trees: the diagnosis names them first, and none
-//! when there is none.
+//! Slips that were made on purpose, with every shipped robot and with trees: the diagnosis names them first. It
+//! names no slip for right torques.
 
 use fastrand::Rng;
 use rne_diagnose::{Diagnosis, Observation, Slip, Typo, diagnose, torques_with};
@@ -155,7 +155,7 @@ fn first(robot: &Robot, seen: &[Observation]) -> Vec<Slip> {
     }
 }
 
-/// Makes slips of some kinds with every robot that has them, so many at once.
+/// Tests slips on every robot to which they apply: makes each slip, and checks that the diagnosis names it first.
 fn named_first(
     seed: u64,
     mut robots: Vec<Robot>,

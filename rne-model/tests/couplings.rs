@@ -127,7 +127,7 @@ fn limits_of_a_follower_limit_the_joint_that_it_follows() {
     // a lower end of zero stays a zero without a sign
     let zero = file("", ", limits: {position: [0.1, 0.35]}", "a: -1").robot.coordinate_limits()[0].position;
     assert!(zero.is_some_and(|(_, upper)| upper == 0.0 && upper.is_sign_positive()), "{zero:?}");
-    // what limits nothing is told
+    // limits without an effect have a remark
     let several = file("", of_b, "a: 1, c: 1");
     assert_eq!(several.robot.coordinate_limits(), [rne_model::Limits::default(); 3]);
     let said = several.lints.short();

@@ -252,8 +252,8 @@ fn beginning<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Pl
     (!placement.is_identity()).then(|| Placement::constant(builder, &placement))
 }
 
-/// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever; one
-/// whose motion is told, and that the world holds, is about the origin of frame 0.
+/// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever is.
+/// If the function has the motion of a base without `floating_base`, the lever begins at the origin of frame 0.
 fn from_com<'s>(
     builder: &'s Builder,
     (links, floating_base): (&[Link<'s>], Option<&Body<'s>>),
