@@ -175,7 +175,8 @@ impl Urdf {
         let checked = Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().read(&text)?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
-        let (ignored, numbers) = (self.ignored(&told), self.suspicious_numbers());
+        let ignored = self.ignored(&told);
+        let numbers = [self.suspicious_numbers(), self.impossible_parts(&told)].concat();
         let account = Account {
             suspicious: [told.ignored_limits, numbers.clone()].concat(),
             remarks: [ignored, told.remarks, numbers, remarks(&robot, &table)].concat(),
@@ -346,6 +347,25 @@ impl Urdf {
             }
         }
         remarks
+    }
+
+    /// Links with inertias that no body has, where the body that they are lumped into hides this from the lints of the
+    /// robot file.
+    fn impossible_parts(&self, told: &Extracted) -> Vec<String> {
+        let lumped = told.lumped.iter().filter(|links| links.len() > 1).flatten();
+        let links = lumped.filter_map(|name| self.links.iter().find(|link| link.name == *name));
+        let remark = |name: &str, [a, b, c]: [f64; 3]| {
+            format!(
+                "no body can have the inertia of {}: its largest principal moment is {c:.3e} kg m², the sum of the two \
+                 others is {:.3e} kg m²",
+                quoted(name),
+                a + b
+            )
+        };
+        // URDFs round their numbers, and a plate has no room for that
+        let shows = |[a, b, c]: &[f64; 3]| c - (a + b) > 1e-3 * c;
+        let moments = |inertia: &Inertia| inertia.impossible_moments().filter(shows);
+        links.filter_map(|link| Some(remark(&link.name, moments(&link.inertia)?))).collect()
     }
 }
 

@@ -40,7 +40,7 @@ pub use own_tests::{Golden, c_tests, rust_tests, without_c_tests};
 pub use steps::steps;
 pub use syntax::Precision;
 pub use table::{angle, operations_table};
-pub use text::{rust_file, rust_file_with_sin_cos, rust_joints};
+pub use text::{meaning, rust_file, rust_file_with_sin_cos, rust_joints};
 pub use tokens::Body;
 
 #[cfg(test)]

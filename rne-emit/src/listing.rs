@@ -8,7 +8,7 @@ use rne_codegen::{
     Argument, Cause, Causes, Constant, Expression, Fold, FoldReport, Form, Function, Name, Place, Program, Quantity,
     Resolution, ResolvedAs, Sign, SineCosine, Statement, Step, WithRespectTo,
 };
-use rne_model::{JointKind, Robot};
+use rne_model::{Joint, JointKind, Robot, one_line};
 
 use super::annotated::{Annotated, Part};
 use super::expression;
@@ -283,7 +283,7 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
         }
         let opening = match (by, step) {
             _ if program.is_rewritten => Vec::new(),
-            (Some(by), _) => vec![Line::Heading(by_title(program, joint, step, by))],
+            (Some(by), _) => vec![Line::Heading(by_title(robot, program, joint, step, by))],
             (None, Step::Beyond) => vec![Line::Heading(beyond_title(program, quantity, joint))],
             (None, _) => heading(robot, program, joint, step),
         };
@@ -320,10 +320,10 @@ fn shown_place(program: &Program, statement: &Statement) -> Place {
 }
 
 /// The heading of derivatives, and of what one joint accelerates.
-fn by_title(program: &Program, joint: usize, step: Step, by: WithRespectTo) -> String {
+fn by_title(robot: &Robot, program: &Program, joint: usize, step: Step, by: WithRespectTo) -> String {
     let what = match step {
-        Step::Beyond => format!("joint {joint}"),
-        _ => step_title(program, joint, step),
+        Step::Beyond => joint_title(robot, joint),
+        _ => step_title(robot, program, joint, step),
     };
     match by {
         WithRespectTo::RateDot(by) => format!("{what}, for q̈{by} = 1 alone"),
@@ -366,7 +366,7 @@ fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Ve
         Form::Reduced if program.is_of_bodies() => Vec::new(),
         Form::Reduced => reduced_formulas(step, kind, &numbers),
     };
-    let title = Line::Heading(step_title(program, joint, step));
+    let title = Line::Heading(step_title(robot, program, joint, step));
     std::iter::once(title).chain(formulas.into_iter().map(Line::Formula)).collect()
 }
 
@@ -378,9 +378,17 @@ pub(super) fn recursion(program: &Program) -> Form {
     if is_reduced || program.function == Function::Regressor { Form::Reduced } else { Form::SevenSteps }
 }
 
-fn step_title(program: &Program, joint: usize, step: Step) -> String {
+/// A joint by its number; on a tree, where the number alone does not say the branch, with its name.
+fn joint_title(robot: &Robot, joint: usize) -> String {
+    match robot.joints.get(joint.wrapping_sub(1)).filter(|_| !robot.is_serial()) {
+        Some(Joint { name, .. }) => format!("joint {joint} ({})", one_line(name)),
+        None => format!("joint {joint}"),
+    }
+}
+
+fn step_title(robot: &Robot, program: &Program, joint: usize, step: Step) -> String {
     if program.is_of_bodies() && step == Step::Wrenches {
-        return format!("joint {joint}: the links from here on, as one body");
+        return format!("{}: the links from here on, as one body", joint_title(robot, joint));
     }
     let title = match (recursion(program), step) {
         (Form::SevenSteps, _) => step.title(),
@@ -391,7 +399,7 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
     let body = match joint {
         0 => "base".to_owned(),
         _ if joint > program.joints => "payload".to_owned(),
-        _ => format!("joint {joint}"),
+        _ => joint_title(robot, joint),
     };
     format!("{body}, step {}: {title}", step.number())
 }

@@ -214,7 +214,6 @@ const BY_SIGN_OF_FLOAT: &str = "    fn by_sign(self, positive: Self, negative: S
 
 /// Every kind of name that occurs, with its meaning.
 pub(super) fn legend(robot: &Robot, programs: &[Program]) -> Vec<(String, &'static str)> {
-    let of_tree = |quantity| if robot.is_serial() { None } else { meaning_in_tree(quantity) };
     let mut names = BTreeSet::new();
     for program in programs {
         let constants = program.constants().map(|constant| constant.name);
@@ -223,10 +222,17 @@ pub(super) fn legend(robot: &Robot, programs: &[Program]) -> Vec<(String, &'stat
         // functions that mean different things by a name have a line each
         names.extend(constants.chain(statements).chain(turns).map(|Name { quantity, .. }| {
             let own = program.function.own(quantity).and_then(|own| own.meaning);
-            (quantity, own.or_else(|| of_tree(quantity)).unwrap_or_else(|| quantity.meaning()))
+            (quantity, own.unwrap_or_else(|| meaning(robot, quantity)))
         }));
     }
     names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
+}
+
+/// The meaning of a quantity in the code of a robot. On a serial arm the link before link i is link i - 1.
+#[must_use]
+pub fn meaning(robot: &Robot, quantity: Quantity) -> &'static str {
+    let of_tree = if robot.is_serial() { None } else { meaning_in_tree(quantity) };
+    of_tree.unwrap_or_else(|| quantity.meaning())
 }
 
 /// The meaning of a quantity whose usual words name the next joint or the link before, which a tree may not have.

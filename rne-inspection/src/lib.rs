@@ -76,7 +76,7 @@ impl Inspection {
             },
             quantities: names
                 .iter()
-                .map(|name| (name::quantity(name.quantity), name::of_quantity(name.quantity)))
+                .map(|name| (name::quantity(name.quantity), name::of_quantity(robot, name.quantity)))
                 .collect(),
             names: names.iter().map(|name| (name.to_string(), name::record(*name))).collect(),
             reasons: equations.into_reasons(),

@@ -30,11 +30,11 @@ pub(crate) fn record(name: codegen::Name) -> Name {
     Name { quantity: quantity(name.quantity), joint: name.joint, component, part, carries }
 }
 
-/// Describes a quantity.
-pub(crate) fn of_quantity(of: Quantity) -> record::Quantity {
+/// Describes a quantity of a robot's code.
+pub(crate) fn of_quantity(robot: &Robot, of: Quantity) -> record::Quantity {
     record::Quantity {
         letter: of.letter(),
-        meaning: of.meaning(),
+        meaning: rne_emit::meaning(robot, of),
         step: of.step().map(codegen::Step::number).filter(|step| *step <= 7),
         units: [of.unit(JointKind::Revolute), of.unit(JointKind::Prismatic)],
         axes: axes(of),

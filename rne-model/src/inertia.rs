@@ -47,6 +47,13 @@ impl Inertia {
     pub fn principal_moments(&self) -> Option<[f64; 3]> {
         principal_moments(self)
     }
+
+    /// The principal moments, ascending, kg m², where the largest is more than the sum of the two others: no
+    /// distribution of mass has such moments.
+    #[must_use]
+    pub fn impossible_moments(&self) -> Option<[f64; 3]> {
+        self.principal_moments().filter(|[a, b, c]| c - (a + b) > TOLERANCE * c)
+    }
 }
 
 /// The principal moments, ascending, by Jacobi's rotations; `None` when an element is not finite.

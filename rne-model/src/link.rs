@@ -64,7 +64,7 @@ pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (In
             }
         }));
     }
-    lint::triangle_inequality(cx, place.clone(), moments);
+    lint::triangle_inequality(cx, place.clone(), &link.inertia);
     lint::radius_of_gyration(cx, place, mass, moments);
     Some((link, (written, about)))
 }

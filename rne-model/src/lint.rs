@@ -11,10 +11,10 @@ use crate::decode::Context;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
 use crate::expression::Names as _;
-use crate::inertia::{TOLERANCE, principal_moments};
+use crate::inertia::principal_moments;
 use crate::resistance::{self, Unresisted};
 use crate::source::{is_invisible, quoted, six_digits};
-use crate::{Angle, Convention, Joint, JointKind, Limits, QuarterTurns, Transform};
+use crate::{Angle, Convention, Inertia, Joint, JointKind, Limits, QuarterTurns, Transform};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
 const NEARLY: f64 = 2e-4;
@@ -151,9 +151,9 @@ pub(crate) fn mass(cx: &Context, node: &Node, value: f64) {
     }
 }
 
-/// Principal moments, ascending, that no distribution of mass has.
-pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: [f64; 3]) {
-    if c - (a + b) > TOLERANCE * c {
+/// An inertia that no distribution of mass has.
+pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, inertia: &Inertia) {
+    if let Some([a, b, c]) = inertia.impossible_moments() {
         let message = format!(
             "no body can have this inertia: of the principal moments {}, {} and {} kg m², the largest is more than the \
              sum of the two others",

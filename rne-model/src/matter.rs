@@ -67,7 +67,7 @@ pub(crate) fn link(
                     refers to";
         return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(help));
     }
-    lint::triangle_inequality(cx, place.clone(), moments);
+    lint::triangle_inequality(cx, place.clone(), &inertia);
     lint::radius_of_gyration(cx, place, mass, moments);
     Some(Link { mass, com, inertia, first_moment: [0.0; 3] })
 }

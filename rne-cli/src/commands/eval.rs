@@ -99,9 +99,9 @@ pub(crate) struct Arguments {
     /// Axes of --trace: link (default), joint, base
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
-    /// Print only joint I of --trace; 1 is at the base
-    #[arg(long, value_name = "I", value_parser = choice::joint, requires = "trace", conflicts_with = "compare")]
-    joint: Option<usize>,
+    /// Print only this joint of --trace, by its number or its name
+    #[arg(long, value_name = "JOINT", requires = "trace", conflicts_with = "compare")]
+    joint: Option<String>,
     /// Print only step S of --trace, 1 to 7
     #[arg(long, value_name = "S", value_parser = choice::step, requires = "trace", conflicts_with = "compare")]
     step: Option<Step>,
@@ -224,8 +224,8 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         let manner = Manner { digits, json: arguments.json, hint: arguments.hint };
         return compare::run(path, &robot, &situation, arguments.axes, manner);
     }
-    let narrowed = Narrowed { joint: arguments.joint, step: arguments.step };
-    choice::check_joint(&robot, arguments.joint)?;
+    let joint = choice::joint_of(&robot, arguments.joint.as_deref())?;
+    let narrowed = Narrowed { joint, step: arguments.step };
     let axes = arguments.axes.unwrap_or(Axes::Link).into();
     let sheet = Worksheet::new(&robot, &situation, axes).map_err(Failure::usage)?;
     if arguments.csv {

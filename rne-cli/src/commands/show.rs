@@ -46,9 +46,9 @@ pub(crate) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Show only joint I; joint 1 is at the base
-    #[arg(long, value_name = "I", value_parser = choice::joint)]
-    joint: Option<usize>,
+    /// Show only this joint, by its number (1 is at the base) or its name
+    #[arg(long, value_name = "JOINT")]
+    joint: Option<String>,
     /// Show only one step of the algorithm: 1 angular velocity, 2 angular acceleration, 3 velocity, 4 acceleration, 5
     /// gravity, 6 force and moment, 7 torque
     #[arg(long, value_name = "S", value_parser = choice::step)]
@@ -95,9 +95,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
         return Ok(Outcome::text(letters.page(&text, PAGE)));
     }
-    choice::check_joint(&robot, arguments.joint)?;
+    let joint = choice::joint_of(&robot, arguments.joint.as_deref())?;
     if arguments.json || arguments.equations {
-        return inspected(arguments, &robot);
+        return inspected(arguments, &robot, joint);
     }
 
     let mut keep = arguments.keep.clone();
@@ -137,7 +137,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if program.form != arguments.form && refusals.is_empty() {
         let _ = writeln!(text, "{QUIET}{} has one form, the seven steps{QUIET:#}", program.function);
     }
-    if program.is_rewritten && (arguments.joint.is_some() || arguments.step.is_some()) {
+    if program.is_rewritten && (joint.is_some() || arguments.step.is_some()) {
         let _ = writeln!(
             text,
             "{QUIET}a rewritten graph has no steps; {QUIET:#}{TYPED}--without rewriting{TYPED:#}{QUIET} shows the \
@@ -156,7 +156,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             let _ = writeln!(text, "{WARNING}{}{WARNING:#}", letters.of(&line));
         }
     }
-    let what = Selection { joint: arguments.joint, step: arguments.step, explain: true, ..Selection::default() };
+    let what = Selection { joint, step: arguments.step, explain: true, ..Selection::default() };
     text.push('\n');
     let listing = rne_emit::listing(&robot, &program, what);
     if listing.is_empty() {
@@ -167,7 +167,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 /// The inspection, as JSON or as lines.
-fn inspected(arguments: &Arguments, robot: &Robot) -> Result<Outcome, Failure> {
+fn inspected(arguments: &Arguments, robot: &Robot, joint: Option<usize>) -> Result<Outcome, Failure> {
     let file = arguments.file.display().to_string();
     let (function, form) = (arguments.function, arguments.form);
     let program = match form {
@@ -190,10 +190,6 @@ fn inspected(arguments: &Arguments, robot: &Robot) -> Result<Outcome, Failure> {
     let letters = arguments.letters;
     let mut text = letters.page(&heading::robot(robot), PAGE);
     let _ = writeln!(text, "\n{}\n", heading::counts(&program));
-    text.push_str(&equations::text(
-        View { inspection: &inspection, letters },
-        arguments.joint,
-        arguments.step.map(Step::number),
-    ));
+    text.push_str(&equations::text(View { inspection: &inspection, letters }, joint, arguments.step.map(Step::number)));
     Ok(Outcome::text(text))
 }

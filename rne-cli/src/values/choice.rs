@@ -73,7 +73,7 @@ pub(crate) fn robot_name(text: &str) -> Result<String, String> {
     Err("a robot's name has small letters, digits and underscores, and starts with a letter: my_arm".to_owned())
 }
 
-/// Reads the number of a joint; which numbers there are, the robot says.
+/// Reads a number of joints; which numbers there are, the robot says.
 pub(crate) fn joint(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "a joint is given by its number, counted from 1 at the base".to_owned())
 }
@@ -142,21 +142,17 @@ impl Kept {
     }
 }
 
-/// Whether a robot has this joint.
-pub(crate) fn check_joint(robot: &Robot, joint: Option<usize>) -> Result<(), Failure> {
-    match joint {
-        Some(joint) if joint == 0 || joint > robot.joints.len() => {
-            let joints: Vec<String> = robot
-                .joints
-                .iter()
-                .enumerate()
-                .map(|(index, joint)| format!("{} ({})", index + 1, joint.name))
-                .collect();
-            let message = format!("{} has no joint {joint}; its joints are {}", robot.name, joints.join(", "));
-            Err(Failure::usage(message))
-        }
-        _ => Ok(()),
+/// The joint of a robot that is told by its number, counted from 1 at the base, or by its name.
+pub(crate) fn joint_of(robot: &Robot, told: Option<&str>) -> Result<Option<usize>, Failure> {
+    let Some(told) = told else { return Ok(None) };
+    let number = told.parse().ok().filter(|number| (1..=robot.joints.len()).contains(number));
+    let by_name = || robot.joints.iter().position(|joint| joint.name == told).map(|index| index + 1);
+    if let Some(joint) = number.or_else(by_name) {
+        return Ok(Some(joint));
     }
+    let joints = robot.joints.iter().enumerate().map(|(index, joint)| format!("{} ({})", index + 1, joint.name));
+    let joints = joints.collect::<Vec<_>>().join(", ");
+    Err(Failure::usage(format!("{} has no joint {told}; its joints are {joints}", robot.name)))
 }
 
 /// The functions that a robot has something to compute for, in the order of the traits: without motors,

@@ -123,7 +123,8 @@ fn joints_and_steps_that_are_not_there() {
     for joint in ["0", "7"] {
         fails(2, &["show", robot, "--joint", joint], &["has no joint", "1 (j1)", "6 (j6)", "rne show --help"]);
     }
-    fails(2, &["show", robot, "--joint", "one"], &["--joint", "by its number, counted from 1 at the base"]);
+    fails(2, &["show", robot, "--joint", "one"], &["has no joint one", "1 (j1)"]);
+    assert_eq!(fine(&["show", robot, "--joint", "j3"]), fine(&["show", robot, "--joint", "3"]));
     for step in ["0", "8", "x"] {
         fails(2, &["show", robot, "--step", step], &["1 angular velocity", "7 torque"]);
     }
@@ -342,4 +343,16 @@ fn a_trace_of_a_tree_is_refused() {
     let arguments = [&["eval", "docs/tree.yaml"][..], &state].concat();
     assert!(fine(&arguments).contains("finger_b"));
     fails(2, &[&arguments[..], &["--trace"]].concat(), &["--trace takes serial arms, but the robot is a tree"]);
+}
+
+/// A leg of a quadruped is found by the names of its joints.
+#[test]
+fn joints_of_a_tree_have_their_names() {
+    let shank = fine(&["show", "hyq", "--joint", "lh_kfe_joint", "--step", "6"]);
+    assert!(shank.contains("// joint 6 (lh_kfe_joint), step 6: forces and moments"), "{shank}");
+    let derivatives = fine(&["show", "hyq", "--joint", "6", "--function", "inverse_dynamics_derivatives"]);
+    assert!(derivatives.contains("// joint 6 (lh_kfe_joint), step 7: torque, by q4"), "{derivatives}");
+    // the link before link 4 is the base
+    let explained = fine(&["explain", "f0_4_y", "hyq"]);
+    assert!(explained.contains("by link h, which carries joint i") && !explained.contains("i - 1"), "{explained}");
 }

@@ -53,6 +53,31 @@ fn bodies_that_are_none() {
     assert!(!kept.robot.joints[0].is_physical());
 }
 
+/// A lumped body can be one where a part of it is none: the motor of Talos' gripper, in Gepetto/example-robot-data#130.
+#[test]
+fn a_part_that_is_no_body_is_told() {
+    let motor = |yz: &str| {
+        format!(
+            "<link name=\"motor\"><inertial><origin xyz=\"0.02 0 0\"/><mass value=\"0.14765\"/><inertia ixx=\"0.000115\" \
+             ixy=\"0.000052\" ixz=\"0.000025\" iyy=\"0.000153\" iyz=\"{yz}\" izz=\"0.00019\"/></inertial></link>"
+        )
+    };
+    let remarks = |yz: &str| {
+        let text = robot(&[
+            bare(&["base"]),
+            link("hand", 1.0, "0 0 0.1", [0.01, 0.01, 0.01]),
+            motor(yz),
+            joint("wrist", "continuous", ("base", "hand"), "", "<axis xyz=\"0 0 1\"/>"),
+            joint("screws", "fixed", ("hand", "motor"), "", ""),
+        ]);
+        plain(&text).account.suspicious
+    };
+    let told = "no body can have the inertia of `motor`: its largest principal moment is 2.319e-4 kg m², the sum of \
+                the two others is 2.261e-4 kg m²";
+    assert_eq!(remarks("0.000034"), [told]);
+    assert_eq!(remarks("0"), [""; 0]);
+}
+
 /// 50² 2e-4 N m s/rad and 50 (0.03 + 0.01)/2 N m; a friction without a gear comes back to the last digit.
 #[test]
 fn friction_goes_through_the_gear_to_the_joint() {
