@@ -14,6 +14,7 @@ mod at_tip;
 mod base_motion;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod base_parameters;
+mod base_state;
 pub mod batch;
 mod capability;
 #[cfg(feature = "arm")]
@@ -74,6 +75,7 @@ mod pose;
 mod pose_log;
 #[doc(hidden)]
 pub mod processor;
+mod quaternion;
 mod registers;
 #[cfg(feature = "arm")]
 mod regressor;
@@ -99,6 +101,7 @@ pub use arm::Arm;
 pub use base_motion::BaseMotion;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
+pub use base_state::BaseTwist;
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, AtFrame, CentreOfMass, CoriolisMatrix, Energy, FloatingBase, FloatingTorques, ForwardDynamics,
@@ -125,6 +128,7 @@ pub use operational_space::{dynamically_consistent_inverse, operational_space_in
 pub use operations::Operations;
 pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;
+pub use quaternion::Quaternion;
 pub use scalar::{Constant, RunTimeParameter, Scalar};
 #[cfg(feature = "arm")]
 pub use trace::{LinkTrace, Trace};

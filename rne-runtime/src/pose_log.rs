@@ -77,7 +77,7 @@ impl<T: Scalar + Float> Pose<T> {
 
 /// The vector part of the unit quaternion, what it must be multiplied by to give the rotation vector, and the scalar
 /// part, which is not negative.
-fn half_turn<T: Scalar + Float>(rotation: &[[T; 3]; 3]) -> ([T; 3], T, T) {
+pub(crate) fn half_turn<T: Scalar + Float>(rotation: &[[T; 3]; 3]) -> ([T; 3], T, T) {
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = *rotation;
     let (one, zero): (T, T) = (T::one(), T::zero());
     // four times the product of elements i and j of the quaternion (w, x, y, z)
@@ -100,11 +100,11 @@ fn half_turn<T: Scalar + Float>(rotation: &[[T; 3]; 3]) -> ([T; 3], T, T) {
     (vector, scale, w)
 }
 
-fn transposed<T: Copy>([[a, b, c], [d, e, f], [g, h, i]]: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+pub(crate) fn transposed<T: Copy>([[a, b, c], [d, e, f], [g, h, i]]: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     [[*a, *d, *g], [*b, *e, *h], [*c, *f, *i]]
 }
 
-fn times<T: Scalar>(matrix: &[[T; 3]; 3], vector: &[T; 3]) -> [T; 3] {
+pub(crate) fn times<T: Scalar>(matrix: &[[T; 3]; 3], vector: &[T; 3]) -> [T; 3] {
     matrix.map(|row| dot(&row, vector))
 }
 
@@ -112,6 +112,6 @@ fn dot<T: Scalar>([a, b, c]: &[T; 3], [x, y, z]: &[T; 3]) -> T {
     *a * *x + *b * *y + *c * *z
 }
 
-fn cross<T: Scalar>([a, b, c]: &[T; 3], [x, y, z]: &[T; 3]) -> [T; 3] {
+pub(crate) fn cross<T: Scalar>([a, b, c]: &[T; 3], [x, y, z]: &[T; 3]) -> [T; 3] {
     [*b * *z - *c * *y, *c * *x - *a * *z, *a * *y - *b * *x]
 }

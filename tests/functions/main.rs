@@ -4,6 +4,7 @@
 mod arm;
 #[path = "../random/arms.rs"]
 mod arms;
+mod base_states;
 mod case;
 mod centre_of_mass;
 mod check;

@@ -27,6 +27,7 @@ from ._rne import (
     names as _names,
     pose_log,
 )
+from .bases import base_from_imu, base_from_mujoco, base_from_pinocchio
 from .excitation import Excitation, excite
 from .identification import Identification, identify
 from .logs import Log, log
@@ -47,6 +48,9 @@ __all__ = [
     "RobotFileWarning",
     "Verdict",
     "Watch",
+    "base_from_imu",
+    "base_from_mujoco",
+    "base_from_pinocchio",
     "excite",
     "from_mujoco",
     "from_pinocchio",

@@ -329,6 +329,18 @@ def load(
 ) -> Arm:
     """Return the arm of a robot file (YAML), a URDF, an MJCF file, the text of one, or of a built-in robot."""
 
+def base_from_imu(
+    gyroscope: ArrayLike, gyroscope_rate: ArrayLike, accelerometer: ArrayLike, *,
+    rotation: ArrayLike | None = ..., position: ArrayLike = ...,
+) -> dict[str, Floats]:
+    """The base whose inertial measurement unit reads these values."""
+def base_from_pinocchio(q: ArrayLike, v: ArrayLike, a: ArrayLike, *, gravity: ArrayLike = ...) -> dict[str, Floats]:
+    """The base of a Pinocchio model with a free flyer, which is its first joint."""
+def base_from_mujoco(
+    qpos: ArrayLike, qvel: ArrayLike, qacc: ArrayLike, *, gravity: ArrayLike = ...,
+) -> dict[str, Floats]:
+    """The base of a MuJoCo model with a free joint, which is its first joint."""
+
 def from_mujoco(model: Any, **options: Any) -> Arm:
     """The arm of a compiled MuJoCo model, an `mujoco.MjModel`."""
 
