@@ -130,12 +130,12 @@ pub use rne_macro::{
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    Actuation, AtFrame, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual,
-    Energy, FloatingBase, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix,
-    MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics,
-    Pose, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench, dynamically_consistent_inverse,
-    joint_order, operational_space_inertia,
+    Actuation, AtFrame, BaseAcceleration, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant,
+    CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingTorques, ForwardDynamics,
+    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics,
+    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
+    Payload, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
+    dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

@@ -326,6 +326,7 @@ fn by_title(program: &Program, joint: usize, step: Step, by: WithRespectTo) -> S
         _ => step_title(program, joint, step),
     };
     match by {
+        WithRespectTo::BaseRateDot(_) => format!("{what}, for {} = 1 alone", by.variable()),
         WithRespectTo::RateDot(by) => format!("{what}, for q̈{by} = 1 alone"),
         WithRespectTo::Position(by) => format!("{what}, by q{by}"),
         WithRespectTo::Rate(by) => format!("{what}, by q̇{by}"),

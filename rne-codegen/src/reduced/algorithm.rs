@@ -56,7 +56,7 @@ impl Algorithm {
     /// that nothing holds, which no recursion of the reduced form has.
     #[must_use]
     pub fn is_planned_for(function: Function, robot: &Robot) -> bool {
-        Self::is_planned(function) && !(function.returns_base_wrench() && robot.has_spinning_rotors())
+        Self::is_planned(function) && !(function.is_of_floating_base() && robot.has_spinning_rotors())
     }
 
     /// The ways of a function; none for what has no reduced recursion.
@@ -109,6 +109,9 @@ impl Algorithm {
             | Function::Regressor
             | Function::JointWrenches
             | Function::InverseDynamicsOnMovingBase
+            | Function::FloatingMassMatrix
+            | Function::FloatingBias
+            | Function::FloatingForwardDynamics
             | Function::ActuatorTorques => &[],
         }
     }
@@ -158,7 +161,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
     let coordinates = &arm.joint_frames.coordinates;
     let joints = coordinates.joints();
     let upper_half = || coordinates.upper_half(builder, mass_matrix(arm, algorithm));
-    let system = || System::new(coordinates, arm.rows().iter().map(|row| row.parent));
+    let system = || System::new(builder.function, coordinates, arm.rows().iter().map(|row| row.parent));
     let by_joint = |quantity, of_joints: Vec<Symbol<'s>>| {
         formulate::by_joint(coordinates, quantity, coordinates.torques(&of_joints))
     };
