@@ -1,6 +1,7 @@
 //! M(q) by columns: the torques of the seven steps for q̈ = e_j, of an arm at rest and without gravity. Where nothing
 //! holds the base, the wrenches that must act on it, too, and six columns of the base.
 
+use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::{Arm, AtTip, JointState, Motion, Wrench, seven_steps};
 use crate::ir::{Axis, Builder, Cause, Quantity, Symbol, Vector, WithRespectTo};
@@ -61,6 +62,13 @@ pub(crate) struct OfBase<'s> {
 }
 
 impl<'s> OfBase<'s> {
+    /// With a column for each coordinate, from one for each joint.
+    pub(crate) fn gathered(self, coordinates: &Coordinates) -> Self {
+        let plus = |a: [Vector<'s>; 2], b: [Vector<'s>; 2]| [a[0] + b[0], a[1] + b[1]];
+        let times = |column: [Vector<'s>; 2], ratio| column.map(|part| part.map(|_, x| scaled(x, ratio)));
+        Self { columns: coordinates.gathered(&self.columns, plus, times), ..self }
+    }
+
     /// The upper half of M with `joints`, that of the joints: row i holds its elements (i, i) to (i, 6 + n).
     pub(crate) fn above(&self, builder: &'s Builder, joints: Vec<Vec<Symbol<'s>>>) -> Vec<Vec<Symbol<'s>>> {
         let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (self.h.0, self.inertia);

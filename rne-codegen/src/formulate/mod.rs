@@ -199,11 +199,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
     /// The upper half of M with the rows of a base that nothing holds.
     fn floating_half(&self) -> Vec<Vec<Symbol<'s>>> {
         let (of_base, joints) = mass_matrix::with_base(&self.arm, &self.states, &self.system());
-        let of_joints = |half: usize| of_base.columns.iter().map(|column| column[half]).collect::<Vec<_>>();
-        let [forces, moments] = [0, 1].map(|half| self.columns(&of_joints(half)));
-        let columns = forces.into_iter().zip(moments).map(|(force, moment)| [force, moment]).collect();
         let joints = self.coordinates().upper_half(self.builder, joints);
-        mass_matrix::OfBase { columns, ..of_base }.above(self.builder, joints)
+        of_base.gathered(self.coordinates()).above(self.builder, joints)
     }
 
     /// The upper half of M.
