@@ -130,11 +130,11 @@ pub use rne_macro::{
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    Actuation, AtFrame, BaseMotion, BaseTwist, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant,
-    CoriolisMatrix, Dual, Energy, FloatingBase, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix,
-    MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics,
-    Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
+    Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchInverseDynamics, BatchScalar, CentreOfMass,
+    Constant, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingTorques, ForwardDynamics,
+    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics,
+    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
+    Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
     dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]

@@ -1,10 +1,10 @@
-"""Torques of robots on floating bases beside Pinocchio, which reads the same URDF.
+"""Dynamics of robots on floating bases beside Pinocchio, which reads the same URDF.
 
 Usage: python floating.py RNE FOLDER [--write]     where RNE is the binary and FOLDER has the URDFs that ROBOTS names.
 
 `rne import --whole --floating --no-snap` makes the robot file. States are random: any orientation of the base, and
 linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a quaternion and as
-spatial vectors in axes of the base. With --write the robot files and the values go to tests/functions/floating.
+spatial vectors in axes of the base. Its mass matrix is by crba, its bias by nle, its accelerations by aba. With --write the robot files and the values go to tests/functions/floating.
 """
 
 import json
@@ -19,7 +19,7 @@ import pinocchio as pin
 
 TOLERANCE = 1e-12
 STATES = 3
-FUNCTION = "inverse_dynamics_of_floating_base"
+FUNCTIONS = ["inverse_dynamics_of_floating_base", "floating_mass_matrix", "floating_bias", "floating_forward_dynamics"]
 
 # Name of the URDF, and the licence, if its numbers stand in this repository.
 ROBOTS = [
@@ -38,16 +38,17 @@ def state(random, names):
     """Joints, and the base in its own axes: v of its origin, ω, the acceleration of this point, ω̇, and gravity."""
     dof = len(names)
     joints = {"q": random.uniform(-1, 1, dof), "qd": random.uniform(-2, 2, dof), "qdd": random.uniform(-5, 5, dof)}
+    tau = np.random.default_rng(dof).uniform(-20, 20, dof)
     turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
     turn *= np.linalg.det(turn)
     velocity, omega, acceleration, omega_dot = random.normal(size=(4, 3))
     gravity = turn.T @ [0, 0, -9.81]
     told = {"omega": omega, "omega_dot": omega_dot, "acceleration": acceleration, "gravity": gravity}
-    return joints, told, (turn, velocity)
+    return {**joints, "tau": tau}, told, (turn, velocity)
 
 
 def expected(model, names, joints, told, placed):
-    """Force and moment on the base, then the torques."""
+    """The numbers of each of FUNCTIONS. Those of the base stand first; its accelerations are classical, less gravity."""
     turn, velocity = placed
     q, v, a = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nv)
     q[3:7] = pin.Quaternion(turn).coeffs()
@@ -64,20 +65,44 @@ def expected(model, names, joints, told, placed):
         v[joint.idx_v], a[joint.idx_v] = rate, rate_dot
         rows.append(joint.idx_v)
     model.armature = np.zeros(model.nv)
-    torques = pin.rnea(model, model.createData(), q, v, a)
-    return np.concatenate([torques[:6], torques[rows]])
+    order = [*range(6), *rows]
+    torques = pin.rnea(model, model.createData(), q, v, a)[order]
+    mass = pin.crba(model, model.createData(), q)
+    mass = (np.triu(mass) + np.triu(mass, 1).T)[np.ix_(order, order)]
+    # of the base whose spatial acceleration is zero and which does not fall
+    classical = np.cross(told["omega"], velocity) - told["gravity"]
+    bias = pin.nonLinearEffects(model, model.createData(), q, v)[order] - mass[:, :3] @ classical
+    tau = np.zeros(model.nv)
+    tau[rows] = joints["tau"]
+    accelerations = pin.aba(model, model.createData(), q, v, tau)[order]
+    accelerations[:3] += classical
+    return dict(zip(FUNCTIONS, [torques, mass.flatten(), bias, accelerations]))
 
 
-def found(rne, file, joints, told):
+def numbers(result):
+    """All numbers of a result, in order."""
+    if isinstance(result, dict):
+        names = ["wrench", "force", "moment", "tau", "base", "linear", "angular", "qdd"]
+        result = [result[name] for name in names if name in result]
+    return [x for part in result for x in numbers(part)] if isinstance(result, list) else [result]
+
+
+def found(rne, file, function, joints, told):
     """The same of the runtime library."""
     options = {**joints, "base-omega": told["omega"], "base-omega-dot": told["omega_dot"],
                "base-acceleration": told["acceleration"], "gravity": told["gravity"]}
+    takes = {
+        "inverse_dynamics_of_floating_base": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
+        "floating_mass_matrix": ["q"],
+        "floating_bias": ["q", "qd", "base-omega"],
+        "floating_forward_dynamics": ["q", "qd", "tau", "base-omega"],
+    }
+    options = {key: options[key] for key in takes[function]}
     options = [f"--{key}={','.join(repr(float(x)) for x in value)}" for key, value in options.items()]
-    done = subprocess.run([rne, "eval", file, "--function", FUNCTION, *options, "--json"], capture_output=True, text=True)
+    done = subprocess.run([rne, "eval", file, "--function", function, *options, "--json"], capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(done.stderr)
-    result = json.loads(done.stdout)["result"]
-    return np.array(result["wrench"]["force"] + result["wrench"]["moment"] + result["tau"])
+    return np.array(numbers(json.loads(done.stdout)["result"]))
 
 
 def main():
@@ -95,15 +120,25 @@ def main():
             for _ in range(STATES):
                 joints, told, placed = state(random, names)
                 values = expected(model, names, joints, told, placed)
-                worst = max(worst, np.abs(found(rne, file, joints, told) - values).max() / np.abs(values).max())
-                states.append({key: list(map(float, value)) for key, value in {**joints, **told, "expected": values}.items()})
+                for function, wanted in values.items():
+                    # accelerations are as uncertain as the mass matrix is badly conditioned
+                    size = 6 + len(names)
+                    of = np.linalg.cond(values["floating_mass_matrix"].reshape(size, size)) if "forward" in function else 1
+                    error = np.abs(found(rne, file, function, joints, told) - wanted).max() / np.abs(wanted).max() / of
+                    worst = max(worst, error)
+                if states:
+                    # one matrix is enough
+                    del values["floating_mass_matrix"]
+                states.append({key: list(map(float, value)) for key, value in {**joints, **told, **values}.items()})
             print(f"{name}: {len(names)} joints, largest error {worst:.1e}", flush=True)
             if worst > TOLERANCE:
                 failed.append(name)
             elif write and licence:
                 (write / f"{name}.yaml").write_text(file.read_text())
                 golden = {"by": f"Pinocchio {pin.__version__}", "licence": licence, "states": states}
-                (write / f"{name}.golden.json").write_text(json.dumps(golden, indent=0) + "\n")
+                # a line for each array
+                text = re.sub(r",\n(?=[-\d])", ", ", json.dumps(golden, indent=0))
+                (write / f"{name}.golden.json").write_text(re.sub(r"\[\n(?=[-\d])|(?<=\d)\n(?=\])", lambda it: it[0].strip(), text) + "\n")
     if failed:
         sys.exit(f"failed: {', '.join(failed)}")
 

@@ -125,11 +125,8 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
     let expected = runtime(&arm, function, &state).expect("arrays of the right length");
     assert_eq!(interpreted.len(), expected.len(), "{function} of\n{text}");
     let is_equal = match function {
-        Function::ForwardDynamics => accelerate(&arm, &state, &interpreted).expect("arrays of the right length"),
-        Function::ForwardDynamicsWithWrenches => {
-            let of_wrench = arm.wrench_torques(&state.q, &state.wrench).expect("arrays of the right length");
-            let tau = state.tau.iter().zip(of_wrench).map(|(tau, of_wrench)| tau - of_wrench).collect();
-            accelerate(&arm, &State { tau, ..state }, &interpreted).expect("arrays of the right length")
+        Function::ForwardDynamics | Function::ForwardDynamicsWithWrenches | Function::FloatingForwardDynamics => {
+            accelerate(&arm, function, &state, &interpreted).expect("arrays of the right length")
         }
         Function::InverseMassMatrix => inverts(&arm, &state, &interpreted).expect("arrays of the right length"),
         _ => {
@@ -154,12 +151,28 @@ fn scale(numbers: &[f64]) -> f64 {
 /// which is without bound where a last link is light. But elimination of a positive definite matrix is backward stable:
 /// what it returns solves a system that differs from M q̈ = τ - h by rounding, so M q̈ + h, of the runtime's M and h,
 /// gives τ to rounding of the largest product that stands in it, however large q̈ is. A singular M has no answer.
-fn accelerate(arm: &DynArm, State { q, qd, tau, .. }: &State, qdd: &[f64]) -> std::result::Result<bool, WrongLength> {
+fn accelerate(
+    arm: &DynArm,
+    function: Function,
+    State { q, qd, tau, wrench, base, .. }: &State,
+    qdd: &[f64],
+) -> std::result::Result<bool, WrongLength> {
     if !qdd.iter().all(|acceleration| acceleration.is_finite()) {
         return Ok(true);
     }
-    let (mass, bias) = (arm.mass_matrix(q)?, arm.bias_torques(q, qd)?);
-    let largest = scale(&mass.concat()) * scale(qdd) + scale(&bias) + scale(tau);
+    let zeros = vec![0.0; q.len()];
+    let (mass, bias) = match function {
+        Function::FloatingForwardDynamics => {
+            (arm.floating_mass_matrix(q)?, arm.floating_bias(q, qd, &base.omega, &[*wrench])?)
+        }
+        Function::ForwardDynamicsWithWrenches => {
+            (arm.mass_matrix(q)?, arm.inverse_dynamics_with_wrenches(q, qd, &zeros, &[*wrench])?)
+        }
+        _ => (arm.mass_matrix(q)?, arm.bias_torques(q, qd)?),
+    };
+    // nothing drives a base
+    let tau = [vec![0.0; bias.len() - tau.len()], tau.clone()].concat();
+    let largest = scale(&mass.concat()) * scale(qdd) + scale(&bias) + scale(&tau);
     let misses = mass.iter().zip(&bias).zip(tau).map(|((row, bias), tau)| {
         let torque: f64 = row.iter().zip(qdd).map(|(m, qdd)| m * qdd).sum();
         (torque + bias - tau).abs()
@@ -241,6 +254,12 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::InverseDynamicsOfFloatingBase => {
             let (on_base, torques) = arm.inverse_dynamics_of_floating_base(q, qd, qdd, base, &[*wrench])?;
             [on_base.force.to_vec(), on_base.moment.to_vec(), torques].concat()
+        }
+        Function::FloatingMassMatrix => arm.floating_mass_matrix(q)?.concat(),
+        Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &[*wrench])?,
+        Function::FloatingForwardDynamics => {
+            let (base, qdd) = arm.floating_forward_dynamics(q, qd, tau, &base.omega, &[*wrench])?;
+            [base.linear.to_vec(), base.angular.to_vec(), qdd].concat()
         }
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, &Payload::from_array(*payload))?,

@@ -68,7 +68,7 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
         (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
         (_, Argument::Wrenches) => (1..=program.tips.len()).flat_map(Name::of_tip).map(used).collect(),
         (_, argument) => {
-            let joint = if argument == Argument::Base { 0 } else { tip };
+            let joint = if matches!(argument, Argument::Base | Argument::BaseVelocity) { 0 } else { tip };
             Axis::ALL.map(|axis| used(Name::vector(part.quantity, joint, axis))).into()
         }
     };

@@ -43,6 +43,7 @@ macro_rules! taken {
     (Wrenches) => { &[Wrench<T>] };
     (Payload) => { &Payload<T> };
     (Base) => { &BaseMotion<T> };
+    (BaseVelocity) => { &[T; 3] };
     ($of_joints:ident) => { &[T] };
 }
 
@@ -76,6 +77,9 @@ macro_rules! with {
             .base_omega_dot(Array::Same(&$base.omega_dot))
             .base_acceleration(Array::Same(&$base.acceleration))
             .base_gravity(Array::Same(&$base.gravity))
+    };
+    ($others:ident, BaseVelocity $omega:ident) => {
+        $others.omega(Array::Same($omega))
     };
     ($others:ident, $of_joints:ident $argument:ident) => {
         $others.$argument(Array::Rows($argument))

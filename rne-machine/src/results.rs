@@ -4,7 +4,7 @@ use core::array;
 
 use rne_codegen::Layout;
 pub use rne_runtime::Pose;
-use rne_runtime::Wrench;
+use rne_runtime::{BaseAcceleration, Wrench};
 
 /// One number.
 pub type Number<T> = T;
@@ -35,6 +35,19 @@ pub struct FloatingTorques<T> {
     pub wrench: Wrench<T>,
     /// Torques of the actuators.
     pub tau: Vec<T>,
+}
+
+/// Six numbers of a base that nothing holds, and one per joint.
+pub type FloatingVector<T> = Vec<T>;
+/// Six rows and columns of a base that nothing holds, and one per joint.
+pub type FloatingMatrix<T> = Matrix<T>;
+/// The acceleration of a base that nothing holds, and those of the joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloatingAccelerations<T> {
+    /// Of the base, less gravity.
+    pub base: BaseAcceleration<T>,
+    /// Of the joints.
+    pub qdd: Vec<T>,
 }
 
 /// ∂τ/∂q and ∂τ/∂q̇.
@@ -96,4 +109,5 @@ macro_rules! records {
 
 records! {
     Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau }
+    BaseAcceleration { linear, angular } FloatingAccelerations { base, qdd }
 }

@@ -12,7 +12,7 @@ use rne_search::PlanFile;
 const STATES: usize = 150;
 
 /// Arguments and their elements for any function of an arm.
-fn widths(dof: usize) -> [(&'static str, usize); 14] {
+fn widths(dof: usize) -> [(&'static str, usize); 15] {
     [
         ("q", dof),
         ("qd", dof),
@@ -24,6 +24,7 @@ fn widths(dof: usize) -> [(&'static str, usize); 14] {
         ("moment", 3),
         ("payload", 10),
         ("base_omega", 3),
+        ("omega", 3),
         ("base_omega_dot", 3),
         ("base_acceleration", 3),
         ("base_gravity", 3),
@@ -53,6 +54,8 @@ impl States {
         rows[5] = q.iter().map(|&q| Scalar::sin_cos(q).1).collect();
         // no payload has a mass below zero
         rows[8].iter_mut().step_by(10).for_each(|mass| *mass = mass.abs());
+        // the base has one angular velocity
+        rows[10] = rows[9].clone();
         Self { dof, rows }
     }
 
@@ -79,9 +82,9 @@ impl States {
             tau: joints(3),
             force: triple(6),
             moment: triple(7),
-            wrenches: &[of(13, 6).try_into().expect("one tip")],
+            wrenches: &[of(14, 6).try_into().expect("one tip")],
             payload: of(8, 10).try_into().expect("ten"),
-            base: [9, 10, 11, 12].map(triple),
+            base: [9, 11, 12, 13].map(triple),
             ..Numbers::of_joints(joints(0), joints(1), joints(2), 0.0)
         };
         interpreter.run(&numbers, f64::from_f64, Scalar::sin_cos).expect("arrays of the right length")

@@ -89,8 +89,12 @@ impl Target<'_> {
 
     /// The arguments of the trait of a capability: the number of joints, and that of tips where it needs it.
     fn sizes(&self, capability: Capability, dof: &TokenStream) -> TokenStream {
-        let tips = &self.tips;
-        if capability.has_tips() { quote!(#dof, #tips) } else { quote!(#dof) }
+        let (tips, velocities) = (&self.tips, velocities(dof));
+        match capability {
+            Capability::FloatingBase => quote!(#dof, #velocities, #tips),
+            _ if capability.has_tips() => quote!(#dof, #tips),
+            _ => quote!(#dof),
+        }
     }
 
     /// Writes a stub for a robot that is not known: every use of it compiles, so that the mistake that is reported
@@ -106,6 +110,9 @@ impl Target<'_> {
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        if capability == Capability::FloatingBase {
+            generics.params.push(syn::parse_quote!(const __VELOCITIES: ::core::primitive::usize));
+        }
         if capability.has_tips() {
             generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
         }
@@ -263,6 +270,7 @@ impl Target<'_> {
                 Argument::Wrench => ("wrench", quote!(#krate::Wrench<T>)),
                 Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
                 Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
+                Argument::BaseVelocity => ("omega", quote!([T; 3])),
                 Argument::Wrenches => ("wrenches", quote!([#krate::Wrench<T>; #tips])),
             };
             (format_ident!("{name}"), quote!(&#lifetime #kind))
@@ -300,6 +308,10 @@ impl Target<'_> {
                 let of = self.returned(of, dof);
                 match length {
                     Length::Joints => quote!([#of; #dof]),
+                    Length::Velocities => {
+                        let velocities = velocities(dof);
+                        quote!([#of; #velocities])
+                    }
                     Length::Fixed(length) => {
                         let length = Literal::usize_unsuffixed(*length);
                         quote!([#of; #length])
@@ -309,10 +321,11 @@ impl Target<'_> {
             Shape::Record(record, _) => {
                 let name = format_ident!("{}", record.name());
                 match record {
-                    Record::TorqueDerivatives | Record::MomentumAndRate | Record::FloatingTorques => {
-                        quote!(#krate::#name<#dof, T>)
-                    }
-                    Record::Pose | Record::Wrench => quote!(#krate::#name<T>),
+                    Record::TorqueDerivatives
+                    | Record::MomentumAndRate
+                    | Record::FloatingTorques
+                    | Record::FloatingAccelerations => quote!(#krate::#name<#dof, T>),
+                    Record::Pose | Record::Wrench | Record::BaseAcceleration => quote!(#krate::#name<T>),
                 }
             }
         }
@@ -464,6 +477,13 @@ impl Constants {
             operations: Operations::default(),
         }
     }
+}
+
+/// The number of velocities of a robot whose base nothing holds: six of the base, and those of its joints. Of a robot
+/// that is not known, a parameter.
+fn velocities(dof: &TokenStream) -> TokenStream {
+    let dof = dof.to_string().parse::<usize>();
+    dof.map_or_else(|_| quote!(__VELOCITIES), |dof| Literal::usize_unsuffixed(6 + dof).into_token_stream())
 }
 
 /// A number that reads back as the same bits, or infinity.

@@ -366,11 +366,32 @@ pub struct FloatingTorques<const DOF: usize, T> {
     pub tau: [T; DOF],
 }
 
-/// Torques of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
+/// The acceleration of a base that nothing holds, in axes of frame 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseAcceleration<T> {
+    /// Acceleration of the origin of frame 0 less gravity, m/s²: what an accelerometer reads there.
+    pub linear: [T; 3],
+    /// Angular acceleration ω̇, rad/s².
+    pub angular: [T; 3],
+}
+
+/// The motion of a robot whose base nothing holds, from torques, for one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloatingAccelerations<const DOF: usize, T> {
+    /// Acceleration of the base, less gravity.
+    pub base: BaseAcceleration<T>,
+    /// Accelerations of the joints, rad/s² or m/s².
+    pub qdd: [T; DOF],
+}
+
+/// Dynamics of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
 /// robot file; without that key the base has no mass, and the wrench is what the mount of the robot must bear.
 ///
-/// The tips and their wrenches are those of [`TipWrenches`].
-pub trait FloatingBase<const DOF: usize, const TIPS: usize> {
+/// The tips and their wrenches are those of [`TipWrenches`]. `NV` = `DOF` + 6 velocities: three linear ones of the
+/// base, three angular ones, all in axes of frame 0, then those of the joints. Accelerations are (a - g, ω̇, q̈) with
+/// the classical acceleration a of the origin of frame 0; forces are (force, moment about this origin, τ). So neither
+/// gravity nor the orientation of the base enters.
+pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
     /// Torques, and the wrench that must act on the base, when frame 0 moves as `base` says.
     ///
     /// `base` is what an inertial measurement unit reads: ω, ω̇, and the acceleration of the origin of frame 0 less
@@ -385,6 +406,43 @@ pub trait FloatingBase<const DOF: usize, const TIPS: usize> {
         base: &BaseMotion<T>,
         wrenches: &[Wrench<T>; TIPS],
     ) -> FloatingTorques<DOF, T>;
+
+    /// The mass matrix M of `NV` rows and columns: forces are M accelerations + [bias](Self::floating_bias).
+    ///
+    /// Symmetric to the last bit. The block of the joints is the [mass matrix](MassMatrix::mass_matrix) of the robot
+    /// whose base is held. Elements that no state makes differ from zero are zero: those of joints on different
+    /// branches, and of the base.
+    #[must_use]
+    fn floating_mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; NV]; NV];
+
+    /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) that a motion without
+    /// accelerations needs, a - g = 0, ω̇ = 0, q̈ = 0: velocity products, and what wrenches at the tips ask. No friction,
+    /// as in [`bias_torques`](InverseDynamics::bias_torques).
+    ///
+    /// `omega`: angular velocity of the base, rad/s, in axes of frame 0.
+    #[must_use]
+    fn floating_bias<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        omega: &[T; 3],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> [T; NV];
+
+    /// The accelerations that follow from torques, where nothing but gravity and the wrenches at the tips acts on the
+    /// robot. `omega` as in [`floating_bias`](Self::floating_bias).
+    ///
+    /// A singular mass matrix (a massless base without joints that move mass) gives numbers that are not finite, and
+    /// never panics.
+    #[must_use]
+    fn floating_forward_dynamics<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        omega: &[T; 3],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> FloatingAccelerations<DOF, T>;
 }
 
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has

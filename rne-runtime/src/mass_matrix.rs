@@ -6,7 +6,7 @@
 //! [forward dynamics](crate::ForwardDynamics): column j from row j on, mirrored too.
 
 use crate::at_tip::AtTip;
-use crate::link_state::JointMotions;
+use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::{Arm, BaseMotion, Constant, MassMatrix, Scalar};
@@ -15,13 +15,24 @@ use crate::{DynArm, WrongLength, ldlt::inverse_of};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T], tip: AtTip<'_, T>) -> Square<J, T> {
+        self.mass_matrix_beside(q, tip, |_, _| {})
+    }
+
+    /// M(q) of the joints; `on_base` is given the wrench on a base that does not move, for each column.
+    pub(crate) fn mass_matrix_beside<T: Scalar>(
+        self,
+        q: &[T],
+        tip: AtTip<'_, T>,
+        mut on_base: impl FnMut(usize, ForceMoment<T>),
+    ) -> Square<J, T> {
         let weightless = BaseMotion::fixed([T::zero(); 3]);
         let at_rest = self.zeros();
         let mut matrix = self.per_joint.all(&at_rest);
         for j in 0..q.len() {
             let unit = self.unit(j);
             let joints = JointMotions::new(q, at_rest.as_ref(), unit.as_ref());
-            let column = self.torques(joints, &weightless, tip);
+            let (wrench, column) = self.of_floating_base(joints, &weightless, tip);
+            on_base(j, wrench);
             for (i, &element) in column.as_ref().iter().enumerate().take(j + 1) {
                 matrix.as_mut()[i].as_mut()[j] = element;
                 matrix.as_mut()[j].as_mut()[i] = element;

@@ -20,7 +20,7 @@ pub(crate) trait Derived: Send + Sync {
     fn double(&self, function: Function, given: &Numbers<f64>) -> Vec<f64>;
 }
 
-pub(crate) trait Everything<const DOF: usize>:
+pub(crate) trait Everything<const DOF: usize, const NV: usize>:
     InverseDynamics<DOF>
     + MassMatrix<DOF>
     + CoriolisMatrix<DOF>
@@ -36,7 +36,7 @@ pub(crate) trait Everything<const DOF: usize>:
     + Actuation<DOF>
     + PayloadDynamics<DOF>
     + TipWrenches<DOF, 1>
-    + FloatingBase<DOF, 1>
+    + FloatingBase<DOF, NV, 1>
 {
 }
 
@@ -48,8 +48,8 @@ fn pose<T: Scalar>(pose: &Pose<T>) -> Vec<T> {
     [flat(pose.rotation), pose.translation.to_vec()].concat()
 }
 
-pub(crate) fn numbers<const DOF: usize, T: Scalar>(
-    robot: &impl Everything<DOF>,
+pub(crate) fn numbers<const DOF: usize, const NV: usize, T: Scalar>(
+    robot: &impl Everything<DOF, NV>,
     function: Function,
     given: &Numbers<T>,
 ) -> Vec<T> {
@@ -107,6 +107,12 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
             let found = robot.inverse_dynamics_of_floating_base(q, qd, qdd, &base, &[Wrench { force, moment }]);
             [found.wrench.force.to_vec(), found.wrench.moment.to_vec(), found.tau.to_vec()].concat()
         }
+        Function::FloatingMassMatrix => flat(robot.floating_mass_matrix(q)),
+        Function::FloatingBias => robot.floating_bias(q, qd, &omega, &[Wrench { force, moment }]).to_vec(),
+        Function::FloatingForwardDynamics => {
+            let found = robot.floating_forward_dynamics(q, qd, tau, &omega, &[Wrench { force, moment }]);
+            [found.base.linear.to_vec(), found.base.angular.to_vec(), found.qdd.to_vec()].concat()
+        }
         Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
         Function::ActuatorTorques => robot.actuator_torques(qd, qdd).to_vec(),
         Function::GravityTorquesWithPayload => {
@@ -155,7 +161,7 @@ macro_rules! robot {
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;
 
-            impl Everything<{ Robot::DOF }> for Robot {}
+            impl Everything<{ Robot::DOF }, { Robot::DOF + 6 }> for Robot {}
 
             impl Derived for Robot {
                 fn single(&self, function: Function, given: &Numbers<f32>) -> Vec<f32> {

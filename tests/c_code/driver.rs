@@ -161,6 +161,9 @@ impl Driver<'_> {
                 Function::InverseDynamicsOfFloatingBase => {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
+                Function::FloatingMassMatrix => "q",
+                Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
+                Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
                 Function::ActuatorTorques => "qd, qdd",
             };
             let (result, address) = match function {
@@ -188,6 +191,9 @@ impl Driver<'_> {
                 }
                 Function::JointWrenches => (format!("{prefix}_wrench x[{n}]"), "x"),
                 Function::InverseDynamicsOfFloatingBase => (format!("{prefix}_floating_torques x"), "&x"),
+                Function::FloatingMassMatrix => (format!("{real} x[{0}][{0}]", 6 + n), "x"),
+                Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
+                Function::FloatingForwardDynamics => (format!("{prefix}_floating_accelerations x"), "&x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
             };
             let _ = writeln!(

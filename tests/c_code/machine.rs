@@ -65,6 +65,7 @@ impl States {
             ("wrenches", rows(&|state| state.vectors[..2].concat())),
             ("payload", rows(&|state| payload(state).to_vec())),
             ("base_omega", vector(2)),
+            ("omega", vector(2)),
             ("base_omega_dot", vector(3)),
             ("base_acceleration", vector(4)),
             ("base_gravity", vector(5)),

@@ -80,8 +80,8 @@ pub(crate) fn stubs() -> String {
         let joints = arguments.iter().filter(|(_, kind)| *kind != Argument::Base);
         let joints: Vec<String> = joints
             .map(|(name, kind)| match kind {
-                Argument::Wrench | Argument::Payload => format!("{name}: ArrayLike, "),
-                Argument::Wrenches if function.takes(Argument::Base) => {
+                Argument::Wrench | Argument::Payload | Argument::BaseVelocity => format!("{name}: ArrayLike, "),
+                Argument::Wrenches if function.is_of_floating_base() => {
                     format!("{name}: ArrayLike | dict[str, ArrayLike] | None = ..., ")
                 }
                 Argument::Wrenches => format!("{name}: ArrayLike | dict[str, ArrayLike], "),
@@ -92,9 +92,10 @@ pub(crate) fn stubs() -> String {
         let base = if arguments.iter().any(|(_, kind)| *kind == Argument::Base) { BASE } else { "" };
         let returned = match returned {
             Returned::Number => "Floats | float",
-            Returned::TorqueDerivatives | Returned::MomentumAndRate | Returned::FloatingTorques => {
-                "tuple[Floats, Floats]"
-            }
+            Returned::TorqueDerivatives
+            | Returned::MomentumAndRate
+            | Returned::FloatingTorques
+            | Returned::FloatingAccelerations => "tuple[Floats, Floats]",
             _ => "Floats",
         };
         // a pose of the tip has the name that it has at a frame, too

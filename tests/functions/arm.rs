@@ -390,6 +390,11 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::InverseDynamicsOfFloatingBase => arm
             .inverse_dynamics_of_floating_base(q, qd, qdd, base, &wrenches)
             .map(|(wrench, tau)| [wrench.force.to_vec(), wrench.moment.to_vec(), tau].concat()),
+        Function::FloatingMassMatrix => arm.floating_mass_matrix(q).map(flat),
+        Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &wrenches),
+        Function::FloatingForwardDynamics => arm
+            .floating_forward_dynamics(q, qd, tau, &base.omega, &wrenches)
+            .map(|(base, qdd)| [base.linear.to_vec(), base.angular.to_vec(), qdd].concat()),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),

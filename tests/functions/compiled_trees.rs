@@ -33,6 +33,7 @@ fn of_state(robot: &Robot, state: &State) -> Vec<(&'static str, Vec<f64>)> {
         ),
         ("payload", payload.to_array().to_vec()),
         ("base_omega", base.omega.to_vec()),
+        ("omega", base.omega.to_vec()),
         ("base_omega_dot", base.omega_dot.to_vec()),
         ("base_acceleration", base.acceleration.to_vec()),
         ("base_gravity", base.gravity.to_vec()),

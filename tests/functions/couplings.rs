@@ -109,7 +109,16 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
         | Function::ActuatorTorques
         | Function::WrenchTorques => rows().concat(),
         _ if function.returns_torques() => rows().concat(),
-        Function::InverseDynamicsOfFloatingBase => {
+        Function::FloatingMassMatrix => {
+            // Gᵀ M G with six coordinates of the base
+            let size = 6 + dof;
+            let rows =
+                numbers.chunks(size).map(|row| [&row[..6], &times(&back, &row[6..])].concat()).collect::<Vec<_>>();
+            let columns = transposed(&rows);
+            let columns = columns.iter().map(|column| [&column[..6], &times(&back, &column[6..])].concat());
+            transposed(&columns.collect::<Vec<_>>()).concat()
+        }
+        Function::InverseDynamicsOfFloatingBase | Function::FloatingBias => {
             let (on_base, torques) = numbers.split_at(6);
             [on_base, &times(&back, torques)].concat()
         }

@@ -14,7 +14,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 25] = [
+const SAME_BITS: [Function; 28] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -40,6 +40,9 @@ const SAME_BITS: [Function; 25] = [
     Function::InverseDynamicsWithWrenches,
     Function::ForwardDynamicsWithWrenches,
     Function::InverseDynamicsOfFloatingBase,
+    Function::FloatingMassMatrix,
+    Function::FloatingBias,
+    Function::FloatingForwardDynamics,
 ];
 
 /// Of the largest number of the result.
@@ -66,6 +69,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::InverseDynamicsFromSinCos
         | Function::InverseDynamicsOnMovingBase
         | Function::InverseDynamicsOfFloatingBase
+        | Function::FloatingBias
         | Function::GravityTorques
         | Function::BiasTorques
         | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),
@@ -75,8 +79,8 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::InverseDynamicsDerivativesWithPayload => {
             LEAST * of(Function::JointWrenches).max(of(Function::InverseDynamicsWithPayload))
         }
-        // differences of torques at unit rates
-        Function::CoriolisMatrix => of(Function::MassMatrix),
+        // differences of torques at unit rates, and torques of unit accelerations
+        Function::CoriolisMatrix | Function::FloatingMassMatrix => of(Function::MassMatrix),
         // a sum of products of masses and heights
         Function::PotentialEnergy => {
             let mass = arm.robot.rows().map(|row| row.link.mass).sum::<f64>();
@@ -123,7 +127,7 @@ pub(crate) fn error(
     let has_bits = maker == Maker::Code(Form::SevenSteps) && SAME_BITS.contains(&function)
         && !is_other
         // code eliminates the joints of a tree in the order that fills less
-        && (arm.robot.is_serial() || !function.inverts_mass());
+        && (arm.robot.is_serial() || !function.inverts_mass() || function.is_of_floating_base());
     let error = match function {
         // of a matrix that is singular, where the runtime divided by zero
         _ if function.inverts_mass() && !is_finite => return 0.0,
@@ -139,9 +143,14 @@ pub(crate) fn error(
         Function::ForwardDynamics
         | Function::InverseMassMatrix
         | Function::ForwardDynamicsWithPayload
-        | Function::ForwardDynamicsWithWrenches => {
+        | Function::ForwardDynamicsWithWrenches
+        | Function::FloatingForwardDynamics => {
             let payload = if function.takes(Argument::Payload) { given.payload } else { Payload::none() };
-            let matrix = arm.runtime.mass_matrix_with_payload(given.q, &payload).expect("one per joint");
+            let matrix = match function {
+                Function::FloatingForwardDynamics => arm.runtime.floating_mass_matrix(given.q),
+                _ => arm.runtime.mass_matrix_with_payload(given.q, &payload),
+            };
+            let matrix = matrix.expect("one per joint");
             let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
             if number >= 1e12 {
                 return 0.0;
@@ -151,7 +160,10 @@ pub(crate) fn error(
             if function == Function::InverseMassMatrix {
                 return error_on_scale(found, &expected, number / of_matrix) / number;
             }
-            let bias = arm.runtime.bias_torques_with_payload(given.q, given.qd, &payload).expect("one per joint");
+            let bias = match function {
+                Function::FloatingForwardDynamics => of_runtime(&arm.runtime, Function::FloatingBias, given),
+                _ => arm.runtime.bias_torques_with_payload(given.q, given.qd, &payload).expect("one per joint"),
+            };
             let scale = largest(given.tau).max(largest(&bias)) / of_matrix;
             error_on_scale(found, &expected, scale) / number
         }

@@ -12,13 +12,15 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale, product};
 
 /// What is linear in mass, first moment and inertia of a link. Forward dynamics is not, the regressor has no part in
 /// it, and the centre of mass is divided by the mass.
-const LINEAR: [Function; 15] = [
+const LINEAR: [Function; 17] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
     Function::InverseDynamicsFromSinCos,
     Function::InverseDynamicsOnMovingBase,
     Function::InverseDynamicsOfFloatingBase,
+    Function::FloatingMassMatrix,
+    Function::FloatingBias,
     Function::GravityTorques,
     Function::BiasTorques,
     Function::MassMatrix,

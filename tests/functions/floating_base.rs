@@ -5,11 +5,11 @@
 
 use nalgebra::Vector3;
 use rne::{BaseMotion, Wrench};
-use rne_codegen::{Compiler, Form, Function};
+use rne_codegen::{Capability, Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::Robot;
 
 use crate::arm::{Arm, Given, Maker};
-use crate::check::{ROOT, Worst, error_on_scale, json, numbers};
+use crate::check::{ROOT, Worst, conditioning, error_on_scale, json, numbers};
 use crate::trees::{State, robot};
 
 const TOLERANCE: f64 = 1e-12;
@@ -24,7 +24,7 @@ fn read(name: &str) -> Robot {
 }
 
 #[test]
-fn torques_of_floating_robots_are_those_of_pinocchio() {
+fn dynamics_of_floating_robots_are_those_of_pinocchio() {
     for maker in Maker::ALL {
         let mut worst = Worst::default();
         for name in ROBOTS {
@@ -33,7 +33,7 @@ fn torques_of_floating_robots_are_those_of_pinocchio() {
             for state in golden["states"].as_array().expect("states") {
                 let array = |key: &str| numbers(&state[key]);
                 let triple = |key: &str| -> [f64; 3] { array(key).try_into().expect("three numbers") };
-                let (q, qd, qdd) = (array("q"), array("qd"), array("qdd"));
+                let [q, qd, qdd, tau] = ["q", "qd", "qdd", "tau"].map(array);
                 let base = BaseMotion {
                     omega: triple("omega"),
                     omega_dot: triple("omega_dot"),
@@ -41,14 +41,85 @@ fn torques_of_floating_robots_are_those_of_pinocchio() {
                     acceleration: triple("acceleration"),
                     gravity: triple("gravity"),
                 };
-                let given = Given { base, wrench: Wrench::zero(), ..Given::of_joints(&q, &qd, &qdd) };
-                let error = error_on_scale(&arm.numbers(FUNCTION, &given), &array("expected"), 0.0);
-                assert!(error <= TOLERANCE, "{maker}, {name}: {error:e}");
-                worst.see(name, error);
+                let given = Given { base, tau: &tau, wrench: Wrench::zero(), ..Given::of_joints(&q, &qd, &qdd) };
+                for function in Capability::FloatingBase.functions().filter(|it| state.get(it.name()).is_some()) {
+                    let error = error_on_scale(&arm.numbers(function, &given), &array(function.name()), 0.0);
+                    let error = match function {
+                        Function::FloatingForwardDynamics => {
+                            let matrix = arm.runtime.floating_mass_matrix(&q).expect("one per joint");
+                            error / conditioning(&matrix).expect("positive definite").number
+                        }
+                        _ => error,
+                    };
+                    assert!(error <= TOLERANCE, "{maker}, {name}, {function}: {error:e}");
+                    worst.see(name, error);
+                }
             }
         }
         worst.at_most(TOLERANCE, &format!("floating bases, {maker}"));
         assert_eq!(worst.len(), ROBOTS.len());
+    }
+}
+
+/// Forces of accelerations are M times them and the bias, and what they make of these forces are the accelerations.
+#[test]
+fn inverse_and_forward_dynamics_are_one_equation() {
+    for maker in Maker::ALL {
+        for (index, name) in ROBOTS.into_iter().enumerate() {
+            let robot = read(name);
+            let (arm, dof) = (Arm::by_no_choice(&robot, maker), robot.dof());
+            let state = State::random(u64::try_from(index).expect("small"), dof);
+            let of = |function, state: &State| arm.numbers(function, &state.given());
+            let (torques, bias) = (of(FUNCTION, &state), of(Function::FloatingBias, &state));
+            let matrix = of(Function::FloatingMassMatrix, &state);
+            let BaseMotion { omega_dot, acceleration, gravity, .. } = state.base;
+            let linear = [0, 1, 2].map(|axis| acceleration[axis] - gravity[axis]);
+            let accelerations = [&linear[..], &omega_dot, &state.qdd].concat();
+            let rows: Vec<Vec<f64>> = matrix.chunks(6 + dof).map(<[f64]>::to_vec).collect();
+            let product = |row: &Vec<f64>| row.iter().zip(&accelerations).map(|(a, b)| a * b).sum::<f64>();
+            let sum: Vec<f64> = rows.iter().map(product).zip(&bias).map(|(force, bias)| force + bias).collect();
+            assert!(error_on_scale(&sum, &torques, 0.0) < 1e-14, "{maker}, {name}");
+            let is_symmetric = (0..6 + dof).all(|i| (0..i).all(|j| rows[i][j].to_bits() == rows[j][i].to_bits()));
+            assert!(is_symmetric, "{maker}, {name}");
+            // no wrench acts on the base: what it needs is taken off the accelerations
+            let conditioning = conditioning(&rows).expect("positive definite");
+            let found = of(Function::FloatingForwardDynamics, &state);
+            let given: Vec<f64> = rows.iter().map(|row| row.iter().zip(&found).map(|(a, b)| a * b).sum()).collect();
+            let expected =
+                [0.0; 6].into_iter().chain(state.tau.iter().copied()).zip(&bias).map(|(tau, bias)| tau - bias);
+            let error = error_on_scale(&given, &expected.collect::<Vec<_>>(), 0.0);
+            assert!(error / conditioning.number < 1e-15, "{maker}, {name}: {error:e}");
+        }
+    }
+}
+
+/// No element that is zero in every state is computed, and a robot with the masses of a test has as many elements as
+/// its tree asks. The rows of the base have three zeros beside the mass and three on the diagonal of the first moment.
+#[test]
+fn factors_of_a_floating_robot_take_the_operations_that_its_elements_ask() {
+    let file = |path: &str| {
+        let text = std::fs::read_to_string(format!("{ROOT}/{path}")).unwrap_or_else(|error| panic!("{path}: {error}"));
+        robot(&text)
+    };
+    // operations of Featherstone's LᵀDL for dense rows of the base, and its elements
+    for (path, operations, elements) in [
+        ("tests/functions/floating/grid_hyq.yaml", 849, 117),
+        ("benches/trees/atlas.yaml", 3889, 351),
+        ("benches/trees/g1.yaml", 3790, 341),
+    ] {
+        let robot = file(path);
+        let found = Factorization::of(&robot, Function::FloatingForwardDynamics);
+        println!("{path}: {} operations, {} elements", found.operations.total(), found.elements);
+        assert_eq!(found.operations.total(), operations - 6, "{path}");
+        assert_eq!(found.elements, elements - 6, "{path}");
+    }
+    let robot = read("grid_hyq");
+    for form in [Form::SevenSteps, Form::Reduced] {
+        let program = Compiler::new(&robot).compile(Function::FloatingMassMatrix, form).expect("a program");
+        let is_zero = |output: &&Output| program.values.get(output.value) == Value::Constant(0.0);
+        let zeros = program.outputs.iter().filter(is_zero).count();
+        // both triangles
+        assert_eq!(zeros, 18 * 18 - (2 * 111 - 18), "{form}");
     }
 }
 

@@ -87,6 +87,8 @@ fn seven_steps_are_the_runtime_in_every_bit() {
             Function::InverseDynamicsWithPayload,
             Function::InverseDynamicsOnMovingBase,
             Function::InverseDynamicsOfFloatingBase,
+            Function::FloatingMassMatrix,
+            Function::FloatingForwardDynamics,
             Function::MassMatrix,
             Function::ForwardDynamics,
             Function::InverseMassMatrix,

@@ -91,6 +91,25 @@ fn of_wrench_at(robot: &Robot, frame: &FixedFrame, q: &[f64], wrench: &Wrench<f6
     columns.iter().map(|[v, w]| v.dot(&force) + w.dot(&moment)).collect()
 }
 
+/// The wrench that must act on a base that nothing holds, and the torques, with nothing at the tips.
+fn of_floating_base(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
+    let [force, moment] = oracle::base_wrench(robot, motion);
+    [force.as_slice(), moment.as_slice(), &oracle::torques(robot, motion, None)].concat()
+}
+
+/// The columns of the mass matrix of a robot whose base nothing holds: wrenches and torques of unit accelerations.
+pub(crate) fn floating_mass_matrix(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
+    let zeros = vec![0.0; q.len()];
+    let column = |column: usize| {
+        let unit = |place: usize| f64::from(u8::from(place == column));
+        let (linear, angular) = ([0, 1, 2].map(unit), [3, 4, 5].map(unit));
+        let qdd: Vec<f64> = (0..q.len()).map(|joint| unit(6 + joint)).collect();
+        let base = BaseMotion { acceleration: linear, omega_dot: angular, ..BaseMotion::fixed([0.0; 3]) };
+        of_floating_base(robot, &Motion { joints: [q, &zeros, &qdd], base })
+    };
+    (0..6 + q.len()).map(column).collect()
+}
+
 /// What a function returns, without a recursion. Of the functions that solve with the mass matrix, the solution of
 /// nalgebra.
 #[allow(clippy::too_many_lines)] // an arm for each function
@@ -113,6 +132,18 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         let tips = robot.wrench_frames();
         let parts = tips.iter().zip(at_tips(tips.len(), wrench));
         parts.fold(zeros.clone(), |all, (tip, wrench)| sum(&all, &of_wrench_at(robot, tip, q, &wrench)))
+    };
+    let floating = |qdd: &[f64], base: BaseMotion<f64>| {
+        let tips = robot.wrench_frames();
+        let mut numbers = of_floating_base(robot, &Motion { joints: [q, qd, qdd], base });
+        for (tip, wrench) in tips.iter().zip(at_tips(tips.len(), wrench)) {
+            let (r, p) = oracle::parts(&oracle::frame(robot, tip, &still)[0]);
+            let at_tip = r * Vector3::from(wrench.force);
+            let moment = r * Vector3::from(wrench.moment) + p.cross(&at_tip);
+            let on_base = at_tip.iter().chain(moment.iter()).copied().chain(of_wrench_at(robot, tip, q, &wrench));
+            numbers.iter_mut().zip(on_base).for_each(|(number, more)| *number += more);
+        }
+        numbers
     };
     // the rows of a matrix from its columns
     let transposed = |columns: Vec<Vec<f64>>| -> Vec<f64> {
@@ -140,17 +171,15 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             solved(DMatrix::from_fn(dof, 1, |joint, _| tau[joint] - bias[joint]))
         }
         Function::InverseDynamicsOnMovingBase => torques(q, qd, qdd, *base),
-        Function::InverseDynamicsOfFloatingBase => {
-            let [mut force, mut moment] = oracle::base_wrench(robot, &Motion { joints: [q, qd, qdd], base: *base });
-            let tips = robot.wrench_frames();
-            for (tip, wrench) in tips.iter().zip(at_tips(tips.len(), wrench)) {
-                let (r, p) = oracle::parts(&oracle::frame(robot, tip, &still)[0]);
-                let at_tip = r * Vector3::from(wrench.force);
-                force += at_tip;
-                moment += r * Vector3::from(wrench.moment) + p.cross(&at_tip);
-            }
-            let torques = sum(&torques(q, qd, qdd, *base), &of_wrenches());
-            [force.as_slice(), moment.as_slice(), &torques].concat()
+        Function::InverseDynamicsOfFloatingBase => floating(qdd, *base),
+        Function::FloatingMassMatrix => flat(floating_mass_matrix(robot, q)),
+        Function::FloatingBias => floating(&zeros, BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) }),
+        Function::FloatingForwardDynamics => {
+            let bias = floating(&zeros, BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) });
+            let applied = |row: usize| if row < 6 { 0.0 } else { tau[row - 6] };
+            let matrix = DMatrix::from_row_slice(6 + dof, 6 + dof, &flat(floating_mass_matrix(robot, q)));
+            let right = DMatrix::from_fn(6 + dof, 1, |row, _| applied(row) - bias[row]);
+            matrix.lu().solve(&right).map_or_else(|| vec![f64::NAN; 6 + dof], |x| x.as_slice().to_vec())
         }
         Function::GravityTorques | Function::GravityTorquesWithPayload => torques(q, &zeros, &zeros, fixed),
         Function::BiasTorques | Function::BiasTorquesWithPayload => torques(q, qd, &zeros, fixed),
@@ -226,7 +255,11 @@ fn magnification(robot: &Robot, function: Function, state: &State, expected: &[f
         return Some(1.0);
     }
     let loaded = function.takes(Argument::Payload).then_some(&state.payload);
-    let of = conditioning(&oracle::mass_matrix(robot, &state.q, loaded))?;
+    let matrix = match function {
+        Function::FloatingForwardDynamics => floating_mass_matrix(robot, &state.q),
+        _ => oracle::mass_matrix(robot, &state.q, loaded),
+    };
+    let of = conditioning(&matrix)?;
     (of.number < 1e12).then_some(of.number)
 }
 

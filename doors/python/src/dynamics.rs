@@ -69,6 +69,16 @@ macro_rules! returned {
         "the wrench on the base, force then moment, of shape (6,) or (N, 6), and the torques, of shape (n,) or (N, n); \
          `out` is one array of shape (6 + n,) or (N, 6 + n)."
     };
+    (FloatingVector) => {
+        "force, then moment, then torques: shape (6 + n,) or (N, 6 + n)."
+    };
+    (FloatingMatrix) => {
+        "shape (6 + n, 6 + n) or (N, 6 + n, 6 + n)."
+    };
+    (FloatingAccelerations) => {
+        "the acceleration of the base, linear then angular, of shape (6,) or (N, 6), and those of the joints, of shape \
+         (n,) or (N, n); `out` is one array of shape (6 + n,) or (N, 6 + n)."
+    };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
     };
@@ -129,6 +139,15 @@ macro_rules! method {
     };
     (MomentumAndRate $($rest:tt)*) => {
         loaded! { MomentumAndRate MomentumAndRateWithPayload $($rest)* }
+    };
+    (FloatingBias $name:ident (q: Positions, qd: Rates, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*) => {
+        of_floating_base! { FloatingBias $name (q, qd) $($rest)* }
+    };
+    (
+        FloatingForwardDynamics $name:ident
+            (q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*
+    ) => {
+        of_floating_base! { FloatingForwardDynamics $name (q, qd, tau) $($rest)* }
     };
     // a base whose motion is not given stands still
     (
@@ -203,6 +222,43 @@ macro_rules! method {
                 out: Option<&Bound<'py, PyAny>>,
             ) -> PyResult<Bound<'py, PyAny>> {
                 let given = vec![$(given!(self, $argument: $kind)),*];
+                self.compute(py, Function::$variant, given, parameters, out)
+            }
+        }
+    };
+}
+
+/// A function of a base that turns and that nothing holds; without wrenches no tip exerts anything.
+macro_rules! of_floating_base {
+    (
+        $variant:ident $name:ident ($($of_joints:ident),*) $returned:ident $summary:literal $details:literal
+    ) => {
+        #[pymethods]
+        impl Arm {
+            #[doc = $summary]
+            ///
+            #[doc = $details]
+            /// `omega` has the shape (3,) or (N, 3).
+            ///
+            #[doc = about!(Wrenches)]
+            #[doc = concat!("Without `wrenches` no tip exerts anything.\n\nReturns ", returned!($returned))]
+            #[pyo3(signature = ($($of_joints,)* omega, wrenches=None, *, parameters=None, out=None))]
+            #[allow(clippy::too_many_arguments)] // those of Python
+            fn $name<'py>(
+                &self,
+                py: Python<'py>,
+                $($of_joints: &Bound<'py, PyAny>,)*
+                omega: &Bound<'py, PyAny>,
+                wrenches: Option<&Bound<'py, PyAny>>,
+                parameters: Option<&Bound<'py, PyAny>>,
+                out: Option<&Bound<'py, PyAny>>,
+            ) -> PyResult<Bound<'py, PyAny>> {
+                let nothing = PyDict::new(py).into_any();
+                let given = vec![
+                    $(self.of_joints(stringify!($of_joints), $of_joints)?,)*
+                    Given { name: "omega", parts: &[], elements: 3, value: omega.clone() },
+                    self.of_tips("wrenches", wrenches.unwrap_or(&nothing))?,
+                ];
                 self.compute(py, Function::$variant, given, parameters, out)
             }
         }

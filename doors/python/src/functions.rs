@@ -22,8 +22,14 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
             // homogeneous matrices
             Layout::Record(Record::Pose, _) => shape.extend([4, 4]),
             // force, then moment
-            Layout::Record(Record::Wrench, _) => shape.push(6),
-            Layout::Record(Record::TorqueDerivatives | Record::MomentumAndRate | Record::FloatingTorques, parts) => {
+            Layout::Record(Record::Wrench | Record::BaseAcceleration, _) => shape.push(6),
+            Layout::Record(
+                Record::TorqueDerivatives
+                | Record::MomentumAndRate
+                | Record::FloatingTorques
+                | Record::FloatingAccelerations,
+                parts,
+            ) => {
                 shape.push(2);
                 if let Some(part) = parts.first() {
                     of(part, shape);
@@ -33,7 +39,7 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
     }
     let mut found = Vec::new();
     let layout = function.layout(dof);
-    if let Layout::Record(Record::FloatingTorques, _) = layout {
+    if let Layout::Record(Record::FloatingTorques | Record::FloatingAccelerations, _) = layout {
         // six numbers of the base, then one for each joint
         return vec![layout.len()];
     }
@@ -114,7 +120,7 @@ fn evaluate_in<'py, T: Element + Number>(
             };
             Ok(PyTuple::new(py, [of(0)?, of(1)?])?.into_any())
         }
-        Layout::Record(Record::FloatingTorques, _) => {
+        Layout::Record(Record::FloatingTorques | Record::FloatingAccelerations, _) => {
             let of = |from: isize, to: isize| {
                 let part = PySlice::new(py, from, to, 1).into_any();
                 result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)

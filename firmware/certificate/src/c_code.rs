@@ -193,6 +193,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Accelerations | Argument::Torques => "s.qdd",
         Argument::Wrench => "force, moment",
         Argument::Payload => "payload",
+        Argument::BaseVelocity => "base_omega",
         Argument::Base => "base_omega, base_zero, base_zero, base_gravity",
         Argument::Wrenches => "(const float[1][6]){{force[0], force[1], force[2], moment[0], moment[1], moment[2]}}",
     });

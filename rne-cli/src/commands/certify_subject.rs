@@ -218,7 +218,9 @@ fn program_call(program: &Program, symbol: &str) -> Result<Call, Failure> {
                 call.before.push(format!("const float wrenches[{tips}][6] = {{{rows}}};"));
                 ("const float (*)[6]", "wrenches")
             }
-            Argument::Sines | Argument::Cosines | Argument::Base => return Err(not_called(program)),
+            Argument::Sines | Argument::Cosines | Argument::Base | Argument::BaseVelocity => {
+                return Err(not_called(program));
+            }
         };
         call.arguments.push((kind.to_owned(), name.to_owned()));
     }

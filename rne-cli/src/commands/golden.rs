@@ -97,6 +97,7 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("wrenches", state.wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten().collect()),
         ("payload", state.payload.unwrap_or_default().to_array().to_vec()),
         ("base_omega", omega.to_vec()),
+        ("omega", omega.to_vec()),
         ("base_omega_dot", omega_dot.to_vec()),
         ("base_acceleration", acceleration.to_vec()),
         ("base_gravity", gravity.to_vec()),

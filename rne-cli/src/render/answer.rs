@@ -39,6 +39,11 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
                 }
                 let labels = |labels: &Labels| match labels {
                     Labels::Joints => joints.clone(),
+                    Labels::BaseAndJoints => ["x", "y", "z", "about x", "about y", "about z"]
+                        .map(str::to_owned)
+                        .into_iter()
+                        .chain(joints.clone())
+                        .collect(),
                     Labels::Names(names) => names.iter().map(|&name| name.to_owned()).collect(),
                 };
                 let (rows, columns) = (labels(&table.rows), labels(&table.columns));
@@ -103,6 +108,10 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
             let elements = InertiaElement::ALL.map(|element| exact_digits(*element.of(inertia))).join(", ");
             let _ = writeln!(text, "{QUIET}and the inertia xx, yy, zz, xy, xz, yz = {elements} kg m²{QUIET:#}");
         }
+    }
+    if takes(Argument::BaseVelocity) {
+        let omega = list(&state.base.omega);
+        let _ = writeln!(text, "{QUIET}the base turns with ({omega}) rad/s, in frame 0{QUIET:#}");
     }
     if takes(Argument::Base) {
         let base = &state.base;

@@ -157,13 +157,18 @@ pub(crate) fn joint_of(robot: &Robot, told: Option<&str>) -> Result<Option<usize
 
 /// The functions that a robot has something to compute for, in the order of the traits: without motors,
 /// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no `regressor`. Without
-/// named tips, a function with a wrench at each tip is the one with a wrench at the tip.
+/// named tips, a function with a wrench at each tip is the one with a wrench at the tip. What solves for the motion of the
+/// base, and its parts, is for robots whose base floats; the wrench on the base tells what a mount must bear, too.
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let (has_couplings, has_tips) = (robot.has_couplings(), !robot.tips.is_empty());
+    let floats = robot.floating_base.is_some();
     Function::ALL.into_iter().filter(move |function| {
         (*function != Function::ActuatorTorques || has_motors)
             && !(has_couplings && function.is_of_every_link())
-            && (has_tips || !function.takes(Argument::Wrenches))
+            && match function.is_of_floating_base() {
+                true => floats || has_tips && function.takes(Argument::Accelerations),
+                false => has_tips || !function.takes(Argument::Wrenches),
+            }
     })
 }

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
+use rne::{BaseAcceleration, BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
 
@@ -80,7 +80,9 @@ impl State {
         };
         let axes = "three numbers x,y,z, in the axes of frame 0";
         let of_base = |name, list| {
-            let list = argument(function, name, list, Base, 3, axes)?;
+            let is_alone = function.takes(Argument::BaseVelocity) && name == "--base-omega";
+            let kind = if is_alone { Argument::BaseVelocity } else { Base };
+            let list = argument(function, name, list, kind, 3, axes)?;
             Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
         };
         let base = BaseMotion {
@@ -137,6 +139,9 @@ impl State {
             (base) => {
                 base
             };
+            (omega) => {
+                &base.omega
+            };
         }
         macro_rules! calls {
             ($(
@@ -173,8 +178,8 @@ impl<E: Told> Told for Vec<E> {
     }
 }
 
-/// The wrench on a floating base, and the torques.
-impl Told for (Wrench<f64>, Vec<f64>) {
+/// The wrench on a floating base and the torques, or its acceleration and those of the joints.
+impl<E: Told> Told for (E, Vec<f64>) {
     fn tell(&self, numbers: &mut Vec<f64>) {
         self.0.tell(numbers);
         self.1.tell(numbers);
@@ -200,7 +205,10 @@ macro_rules! records {
     )*};
 }
 
-records! { Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd } }
+records! {
+    Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd }
+    BaseAcceleration { linear, angular }
+}
 
 /// The numbers of a payload in words.
 const PAYLOAD: &str =
@@ -254,7 +262,7 @@ fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Resul
             )))
         };
     }
-    if given.is_empty() && !function.returns_base_wrench() {
+    if given.is_empty() && !function.is_of_floating_base() {
         return Err(Failure::usage(format_args!(
             "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: `{}`",
             robot.name,

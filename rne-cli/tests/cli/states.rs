@@ -64,8 +64,12 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
         Value::Array(parts) => parts.iter().for_each(|part| flat(part, numbers)),
         // in their order, which is not that of their names
         Value::Object(parts) => {
-            ["rotation", "translation", "wrench", "force", "moment", "tau", "dq", "dqd", "momentum", "rate"]
+            let names =
+                ["rotation", "translation", "wrench", "force", "moment", "tau", "dq", "dqd", "momentum", "rate"];
+            let of_accelerations = ["base", "linear", "angular", "qdd"];
+            names
                 .iter()
+                .chain(&of_accelerations)
                 .filter_map(|name| parts.get(*name))
                 .for_each(|part| flat(part, numbers));
         }
@@ -98,7 +102,7 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
         give(option, list(prefix));
     }
     give("--wrench", list("force").zip(list("moment")).map(|(force, moment)| format!("{force},{moment}")));
-    give("--base-omega", list("base_omega"));
+    give("--base-omega", list("base_omega").or_else(|| list("omega")));
     give("--base-omega-dot", list("base_omega_dot"));
     give("--base-acceleration", list("base_acceleration"));
     give("--gravity", list("base_gravity"));

@@ -273,7 +273,7 @@ fn from_com<'s>(
 /// wrench on the base.
 fn floating_base<'s>(builder: &'s Builder, robot: &Robot) -> Option<Body<'s>> {
     let (function, base) = (builder.function, robot.floating_base.as_ref().map(|base| base.link));
-    let link = base.or_else(|| function.returns_base_wrench().then(rne_model::Link::default))?;
+    let link = base.or_else(|| function.is_of_floating_base().then(rne_model::Link::default))?;
     let rows = link.inertia.rows();
     let inertia = rows.map(|row| row.map(|x| builder.constant(x, Cause::Arithmetic)));
     Some(Body {

@@ -5,27 +5,143 @@
 //!
 //! Joints on different branches of a tree have zeros in M. Eliminated from the base on, these fill; eliminated from the
 //! ends on, none of them does (R. Featherstone, "Efficient factorization of the joint-space inertia matrix for branched
-//! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less.
+//! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less. Six
+//! rows of a base that nothing holds stand before those of the joints and are the last to be eliminated.
+
+use rne_model::Robot;
 
 use crate::coordinates::Coordinates;
-use crate::ir::{Builder, Name, Quantity, Symbol};
+use crate::function::{Function, Length};
+use crate::ir::{Axis, Builder, Component, Embedding, Name, Policy, Quantity, Symbol, WithRespectTo};
+use crate::program::Operations;
 
 /// Whose mass matrix is solved by.
 pub(crate) struct System<'a> {
-    /// Rows and columns of the matrix.
+    /// The rows and columns of the joints.
     pub(crate) coordinates: &'a Coordinates,
     /// The links that carry the joints.
     parents: Vec<Option<usize>>,
+    /// How many rows a base has that nothing holds. They stand first: x, y, z, about x, y, z.
+    of_base: usize,
 }
 
 impl<'a> System<'a> {
-    pub(crate) fn new(coordinates: &'a Coordinates, parents: impl Iterator<Item = Option<usize>>) -> Self {
-        Self { coordinates, parents: parents.collect() }
+    /// The mass matrix of a function: with the rows of the base, if that floats.
+    pub(crate) fn new(
+        function: Function,
+        coordinates: &'a Coordinates,
+        parents: impl Iterator<Item = Option<usize>>,
+    ) -> Self {
+        let of_base = if function.is_of_floating_base() { Length::Velocities.of(0) } else { 0 };
+        Self { coordinates, parents: parents.collect(), of_base }
+    }
+
+    /// How many rows there are.
+    pub(crate) fn size(&self) -> usize {
+        self.of_base + self.coordinates.joints().len()
     }
 
     /// Whether the matrix has an element there, whatever the numbers of the robot are.
-    fn has_element(&self, row: usize, column: usize) -> bool {
-        self.coordinates.meet(&self.parents, [row, column])
+    pub(crate) fn has_element(&self, row: usize, column: usize) -> bool {
+        match (self.of_joint(row), self.of_joint(column)) {
+            (Some(row), Some(column)) => self.coordinates.meet(&self.parents, [row, column]),
+            (None, None) => match [row / 3, column / 3] {
+                // m 1, and J
+                [0, 0] => row == column,
+                [1, 1] => true,
+                // [h]×
+                _ => row % 3 != column % 3,
+            },
+            _ => true,
+        }
+    }
+
+    /// The place of a row among the coordinates.
+    pub(crate) fn of_joint(&self, row: usize) -> Option<usize> {
+        row.checked_sub(self.of_base)
+    }
+
+    /// What a row is the force of: the acceleration that has the same place.
+    fn acceleration(&self, row: usize) -> WithRespectTo {
+        self.of_joint(row).map_or(WithRespectTo::BaseRateDot(row + 1), |place| {
+            WithRespectTo::RateDot(self.coordinates.joints()[place] + 1)
+        })
+    }
+
+    /// The name of an element of the matrix: a force or torque by an acceleration.
+    pub(crate) fn name_of_element(&self, row: usize, column: usize) -> Name {
+        let force = match self.acceleration(row) {
+            WithRespectTo::RateDot(joint) => Name::scalar(Quantity::Torque, joint),
+            _ => Name::of_base(Quantity::BaseForce, Quantity::BaseMoment, row),
+        };
+        Name { by: Some(self.acceleration(column)), ..force }
+    }
+
+    /// The name of an acceleration that is solved for, and of what is written on the way to it.
+    pub(crate) fn name(&self, quantity: Quantity, row: usize) -> Name {
+        match self.acceleration(row) {
+            WithRespectTo::RateDot(joint) => Name::scalar(quantity, joint),
+            _ if quantity == Quantity::RateDot => Name::of_base(Quantity::OriginAcceleration, Quantity::OmegaDot, row),
+            _ => Name { indices: [0, 1 + row / 3], ..Name::vector(quantity, 0, Axis::ALL[row % 3]) },
+        }
+    }
+
+    /// The name of what is written for an element of a factor. Those of the base have its axes, and whether these are
+    /// linear or angular.
+    fn name_in_factor(&self, quantity: Quantity, row: usize, column: usize) -> Name {
+        let name = self.name(quantity, row);
+        match self.acceleration(column) {
+            WithRespectTo::RateDot(joint) => Name { indices: [joint, name.indices[1]], ..name },
+            _ => Name {
+                component: Component::Matrix(Axis::ALL[row % 3], Axis::ALL[column % 3]),
+                indices: [0, 1 + 2 * (row / 3) + column / 3],
+                ..name
+            },
+        }
+    }
+
+    /// Places of the matrix on and above its diagonal that have an element.
+    pub(crate) fn elements(&self) -> usize {
+        let row = |row: usize| (row..self.size()).filter(|&column| self.has_element(row, column)).count();
+        (0..self.size()).map(row).sum()
+    }
+
+    /// Products, sums and divisions of L and D where every element of M that is not zero is an argument.
+    pub(crate) fn operations(&self) -> Operations {
+        let mut builder = Builder::untraced(Policy::Value, Embedding::default(), Function::ForwardDynamics);
+        let element = |row: usize, column: usize| {
+            // any argument that no other element has
+            let name = Name::scalar(Quantity::Position, row * self.size() + column + 1);
+            if self.has_element(row, column) { builder.argument(name) } else { builder.zero() }
+        };
+        let upper: Vec<Vec<_>> =
+            (0..self.size()).map(|row| (row..self.size()).map(|column| element(row, column)).collect()).collect();
+        let Factors { rows, inverses, .. } = Factors::of(&builder, self, &upper);
+        let outputs =
+            rows.iter().flatten().map(|(l, _)| l.at).chain(inverses.iter().map(|inverse| inverse.at)).collect();
+        let graph = builder.graph.get_mut();
+        graph.outputs = outputs;
+        let cost = graph.cost(&mut Vec::new());
+        Operations { mul: cost.mul, add: cost.add, div: self.size(), ..Operations::default() }
+    }
+}
+
+/// How large the mass matrix of a robot is, and what its factors L and D take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Factorization {
+    /// Elements on and above the diagonal that are not zero whatever the numbers of the robot are.
+    pub elements: usize,
+    /// Operations of L and D from these elements.
+    pub operations: Operations,
+}
+
+impl Factorization {
+    /// Of the mass matrix by which a function solves: with six rows of the base, if that floats in it.
+    #[must_use]
+    pub fn of(robot: &Robot, function: Function) -> Self {
+        let coordinates = Coordinates::of(robot);
+        let system = System::new(function, &coordinates, (0..robot.joints.len()).map(|joint| robot.parent(joint)));
+        Self { elements: system.elements(), operations: system.operations() }
     }
 }
 
@@ -36,8 +152,7 @@ pub(crate) fn solved<'s>(
     upper: &[Vec<Symbol<'s>>],
     b: &[Symbol<'s>],
 ) -> Vec<Symbol<'s>> {
-    let x = Factors::of(builder, system, upper)
-        .solved(0, b, |quantity, index| Name::scalar(quantity, system.coordinates.joints()[index] + 1));
+    let x = Factors::of(builder, system, upper).solved(0, b, |quantity, row| system.name(quantity, row));
     x.into_iter().flatten().collect()
 }
 
@@ -56,12 +171,14 @@ impl<'s> Factors<'s> {
     /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix.
     pub(crate) fn of(builder: &'s Builder, system: &System<'_>, upper: &[Vec<Symbol<'s>>]) -> Self {
         let dof = upper.len();
-        let order = elimination_order(dof, |row, column| system.has_element(row, column));
-        let joint = |index: usize| system.coordinates.joints()[order[index]] + 1;
-        let between = |quantity, row: usize, column: usize| Name::indexed(quantity, joint(row), joint(column));
+        let order = match system.of_base {
+            0 => elimination_order(dof, |row, column| system.has_element(row, column)),
+            _ => (0..dof).rev().collect(),
+        };
+        let between = |quantity, row: usize, column: usize| system.name_in_factor(quantity, order[row], order[column]);
         let element = |row: usize, column: usize| between(Quantity::LowerFactor, row, column);
         let scaled = |row: usize, column: usize| between(Quantity::ScaledFactor, row, column);
-        let of_joint = |quantity, index: usize| Name::scalar(quantity, joint(index));
+        let of_joint = |quantity, index: usize| system.name(quantity, order[index]);
         let given = |row: usize, column: usize| element_of(upper, order[row], order[column]);
         let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
         let mut rows: Vec<Vec<(Symbol<'s>, Symbol<'s>)>> = vec![Vec::new(); dof];
@@ -161,8 +278,6 @@ fn within<'s>(builder: &'s Builder, name: Name, value: &dyn Fn() -> Symbol<'s>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::function::Function;
-    use crate::ir::{Embedding, Policy};
 
     /// The elements of a mass matrix whose joints these links carry.
     fn elements(parents: &[Option<usize>]) -> impl Fn(usize, usize) -> bool {
@@ -191,34 +306,14 @@ mod tests {
         }
     }
 
-    /// Products and sums of L and D where every element of M that is not zero is an argument.
-    fn operations(parents: &[Option<usize>]) -> usize {
-        let function = Function::ForwardDynamics;
-        let mut builder = Builder::untraced(Policy::Value, Embedding::default(), function);
-        let moves = |joint: usize, other: usize| {
-            std::iter::successors(Some(other), |&link| parents[link]).any(|link| link == joint)
-        };
-        let element = |row: usize, column: usize| {
-            // any argument that no other element has
-            let name = Name::scalar(Quantity::Position, row * parents.len() + column + 1);
-            if moves(row, column) { builder.argument(name) } else { builder.zero() }
-        };
-        let dof = parents.len();
-        let upper: Vec<Vec<_>> = (0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect();
-        let coordinates = Coordinates::of_free_joints(dof);
-        let system = System::new(&coordinates, parents.iter().copied());
-        let Factors { rows, inverses, .. } = Factors::of(&builder, &system, &upper);
-        let outputs =
-            rows.iter().flatten().map(|(l, _)| l.at).chain(inverses.iter().map(|inverse| inverse.at)).collect();
-        let graph = builder.graph.get_mut();
-        graph.outputs = outputs;
-        graph.cost(&mut Vec::new()).total()
-    }
-
     /// The counts of Featherstone's LᵀDL: for a joint that d joints carry, d products for L, and d (d + 1) / 2 products
     /// and as many sums for the elements that are left.
     #[test]
     fn factors_of_a_tree_take_no_more_operations_than_its_elements_ask() {
+        let operations = |function, parents: &[Option<usize>]| {
+            let coordinates = Coordinates::of_free_joints(parents.len());
+            System::new(function, &coordinates, parents.iter().copied()).operations().total()
+        };
         let mut hyq = Vec::new();
         branches(&mut hyq, None, &[3; 4]);
         let mut allegro = Vec::new();
@@ -237,7 +332,7 @@ mod tests {
         {
             let carriers = |joint: usize| std::iter::successors(parents[joint], |&link| parents[link]).count();
             let least: usize = (0..parents.len()).map(carriers).map(|d| d + d * (d + 1)).sum();
-            let counted = operations(&parents);
+            let counted = operations(Function::ForwardDynamics, &parents);
             println!("{name:8} {counted} operations of LDLᵀ, {least} by the elements that are not zero");
             assert_eq!(counted, least, "{name}");
             assert!(counted <= asked, "{name}");

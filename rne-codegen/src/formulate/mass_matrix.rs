@@ -1,29 +1,126 @@
-//! M(q) by columns: the torques of the seven steps for q̈ = e_j, of an arm at rest and without gravity.
+//! M(q) by columns: the torques of the seven steps for q̈ = e_j, of an arm at rest and without gravity. Where nothing
+//! holds the base, the wrenches that must act on it, too, and six columns of the base.
 
-use crate::formulate::{Arm, AtTip, JointState, Motion, seven_steps};
-use crate::ir::{Cause, Symbol, WithRespectTo};
+use crate::coordinates::{Coordinates, scaled};
+use crate::formulate::ldlt::System;
+use crate::formulate::{Arm, AtTip, JointState, Motion, Wrench, seven_steps};
+use crate::ir::{Axis, Builder, Cause, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The upper half of M, of an arm with `tip` at its tip: row i holds its elements (i, i) to (i, n). Element (i, j) is
 /// torque i for q̈ = e_j, `taui_qddj`.
 ///
 /// The lower half is the same, so that M is symmetric to the last bit.
 pub(crate) fn upper_half<'s>(arm: &Arm<'s>, states: &[JointState<'s>], tip: &AtTip<'s>) -> Vec<Vec<Symbol<'s>>> {
-    let (builder, dof) = (arm.builder, states.len());
-    let (rest, zero) = (builder.constant(0.0, Cause::AtRest), builder.constant(0.0, Cause::UnitAcceleration));
-    let one = builder.constant(1.0, Cause::UnitAcceleration);
+    let builder = arm.builder;
     let base = Motion::of_fixed_base(builder, builder.zeros(Cause::NoGravity));
+    of_joints(arm, &at_rest(arm, states), &base, tip).0
+}
+
+/// The joints where they are, without motion.
+fn at_rest<'s>(arm: &Arm<'s>, states: &[JointState<'s>]) -> Vec<JointState<'s>> {
+    let (rest, zero) = (arm.builder.constant(0.0, Cause::AtRest), arm.builder.constant(0.0, Cause::UnitAcceleration));
+    states.iter().map(|state| JointState { qd: rest, qdd: zero, ..*state }).collect()
+}
+
+/// The upper half of M of the joints, and for each column the wrench on the base, if nothing holds that.
+#[allow(clippy::type_complexity)] // rows and wrenches
+fn of_joints<'s>(
+    arm: &Arm<'s>,
+    still: &[JointState<'s>],
+    base: &Motion<'s>,
+    tip: &AtTip<'s>,
+) -> (Vec<Vec<Symbol<'s>>>, Vec<Option<Wrench<'s>>>) {
+    let (builder, dof) = (arm.builder, still.len());
+    let one = builder.constant(1.0, Cause::UnitAcceleration);
     // where the links are does not depend on how they move
-    let still: Vec<_> = states.iter().map(|state| JointState { qd: rest, qdd: zero, ..*state }).collect();
-    seven_steps::forward(arm, &still, &base);
+    seven_steps::forward(arm, still, base);
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
-    for column in 0..dof {
-        let mut moved = still.clone();
+    let column = |column: usize| {
+        let mut moved = still.to_vec();
         moved[column].qdd = one;
-        let loads = builder
-            .by(Some(WithRespectTo::RateDot(column + 1)), || seven_steps::inverse_dynamics(arm, &moved, &base, tip));
+        let (on_base, loads) = builder.by(Some(WithRespectTo::RateDot(column + 1)), || {
+            seven_steps::inverse_dynamics_of_floating_base(arm, &moved, base, tip)
+        });
         for (row, load) in rows.iter_mut().zip(&loads).take(column + 1) {
             row.push(load.torque);
         }
+        on_base
+    };
+    let on_base = (0..dof).map(column).collect();
+    (rows, on_base)
+}
+
+/// The rows of a base that nothing holds, in axes of frame 0 and about its origin.
+pub(crate) struct OfBase<'s> {
+    pub(crate) mass: Symbol<'s>,
+    /// The first moment of the whole robot.
+    pub(crate) h: Vector<'s>,
+    /// Its inertia: xx, yy, zz, xy, xz, yz.
+    pub(crate) inertia: [Symbol<'s>; 6],
+    /// Force and moment on the base, for each coordinate.
+    pub(crate) columns: Vec<[Vector<'s>; 2]>,
+}
+
+impl<'s> OfBase<'s> {
+    /// With a column for each coordinate, from one for each joint.
+    pub(crate) fn gathered(self, coordinates: &Coordinates) -> Self {
+        let plus = |a: [Vector<'s>; 2], b: [Vector<'s>; 2]| [a[0] + b[0], a[1] + b[1]];
+        let times = |column: [Vector<'s>; 2], ratio| column.map(|part| part.map(|_, x| scaled(x, ratio)));
+        Self { columns: coordinates.gathered(&self.columns, plus, times), ..self }
     }
-    rows
+
+    /// The upper half of M with `joints`, that of the joints: row i holds its elements (i, i) to (i, 6 + n).
+    pub(crate) fn above(&self, builder: &'s Builder, joints: Vec<Vec<Symbol<'s>>>) -> Vec<Vec<Symbol<'s>>> {
+        let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (self.h.0, self.inertia);
+        let (mass, zero) = (self.mass, builder.zero());
+        let of_base = [
+            vec![mass, zero, zero, zero, z, -y],
+            vec![mass, zero, -z, zero, x],
+            vec![mass, y, -x, zero],
+            vec![xx, xy, xz],
+            vec![yy, yz],
+            vec![zz],
+        ];
+        let whole = |(index, mut row): (usize, Vec<Symbol<'s>>)| {
+            row.extend(self.columns.iter().map(|parts| parts[index / 3].0[index % 3]));
+            row
+        };
+        of_base.into_iter().enumerate().map(whole).chain(joints).collect()
+    }
+}
+
+/// The rows of a base that nothing holds, by joint, and the upper half of M of the joints.
+///
+/// For ω̇ = e_k the force is e_k × h and the moment J e_k.
+pub(crate) fn with_base<'s>(
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    system: &System<'_>,
+) -> (OfBase<'s>, Vec<Vec<Symbol<'s>>>) {
+    let (builder, still) = (arm.builder, at_rest(arm, states));
+    let (zeros, weightless) = (builder.zeros(Cause::UnitAcceleration), builder.zeros(Cause::NoGravity));
+    let one = builder.constant(1.0, Cause::UnitAcceleration);
+    let at_rest = builder.zeros(Cause::AtRest);
+    let nothing = Wrench { force: zeros, moment: zeros };
+    let base = Motion::of_base(arm, [at_rest, zeros, zeros], weightless);
+    let (joints, on_base) = of_joints(arm, &still, &base, &AtTip::Nothing);
+    let turning = |axis: Axis| {
+        let mut omega_dot = zeros;
+        omega_dot.0[axis as usize] = one;
+        builder.by(Some(WithRespectTo::BaseRateDot(4 + axis as usize)), || {
+            let base = Motion::of_base(arm, [at_rest, omega_dot, zeros], weightless);
+            seven_steps::inverse_dynamics_of_floating_base(arm, &still, &base, &AtTip::Nothing).0.unwrap_or(nothing)
+        })
+    };
+    let [x, y, z] = Axis::ALL.map(turning);
+    let line = builder.joint(0);
+    let of_base = arm.floating_base.as_ref().map_or_else(|| builder.zero(), |base| base.mass);
+    let mass = builder.by(Some(WithRespectTo::BaseRateDot(1)), || {
+        line.within(Quantity::BaseForce, || arm.links.iter().fold(of_base, |mass, link| mass + link.body.mass))
+    });
+    let mass = builder.name(system.name_of_element(0, 0), mass);
+    let h = Vector([-y.force.0[2], -z.force.0[0], y.force.0[0]]);
+    let ([xx, ..], [xy, yy, _], [xz, yz, zz]) = (x.moment.0, y.moment.0, z.moment.0);
+    let columns = on_base.into_iter().map(|wrench| wrench.unwrap_or(nothing)).map(|it| [it.force, it.moment]).collect();
+    (OfBase { mass, h, inertia: [xx, yy, zz, xy, xz, yz], columns }, joints)
 }

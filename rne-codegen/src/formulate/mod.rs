@@ -69,6 +69,16 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
         Function::InverseDynamicsOfFloatingBase => derivation.floating_torques(),
+        Function::FloatingMassMatrix => {
+            floating_mass_matrix(builder, &derivation.system(), &derivation.floating_half())
+        }
+        Function::FloatingBias => derivation.floating_torques(),
+        Function::FloatingForwardDynamics => floating_forward_dynamics(
+            builder,
+            &derivation.system(),
+            &derivation.floating_half(),
+            derivation.floating_torques(),
+        ),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -124,6 +134,9 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let base = if function.takes(Argument::Base) {
             let motion = [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration];
             Motion::of_base(&arm, motion.map(|quantity| vector(quantity, 0)), vector(Quantity::Gravity, 0))
+        } else if function.takes(Argument::BaseVelocity) {
+            let nothing = builder.zeros(Cause::NoAcceleration);
+            Motion::of_base(&arm, [vector(Quantity::Omega, 0), nothing, nothing], builder.zeros(Cause::NoAcceleration))
         } else {
             Motion::of_fixed_base(builder, arm.gravity)
         };
@@ -180,7 +193,14 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     /// The coordinates and links of a mass matrix that is solved by.
     fn system(&self) -> System<'_> {
-        System::new(self.coordinates(), self.arm.links.iter().map(|link| link.parent))
+        System::new(self.builder.function, self.coordinates(), self.arm.links.iter().map(|link| link.parent))
+    }
+
+    /// The upper half of M with the rows of a base that nothing holds.
+    fn floating_half(&self) -> Vec<Vec<Symbol<'s>>> {
+        let (of_base, joints) = mass_matrix::with_base(&self.arm, &self.states, &self.system());
+        let joints = self.coordinates().upper_half(self.builder, joints);
+        of_base.gathered(self.coordinates()).above(self.builder, joints)
     }
 
     /// The upper half of M.
@@ -318,6 +338,38 @@ pub(crate) fn mass_matrix<'s>(coordinates: &Coordinates, upper: &[Vec<Symbol<'s>
         let (row, column) = (row.min(column), row.max(column));
         coordinates.named(torque_by(joints[row], WithRespectTo::RateDot(joints[column] + 1)), upper[row][column - row])
     })
+}
+
+/// M with the rows of a base that nothing holds, by its upper half.
+pub(crate) fn floating_mass_matrix<'s>(
+    builder: &'s Builder,
+    system: &System<'_>,
+    upper: &[Vec<Symbol<'s>>],
+) -> Outputs<'s> {
+    square(upper.len(), |row, column| {
+        let (row, column) = (row.min(column), row.max(column));
+        let (name, element) = (system.name_of_element(row, column), upper[row][column - row]);
+        (name, if system.coordinates.is_every_joint() { element } else { builder.name(name, element) })
+    })
+}
+
+/// M⁻¹ ((0, τ) - bias): the accelerations of a base that nothing holds, and of the joints.
+pub(crate) fn floating_forward_dynamics<'s>(
+    builder: &'s Builder,
+    system: &System<'_>,
+    upper: &[Vec<Symbol<'s>>],
+    bias: Outputs<'s>,
+) -> Outputs<'s> {
+    let rest = |(row, (_, bias)): (usize, (Name, Symbol<'s>))| {
+        let name = system.name(Quantity::Reduced, row);
+        builder.joint(name.joint).within(Quantity::Reduced, || match system.of_joint(row) {
+            Some(place) => system.coordinates.applied(builder, system.coordinates.joints()[place]) - bias,
+            None => -bias,
+        })
+    };
+    let rest: Vec<_> = bias.into_iter().enumerate().map(rest).collect();
+    let x = ldlt::solved(builder, system, upper, &rest).into_iter().enumerate();
+    x.map(|(row, x)| (system.name(Quantity::RateDot, row), x)).collect()
 }
 
 /// ½ ∂(bias torques)/∂q̇

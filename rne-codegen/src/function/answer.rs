@@ -41,6 +41,8 @@ impl AnswerTable {
 pub enum Labels {
     /// The names of the joints.
     Joints,
+    /// x, y, z of the base, then about x, y, z, then the names of the joints.
+    BaseAndJoints,
     /// These.
     Names(&'static [&'static str]),
 }

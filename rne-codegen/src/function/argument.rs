@@ -26,6 +26,8 @@ pub enum Argument {
     Base,
     /// Force and moment at each tip.
     Wrenches,
+    /// Angular velocity of a base whose accelerations are no argument.
+    BaseVelocity,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -69,6 +71,8 @@ macro_rules! argument_parts {
         wrenches: Wrenches, Fixed(6), TipForce,
             "Force, N, and moment, N m, that the robot exerts at each tip, in axes of the tip: six elements for each \
              tip.";
+        omega: BaseVelocity, Fixed(3), Omega,
+            "Angular velocity of a base that nothing holds, rad/s, in the axes of frame 0: three elements.";
     } };
 }
 
@@ -114,6 +118,7 @@ impl Length {
     pub const fn of(self, dof: usize) -> usize {
         match self {
             Self::Joints => dof,
+            Self::Velocities => 6 + dof,
             Self::Fixed(length) => length,
         }
     }

@@ -15,6 +15,8 @@ const VECTOR: Shape = Shape::Array(Length::Joints, &Shape::Number);
 const MATRIX: Shape = Shape::Array(Length::Joints, &VECTOR);
 const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
 const WRENCH: Shape = Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE]);
+const VELOCITIES: Shape = Shape::Array(Length::Velocities, &Shape::Number);
+const BASE_ACCELERATION: Shape = Shape::Record(Record::BaseAcceleration, &[TRIPLE, TRIPLE]);
 const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
 
 /// The shapes of results, by the names that they have in the list of functions.
@@ -48,6 +50,12 @@ pub enum Returned {
     MomentumAndRate,
     /// A force and a moment, and a number per joint.
     FloatingTorques,
+    /// Six numbers of the base, and one per joint.
+    FloatingVector,
+    /// Six rows and columns of the base, and one per joint.
+    FloatingMatrix,
+    /// A linear and an angular acceleration, and a number per joint.
+    FloatingAccelerations,
 }
 
 impl Returned {
@@ -72,6 +80,9 @@ impl Returned {
             Self::TorqueDerivatives => &Shape::Record(Record::TorqueDerivatives, &[MATRIX, MATRIX]),
             Self::MomentumAndRate => &Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
             Self::FloatingTorques => &Shape::Record(Record::FloatingTorques, &[WRENCH, VECTOR]),
+            Self::FloatingVector => &VELOCITIES,
+            Self::FloatingMatrix => &Shape::Array(Length::Velocities, &VELOCITIES),
+            Self::FloatingAccelerations => &Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]),
         }
     }
 }
@@ -81,6 +92,8 @@ impl Returned {
 pub enum Length {
     /// One element per joint.
     Joints,
+    /// Six elements of a base that nothing holds, and one per joint.
+    Velocities,
     /// As many for every robot.
     Fixed(usize),
 }
@@ -91,8 +104,7 @@ impl Shape {
     pub fn layout(&self, dof: usize) -> Layout {
         match self {
             Self::Number => Layout::Number,
-            Self::Array(Length::Joints, of) => Layout::Array(dof, Box::new(of.layout(dof))),
-            Self::Array(Length::Fixed(length), of) => Layout::Array(*length, Box::new(of.layout(dof))),
+            Self::Array(length, of) => Layout::Array(length.of(dof), Box::new(of.layout(dof))),
             Self::Record(record, parts) => Layout::Record(*record, parts.iter().map(|part| part.layout(dof)).collect()),
         }
     }
@@ -122,6 +134,10 @@ pub enum Record {
     MomentumAndRate,
     /// The wrench on the base, and the torques.
     FloatingTorques,
+    /// Linear and angular.
+    BaseAcceleration,
+    /// The acceleration of the base, and those of the joints.
+    FloatingAccelerations,
 }
 
 impl Record {
@@ -134,6 +150,8 @@ impl Record {
             Self::TorqueDerivatives => "TorqueDerivatives",
             Self::MomentumAndRate => "MomentumAndRate",
             Self::FloatingTorques => "FloatingTorques",
+            Self::BaseAcceleration => "BaseAcceleration",
+            Self::FloatingAccelerations => "FloatingAccelerations",
         }
     }
 
@@ -146,6 +164,8 @@ impl Record {
             Self::TorqueDerivatives => ["dq", "dqd"],
             Self::MomentumAndRate => ["momentum", "rate"],
             Self::FloatingTorques => ["wrench", "tau"],
+            Self::BaseAcceleration => ["linear", "angular"],
+            Self::FloatingAccelerations => ["base", "qdd"],
         }
     }
 }

@@ -130,16 +130,16 @@ impl Function {
         }
     }
 
-    /// Whether it returns the wrench that must act on a base that nothing holds.
+    /// Whether it is a function of a robot whose base nothing holds.
     #[must_use]
-    pub const fn returns_base_wrench(self) -> bool {
-        matches!(self, Self::InverseDynamicsOfFloatingBase)
+    pub const fn is_of_floating_base(self) -> bool {
+        matches!(self.capability(), Capability::FloatingBase)
     }
 
     /// Whether rotors that belong to the arm change what it returns.
     #[must_use]
     pub fn feels_rotors(self) -> bool {
-        let has_torques = self.returns_torques() || self.returns_base_wrench();
+        let has_torques = self.returns_torques() || self.is_of_floating_base();
         self.entry().feels_rotors || has_torques && self.takes(Argument::Accelerations)
     }
 

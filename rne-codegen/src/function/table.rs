@@ -167,6 +167,26 @@ macro_rules! functions {
                  what an inertial measurement unit reads. wrenches: as in inverse_dynamics_with_wrenches. wrench: \
                  force (N) and moment (N m) that must act ON the base beside gravity, about the origin of frame 0, in \
                  its axes; zero in free flight. tau: of the actuators.";
+            FloatingMassMatrix = floating_mass_matrix(q: Positions) -> FloatingMatrix:
+                "The mass matrix of a robot whose base nothing holds, symmetric: six rows of the base, then the joints.",
+                "mass[i][j]: rows are the force (N) on the base, the moment (N m) about the origin of frame 0 and the \
+                 torques; columns are the acceleration of this origin less gravity, the angular acceleration of the \
+                 base and the accelerations of the joints. The base in axes of frame 0.";
+            FloatingBias = floating_bias(
+                q: Positions, qd: Rates, omega: BaseVelocity, wrenches: Wrenches
+            ) -> FloatingVector:
+                "Wrench on a base that nothing holds and torques, for zero accelerations: velocity products and tips.",
+                "omega: angular velocity of the base (rad/s), in axes of frame 0. wrenches: as in \
+                 inverse_dynamics_with_wrenches. bias: force (N), moment (N m) about the origin of frame 0, then \
+                 torques, where the acceleration of this origin less gravity, the angular acceleration and those of \
+                 the joints are zero.";
+            FloatingForwardDynamics = floating_forward_dynamics(
+                q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches
+            ) -> FloatingAccelerations:
+                "Accelerations of the base and of the joints for torques `tau`, when nothing holds the base.",
+                "omega, wrenches: as in floating_bias; beside the wrenches, only gravity acts. base: acceleration of \
+                 the origin of frame 0 less gravity (m/s²), which an accelerometer reads, and angular acceleration \
+                 (rad/s²), in axes of frame 0. qdd: of the joints.";
         }
     };
 }
@@ -204,6 +224,9 @@ const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
     AnswerTable { about, unit: Some(unit), rows: Labels::Joints, columns: Labels::Joints }
 }
 
+/// Rows of the base, then of the joints.
+const VELOCITIES: Labels = Labels::BaseAndJoints;
+
 /// Why a centre of mass may be none.
 const WITHOUT_MASS: &str = "the centre of mass is not finite: the arm has no mass, or the state is too large";
 
@@ -227,6 +250,12 @@ const MOMENTUM: Own = Own::of(Quantity::Momentum, |joint| format!("momentum of j
 const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
     format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
 });
+
+/// What must act on a base that nothing holds.
+const ON_BASE: [Own; 2] = [
+    Own::of(Quantity::BaseForce, |_| "force that must act on the base".to_owned()),
+    Own::of(Quantity::BaseMoment, |_| "moment that must act on the base, about the origin of frame 0".to_owned()),
+];
 
 const MASS_MATRIX: Entry = Entry {
     output: "mass",
@@ -487,18 +516,60 @@ pub(crate) const TABLE: &[Entry] = &[
     Entry {
         output: "torques",
         listed: "returned: force and moment on the base, then the torques",
-        own: &[
-            Own::of(Quantity::BaseForce, |_| "force that must act on the base".to_owned()),
-            Own::of(Quantity::BaseMoment, |_| {
-                "moment that must act on the base, about the origin of frame 0".to_owned()
-            }),
-        ],
+        own: &ON_BASE,
         answer: Answer::Tables(&[
             AnswerTable::of("force on the base (N), in axes of frame 0", Labels::Names(&["force"]), AXES),
             AnswerTable::of("moment on the base (N m), about the origin of frame 0", Labels::Names(&["moment"]), AXES),
             AnswerTable::of("torques (N m, prismatic: N)", Labels::Names(&["tau"]), Labels::Joints),
         ]),
         ..Entry::of(Function::InverseDynamicsOfFloatingBase, Capability::FloatingBase)
+    },
+    Entry {
+        output: "mass",
+        listed: "returned: the rows of the matrix",
+        own: &ON_BASE,
+        answer: Answer::Tables(&[AnswerTable::of(
+            "force and moment on the base and torques per acceleration, axes of frame 0; SI units",
+            VELOCITIES,
+            VELOCITIES,
+        )]),
+        feels_rotors: true,
+        ..Entry::of(Function::FloatingMassMatrix, Capability::FloatingBase)
+    },
+    Entry {
+        output: "bias",
+        listed: "returned: force and moment on the base, then the torques",
+        own: &ON_BASE,
+        answer: Answer::Tables(&[AnswerTable::of(
+            "force (N) and moment (N m) on the base, axes of frame 0, then torques (N m, prismatic: N)",
+            Labels::Names(&["bias"]),
+            VELOCITIES,
+        )]),
+        ..Entry::of(Function::FloatingBias, Capability::FloatingBase)
+    },
+    Entry {
+        output: "accelerations",
+        listed: "returned: linear and angular acceleration of the base, then those of the joints",
+        own: &[
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+        ],
+        answer: Answer::Tables(&[
+            AnswerTable::of(
+                "acceleration of the origin of frame 0 less gravity (m/s²), in axes of frame 0",
+                Labels::Names(&["linear"]),
+                AXES,
+            ),
+            AnswerTable::of("angular acceleration of the base (rad/s²)", Labels::Names(&["angular"]), AXES),
+            AnswerTable::of("accelerations (rad/s², prismatic: m/s²)", Labels::Names(&["qdd"]), Labels::Joints),
+        ]),
+        divides: Some(
+            "the accelerations are not finite: the mass matrix is singular \
+             (a joint or the base moves no mass), or the state is too large",
+        ),
+        inverts_mass: true,
+        feels_rotors: true,
+        ..Entry::of(Function::FloatingForwardDynamics, Capability::FloatingBase)
     },
 ];
 

@@ -32,6 +32,8 @@ pub enum WithRespectTo {
     Rate(usize),
     /// A joint acceleration.
     RateDot(usize),
+    /// An acceleration of a base that nothing holds, from 1: x, y, z, then about x, y, z.
+    BaseRateDot(usize),
 }
 
 impl WithRespectTo {
@@ -42,6 +44,9 @@ impl WithRespectTo {
             Self::Position(joint) => Name::scalar(Quantity::Position, joint),
             Self::Rate(joint) => Name::scalar(Quantity::Rate, joint),
             Self::RateDot(joint) => Name::scalar(Quantity::RateDot, joint),
+            Self::BaseRateDot(index) => {
+                Name::of_base(Quantity::Acceleration, Quantity::OmegaDot, index.saturating_sub(1))
+            }
         }
     }
 }
@@ -78,6 +83,12 @@ impl Name {
             [Quantity::TipForce, Quantity::TipMoment].map(|part| Axis::ALL.map(|axis| Self::vector(part, tip, axis)));
         let ([fx, fy, fz], [nx, ny, nz]) = (force, moment);
         [fx, fy, fz, nx, ny, nz]
+    }
+
+    /// The name of one of six numbers of the base, counted from 0: x, y, z of `linear`, then of `angular`.
+    #[must_use]
+    pub const fn of_base(linear: Quantity, angular: Quantity, index: usize) -> Self {
+        Self::vector(if index < 3 { linear } else { angular }, 0, Axis::ALL[index % 3])
     }
 
     /// A component of a vector.

@@ -81,7 +81,7 @@ pub(crate) struct Evaluator {
 
 /// The tables of a robot under every choice of frames that applies to it.
 pub(crate) fn frames(robot: &Robot, function: Function) -> Vec<FramedRobot> {
-    let floating = function.returns_base_wrench();
+    let floating = function.is_of_floating_base();
     let choices = [false, true]
         .into_iter()
         .flat_map(|carried| [false, true].map(|turned_last| FrameChoice { turned_last, carried, floating }));
@@ -96,7 +96,7 @@ pub(crate) fn frames(robot: &Robot, function: Function) -> Vec<FramedRobot> {
 
 /// The table of a robot under the frames of one plan.
 pub(crate) fn frame(robot: &Robot, plan: &Plan, function: Function) -> Option<FramedRobot> {
-    let frames = FrameChoice { floating: function.returns_base_wrench(), ..plan.frames() };
+    let frames = FrameChoice { floating: function.is_of_floating_base(), ..plan.frames() };
     let joint_frames = JointFrames::new(robot, frames)?;
     let offers = Offers::new(&joint_frames);
     Some(FramedRobot { frames, joint_frames, offers })

@@ -56,7 +56,7 @@ impl Algorithm {
     /// that nothing holds, which no recursion of the reduced form has.
     #[must_use]
     pub fn is_planned_for(function: Function, robot: &Robot) -> bool {
-        Self::is_planned(function) && !(function.returns_base_wrench() && robot.has_spinning_rotors())
+        Self::is_planned(function) && !(function.is_of_floating_base() && robot.has_spinning_rotors())
     }
 
     /// The ways of a function; none for what has no reduced recursion.
@@ -70,7 +70,8 @@ impl Algorithm {
             | Function::InverseDynamicsFromSinCos
             | Function::BiasTorques
             | Function::InverseDynamicsWithWrenches
-            | Function::InverseDynamicsOfFloatingBase => &[Algorithm::Rnea],
+            | Function::InverseDynamicsOfFloatingBase
+            | Function::FloatingBias => &[Algorithm::Rnea],
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload]
             }
@@ -83,7 +84,9 @@ impl Algorithm {
             | Function::MomentumAndRateWithPayload
             | Function::MassMatrixWithPayload
             | Function::InverseDynamicsDerivativesWithPayload
-            | Function::ForwardDynamicsWithWrenches => &[BY_GROUPS, BY_JOINTS],
+            | Function::ForwardDynamicsWithWrenches
+            | Function::FloatingMassMatrix
+            | Function::FloatingForwardDynamics => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -158,9 +161,17 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
     let coordinates = &arm.joint_frames.coordinates;
     let joints = coordinates.joints();
     let upper_half = || coordinates.upper_half(builder, mass_matrix(arm, algorithm));
-    let system = || System::new(coordinates, arm.rows().iter().map(|row| row.parent));
+    let system = || System::new(builder.function, coordinates, arm.rows().iter().map(|row| row.parent));
     let by_joint = |quantity, of_joints: Vec<Symbol<'s>>| {
         formulate::by_joint(coordinates, quantity, coordinates.torques(&of_joints))
+    };
+    let of_floating_base = || {
+        let (Wrench { force, moment }, of_joints) = torques_of_floating_base(arm);
+        [formulate::on_base([force, moment]), by_joint(Quantity::Torque, of_joints)].concat()
+    };
+    let floating_half = || {
+        let (joints, of_base) = crba::mass_matrix(arm);
+        Some(of_base?.gathered(coordinates).above(builder, coordinates.upper_half(builder, joints)))
     };
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function, algorithm) {
@@ -225,9 +236,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
             | Function::InverseDynamicsWithWrenches,
             algorithm,
         ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
-        (Function::InverseDynamicsOfFloatingBase, _) => {
-            let (Wrench { force, moment }, of_joints) = torques_of_floating_base(arm);
-            [formulate::on_base([force, moment]), by_joint(Quantity::Torque, of_joints)].concat()
+        (Function::InverseDynamicsOfFloatingBase | Function::FloatingBias, _) => of_floating_base(),
+        (Function::FloatingMassMatrix, _) => formulate::floating_mass_matrix(builder, &system(), &floating_half()?),
+        (Function::FloatingForwardDynamics, _) => {
+            formulate::floating_forward_dynamics(builder, &system(), &floating_half()?, of_floating_base())
         }
         // `Algorithm::of` matches them all
         _ => return None,
@@ -241,7 +253,7 @@ fn recursion<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Symbol<'s>> {
 /// The upper half of M.
 fn mass_matrix<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s>>> {
     if algorithm != Algorithm::UnitColumns {
-        return crba::mass_matrix(arm);
+        return crba::mass_matrix(arm).0;
     }
     let joint_frames = arm.joint_frames.without_gravity();
     let still = Arm { joint_frames: &joint_frames, ..*arm };

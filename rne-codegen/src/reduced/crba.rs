@@ -13,9 +13,10 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::formulate::mass_matrix::OfBase;
 use crate::formulate::torque_by;
-use crate::reduced::inward::{Carried, Loads};
-use crate::reduced::{Arm, Body, FirstMoment, Inward, PseudoInertia, Symmetric, Turned, Twist, Wrench};
+use crate::reduced::inward::{Carried, LoadOfLink, Loads};
+use crate::reduced::{Arm, Body, FirstMoment, Inward, JointFrame, PseudoInertia, Symmetric, Turned, Twist, Wrench};
 
 pub(crate) use crate::reduced::inward::ExpressedIn;
 
@@ -35,10 +36,13 @@ pub(crate) struct Composite<'s> {
 impl<'s> Composite<'s> {
     /// The matter of a link; of the last one with its payload.
     pub(crate) fn of_link(arm: &Arm<'_, 's>, index: usize, matter: &PseudoInertia) -> Self {
-        let builder = arm.builder;
-        let s = matter.second_moments().map(|x| builder.number(x));
-        let own = Self { mass: builder.number(matter.mass), h: builder.vector(matter.h), s, around: None };
+        let own = Self::of_matter(arm.builder, matter);
         arm.payload_on(index).map_or(own, |payload| own.plus(payload.matter(arm)))
+    }
+
+    fn of_matter(builder: &'s Builder, matter: &PseudoInertia) -> Self {
+        let s = matter.second_moments().map(|x| builder.number(x));
+        Self { mass: builder.number(matter.mass), h: builder.vector(matter.h), s, around: None }
     }
 
     /// Names what is there, in frame N of a joint.
@@ -148,8 +152,10 @@ fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>,
     }
 }
 
-/// The upper half of M: row i holds its elements (i, i) to (i, n).
-pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
+/// The upper half of M of the joints: row i holds its elements (i, i) to (i, n). And the rows of a base that nothing
+/// holds, which is the last body to be gathered.
+#[allow(clippy::type_complexity)] // rows of both kinds
+pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Option<OfBase<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
     let mut matrix: Vec<Vec<Symbol<'s>>> = vec![vec![builder.zero(); dof]; dof];
@@ -163,7 +169,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
             matrix[index][index] = c;
             let moment = twist.of(Vector([builder.zero(), builder.zero(), c]));
             let column = (index, Wrench { force: builder.no_vector(), moment });
-            if let Some(parent) = row.parent {
+            if let Some(parent) = arm.joint_frames.carrier(index) {
                 loads.put(parent, false, Carried { behind: None, columns: vec![column] });
             }
             continue;
@@ -199,10 +205,11 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
         if row.kind == Revolute {
             name(builder, index + 1, &carried);
         }
-        if let Some(parent) = row.parent {
+        if let Some(parent) = arm.joint_frames.carrier(index) {
             loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
     }
+    let of_base = arm.joint_frames.base.map(|_| of_base(arm, loads.take(dof)));
     let coupled = |row: usize, column: usize| {
         let found = arm.joint_frames.coupled.iter().find(|(i, j, _)| (*i, *j) == (row, column));
         found.map(|(.., element)| *element)
@@ -214,7 +221,24 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> Vec<Vec<Symbol<'s>>> {
         builder.name(torque_by(row, WithRespectTo::RateDot(column + 1)), element);
         element
     };
-    (0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect()
+    ((0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect(), of_base)
+}
+
+/// The rows of a base that nothing holds, in its axes and about its origin, from what its joints carry.
+fn of_base<'s>(arm: &Arm<'_, 's>, mut load: LoadOfLink<Composite<'s>, Column<'s>>) -> OfBase<'s> {
+    let (builder, rows) = (arm.builder, arm.rows());
+    builder.at(Quantity::BaseForce, 0);
+    let Composite { mass, h, s, .. } = load.with_link(Composite::of_matter(builder, &arm.parameters.base));
+    let [xx, yy, zz, xy, xz, yz] = s;
+    let columns = load.columns(None);
+    let column = |(index, row): (usize, &JointFrame)| {
+        let own = columns.iter().filter(|(of, _)| *of == index).map(|(_, wrench)| *wrench);
+        let Wrench { force, moment } = own.reduce(Wrench::plus).unwrap_or_else(|| Wrench::zero(builder));
+        [force, moment].map(|part| part.map(|_, x| x.signed(row.reversed)))
+    };
+    let columns = rows.iter().enumerate().map(column).collect();
+    // J = tr(S) 1 - S
+    OfBase { mass, h, inertia: [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz], columns }
 }
 
 /// Adds to an element of the upper half of a symmetric matrix.

@@ -10,6 +10,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::function::Argument;
 use crate::ir::{Axis, Builder, ExactAngle, Matrix, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
@@ -184,7 +185,12 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
 /// The motion of a base that nothing holds, in frame 0, from the arguments of the function.
 pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
-    let told = |quantity| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))));
+    // accelerations, gravity included, are zero where they are no arguments
+    let is_told = |quantity| quantity == Quantity::Omega || builder.function.takes(Argument::Base);
+    let told = |quantity| match is_told(quantity) {
+        true => Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis)))),
+        false => builder.no_vector(),
+    };
     let [omega, omega_dot] = [Quantity::Omega, Quantity::OmegaDot].map(told);
     builder.at(Quantity::OriginAcceleration, 0);
     let lambda = arm.parameters.lambda.first().copied().unwrap_or(Number::ONE);

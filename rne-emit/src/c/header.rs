@@ -193,6 +193,10 @@ const fn about(record: Record) -> &'static str {
         Record::FloatingTorques => {
             "Force and moment that must act on the base beside gravity, about the origin of frame 0, and the torques."
         }
+        Record::BaseAcceleration => {
+            "Acceleration of the origin of frame 0 less gravity, m/s², and angular acceleration, rad/s², in its axes."
+        }
+        Record::FloatingAccelerations => "Acceleration of the base, and accelerations of the joints.",
         Record::MomentumAndRate => "Momenta of the joints, M q̇, and their rates without external torques.",
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }

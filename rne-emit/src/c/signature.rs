@@ -102,6 +102,8 @@ fn record_name(prefix: &str, record: Record) -> String {
         Record::TorqueDerivatives => "torque_derivatives",
         Record::MomentumAndRate => "momentum",
         Record::FloatingTorques => "floating_torques",
+        Record::BaseAcceleration => "base_acceleration",
+        Record::FloatingAccelerations => "floating_accelerations",
     };
     format!("{prefix}_{name}")
 }
