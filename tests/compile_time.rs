@@ -166,7 +166,10 @@ fn all_derives_of_seven_joints_build() {
             function == Function::ActuatorTorques
                 || matches!(
                     function.capability(),
-                    Capability::PayloadDynamics | Capability::TipWrenches | Capability::FloatingBase
+                    Capability::PayloadDynamics
+                        | Capability::TipWrenches
+                        | Capability::FloatingBase
+                        | Capability::CentroidalMomentum
                 )
         };
         let functions = Function::ALL.into_iter().filter(|&function| !is_left_out(function));

@@ -19,7 +19,8 @@ import pinocchio as pin
 
 TOLERANCE = 1e-12
 STATES = 3
-FUNCTIONS = ["inverse_dynamics_of_floating_base", "floating_mass_matrix", "floating_bias", "floating_forward_dynamics"]
+FUNCTIONS = ["inverse_dynamics_of_floating_base", "floating_mass_matrix", "floating_bias", "floating_forward_dynamics",
+             "centroidal_momentum_matrix", "centroidal_bias"]
 
 # Name of the URDF, and the licence, if its numbers stand in this repository.
 ROBOTS = [
@@ -76,7 +77,14 @@ def expected(model, names, joints, told, placed):
     tau[rows] = joints["tau"]
     accelerations = pin.aba(model, model.createData(), q, v, tau)[order]
     accelerations[:3] += classical
-    return dict(zip(FUNCTIONS, [torques, mass.flatten(), bias, accelerations]))
+    # momentum about the centre of mass in world axes, and its rate
+    data = model.createData()
+    map_ = pin.computeCentroidalMap(model, data, q).copy()
+    rate = pin.computeCentroidalMapTimeVariation(model, model.createData(), q, v) @ v
+    rate -= map_[:, :3] @ np.cross(told["omega"], velocity)
+    in_base = np.kron(np.eye(2), turn.T)
+    centroidal = [(in_base @ map_)[:, order].flatten(), in_base @ rate]
+    return dict(zip(FUNCTIONS, [torques, mass.flatten(), bias, accelerations, *centroidal]))
 
 
 def numbers(result):
@@ -94,6 +102,8 @@ def found(rne, file, function, joints, told):
     takes = {
         "inverse_dynamics_of_floating_base": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
         "floating_mass_matrix": ["q"],
+        "centroidal_momentum_matrix": ["q"],
+        "centroidal_bias": ["q", "qd", "base-omega"],
         "floating_bias": ["q", "qd", "base-omega"],
         "floating_forward_dynamics": ["q", "qd", "tau", "base-omega"],
     }

@@ -256,6 +256,8 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
             [on_base.force.to_vec(), on_base.moment.to_vec(), torques].concat()
         }
         Function::FloatingMassMatrix => arm.floating_mass_matrix(q)?.concat(),
+        Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q)?.concat(),
+        Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega)?.to_vec(),
         Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &[*wrench])?,
         Function::FloatingForwardDynamics => {
             let (base, qdd) = arm.floating_forward_dynamics(q, qd, tau, &base.omega, &[*wrench])?;

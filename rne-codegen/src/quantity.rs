@@ -380,6 +380,8 @@ quantities! {
         "force that must act on the base beside gravity, in axes of frame 0";
     BaseMoment:                 "nb",        Vector,    6, true,  "n", "N m",
         "moment that must act on the base, about the origin of frame 0";
+    CentroidalMoment:           "nm",        Vector,    6, true,  "n", "N m",
+        "moment about the centre of mass of the robot, in axes of frame 0";
 }
 
 impl Quantity {

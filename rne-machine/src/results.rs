@@ -41,6 +41,8 @@ pub struct FloatingTorques<T> {
 pub type FloatingVector<T> = Vec<T>;
 /// Six rows and columns of a base that nothing holds, and one per joint.
 pub type FloatingMatrix<T> = Matrix<T>;
+/// Six rows with six numbers of a base that nothing holds, and one per joint.
+pub type FloatingRows<T> = Matrix<T>;
 /// The acceleration of a base that nothing holds, and those of the joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatingAccelerations<T> {

@@ -92,6 +92,7 @@ impl Target<'_> {
         let (tips, velocities) = (&self.tips, velocities(dof));
         match capability {
             Capability::FloatingBase => quote!(#dof, #velocities, #tips),
+            Capability::CentroidalMomentum => quote!(#dof, #velocities),
             _ if capability.has_tips() => quote!(#dof, #tips),
             _ => quote!(#dof),
         }
@@ -110,7 +111,7 @@ impl Target<'_> {
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
-        if capability == Capability::FloatingBase {
+        if matches!(capability, Capability::FloatingBase | Capability::CentroidalMomentum) {
             generics.params.push(syn::parse_quote!(const __VELOCITIES: ::core::primitive::usize));
         }
         if capability.has_tips() {

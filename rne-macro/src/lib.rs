@@ -230,6 +230,19 @@ pub fn derive_floating_base(input: TokenStream) -> TokenStream {
     expand::capability(Capability::FloatingBase, input.into()).into()
 }
 
+/// Implements the trait `CentroidalMomentum` for a struct: the momentum of a robot whose base nothing holds, about its
+/// centre of mass, and its rate.
+///
+/// The base is the link `floating_base` of the robot file; without that key the base has no mass.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets constants with the operations, `CENTROIDAL_MOMENTUM_MATRIX_OPERATIONS` and `CENTROIDAL_BIAS_OPERATIONS`; `DOF`,
+/// names and limits come with `InverseDynamics`.
+#[proc_macro_derive(CentroidalMomentum, attributes(robot))]
+pub fn derive_centroidal_momentum(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::CentroidalMomentum, input.into()).into()
+}
+
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.
 ///
 /// The robot file needs a `motor` at one joint at least.

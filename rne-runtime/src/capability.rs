@@ -445,9 +445,27 @@ pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
     ) -> FloatingAccelerations<DOF, T>;
 }
 
+/// Momentum of a robot whose base nothing holds, about its centre of mass. `NV` velocities and accelerations, and the
+/// base, are those of [`FloatingBase`]: all vectors are in axes of frame 0. Turned by the rotation of the base, force and
+/// moment are those in world axes.
+pub trait CentroidalMomentum<const DOF: usize, const NV: usize> {
+    /// The matrix A: A v is the momentum (N s), then the angular momentum about the centre of mass (N m s).
+    ///
+    /// Source: D. E. Orin, A. Goswami, S.-H. Lee, "Centroidal dynamics of a humanoid robot", 2013. A robot without mass
+    /// gives numbers that are not finite.
+    #[must_use]
+    fn centroidal_momentum_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; NV]; 6];
+
+    /// The rate of this momentum when the accelerations (a - g, ω̇, q̈) are zero: force (N), then moment about the centre
+    /// of mass (N m). A times the accelerations, plus this rate, is what acts on the robot beside gravity.
+    ///
+    /// `omega`: angular velocity of the base, rad/s.
+    #[must_use]
+    fn centroidal_bias<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], omega: &[T; 3]) -> [T; 6];
+}
+
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has
-/// the
-/// payload too. [`inverse_dynamics_with_payload`](InverseDynamics::inverse_dynamics_with_payload) belongs to
+/// the payload too. [`inverse_dynamics_with_payload`](InverseDynamics::inverse_dynamics_with_payload) belongs to
 /// [`InverseDynamics`]. A payload of zero gives the numbers of the function without a payload.
 pub trait PayloadDynamics<const DOF: usize> {
     /// Torques that hold the arm and the payload still against gravity, N m or N. See

@@ -72,6 +72,48 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
+/// The centre of mass: h / m.
+struct Centre<T: Scalar>(Vector3<T>);
+
+impl<J: PerJoint, T: Scalar> FloatingMass<J, T> {
+    fn centre(&self) -> Centre<T> {
+        let [[mass, _, _, _, z, minus_y], [_, _, _, _, _, x], ..] = self.base;
+        Centre(Vector3::new(x, -minus_y, z) * (T::one() / mass))
+    }
+}
+
+impl<T: Scalar> Centre<T> {
+    /// Makes rows of the momentum about the centre of mass from columns of wrenches that are about the origin of frame 0.
+    fn take<R: AsRef<[T]> + AsMut<[T]>>(&self, rows: &mut [R; BASE]) {
+        for column in 0..rows[0].as_ref().len() {
+            let moment = self.moment(&core::array::from_fn(|row| rows[row].as_ref()[column]));
+            for (row, about) in rows[3..].iter_mut().zip(&moment) {
+                row.as_mut()[column] = *about;
+            }
+        }
+    }
+
+    /// As [`take`](Self::take), of the base: while it does not turn, there is no angular momentum about the centre.
+    fn take_base(&self, rows: &mut [[T; BASE]; BASE]) {
+        self.take(rows);
+        rows[3..].iter_mut().for_each(|row| row[..3].fill(T::zero()));
+    }
+
+    /// The moment about the centre of mass of a wrench that is about the origin of frame 0.
+    fn moment(&self, &[fx, fy, fz, nx, ny, nz]: &[T; BASE]) -> Vector3<T> {
+        Vector3::new(nx, ny, nz) - self.0.cross(&Vector3::new(fx, fy, fz))
+    }
+}
+
+impl<T: Scalar> Centre<T> {
+    /// The rate of the momentum that a wrench is, which is about the origin of frame 0.
+    fn rate(&self, force: [T; 3], moment: [T; 3]) -> [T; BASE] {
+        let ([fx, fy, fz], [nx, ny, nz]) = (force, moment);
+        let about = self.moment(&[fx, fy, fz, nx, ny, nz]);
+        [fx, fy, fz, about.x, about.y, about.z]
+    }
+}
+
 /// Puts a matrix together, row by row into zeros.
 fn fill<T: Scalar, R: AsMut<[T]>, V: AsRef<[T]>>(
     matrix: &mut [R],
@@ -151,6 +193,30 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         [(); NV].map(|()| numbers.next().unwrap_or_else(T::zero))
     }
 
+    /// As [`CentroidalMomentum::centroidal_momentum_matrix`](crate::CentroidalMomentum::centroidal_momentum_matrix);
+    /// `NV` is `DOF` + 6.
+    #[must_use]
+    pub fn centroidal_momentum_matrix<T: Scalar, const NV: usize>(&self, q: &[T; DOF]) -> [[T; NV]; 6] {
+        const { assert!(NV == DOF + BASE, "the matrix has a column for each joint and six for the base") };
+        let mass = self.mechanism().floating_mass(q);
+        let (centre, FloatingMass { mut base, mut rows, .. }) = (mass.centre(), mass);
+        centre.take_base(&mut base);
+        centre.take(&mut rows);
+        let element = |row: usize, column: usize| match column.checked_sub(BASE) {
+            Some(joint) => rows[row].as_ref()[joint],
+            None => base[row][column],
+        };
+        core::array::from_fn(|row| core::array::from_fn(|column| element(row, column)))
+    }
+
+    /// As [`CentroidalMomentum::centroidal_bias`](crate::CentroidalMomentum::centroidal_bias).
+    #[must_use]
+    pub fn centroidal_bias<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], omega: &[T; 3]) -> [T; 6] {
+        let FloatingTorques { wrench: Wrench { force, moment }, .. } =
+            self.inverse_dynamics_of_floating_base(q, qd, &[T::zero(); DOF], &turning(omega), (&[], &[]));
+        self.mechanism().floating_mass(q).centre().rate(force, moment)
+    }
+
     /// As [`FloatingBase::floating_forward_dynamics`](crate::FloatingBase::floating_forward_dynamics), at these tips;
     /// `NV` is `DOF` + 6.
     #[must_use]
@@ -222,6 +288,33 @@ impl<S: Constant> DynArm<S> {
         let (Wrench { force, moment }, tau) =
             self.inverse_dynamics_of_floating_base(q, qd, &zeros, &turning(omega), wrenches)?;
         Ok(force.into_iter().chain(moment).chain(tau).collect())
+    }
+
+    /// As [`CentroidalMomentum::centroidal_momentum_matrix`](crate::CentroidalMomentum::centroidal_momentum_matrix): six
+    /// rows of 6 + n numbers.
+    ///
+    /// # Errors
+    /// When the argument does not have one element per joint.
+    pub fn centroidal_momentum_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
+        let q = &*self.of_joints("q", q)?;
+        let mass = self.mechanism().floating_mass(q);
+        let (centre, FloatingMass { mut base, rows, .. }) = (mass.centre(), mass);
+        let mut rows = self.couplings.rows(rows);
+        centre.take_base(&mut base);
+        centre.take(&mut rows);
+        Ok(base.iter().zip(rows).map(|(base, joints)| [base.as_slice(), joints.as_ref()].concat()).collect())
+    }
+
+    /// As [`CentroidalMomentum::centroidal_bias`](crate::CentroidalMomentum::centroidal_bias).
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn centroidal_bias<T: Scalar>(&self, q: &[T], qd: &[T], omega: &[T; 3]) -> Result<[T; 6], WrongLength> {
+        let (zeros, free) = (vec![T::zero(); self.dof()], vec![Wrench::zero(); self.tips().len()]);
+        let (Wrench { force, moment }, _) =
+            self.inverse_dynamics_of_floating_base(q, qd, &zeros, &turning(omega), &free)?;
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.mechanism().floating_mass(q).centre().rate(force, moment))
     }
 
     /// As [`FloatingBase::floating_forward_dynamics`](crate::FloatingBase::floating_forward_dynamics), with one of

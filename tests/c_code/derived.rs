@@ -1,9 +1,9 @@
 //! Shipped robots with everything derived, and their functions by their names.
 
 use rne::{
-    Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, FloatingBase, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
-    Pose, Regressor, Scalar, TipWrenches, Wrench,
+    Actuation, BaseMotion, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase, ForwardDynamics,
+    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
+    PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -37,6 +37,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize>:
     + PayloadDynamics<DOF>
     + TipWrenches<DOF, 1>
     + FloatingBase<DOF, NV, 1>
+    + CentroidalMomentum<DOF, NV>
 {
 }
 
@@ -108,6 +109,8 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, T: Scalar>(
             [found.wrench.force.to_vec(), found.wrench.moment.to_vec(), found.tau.to_vec()].concat()
         }
         Function::FloatingMassMatrix => flat(robot.floating_mass_matrix(q)),
+        Function::CentroidalMomentumMatrix => flat(robot.centroidal_momentum_matrix(q)),
+        Function::CentroidalBias => robot.centroidal_bias(q, qd, &omega).to_vec(),
         Function::FloatingBias => robot.floating_bias(q, qd, &omega, &[Wrench { force, moment }]).to_vec(),
         Function::FloatingForwardDynamics => {
             let found = robot.floating_forward_dynamics(q, qd, tau, &omega, &[Wrench { force, moment }]);
@@ -157,6 +160,7 @@ macro_rules! robot {
                 rne::PayloadDynamics,
                 rne::TipWrenches,
                 rne::FloatingBase,
+                rne::CentroidalMomentum,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

@@ -161,7 +161,8 @@ impl Driver<'_> {
                 Function::InverseDynamicsOfFloatingBase => {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
-                Function::FloatingMassMatrix => "q",
+                Function::FloatingMassMatrix | Function::CentroidalMomentumMatrix => "q",
+                Function::CentroidalBias => "q, qd, omega",
                 Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
                 Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
                 Function::ActuatorTorques => "qd, qdd",
@@ -193,6 +194,8 @@ impl Driver<'_> {
                 Function::InverseDynamicsOfFloatingBase => (format!("{prefix}_floating_torques x"), "&x"),
                 Function::FloatingMassMatrix => (format!("{real} x[{0}][{0}]", 6 + n), "x"),
                 Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
+                Function::CentroidalMomentumMatrix => (format!("{real} x[6][{}]", 6 + n), "x"),
+                Function::CentroidalBias => (format!("{real} x[6]"), "x"),
                 Function::FloatingForwardDynamics => (format!("{prefix}_floating_accelerations x"), "&x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
             };

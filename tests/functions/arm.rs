@@ -395,6 +395,8 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::FloatingForwardDynamics => arm
             .floating_forward_dynamics(q, qd, tau, &base.omega, &wrenches)
             .map(|(base, qdd)| [base.linear.to_vec(), base.angular.to_vec(), qdd].concat()),
+        Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q).map(flat),
+        Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega).map(|rate| rate.to_vec()),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 use rne::{BaseMotion, Wrench};
-use rne_codegen::{Capability, Compiler, Factorization, Form, Function, Output, Value};
+use rne_codegen::{Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::Robot;
 
 use crate::arm::{Arm, Given, Maker};
@@ -42,7 +42,7 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
                     gravity: triple("gravity"),
                 };
                 let given = Given { base, tau: &tau, wrench: Wrench::zero(), ..Given::of_joints(&q, &qd, &qdd) };
-                for function in Capability::FloatingBase.functions().filter(|it| state.get(it.name()).is_some()) {
+                for function in Function::ALL.into_iter().filter(|it| state.get(it.name()).is_some()) {
                     let error = error_on_scale(&arm.numbers(function, &given), &array(function.name()), 0.0);
                     let error = match function {
                         Function::FloatingForwardDynamics => {

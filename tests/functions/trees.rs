@@ -145,6 +145,13 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         }
         numbers
     };
+    // a wrench on the base, with its moment about the centre of mass
+    let about_centre = |wrench: &[f64]| -> Vec<f64> {
+        let (mass, moment) = oracle::first_moment(robot, q);
+        let [force, about] = [&wrench[..3], &wrench[3..6]].map(Vector3::from_column_slice);
+        let about = about - (moment / mass).cross(&force);
+        force.iter().chain(about.iter()).copied().collect()
+    };
     // the rows of a matrix from its columns
     let transposed = |columns: Vec<Vec<f64>>| -> Vec<f64> {
         (0..columns[0].len())
@@ -180,6 +187,14 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let matrix = DMatrix::from_row_slice(6 + dof, 6 + dof, &flat(floating_mass_matrix(robot, q)));
             let right = DMatrix::from_fn(6 + dof, 1, |row, _| applied(row) - bias[row]);
             matrix.lu().solve(&right).map_or_else(|| vec![f64::NAN; 6 + dof], |x| x.as_slice().to_vec())
+        }
+        Function::CentroidalMomentumMatrix => {
+            let columns = floating_mass_matrix(robot, q);
+            transposed(columns.iter().map(|column| about_centre(column)).collect())
+        }
+        Function::CentroidalBias => {
+            let base = BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) };
+            about_centre(&of_floating_base(robot, &Motion { joints: [q, qd, &zeros], base }))
         }
         Function::GravityTorques | Function::GravityTorquesWithPayload => torques(q, &zeros, &zeros, fixed),
         Function::BiasTorques | Function::BiasTorquesWithPayload => torques(q, qd, &zeros, fixed),

@@ -17,6 +17,9 @@ macro_rules! about {
         "`wrenches`: force, then moment, of each tip; a dict from names of tips to six numbers, or to arrays of shape \
          (N, 6), where a tip without an entry exerts nothing; or an array of shape (tips, 6) or (N, tips, 6).\n\n"
     };
+    (BaseVelocity) => {
+        "`omega`: shape (3,) or (N, 3).\n\n"
+    };
     (Payload) => {
         "`payload`: shape (10,) or (N, 10); `rne.payload` makes one. A point mass has the first four numbers alone: \
          shape (4,) or (N, 4).\n\n"
@@ -74,6 +77,9 @@ macro_rules! returned {
     };
     (FloatingMatrix) => {
         "shape (6 + n, 6 + n) or (N, 6 + n, 6 + n)."
+    };
+    (FloatingRows) => {
+        "shape (6, 6 + n) or (N, 6, 6 + n)."
     };
     (FloatingAccelerations) => {
         "the acceleration of the base, linear then angular, of shape (6,) or (N, 6), and those of the joints, of shape \
@@ -343,6 +349,9 @@ macro_rules! loaded {
 macro_rules! given {
     ($arm:ident, $argument:ident: Wrench) => {
         given!($arm, $argument: Wrench, &["force", "moment"])
+    };
+    ($arm:ident, $argument:ident: BaseVelocity) => {
+        given!($arm, $argument: BaseVelocity, &[])
     };
     ($arm:ident, $argument:ident: Payload) => {
         given!($arm, $argument: Payload, &[])

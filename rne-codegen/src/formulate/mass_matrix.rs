@@ -71,21 +71,25 @@ impl<'s> OfBase<'s> {
 
     /// The upper half of M with `joints`, that of the joints: row i holds its elements (i, i) to (i, 6 + n).
     pub(crate) fn above(&self, builder: &'s Builder, joints: Vec<Vec<Symbol<'s>>>) -> Vec<Vec<Symbol<'s>>> {
+        let columns: Vec<_> = (0..6 + self.columns.len()).map(|column| self.column(builder, column)).collect();
+        let row = |row: usize| columns[row..].iter().map(|parts| parts[row / 3].0[row % 3]).collect();
+        (0..6).map(row).chain(joints).collect()
+    }
+
+    /// Force and moment on the base for a unit of one acceleration, which is its place in M.
+    pub(crate) fn column(&self, builder: &'s Builder, column: usize) -> [Vector<'s>; 2] {
         let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (self.h.0, self.inertia);
         let (mass, zero) = (self.mass, builder.zero());
-        let of_base = [
-            vec![mass, zero, zero, zero, z, -y],
-            vec![mass, zero, -z, zero, x],
-            vec![mass, y, -x, zero],
-            vec![xx, xy, xz],
-            vec![yy, yz],
-            vec![zz],
-        ];
-        let whole = |(index, mut row): (usize, Vec<Symbol<'s>>)| {
-            row.extend(self.columns.iter().map(|parts| parts[index / 3].0[index % 3]));
-            row
+        let [force, moment] = match column {
+            0 => [[mass, zero, zero], [zero, z, -y]],
+            1 => [[zero, mass, zero], [-z, zero, x]],
+            2 => [[zero, zero, mass], [y, -x, zero]],
+            3 => [[zero, -z, y], [xx, xy, xz]],
+            4 => [[z, zero, -x], [xy, yy, yz]],
+            5 => [[-y, x, zero], [xz, yz, zz]],
+            _ => return self.columns[column - 6],
         };
-        of_base.into_iter().enumerate().map(whole).chain(joints).collect()
+        [Vector(force), Vector(moment)]
     }
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod actuation;
 pub(crate) mod arm;
 pub(crate) mod centre_of_mass;
+pub(crate) mod centroid;
 pub(crate) mod energy;
 pub(crate) mod joint;
 pub(crate) mod kinematics;
@@ -27,6 +28,7 @@ use rne_model::Robot;
 
 use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
+use crate::formulate::mass_matrix::OfBase;
 use crate::function::{Argument, Function};
 use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
@@ -79,6 +81,10 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             &derivation.floating_half(),
             derivation.floating_torques(),
         ),
+        Function::CentroidalMomentumMatrix => {
+            centroid::momentum_matrix(builder, &derivation.system(), &derivation.of_base().0)
+        }
+        Function::CentroidalBias => derivation.centroidal_bias(),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -198,9 +204,14 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     /// The upper half of M with the rows of a base that nothing holds.
     fn floating_half(&self) -> Vec<Vec<Symbol<'s>>> {
+        let (of_base, joints) = self.of_base();
+        of_base.above(self.builder, self.coordinates().upper_half(self.builder, joints))
+    }
+
+    /// The rows of the base in M, and the upper half of that of the joints.
+    fn of_base(&self) -> (OfBase<'s>, Vec<Vec<Symbol<'s>>>) {
         let (of_base, joints) = mass_matrix::with_base(&self.arm, &self.states, &self.system());
-        let joints = self.coordinates().upper_half(self.builder, joints);
-        of_base.gathered(self.coordinates()).above(self.builder, joints)
+        (of_base.gathered(self.coordinates()), joints)
     }
 
     /// The upper half of M.
@@ -312,6 +323,12 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let mut outputs = base.map_or_else(Vec::new, |base| on_base([base.force, base.moment]));
         outputs.extend(self.gathered(Quantity::Torque, &torques));
         outputs
+    }
+
+    fn centroidal_bias(&self) -> Outputs<'s> {
+        let (base, _) = seven_steps::inverse_dynamics_of_floating_base(&self.arm, &self.states, &self.base, &self.tip);
+        let wrench = base.map_or([self.builder.no_vector(); 2], |base| [base.force, base.moment]);
+        centroid::bias(self.builder, &self.of_base().0, wrench)
     }
 
     fn momentum_and_rate(&self) -> Outputs<'s> {

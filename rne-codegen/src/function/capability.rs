@@ -38,6 +38,8 @@ named! {
         TipWrenches = "TipWrenches",
         /// The robot whose base nothing holds.
         FloatingBase = "FloatingBase",
+        /// Its momentum about its centre of mass.
+        CentroidalMomentum = "CentroidalMomentum",
     }
 }
 

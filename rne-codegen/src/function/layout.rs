@@ -54,6 +54,8 @@ pub enum Returned {
     FloatingVector,
     /// Six rows and columns of the base, and one per joint.
     FloatingMatrix,
+    /// Three linear rows, then three angular ones, with six columns of the base and one per joint.
+    FloatingRows,
     /// A linear and an angular acceleration, and a number per joint.
     FloatingAccelerations,
 }
@@ -82,6 +84,7 @@ impl Returned {
             Self::FloatingTorques => &Shape::Record(Record::FloatingTorques, &[WRENCH, VECTOR]),
             Self::FloatingVector => &VELOCITIES,
             Self::FloatingMatrix => &Shape::Array(Length::Velocities, &VELOCITIES),
+            Self::FloatingRows => &Shape::Array(Length::Fixed(6), &VELOCITIES),
             Self::FloatingAccelerations => &Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]),
         }
     }

@@ -133,7 +133,7 @@ impl Function {
     /// Whether it is a function of a robot whose base nothing holds.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
-        matches!(self.capability(), Capability::FloatingBase)
+        matches!(self.capability(), Capability::FloatingBase | Capability::CentroidalMomentum)
     }
 
     /// Whether rotors that belong to the arm change what it returns.

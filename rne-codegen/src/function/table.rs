@@ -187,6 +187,16 @@ macro_rules! functions {
                 "omega, wrenches: as in floating_bias; beside the wrenches, only gravity acts. base: acceleration of \
                  the origin of frame 0 less gravity (m/s²), which an accelerometer reads, and angular acceleration \
                  (rad/s²), in axes of frame 0. qdd: of the joints.";
+            CentroidalMomentumMatrix = centroidal_momentum_matrix(q: Positions) -> FloatingRows:
+                "The matrix A of a robot whose base nothing holds: A v is its momentum about its centre of mass.",
+                "map[i][j]: rows are the linear momentum (N s) and the angular momentum about the centre of mass \
+                 (N m s); columns are the velocity of the origin of frame 0, the angular velocity of the base and the \
+                 velocities of the joints. All vectors are in axes of frame 0.";
+            CentroidalBias = centroidal_bias(q: Positions, qd: Rates, omega: BaseVelocity) -> Spatial:
+                "The rate of the momentum about the centre of mass when all accelerations are zero.",
+                "omega: angular velocity of the base (rad/s), in axes of frame 0. rate: force (N), then moment about \
+                 the centre of mass (N m), in axes of frame 0. A times the accelerations, as in \
+                 floating_mass_matrix, plus this rate is what acts on the robot beside gravity.";
         }
     };
 }
@@ -255,6 +265,12 @@ const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
 const ON_BASE: [Own; 2] = [
     Own::of(Quantity::BaseForce, |_| "force that must act on the base".to_owned()),
     Own::of(Quantity::BaseMoment, |_| "moment that must act on the base, about the origin of frame 0".to_owned()),
+];
+
+/// Rates of the momentum.
+const CENTROIDAL: [Own; 2] = [
+    Own::of(Quantity::BaseForce, |_| "rate of the momentum".to_owned()),
+    Own::of(Quantity::CentroidalMoment, |_| "rate of the angular momentum about the centre of mass".to_owned()),
 ];
 
 const MASS_MATRIX: Entry = Entry {
@@ -570,6 +586,30 @@ pub(crate) const TABLE: &[Entry] = &[
         inverts_mass: true,
         feels_rotors: true,
         ..Entry::of(Function::FloatingForwardDynamics, Capability::FloatingBase)
+    },
+    Entry {
+        output: "map",
+        listed: "returned: the rows of the matrix",
+        own: &CENTROIDAL,
+        answer: Answer::Tables(&[AnswerTable::of(
+            "momentum and angular momentum about the centre of mass per velocity, axes of frame 0; SI units",
+            Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]),
+            VELOCITIES,
+        )]),
+        divides: Some(WITHOUT_MASS),
+        ..Entry::of(Function::CentroidalMomentumMatrix, Capability::CentroidalMomentum)
+    },
+    Entry {
+        output: "rate",
+        listed: "returned: force, then moment about the centre of mass",
+        own: &CENTROIDAL,
+        answer: Answer::Tables(&[AnswerTable::of(
+            "force (N), then moment about the centre of mass (N m), axes of frame 0",
+            Labels::Names(&["rate"]),
+            Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]),
+        )]),
+        divides: Some(WITHOUT_MASS),
+        ..Entry::of(Function::CentroidalBias, Capability::CentroidalMomentum)
     },
 ];
 

@@ -3,7 +3,7 @@
 use rne_model::Robot;
 
 use crate::formulate::ldlt::System;
-use crate::formulate::{self, Outputs, square, torque_by};
+use crate::formulate::{self, Outputs, centroid, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::{torques, torques_of_floating_base};
@@ -86,7 +86,9 @@ impl Algorithm {
             | Function::InverseDynamicsDerivativesWithPayload
             | Function::ForwardDynamicsWithWrenches
             | Function::FloatingMassMatrix
-            | Function::FloatingForwardDynamics => &[BY_GROUPS, BY_JOINTS],
+            | Function::FloatingForwardDynamics
+            | Function::CentroidalMomentumMatrix
+            | Function::CentroidalBias => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -173,6 +175,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
         let (joints, of_base) = crba::mass_matrix(arm);
         Some(of_base?.gathered(coordinates).above(builder, coordinates.upper_half(builder, joints)))
     };
+    let of_base = || Some(crba::mass_matrix(arm).1?.gathered(coordinates));
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function, algorithm) {
         (Function::GravityTorques | Function::GravityTorquesWithPayload, Algorithm::Crba(_)) => {
@@ -240,6 +243,11 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
         (Function::FloatingMassMatrix, _) => formulate::floating_mass_matrix(builder, &system(), &floating_half()?),
         (Function::FloatingForwardDynamics, _) => {
             formulate::floating_forward_dynamics(builder, &system(), &floating_half()?, of_floating_base())
+        }
+        (Function::CentroidalMomentumMatrix, _) => centroid::momentum_matrix(builder, &system(), &of_base()?),
+        (Function::CentroidalBias, _) => {
+            let (Wrench { force, moment }, _) = torques_of_floating_base(arm);
+            centroid::bias(builder, &of_base()?, [force, moment])
         }
         // `Algorithm::of` matches them all
         _ => return None,

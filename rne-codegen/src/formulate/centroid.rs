@@ -1,0 +1,70 @@
+//! The momentum about the centre of mass of a robot whose base nothing holds, from the rows of the base in M and in the
+//! bias. All vectors are in axes of frame 0; m, h, J, F and N are those of [`mass_matrix`](super::mass_matrix).
+//!
+//! ```text
+//! linear    p = [ m 1   -[h]×          F         ] v
+//! angular   L = [ 0      J + [c]× [h]×  N - [c]× F ] v        c = h / m
+//! their rates at zero accelerations: f and n - c × f of the bias
+//! ```
+//!
+//! D. E. Orin, A. Goswami, S.-H. Lee, "Centroidal dynamics of a humanoid robot", 2013.
+
+use crate::formulate::ldlt::System;
+use crate::formulate::mass_matrix::OfBase;
+use crate::formulate::{Outputs, components};
+use crate::ir::{Builder, Name, Quantity, Symbol, Vector};
+
+/// Moments about the centre of mass of a robot.
+struct Centre<'s> {
+    builder: &'s Builder,
+    /// The centre of mass in frame 0, or of a robot without mass what is not finite.
+    position: Result<Vector<'s>, Symbol<'s>>,
+}
+
+impl<'s> Centre<'s> {
+    fn of(builder: &'s Builder, of_base: &OfBase<'s>) -> Self {
+        let position = builder.joint(0).within(Quantity::CentroidalMoment, || {
+            let inverse = builder.quotient(builder.entry(Name::scalar(Quantity::One, 0), 1.0), of_base.mass);
+            if of_base.mass.is_zero() { Err(inverse) } else { Ok(of_base.h * inverse) }
+        });
+        Self { builder, position }
+    }
+
+    /// The moment about it of a wrench that is about the origin of frame 0.
+    fn moment(&self, [force, moment]: [Vector<'s>; 2]) -> Vector<'s> {
+        let line = self.builder.joint(0);
+        line.within(Quantity::CentroidalMoment, || match self.position {
+            Ok(c) => moment - c.cross(force),
+            Err(infinite) => Vector([infinite; 3]),
+        })
+    }
+}
+
+/// The rows of the momentum; `of_base` has a column for each coordinate.
+pub(crate) fn momentum_matrix<'s>(builder: &'s Builder, system: &System<'_>, of_base: &OfBase<'s>) -> Outputs<'s> {
+    let centre = Centre::of(builder, of_base);
+    let columns: Vec<[Vector<'s>; 2]> = (0..system.size())
+        .map(|column| {
+            let [force, moment] = of_base.column(builder, column);
+            // a body that does not turn has no angular momentum about its centre
+            let about = if column < 3 { builder.no_vector() } else { centre.moment([force, moment]) };
+            [force, about]
+        })
+        .collect();
+    let places = (0..6).flat_map(|row| (0..system.size()).map(move |column| (row, column)));
+    let element = |(row, column): (usize, usize)| {
+        let of_matrix = system.name_of_element(row, column);
+        let quantity = if row < 3 { of_matrix.quantity } else { Quantity::CentroidalMoment };
+        let name = Name { quantity, ..of_matrix };
+        (name, builder.name(name, columns[column][row / 3].0[row % 3]))
+    };
+    places.map(element).collect()
+}
+
+/// The rate of the momentum, from the wrench on the base at zero accelerations.
+pub(crate) fn bias<'s>(builder: &'s Builder, of_base: &OfBase<'s>, [force, moment]: [Vector<'s>; 2]) -> Outputs<'s> {
+    let about = Centre::of(builder, of_base).moment([force, moment]);
+    let about = builder.name_vector(Quantity::CentroidalMoment, 0, about);
+    let parts = [(Quantity::BaseForce, force), (Quantity::CentroidalMoment, about)];
+    parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)).collect()
+}
