@@ -161,13 +161,14 @@ fn rigid<'s>(
     let (s, zero) = (full(s), builder.zero());
     let [x, y, z] = h.0;
     let gradient = Gradient::new(omega, builder.no_vector());
-    let bias = Wrench { force: gradient.of(h), moment: antisymmetric_of(&gradient, &s) };
     Articulated {
         // J = tr(S) 1 - S
         angular: [s[1][1] + s[2][2], s[0][0] + s[2][2], s[0][0] + s[1][1], -s[0][1], -s[0][2], -s[1][2]],
         mixed: [[zero, -z, y], [z, zero, -x], [-y, x, zero]],
         linear: [m, m, m, zero, zero, zero],
-        bias: at_tips.map_or(bias, |at_tips| bias.plus(at_tips)),
+        bias: at_tips
+            .into_iter()
+            .fold(Wrench { force: gradient.of(h), moment: antisymmetric_of(&gradient, &s) }, Wrench::plus),
     }
 }
 
@@ -199,7 +200,7 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
     let (stations, floating) = (stations(arm, Number::ONE), arm.joint_frames.base.map(|_| motion_of_base(arm)));
-    let tips = tip_wrenches(arm);
+    let tips = tip_wrenches(arm, |_| Number::ONE);
     let grouped = |index: usize| arm.is_grouped(index);
     let mut pivots = Vec::with_capacity(dof);
     // on a link: in its axes or, behind a parallel axis, in N of its group

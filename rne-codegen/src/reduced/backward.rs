@@ -68,7 +68,7 @@ pub(crate) fn inward<'s>(
     payload: Option<Load<'s>>,
 ) -> (Vec<Carried<'s>>, Vec<Child<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
-    let tips = tip_wrenches(arm);
+    let tips = tip_wrenches(arm, |link| arm.parameters.mu[link]);
     let mut found = Vec::with_capacity(rows.len());
     let mut children: Vec<Child<'s>> = Vec::new();
     for index in (0..rows.len()).rev() {
@@ -77,7 +77,6 @@ pub(crate) fn inward<'s>(
         let carries_tip = index == arm.joint_frames.tip().on;
         let at_tips = tips.iter().filter(|(on, _)| *on == index).map(|(_, wrench)| *wrench);
         let tip = at_tips.reduce(Wrench::plus);
-        let tip = tip.map(|tip| Wrench { force: tip.force.times(arm.parameters.mu[index]), ..tip });
         let nothing = Wrench::zero(builder);
         let ((torque, next), own, unturned) = if arm.is_spin(index) {
             (spin(arm, index, link, tip), nothing, nothing)
@@ -116,16 +115,17 @@ pub(crate) fn inward<'s>(
     (found, children)
 }
 
-/// The wrench that the link of each tip exerts there, about the origin of its frame and in its axes; with the link. No
-/// force is scaled.
-pub(crate) fn tip_wrenches<'s>(arm: &Arm<'_, 's>) -> Vec<(usize, Wrench<'s>)> {
+/// The wrench that the link of each tip exerts there, about the origin of its frame and in its axes; with the link.
+/// Forces are multiplied by the scale of the link.
+pub(crate) fn tip_wrenches<'s>(arm: &Arm<'_, 's>, scale: impl Fn(usize) -> Number) -> Vec<(usize, Wrench<'s>)> {
     let builder = arm.builder;
     let at_origin = |(tip, [force, moment]): (&Tip, [Vector<'s>; 2])| {
         let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
         let origin_shift = arm.parameters.origin_shifts[tip.on];
         let [x, y, z] = tip.translation;
-        let wrench = Wrench { force: turned(force), moment: turned(moment) };
-        (tip.on, wrench.about(builder.vector([x, y, z - origin_shift])))
+        let wrench =
+            Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - origin_shift]));
+        (tip.on, Wrench { force: wrench.force.times(scale(tip.on)), ..wrench })
     };
     arm.wrenches().into_iter().map(at_origin).collect()
 }
