@@ -6,6 +6,7 @@
 //!          A, B, C less U Uᵀ/D;   (n°, f°) plus what the velocities do to these, plus U u/D
 //! moved:   B' = B + [p]× C,  A' = A - B' [p]× + [p]× Bᵀ
 //! outward: q̈ = (u - U · (ω̇' + q̇ ω' × z, a'))/D
+//! a base that nothing holds:   A ω̇ + B a = -n°,   Bᵀ ω̇ + C a = -f°
 //! ```
 //!
 //! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), chapter 7, in accelerations of points instead of
@@ -13,8 +14,11 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::ir::{ExactAngle, Number, Quantity, Symbol, Vector, square};
-use crate::reduced::backward::antisymmetric_of;
+use crate::coordinates::Coordinates;
+use crate::formulate::ldlt::{self, System};
+use crate::ir::{Builder, ExactAngle, Number, Quantity, Symbol, Vector, square};
+use crate::reduced::backward::{antisymmetric_of, tip_wrenches};
+use crate::reduced::forward::motion_of_base;
 use crate::reduced::inward::full;
 use crate::reduced::rnea_derivatives::{matter, stations};
 use crate::reduced::{
@@ -146,27 +150,57 @@ impl<'s> Articulated<'s> {
     }
 }
 
-/// The link alone.
-fn rigid<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> Articulated<'s> {
-    let builder = arm.builder;
-    let Composite { mass: m, h, s, .. } = Composite::of_link(arm, index, &matter(arm, index));
+/// A body alone, which turns with ω and exerts a wrench at its tips.
+fn rigid<'s>(
+    builder: &'s Builder,
+    body: &Composite<'s>,
+    omega: Vector<'s>,
+    at_tips: Option<Wrench<'s>>,
+) -> Articulated<'s> {
+    let Composite { mass: m, h, s, .. } = *body;
     let (s, zero) = (full(s), builder.zero());
     let [x, y, z] = h.0;
-    let gradient = Gradient::new(station.own.omega, builder.no_vector());
+    let gradient = Gradient::new(omega, builder.no_vector());
     Articulated {
         // J = tr(S) 1 - S
         angular: [s[1][1] + s[2][2], s[0][0] + s[2][2], s[0][0] + s[1][1], -s[0][1], -s[0][2], -s[1][2]],
         mixed: [[zero, -z, y], [z, zero, -x], [-y, x, zero]],
         linear: [m, m, m, zero, zero, zero],
-        bias: Wrench { force: gradient.of(h), moment: antisymmetric_of(&gradient, &s) },
+        bias: at_tips
+            .into_iter()
+            .fold(Wrench { force: gradient.of(h), moment: antisymmetric_of(&gradient, &s) }, Wrench::plus),
     }
 }
 
-/// The accelerations of the joints.
-pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
+/// How a base that nothing holds accelerates, from its resistance.
+fn of_base<'s>(arm: &Arm<'_, 's>, omega: Vector<'s>, whole: &Articulated<'s>) -> Accelerated<'s> {
+    let builder = arm.builder;
+    let [xx, yy, zz, xy, xz, yz] = whole.linear;
+    let [jxx, jyy, jzz, jxy, jxz, jyz] = whole.angular;
+    let [x, y, z] = transposed(&whole.mixed);
+    let upper = [
+        [&[xx, xy, xz], &x[..]].concat(),
+        [&[yy, yz], &y[..]].concat(),
+        [&[zz], &z[..]].concat(),
+        vec![jxx, jxy, jxz],
+        vec![jyy, jyz],
+        vec![jzz],
+    ];
+    let coordinates = Coordinates::of_free_joints(0);
+    let system = System::new(builder.function, &coordinates, std::iter::empty());
+    let needed = whole.bias.force.0.into_iter().chain(whole.bias.moment.0);
+    let rest: Vec<_> = needed.map(|x| -x).collect();
+    let x = ldlt::solved(builder, &system, &upper, &rest);
+    let part = |from: usize| Vector([0, 1, 2].map(|axis| x[from + axis]));
+    Accelerated { omega, omega_dot: part(3), acceleration: part(0) }
+}
+
+/// The accelerations of a base that nothing holds, linear and angular, and those of the joints.
+pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]>, Vec<Symbol<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
-    let stations = stations(arm, Number::ONE);
+    let (stations, floating) = (stations(arm, Number::ONE), arm.joint_frames.base.map(|_| motion_of_base(arm)));
+    let tips = tip_wrenches(arm, |_| Number::ONE);
     let grouped = |index: usize| arm.is_grouped(index);
     let mut pivots = Vec::with_capacity(dof);
     // on a link: in its axes or, behind a parallel axis, in N of its group
@@ -182,18 +216,24 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
                 behind.iter().filter(move |(of, _)| rows[*of].parent == Some(index) && grouped(*of) == unturned);
             behind.map(|(_, body)| *body)
         };
-        let own = rigid(arm, index, station).with(carried(false));
+        let at_tips = tips.iter().filter(|(on, _)| *on == index).map(|(_, wrench)| *wrench).reduce(Wrench::plus);
+        let body = Composite::of_link(arm, index, &matter(arm, Some(index)));
+        let own = rigid(builder, &body, station.own.omega, at_tips).with(carried(false));
         let here = if row.kind == Revolute { own.turned(turn).with(carried(true)) } else { own };
         let (given, pivot) = here.released(arm, index, station);
         pivots.push(pivot);
         // the point of the parent at this joint's origin moves on to the origin of the parent's frame
         let omega = station.before.omega;
-        let Some(parent) = row.parent.map(|parent| &stations[parent]) else { continue };
+        let (parent_turn, parent_omega) = match (row.parent, floating) {
+            (Some(parent), _) => (stations[parent].turn, stations[parent].own.omega),
+            (None, Some(base)) => (builder.fixed_turn(ExactAngle::NONE), base.omega),
+            (None, None) => continue,
+        };
         let moved = match row.kind {
-            Revolute if grouped(index) => given.moved(parent.turn.about_z(offset) + builder.along_z(d), omega),
+            Revolute if grouped(index) => given.moved(parent_turn.about_z(offset) + builder.along_z(d), omega),
             Revolute => {
                 let given = twist.turns().fold(given.moved(builder.along_z(d), omega), Articulated::turned);
-                given.moved(offset, parent.own.omega)
+                given.moved(offset, parent_omega)
             }
             Prismatic => {
                 let q = arm.position(index) + builder.number(d);
@@ -204,13 +244,19 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
                     let given = given.turned(Turned::AboutZ(builder.fixed_turn(row.theta)));
                     twist.turns().fold(given, Articulated::turned)
                 };
-                given.moved(offset, parent.own.omega)
+                given.moved(offset, parent_omega)
             }
         };
         behind.push((index, moved));
     }
     pivots.reverse();
-    outward(arm, &stations, &pivots)
+    let base = floating.map(|base| {
+        builder.at(Quantity::ReducedForce, 0);
+        let body = Composite::of_matter(builder, &matter(arm, None));
+        let carried = behind.iter().filter(|(of, _)| rows[*of].parent.is_none()).map(|(_, body)| *body);
+        of_base(arm, base.omega, &rigid(builder, &body, base.omega, None).with(carried))
+    });
+    (base.map(|base| [base.acceleration, base.omega_dot]), outward(arm, base, &stations, &pivots))
 }
 
 /// How a link accelerates, in some axes.
@@ -235,8 +281,13 @@ impl<'s> Outward<'s> for Accelerated<'s> {
     }
 }
 
-/// The way out: each joint's acceleration from that of its parent.
-fn outward<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>], pivots: &[Pivot<'s>]) -> Vec<Symbol<'s>> {
+/// The way out: each joint's acceleration from that of its parent, or of a base that nothing holds.
+fn outward<'s>(
+    arm: &Arm<'_, 's>,
+    floating: Option<Accelerated<'s>>,
+    stations: &[JointMotion<'s>],
+    pivots: &[Pivot<'s>],
+) -> Vec<Symbol<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let zeros = builder.no_vector();
     let mut links: Vec<Link<'s>> = Vec::with_capacity(rows.len());
@@ -247,7 +298,8 @@ fn outward<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>], pivots: &[Pivot<
             links[parent]
         } else {
             let gravity = builder.vector(arm.joint_frames.gravity[index].map(|g| -g));
-            let base = Accelerated { omega: zeros, omega_dot: zeros, acceleration: gravity };
+            let held = Accelerated { omega: zeros, omega_dot: zeros, acceleration: gravity };
+            let base = floating.unwrap_or(held);
             (base, base, builder.fixed_turn(ExactAngle::NONE))
         };
         let before = arm.outward(index, last, last_unturned, last_turn);

@@ -86,10 +86,9 @@ impl Algorithm {
             | Function::InverseDynamicsDerivativesWithPayload
             | Function::ForwardDynamicsWithWrenches
             | Function::FloatingMassMatrix
-            | Function::FloatingForwardDynamics
             | Function::CentroidalMomentumMatrix
             | Function::CentroidalBias => &[BY_GROUPS, BY_JOINTS],
-            Function::ForwardDynamicsWithPayload => &[
+            Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
                 Algorithm::Aba(ExpressedIn::GroupFrame),
@@ -190,7 +189,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
         }
         (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &system(), &upper_half()),
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
-            by_joint(Quantity::RateDot, aba::forward_dynamics(arm))
+            by_joint(Quantity::RateDot, aba::forward_dynamics(arm).1)
         }
         (
             Function::ForwardDynamics | Function::ForwardDynamicsWithPayload | Function::ForwardDynamicsWithWrenches,
@@ -241,6 +240,13 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
         ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
         (Function::InverseDynamicsOfFloatingBase | Function::FloatingBias, _) => of_floating_base(),
         (Function::FloatingMassMatrix, _) => formulate::floating_mass_matrix(builder, &system(), &floating_half()?),
+        (Function::FloatingForwardDynamics, Algorithm::Aba(_)) => {
+            let (of_base, of_joints) = aba::forward_dynamics(arm);
+            let [linear, angular] = of_base?;
+            let of_base = linear.0.into_iter().chain(angular.0).enumerate();
+            let named = of_base.map(|(row, x)| (system().name(Quantity::RateDot, row), x)).collect();
+            [named, by_joint(Quantity::RateDot, of_joints)].concat()
+        }
         (Function::FloatingForwardDynamics, _) => {
             formulate::floating_forward_dynamics(builder, &system(), &floating_half()?, of_floating_base())
         }

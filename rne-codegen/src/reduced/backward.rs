@@ -68,7 +68,7 @@ pub(crate) fn inward<'s>(
     payload: Option<Load<'s>>,
 ) -> (Vec<Carried<'s>>, Vec<Child<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
-    let tips = tip_wrenches(arm);
+    let tips = tip_wrenches(arm, |link| arm.parameters.mu[link]);
     let mut found = Vec::with_capacity(rows.len());
     let mut children: Vec<Child<'s>> = Vec::new();
     for index in (0..rows.len()).rev() {
@@ -116,7 +116,8 @@ pub(crate) fn inward<'s>(
 }
 
 /// The wrench that the link of each tip exerts there, about the origin of its frame and in its axes; with the link.
-fn tip_wrenches<'s>(arm: &Arm<'_, 's>) -> Vec<(usize, Wrench<'s>)> {
+/// Forces are multiplied by the scale of the link.
+pub(crate) fn tip_wrenches<'s>(arm: &Arm<'_, 's>, scale: impl Fn(usize) -> Number) -> Vec<(usize, Wrench<'s>)> {
     let builder = arm.builder;
     let at_origin = |(tip, [force, moment]): (&Tip, [Vector<'s>; 2])| {
         let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
@@ -124,7 +125,7 @@ fn tip_wrenches<'s>(arm: &Arm<'_, 's>) -> Vec<(usize, Wrench<'s>)> {
         let [x, y, z] = tip.translation;
         let wrench =
             Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - origin_shift]));
-        (tip.on, Wrench { force: wrench.force.times(arm.parameters.mu[tip.on]), ..wrench })
+        (tip.on, Wrench { force: wrench.force.times(scale(tip.on)), ..wrench })
     };
     arm.wrenches().into_iter().map(at_origin).collect()
 }

@@ -40,7 +40,7 @@ impl<'s> Composite<'s> {
         arm.payload_on(index).map_or(own, |payload| own.plus(payload.matter(arm)))
     }
 
-    fn of_matter(builder: &'s Builder, matter: &PseudoInertia) -> Self {
+    pub(crate) fn of_matter(builder: &'s Builder, matter: &PseudoInertia) -> Self {
         let s = matter.second_moments().map(|x| builder.number(x));
         Self { mass: builder.number(matter.mass), h: builder.vector(matter.h), s, around: None }
     }

@@ -228,7 +228,7 @@ impl<'s> Arm<'_, 's> {
         match row.kind {
             Revolute if self.is_grouped(index) => unturned.at(turn.about_z(offset) + builder.along_z(d)),
             // the base is at the joint
-            Revolute if row.parent.is_none() => last.turned_back(|v| twist.back(v)),
+            Revolute if self.joint_frames.carrier(index).is_none() => last.turned_back(|v| twist.back(v)),
             Revolute => last.at(offset).turned_back(|v| twist.back(v)).at(builder.along_z(d)),
             Prismatic => {
                 let theta = builder.fixed_turn(row.theta);

@@ -28,6 +28,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::antisymmetric_of;
+use crate::reduced::forward::motion_of_base;
 use crate::reduced::inward::{Carried, Loads, full};
 use crate::reduced::{
     Arm, Body, Composite, Gradient, Gyrostat, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench,
@@ -211,7 +212,7 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     for index in (0..dof).rev() {
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
-        let own = own(Composite::of_link(arm, index, &matter(arm, index)), &station.own);
+        let own = own(Composite::of_link(arm, index, &matter(arm, Some(index))), &station.own);
         let own = row.gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, &station.own, factor));
         // everything in frame N of this joint
         let (mut load, turn) = (loads.take(index), (row.kind == Revolute).then_some(station.turn));
@@ -243,17 +244,17 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     found
 }
 
-/// The matter of a link. A last link that is a spinning sphere is one again: what the link before was given for it is
+/// The matter of a link, or of a base that nothing holds. A last link that is a spinning sphere is one again: what the link before was given for it is
 /// taken back.
-pub(crate) fn matter(arm: &Arm<'_, '_>, index: usize) -> PseudoInertia {
-    let mut matter = arm.parameters.links[index];
+pub(crate) fn matter(arm: &Arm<'_, '_>, link: Option<usize>) -> PseudoInertia {
+    let mut matter = link.map_or(arm.parameters.base, |link| arm.parameters.links[link]);
     let Some(c) = arm.parameters.sphere else { return matter };
     let half = c * Number::integer(2).inverse().unwrap_or_default();
     let rows = arm.rows();
-    if arm.is_spin(index) {
+    if link.is_some_and(|link| arm.is_spin(link)) {
         matter = PseudoInertia::default();
         (0..3).for_each(|k| matter.s[k][k] = half);
-    } else if rows.last().is_some_and(|last| last.parent == Some(index)) {
+    } else if rows.last().is_some_and(|last| last.parent == link) {
         (0..3).for_each(|k| matter.s[k][k] = matter.s[k][k] - half);
     }
     matter
@@ -264,6 +265,7 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion
     let (builder, rows) = (arm.builder, arm.rows());
     let (zeros, zero) = (builder.no_vector(), builder.zero());
     let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
+    let floating = arm.joint_frames.base.map(|_| motion_of_base(arm));
     let mut stations: Vec<JointMotion<'s>> = Vec::with_capacity(rows.len());
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::Omega, index + 1);
@@ -272,11 +274,14 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion
             let parent = &stations[parent];
             (parent.own, parent.unturned, parent.turn)
         } else {
+            let gravity = builder.vector(arm.joint_frames.gravity[index].map(|g| -g));
+            // a base that nothing holds has accelerations of its own
+            let (omega, acceleration) = floating.map_or((zeros, gravity), |base| (base.omega, zeros));
             let base = Motion {
-                omega: zeros,
+                omega,
                 omega_dot: zeros,
-                acceleration: builder.vector(arm.joint_frames.gravity[index].map(|g| -g)),
-                twice_omega: zeros,
+                acceleration,
+                twice_omega: omega.times(factor),
                 twice_velocity: zeros,
             };
             (base, base, still)
