@@ -175,7 +175,7 @@ impl<'r> Compiler<'r> {
             let (algorithm, choices) = (rewritten.algorithm, rewritten.choices());
             return Ok(Program { algorithm, choices, is_rewritten: true, ..program });
         }
-        if !Algorithm::is_planned_for(function, robot) {
+        if !Algorithm::is_planned(function) {
             return Ok(self.numbered(function, reference, Vec::new()));
         }
         let plans = self.plans();

@@ -109,7 +109,7 @@ pub fn search(
 
 /// Operations of a function by the plan alone, without rewriting.
 fn without_rewriting(robot: &Robot, reduced: &Reduced, function: Function) -> Result<Cost, CompileError> {
-    if !Algorithm::is_planned_for(function, robot) {
+    if !Algorithm::is_planned(function) {
         return Ok(Formulation::numbered(robot, function).cost());
     }
     let (plan, algorithm) = PlanSet::from(reduced.plan.clone()).cheapest(robot, function);
@@ -151,7 +151,7 @@ fn explore(search: &mut Exploration<'_>, seed: u64, share: f64, clock: Clock<'_>
 
 /// The best plans for a function, of those that the search met.
 fn candidates(robot: &Robot, function: Function, search: &mut Exploration<'_>) -> Vec<Rewritten> {
-    if !Algorithm::is_planned_for(function, robot) {
+    if !Algorithm::is_planned(function) {
         return vec![Rewritten::default()];
     }
     // those of the torques differ little; what the plan means to another function, its algorithm hides

@@ -125,7 +125,7 @@ impl Function {
     #[must_use]
     pub fn of_plan(robot: &Robot) -> Self {
         match robot.floating_base {
-            Some(_) if !robot.has_spinning_rotors() => Self::InverseDynamicsOfFloatingBase,
+            Some(_) => Self::InverseDynamicsOfFloatingBase,
             _ => Self::InverseDynamics,
         }
     }

@@ -199,7 +199,8 @@ fn of_base<'s>(arm: &Arm<'_, 's>, omega: Vector<'s>, whole: &Articulated<'s>) ->
 pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]>, Vec<Symbol<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
-    let (stations, floating) = (stations(arm, Number::ONE), arm.joint_frames.base.map(|_| motion_of_base(arm)));
+    let (stations, floating) =
+        (stations(arm, Number::ONE), arm.joint_frames.base.as_ref().map(|_| motion_of_base(arm)));
     let tips = tip_wrenches(arm, |_| Number::ONE);
     let grouped = |index: usize| arm.is_grouped(index);
     let mut pivots = Vec::with_capacity(dof);

@@ -52,13 +52,6 @@ impl Algorithm {
         !Self::of(function).is_empty()
     }
 
-    /// Whether the choices of a plan matter to a function of a robot. A rotor of the list `motors` turns with a base
-    /// that nothing holds, which no recursion of the reduced form has.
-    #[must_use]
-    pub fn is_planned_for(function: Function, robot: &Robot) -> bool {
-        Self::is_planned(function) && !(function.is_of_floating_base() && robot.has_spinning_rotors())
-    }
-
     /// The ways of a function; none for what has no reduced recursion.
     #[must_use]
     pub const fn of(function: Function) -> &'static [Self] {

@@ -36,7 +36,7 @@ type Axes = (Option<usize>, Square);
 pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>> {
     let rows = &joint_frames.rows;
     // that of a base that nothing holds, which stands behind the links
-    let of_base = joint_frames.base.map(|_| Some((rows.len(), IDENTITY)));
+    let of_base = joint_frames.base.as_ref().map(|_| Some((rows.len(), IDENTITY)));
     if joint_frames.coordinates.is_every_joint() {
         return (0..rows.len()).map(|index| Some((index, IDENTITY))).chain(of_base).collect();
     }
@@ -52,7 +52,7 @@ pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>
         }
         let (at, rotation) = attitude(joint_frames, &mut attitudes, index, of_parent);
         axes.push((at, rotation));
-        let holder = at.map(|at| attitudes[at].first).or_else(|| joint_frames.base.map(|_| rows.len()));
+        let holder = at.map(|at| attitudes[at].first).or_else(|| joint_frames.base.as_ref().map(|_| rows.len()));
         holders.push(holder.map(|holder| (holder, rotation)));
     }
     holders.extend(of_base);

@@ -48,6 +48,11 @@ pub(crate) fn torques_of_floating_base<'s>(arm: &Arm<'_, 's>) -> (Wrench<'s>, Ve
     name_matter(builder, 0, matter);
     let mut wrench = first_moment(builder, matter, (lambda, mu), &motion, builder.vector(matter.h));
     wrench.moment = wrench.moment + second_moment(builder, matter, &motion, arm.plan.base_moment);
+    let gyrostats = arm.joint_frames.base.iter().flat_map(|base| &base.gyrostats);
+    let wrench = gyrostats.fold(wrench, |wrench, gyrostat| {
+        let moment = wrench.moment + gyrostat.moment(arm, motion.omega);
+        Wrench { moment, ..wrench }
+    });
     let wrench = wrench.plus(gathered(builder, children.iter().map(|child| (child.wrench, child.arm)).collect()));
     let per_force = mu.inverse().unwrap_or(Number::ONE);
     (Wrench { force: wrench.force.times(per_force), ..wrench }, carried.into_iter().map(|it| it.torque).collect())
@@ -102,7 +107,10 @@ pub(crate) fn inward<'s>(
         };
         builder.at(Quantity::Torque, index + 1);
         let torque = torque + arm.rate_dot(index).times(arm.joint_frames.rotors[index]);
-        let of_rotors = resistance(arm, index, |link| moved[link].own.omega_dot);
+        let of_rotors = resistance(arm, index, |link| match link {
+            Some(link) => moved[link].own.omega_dot,
+            None => motion_of_base(arm).omega_dot,
+        });
         let more = [of_other_joints(arm, index), of_rotors].into_iter().flatten();
         let torque = more.fold(torque, |torque, more| torque + more);
         let torque = if rows[index].reversed { -torque } else { torque };

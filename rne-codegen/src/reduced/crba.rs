@@ -16,7 +16,9 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::formulate::mass_matrix::OfBase;
 use crate::formulate::torque_by;
 use crate::reduced::inward::{Carried, LoadOfLink, Loads};
-use crate::reduced::{Arm, Body, FirstMoment, Inward, JointFrame, PseudoInertia, Symmetric, Turned, Twist, Wrench};
+use crate::reduced::{
+    Arm, Body, Carrier, FirstMoment, Inward, JointFrame, PseudoInertia, Symmetric, Turned, Twist, Wrench,
+};
 
 pub(crate) use crate::reduced::inward::ExpressedIn;
 
@@ -209,7 +211,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Optio
             loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
     }
-    let of_base = arm.joint_frames.base.map(|_| of_base(arm, loads.take(dof)));
+    let of_base = arm.joint_frames.base.as_ref().map(|base| of_base(arm, base, loads.take(dof)));
     let coupled = |row: usize, column: usize| {
         let found = arm.joint_frames.coupled.iter().find(|(i, j, _)| (*i, *j) == (row, column));
         found.map(|(.., element)| *element)
@@ -225,12 +227,15 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Optio
 }
 
 /// The rows of a base that nothing holds, in its axes and about its origin, from what its joints carry.
-fn of_base<'s>(arm: &Arm<'_, 's>, mut load: LoadOfLink<Composite<'s>, Column<'s>>) -> OfBase<'s> {
+fn of_base<'s>(arm: &Arm<'_, 's>, base: &Carrier, mut load: LoadOfLink<Composite<'s>, Column<'s>>) -> OfBase<'s> {
     let (builder, rows) = (arm.builder, arm.rows());
     builder.at(Quantity::BaseForce, 0);
     let Composite { mass, h, s, .. } = load.with_link(Composite::of_matter(builder, &arm.parameters.base));
     let [xx, yy, zz, xy, xz, yz] = s;
-    let columns = load.columns(None);
+    let mut columns = load.columns(None);
+    for column in base.gyrostats.iter().flat_map(|gyrostat| gyrostat.columns(arm)) {
+        gather(&mut columns, column);
+    }
     let column = |(index, row): (usize, &JointFrame)| {
         let own = columns.iter().filter(|(of, _)| *of == index).map(|(_, wrench)| *wrench);
         let Wrench { force, moment } = own.reduce(Wrench::plus).unwrap_or_else(|| Wrench::zero(builder));

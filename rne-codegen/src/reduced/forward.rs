@@ -205,7 +205,7 @@ pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
 /// The motion of all links.
 pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
     let zeros = arm.builder.no_vector();
-    let floating = arm.joint_frames.base.map(|_| motion_of_base(arm));
+    let floating = arm.joint_frames.base.as_ref().map(|_| motion_of_base(arm));
     let mut moved: Vec<Moved<'s>> = Vec::with_capacity(arm.rows().len());
     for (index, row) in arm.rows().iter().enumerate() {
         let before = match (row.parent, floating) {

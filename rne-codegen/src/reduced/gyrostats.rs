@@ -83,12 +83,20 @@ impl Parallel {
     }
 }
 
-/// Puts the rotors of a robot into its rows, and their constants into `rotors`, the diagonal of C. What is left are the
-/// elements of C above it. `None` where a number has no inverse.
+/// A base that nothing holds: it carries rotors as a link does.
+#[derive(Clone, Debug)]
+pub(crate) struct Carrier {
+    pub(crate) matter: PseudoInertia,
+    /// The rotors on it that are not part of its matter.
+    pub(crate) gyrostats: Vec<Gyrostat>,
+}
+
+/// Puts the rotors of a robot into its rows and into its base, if nothing holds that, and their constants into
+/// `rotors`, the diagonal of C. What is left are the elements of C above it. `None` where a number has no inverse.
 pub(crate) fn put_rotors(
     robot: &Robot,
     embedding: Embedding,
-    rows: &mut [JointFrame],
+    (rows, mut base): (&mut [JointFrame], Option<&mut Carrier>),
     rotors: &mut [Number],
 ) -> Option<Vec<(usize, usize, Number)>> {
     let mut elements = Elements::new();
@@ -112,26 +120,36 @@ pub(crate) fn put_rotors(
                 add(&mut elements, [joint, other], if joint == other { element + element } else { element });
             }
         }
-        // the base does not turn
-        if let Some(root) = parallel.root {
+        // a base that the world holds does not turn
+        if parallel.root.is_some() || base.is_some() {
             for (link, share) in parallel.shares(rows, &along)? {
                 let share = share * inertia;
                 add_square(&mut elements, &parallel.spin(rows, Some(link)), -share);
                 let of_link = [Number::ZERO, Number::ZERO, parallel.along[link]?];
                 rows[link].matter = rows[link].matter + PseudoInertia::about(of_link, share, half);
-                rows[root].matter = rows[root].matter + PseudoInertia::about(parallel.axis, -share, half);
+                let root = match (parallel.root, &mut base) {
+                    (Some(root), _) => Some(&mut rows[root].matter),
+                    (None, base) => base.as_mut().map(|base| &mut base.matter),
+                };
+                if let Some(root) = root {
+                    *root = *root + PseudoInertia::about(parallel.axis, -share, half);
+                }
             }
         }
-        if let Some(on) = rotor.on.filter(|_| !others.is_empty()) {
+        let gyrostats = match (rotor.on, &mut base) {
+            (Some(on), _) => Some(&mut rows[on].gyrostats),
+            (None, base) => base.as_mut().map(|base| &mut base.gyrostats),
+        };
+        if let Some(gyrostats) = gyrostats.filter(|_| !others.is_empty()) {
             let turns = others.into_iter().map(|(joint, n)| (joint, n * inertia)).collect();
-            rows[on].gyrostats.push(Gyrostat { axis, turns });
+            gyrostats.push(Gyrostat { axis, turns });
         }
     }
     let mut above = Vec::new();
     for ((row, column), element) in elements.into_iter().filter(|(_, element)| !element.is_zero()) {
         if row != column {
             above.push((row, column, element));
-        } else if rows[row].parent.is_none() && rows[row].kind == Revolute {
+        } else if rows[row].parent.is_none() && base.is_none() && rows[row].kind == Revolute {
             // the same as an inertia of the first link about its joint
             rows[row].matter =
                 rows[row].matter + PseudoInertia::about([Number::ZERO, Number::ZERO, Number::ONE], element, half);
@@ -184,15 +202,17 @@ impl Gyrostat {
     }
 }
 
-/// The part of the rotors on links in the torque of a joint, in the direction of its row: Σ n Jm a · y, with the
-/// angular accelerations y of the links.
+/// The part of the rotors in the torque of a joint, in the direction of its row: Σ n Jm a · y, with the angular
+/// accelerations y of the links that carry them; `None` is a base that nothing holds.
 pub(crate) fn resistance<'s>(
     arm: &Arm<'_, 's>,
     joint: usize,
-    of_link: impl Fn(usize) -> Vector<'s>,
+    of_link: impl Fn(Option<usize>) -> Vector<'s>,
 ) -> Option<Symbol<'s>> {
-    let on_links = arm.rows().iter().enumerate().flat_map(|(link, row)| row.gyrostats.iter().map(move |it| (link, it)));
-    let terms = on_links.filter_map(|(link, gyrostat)| {
+    let links = arm.rows().iter().enumerate().map(|(link, row)| (Some(link), &row.gyrostats));
+    let base = arm.joint_frames.base.iter().map(|base| (None, &base.gyrostats));
+    let all = base.chain(links).flat_map(|(link, gyrostats)| gyrostats.iter().map(move |it| (link, it)));
+    let terms = all.filter_map(|(link, gyrostat)| {
         let (_, n) = *gyrostat.turns.iter().find(|(other, _)| *other == joint)?;
         let along = arm.builder.vector(gyrostat.axis.map(|x| x * n)).dot(of_link(link));
         Some(along.signed(arm.rows()[joint].reversed))

@@ -11,7 +11,7 @@ use rne_model::{Convention, FixedFrame, Joint, JointKind, Link, Motor, QuarterTu
 
 use crate::coordinates::Coordinates;
 use crate::ir::{Embedding, ExactAngle, Number};
-use crate::reduced::gyrostats::put_rotors;
+use crate::reduced::gyrostats::{Carrier, put_rotors};
 use crate::reduced::link_parameters::{about_x, about_z, apply, compose, transpose};
 use crate::reduced::{Gyrostat, IDENTITY, PseudoInertia, Square, Triple};
 
@@ -70,7 +70,7 @@ pub(crate) struct JointFrames {
     /// Sines and cosines of the constant angles of the file, none negative.
     pub(crate) known: Vec<Number>,
     /// The matter of a base that nothing holds, about the origin of frame 0 and in its axes.
-    pub(crate) base: Option<PseudoInertia>,
+    pub(crate) base: Option<Carrier>,
 }
 
 /// Choices that change the rows themselves.
@@ -140,10 +140,6 @@ impl JointFrames {
     /// each must have a root for every one that is wanted, and value and image of every number must agree about what is
     /// zero.
     pub(crate) fn new(robot: &Robot, frames: FrameChoice) -> Option<Self> {
-        if frames.floating && robot.has_spinning_rotors() {
-            // a rotor would turn with the base
-            return None;
-        }
         if frames == (FrameChoice { floating: frames.floating, ..FrameChoice::default() })
             && let Some(joint_frames) = Self::read(robot, frames, Embedding::default())
         {
@@ -169,7 +165,7 @@ impl JointFrames {
     /// The link that carries a joint, counted from 0: the number of links for a base that nothing holds, `None` for a
     /// base that the world holds.
     pub(crate) fn carrier(&self, index: usize) -> Option<usize> {
-        self.rows[index].parent.or_else(|| self.base.map(|_| self.rows.len()))
+        self.rows[index].parent.or_else(|| self.base.as_ref().map(|_| self.rows.len()))
     }
 
     /// The same rows where nothing weighs.
@@ -199,10 +195,7 @@ impl JointFrames {
     }
 
     fn read(robot: &Robot, frames: FrameChoice, embedding: Embedding) -> Option<Self> {
-        let mut joint_frames = Self::as_written(robot, embedding)?;
-        if frames.floating {
-            joint_frames.base = Some(matter_of_base(robot, embedding));
-        }
+        let mut joint_frames = Self::as_written(robot, frames.floating, embedding)?;
         joint_frames.straighten();
         joint_frames.turn_carriers();
         if !frames.floating {
@@ -220,7 +213,7 @@ impl JointFrames {
     }
 
     /// `None` where the reading has no root for the axes of a branch.
-    fn as_written(robot: &Robot, embedding: Embedding) -> Option<Self> {
+    fn as_written(robot: &Robot, floating: bool, embedding: Embedding) -> Option<Self> {
         let decimal = |x: f64| embedding.decimal(x);
         let half = decimal(0.5);
         let none = (ExactAngle::NONE, Number::ZERO);
@@ -287,11 +280,12 @@ impl JointFrames {
         let rotor = |motor: Motor| decimal(motor.gear_ratio) * decimal(motor.gear_ratio) * decimal(motor.inertia);
         let of_arm = |joint: &Joint| joint.motor.filter(|_| robot.rotors).map(rotor).unwrap_or_default();
         let mut rotors: Vec<Number> = robot.joints.iter().map(of_arm).collect();
-        let coupled = put_rotors(robot, embedding, &mut rows, &mut rotors)?;
+        let mut base = floating.then(|| Carrier { matter: matter_of_base(robot, embedding), gyrostats: Vec::new() });
+        let coupled = put_rotors(robot, embedding, (&mut rows, base.as_mut()), &mut rotors)?;
         let gravity = robot.gravity.map(decimal);
         let of_base = |row: &JointFrame| if row.parent.is_none() { gravity } else { Triple::default() };
         let gravity = rows.iter().map(of_base).collect();
-        let (coordinates, base) = (Coordinates::of(robot), None);
+        let coordinates = Coordinates::of(robot);
         Some(Self { rows, coordinates, gravity, tips, rotors, coupled, embedding, known, base })
     }
 

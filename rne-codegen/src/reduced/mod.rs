@@ -31,7 +31,7 @@ pub(crate) use arguments::SymbolicTurn;
 pub(crate) use choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side};
 pub(crate) use crba::Composite;
 pub(crate) use forward::{Arm, Gradient, Motion, Moved, ScaledTwist, Twist};
-pub(crate) use gyrostats::Gyrostat;
+pub(crate) use gyrostats::{Carrier, Gyrostat};
 pub(crate) use inward::{Body, FirstMoment, Inward, Outward, Symmetric, Turned};
 pub(crate) use joint_frames::{FrameChoice, JointFrame, JointFrames};
 pub(crate) use link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};

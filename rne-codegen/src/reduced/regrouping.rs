@@ -127,7 +127,7 @@ fn regrouped(
         if origin_shift.is_zero() { row.matter } else { row.matter.moved([Number::ZERO, Number::ZERO, -*origin_shift]) }
     };
     let mut links: Vec<PseudoInertia> = rows.iter().zip(origin_shifts).map(slid).collect();
-    links.push(joint_frames.base.unwrap_or_default());
+    links.push(joint_frames.base.as_ref().map(|base| base.matter).unwrap_or_default());
     let mut sphere = None;
     let mut end = rows.len();
     if plan.gyrostat {
@@ -153,7 +153,7 @@ fn regrouped(
         links.add(index, PseudoInertia { s, ..PseudoInertia::default() });
     }
     // the base is the last of those that carry joints
-    for index in (0..end).rev().chain(joint_frames.base.map(|_| rows.len())) {
+    for index in (0..end).rev().chain(joint_frames.base.as_ref().map(|_| rows.len())) {
         let carried = |kind| {
             let is_carried = move |at: &usize| joint_frames.carrier(*at) == Some(index) && rows[*at].kind == kind;
             (0..end).rev().filter(is_carried)

@@ -265,7 +265,7 @@ pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion
     let (builder, rows) = (arm.builder, arm.rows());
     let (zeros, zero) = (builder.no_vector(), builder.zero());
     let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
-    let floating = arm.joint_frames.base.map(|_| motion_of_base(arm));
+    let floating = arm.joint_frames.base.as_ref().map(|_| motion_of_base(arm));
     let mut stations: Vec<JointMotion<'s>> = Vec::with_capacity(rows.len());
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::Omega, index + 1);
