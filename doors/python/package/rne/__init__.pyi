@@ -260,6 +260,21 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """Torques, and the wrench that must act on the base, when nothing holds the base and it moves as told."""
+    def floating_mass_matrix(
+        self, q: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The mass matrix of a robot whose base nothing holds, symmetric: six rows of the base, then the joints."""
+    def floating_bias(
+        self, q: Joints, qd: Joints, omega: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Wrench on a base that nothing holds and torques, for zero accelerations: velocity products and tips."""
+    def floating_forward_dynamics(
+        self, q: Joints, qd: Joints, tau: Joints, omega: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Accelerations of the base and of the joints for torques `tau`, when nothing holds the base."""
     # <!-- end -->
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,
