@@ -186,7 +186,8 @@ macro_rules! functions {
                 "Accelerations of the base and of the joints for torques `tau`, when nothing holds the base.",
                 "omega, wrenches: as in floating_bias; beside the wrenches, only gravity acts. base: acceleration of \
                  the origin of frame 0 less gravity (m/s²), which an accelerometer reads, and angular acceleration \
-                 (rad/s²), in axes of frame 0. qdd: of the joints.";
+                 (rad/s²), in axes of frame 0. qdd: of the joints. A base without mass makes the mass matrix \
+                 singular: the numbers mean nothing or are not finite.";
         }
     };
 }
