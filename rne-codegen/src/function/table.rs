@@ -252,7 +252,7 @@ const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
     format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
 });
 
-/// What must act on a base that nothing holds.
+/// The force and the moment that must act on a base that nothing holds.
 const ON_BASE: [Own; 2] = [
     Own::of(Quantity::BaseForce, |_| "force that must act on the base".to_owned()),
     Own::of(Quantity::BaseMoment, |_| "moment that must act on the base, about the origin of frame 0".to_owned()),
