@@ -46,9 +46,9 @@ pub type FloatingRows<T> = Matrix<T>;
 /// The acceleration of a base that nothing holds, and those of the joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatingAccelerations<T> {
-    /// Of the base, less gravity.
+    /// Acceleration of the base, less gravity.
     pub base: BaseAcceleration<T>,
-    /// Of the joints.
+    /// Accelerations of the joints.
     pub qdd: Vec<T>,
 }
 

@@ -432,8 +432,9 @@ pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
     /// The accelerations that follow from torques, where nothing but gravity and the wrenches at the tips acts on the
     /// robot. `omega` as in [`floating_bias`](Self::floating_bias).
     ///
-    /// A singular mass matrix (a massless base without joints that move mass) gives numbers that are not finite, and
-    /// never panics.
+    /// A base without mass, as that of a robot file without `floating_base`, can turn against its joints while no link
+    /// moves: the mass matrix is singular then, and the numbers mean nothing or are not finite. The function never
+    /// panics.
     #[must_use]
     fn floating_forward_dynamics<T: Scalar>(
         &self,

@@ -141,7 +141,9 @@ fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], count: usize) -> Se
     let mut seen = Seen::default();
     for (form, derived) in derived {
         let arm = arm.in_form(*form);
-        for function in Function::ALL {
+        // a base without mass may turn against its joints: the mass matrix is singular in every state
+        let is_solvable = |it: &Function| robot.floating_base.is_some() || *it != Function::FloatingForwardDynamics;
+        for function in Function::ALL.into_iter().filter(is_solvable) {
             let what = format!("{name}, {function}, {form}");
             let tolerance = TOLERANCES[usize::from(function.divides().is_some())];
             let program = compiler.compile(function, *form).unwrap_or_else(|why| panic!("{what}: {why}"));

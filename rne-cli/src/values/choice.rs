@@ -157,8 +157,8 @@ pub(crate) fn joint_of(robot: &Robot, told: Option<&str>) -> Result<Option<usize
 
 /// The functions that a robot has something to compute for, in the order of the traits: without motors,
 /// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no `regressor`. Without
-/// named tips, a function with a wrench at each tip is the one with a wrench at the tip. What solves for the motion of the
-/// base, and its parts, is for robots whose base floats; the wrench on the base tells what a mount must bear, too.
+/// named tips, a function with a wrench at each tip is the one with a wrench at the tip. Functions of a floating base are
+/// for robots that have one; but the wrench on the base tells what a mount must bear, too.
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let (has_couplings, has_tips) = (robot.has_couplings(), !robot.tips.is_empty());

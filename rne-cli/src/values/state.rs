@@ -311,6 +311,7 @@ fn argument(
                 [only] => format!("; {only} does"),
                 [one, other] => format!("; {one} and {other} do"),
                 [one, other, last] => format!("; {one}, {other} and {last} do"),
+                [one, other, third, last] => format!("; {one}, {other}, {third} and {last} do"),
                 _ => String::new(),
             };
             Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))

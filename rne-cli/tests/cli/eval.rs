@@ -352,7 +352,8 @@ fn functions_take_their_arguments_and_no_others() {
         2,
         "bias_torques",
         &[q, qd, ["--tau", "1,2"]].concat(),
-        &["takes no --tau; forward_dynamics, momentum_and_rate and forward_dynamics_with_wrenches do"],
+        &["takes no --tau; forward_dynamics, momentum_and_rate, forward_dynamics_with_wrenches and \
+             floating_forward_dynamics do"],
     );
     call(
         2,

@@ -5,8 +5,8 @@
 //!
 //! Joints on different branches of a tree have zeros in M. Eliminated from the base on, these fill; eliminated from the
 //! ends on, none of them does (R. Featherstone, "Efficient factorization of the joint-space inertia matrix for branched
-//! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less. Six
-//! rows of a base that nothing holds stand before those of the joints and are the last to be eliminated.
+//! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less.
+//! Six rows of a base that nothing holds stand before those of the joints and are the last to be eliminated.
 
 use rne_model::Robot;
 
@@ -61,7 +61,7 @@ impl<'a> System<'a> {
         row.checked_sub(self.of_base)
     }
 
-    /// What a row is the force of: the acceleration that has the same place.
+    /// The acceleration whose force or torque a row is.
     fn acceleration(&self, row: usize) -> WithRespectTo {
         self.of_joint(row).map_or(WithRespectTo::BaseRateDot(row + 1), |place| {
             WithRespectTo::RateDot(self.coordinates.joints()[place] + 1)
@@ -136,7 +136,7 @@ pub struct Factorization {
 }
 
 impl Factorization {
-    /// Of the mass matrix by which a function solves: with six rows of the base, if that floats in it.
+    /// Counts the mass matrix by which a function solves: with six rows of the base, if that floats in it.
     #[must_use]
     pub fn of(robot: &Robot, function: Function) -> Self {
         let coordinates = Coordinates::of(robot);

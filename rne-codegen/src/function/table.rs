@@ -186,7 +186,8 @@ macro_rules! functions {
                 "Accelerations of the base and of the joints for torques `tau`, when nothing holds the base.",
                 "omega, wrenches: as in floating_bias; beside the wrenches, only gravity acts. base: acceleration of \
                  the origin of frame 0 less gravity (m/s²), which an accelerometer reads, and angular acceleration \
-                 (rad/s²), in axes of frame 0. qdd: of the joints.";
+                 (rad/s²), in axes of frame 0. qdd: of the joints. A base without mass makes the mass matrix \
+                 singular: the numbers mean nothing or are not finite.";
             CentroidalMomentumMatrix = centroidal_momentum_matrix(q: Positions) -> FloatingRows:
                 "The matrix A of a robot whose base nothing holds: A v is its momentum about its centre of mass.",
                 "map[i][j]: rows are the linear momentum (N s) and the angular momentum about the centre of mass \
@@ -261,7 +262,7 @@ const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
     format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
 });
 
-/// What must act on a base that nothing holds.
+/// The force and the moment that must act on a base that nothing holds.
 const ON_BASE: [Own; 2] = [
     Own::of(Quantity::BaseForce, |_| "force that must act on the base".to_owned()),
     Own::of(Quantity::BaseMoment, |_| "moment that must act on the base, about the origin of frame 0".to_owned()),

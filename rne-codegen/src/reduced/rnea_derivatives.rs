@@ -244,8 +244,8 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     found
 }
 
-/// The matter of a link, or of a base that nothing holds. A last link that is a spinning sphere is one again: what the link before was given for it is
-/// taken back.
+/// The matter of a link, or of a base that nothing holds. A last link that is a spinning sphere is one again: what the
+/// link before was given for it is taken back.
 pub(crate) fn matter(arm: &Arm<'_, '_>, link: Option<usize>) -> PseudoInertia {
     let mut matter = link.map_or(arm.parameters.base, |link| arm.parameters.links[link]);
     let Some(c) = arm.parameters.sphere else { return matter };
