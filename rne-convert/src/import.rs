@@ -96,6 +96,29 @@ pub struct Account {
     pub lints: Report,
 }
 
+impl Account {
+    /// How many angles were snapped, and how far this moves torques and tip; `None` where none was snapped.
+    #[must_use]
+    pub fn snapping(&self) -> Option<String> {
+        self.change.as_ref().map(|change| snapping(&self.snapped, change))
+    }
+}
+
+/// The words before the number of snapped angles in the notes of a robot file.
+const SNAPPED: &str = "angles snapped to multiples of pi/12: ";
+
+fn snapping(snapped: &[Snapped], Difference { position, torque, .. }: &Difference) -> String {
+    let count = snapped.len();
+    format!("{SNAPPED}{count}; torques move by up to {torque:.1e} of the largest, the tip by {position:.1e} m")
+}
+
+/// What the notes of a robot file that was imported say about snapped angles; `None` where none was snapped.
+#[must_use]
+pub fn snapping_in(notes: &str) -> Option<&str> {
+    let items = notes.lines().filter_map(|line| line.trim().strip_prefix("- "));
+    items.into_iter().find(|item| item.starts_with(SNAPPED))
+}
+
 impl Urdf {
     /// Converts a chain of the tree into a table.
     ///
@@ -306,13 +329,7 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
         notes.push(format!("- the joint {} is locked at {}", printable(joint), rne_model::exact_digits(*value)));
     }
     notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
-    if let Some(Difference { position, torque, .. }) = change {
-        notes.push(format!(
-            "- angles snapped to multiples of pi/12: {}; torques move by up to {torque:.1e} of the largest, the tip by \
-             {position:.1e} m",
-            told.snapped.len()
-        ));
-    }
+    notes.extend(change.map(|change| format!("- {}", snapping(&told.snapped, change))));
     (!notes.is_empty()).then(|| notes.join("\n"))
 }
 

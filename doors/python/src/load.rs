@@ -125,12 +125,13 @@ pub(crate) fn load(
     };
     let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
-    let selection = Selection { base, tip, lock, lock_others, whole, floating: false };
+    let selection = Selection { base, tip, lock, lock_others, whole, floating };
     let options = Options { selection, convention, snap, keep_unphysical, frames: true, ..Options::default() };
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
     let held = imported.account.held.iter().cloned().collect();
-    let notes = imported.account.remarks.clone();
+    let snapping = imported.account.snapping().map(|told| format!("{told}; `snap=False` keeps the angles of the file"));
+    let notes = snapping.into_iter().chain(imported.account.remarks.iter().cloned()).collect();
     let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, ..origin })?;
     // nobody has written the lines of this robot file, and `snap` has decided on its angles
     let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");

@@ -15,6 +15,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
 use crate::values::choice::{convention, robot_name};
+use crate::values::numbers::not_a_number;
 
 /// Convert a URDF, or an MJCF file of MuJoCo, to a robot file
 #[derive(Args)]
@@ -79,7 +80,7 @@ pub(crate) struct Arguments {
 fn lock(text: &str) -> Result<(String, f64), String> {
     let (joint, value) = text.rsplit_once('=').ok_or("write JOINT=VALUE, such as finger=0.04")?;
     let value = rne_model::number(value.trim())
-        .map_err(|mistake| format!("`{value}` is not a number: {}; write for example {joint}=0.04", mistake.message))?;
+        .map_err(|mistake| format!("{}; write for example {joint}=0.04", not_a_number(value, &mistake.message)))?;
     Ok((joint.to_owned(), value))
 }
 
