@@ -63,13 +63,13 @@ pub(crate) struct Arguments {
     /// A wrench at the tip N of `tips`; may be repeated
     #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
     tip_wrench: Vec<TipWrench>,
-    /// Angular velocity of a moving base, x,y,z, rad/s [default: 0]
+    /// Angular velocity of the base, rad/s [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
-    /// Angular acceleration of the base, x,y,z, rad/s² [default: 0]
+    /// Its angular acceleration, rad/s² [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
-    /// Its acceleration, x,y,z, m/s², without gravity [default: 0]
+    /// Its acceleration without gravity, m/s² [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
     /// Gravity in frame 0, x,y,z, m/s² [default: FILE]

@@ -318,6 +318,8 @@ fn a_moving_base_is_under_the_gravity_of_the_file_unless_told() {
     let q = written(&Q);
     let state = ["eval", PUMA, "--function", function, "--q", &q, "--qd", &q, "--qdd", &q];
     let with = |more: &[&'static str]| -> Vec<&str> { state.iter().copied().chain(more.iter().copied()).collect() };
+    // Python's name of a function
+    fails(2, &["eval", PUMA, "--q", &q, "--function", "pose"], &["did you mean forward_kinematics?"]);
     let at_rest = rne(&with(&motion[..2]));
     let note = "note: --base-omega-dot and --base-acceleration are not given, so these numbers are 0";
     assert!(at_rest.status == 0 && at_rest.err.contains(note), "{at_rest:?}");

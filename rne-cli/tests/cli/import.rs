@@ -123,6 +123,14 @@ fn every_command_takes_a_urdf_with_one_arm() {
         assert_eq!((of_urdf.status, &of_urdf.out), (0, &of_yaml.out), "{command:?}: {of_urdf:?}");
         assert!(of_urdf.err.contains("is a URDF or an MJCF file, and the arm is from world to "), "{of_urdf:?}");
         assert!(of_urdf.err.contains(&format!("rne import {urdf}")), "{of_urdf:?}");
+        assert!(!of_urdf.err.contains("snapped"), "the angles are exact: {of_urdf:?}");
+    }
+    let text = fs::read_to_string(&urdf).expect("the URDF");
+    let rounded = path("rounded.urdf");
+    fs::write(&rounded, text.replace("1.5707963267948966", "1.5708")).expect("written");
+    for command in [&["eval", "--q", "1,1,1,1,1,1"][..], &["check"]] {
+        let said = rne(&[command, &[rounded.as_str()]].concat()).said();
+        assert!(said.contains("angles snapped to multiples of pi/12: ") && said.contains("--no-snap"), "{said}");
     }
     let checked = rne(&["check", &urdf]);
     assert!(checked.status == 0 && checked.out.starts_with("ok "), "{checked:?}");
