@@ -94,6 +94,19 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
 }
 
 #[test]
+fn several_tips_are_of_a_whole_robot() {
+    let urdf = folder("import_tips").join("arm.urdf");
+    fs::write(&urdf, URDF).expect("written");
+    let urdf = urdf.to_str().expect("UTF-8");
+    let tips = ["import", urdf, "--tip", "finger", "--tip", "tip"];
+    let whole = rne(&[&tips[..], &["--whole"]].concat());
+    assert!(whole.status == 0 && whole.out.contains("\ntips: [finger, tip]\n"), "{whole:?}");
+    fails(2, &tips, &["an arm has one tip; --whole imports the whole robot"]);
+    let unknown = [&tips[..5], &["tipp", "--whole"]].concat();
+    fails(2, &unknown, &["no link `tipp` that could be the tip", "did you mean `tip`?"]);
+}
+
+#[test]
 fn a_robot_file_that_is_there_stays() {
     let folder = folder("import_kept");
     let (urdf, out) = (folder.join("arm.urdf"), folder.join("arm.yaml"));
