@@ -110,6 +110,15 @@ fn of_libraries(error: &clap::Error) -> Option<String> {
     })
 }
 
+/// Names of functions in Python and in other programs, with those of the commands.
+const OTHER_NAMES: [(&str, &str); 5] = [
+    ("pose", "forward_kinematics"),
+    ("fk", "forward_kinematics"),
+    ("rnea", "inverse_dynamics"),
+    ("crba", "mass_matrix"),
+    ("aba", "forward_dynamics"),
+];
+
 /// The function whose C code contains the observer.
 const OBSERVER: &str = "momentum_and_rate";
 
@@ -127,7 +136,8 @@ fn of_other_name(error: &clap::Error) -> Option<String> {
              {TYPED}--function {OBSERVER}{TYPED:#}, or {TYPED}--observer{TYPED:#} of {TYPED}rne certify{TYPED:#}"
         ));
     }
-    let meant = valid.iter().find(|name| name.eq_ignore_ascii_case(value))?;
+    let other = OTHER_NAMES.into_iter().find(|(known, _)| value.eq_ignore_ascii_case(known)).map(|(_, name)| name);
+    let meant = valid.iter().find(|name| name.eq_ignore_ascii_case(value) || other == Some(name.as_str()))?;
     Some(format!("`{value}` is not a valid value of {TYPED}{option}{TYPED:#}; did you mean {TYPED}{meant}{TYPED:#}?"))
 }
 

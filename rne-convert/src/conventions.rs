@@ -89,7 +89,8 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let tip_on = tip.on.unwrap_or(0);
     let tip = ends.get(tip_on).copied().unwrap_or_else(Pose::identity) * placement(&tip.placement);
     let gravity = Vector::decimal(robot.gravity);
-    Chain { base, gravity, floating_base: None, joints, tip_on, tip, frames }
+    let floating_base = robot.floating_base.as_ref().map(|base| Body::of_link(&base.link));
+    Chain { base, gravity, floating_base, joints, tip_on, tip, frames }
 }
 
 pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {

@@ -17,7 +17,7 @@ use crate::scan::LARGEST;
 pub struct Exported {
     /// The URDF.
     pub text: String,
-    /// The acceleration of gravity in the axes of its root link `world`, m/s²: a URDF cannot say it.
+    /// The acceleration of gravity in the axes of its root link, m/s²: a URDF cannot say it.
     pub gravity: [f64; 3],
     /// Losses of the URDF, in sentences.
     pub remarks: Vec<String>,
@@ -76,9 +76,10 @@ impl fmt::Display for NoUrdf {
 
 impl Error for NoUrdf {}
 
-/// The URDF of a robot, an arm or a tree. Its root link `world` carries the link `base`, which is frame 0; joint i
-/// moves the link `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
-/// Named frames and bodies are links, which fixed joints attach. A joint that follows another one has a `mimic`.
+/// The URDF of a robot, an arm or a tree. Its root link `world` carries the link `base`, which is frame 0. A floating
+/// base is the root link instead, by its own name. Joint i moves the link `link_i`, whose frame stands on the axis of
+/// the joint; the link `tip` stands at the end of the tool. Named frames and bodies are links, which fixed joints
+/// attach. A joint that follows another one has a `mimic`.
 ///
 /// The friction of a motor is written as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
 /// both directions.
@@ -96,12 +97,14 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     refuse_too_large(&chain)?;
     // Gravity in frame 0 is rounded: what that leaves in the axes of the world is nothing.
     let gravity = (chain.base.rotation * chain.gravity).to_f64().map(|g| if g.abs() < 1e-14 { 0.0 } else { g });
+    let base = name_of_base(bare);
+    let root = if chain.floating_base.is_some() { base } else { "world" };
     let mut remarks = Vec::new();
     let [x, y, z] = gravity;
     if x != 0.0 || y != 0.0 || (z + 9.81).abs() > 1e-14 {
         let [x, y, z] = gravity.map(exact_digits);
         remarks.push(format!(
-            "gravity is [{x}, {y}, {z}] m/s² in the axes of `world`; if your program has another default, set this \
+            "gravity is [{x}, {y}, {z}] m/s² in the axes of `{root}`; if your program has another default, set this \
              gravity: model.gravity.linear = np.array([{x}, {y}, {z}])"
         ));
     }
@@ -113,10 +116,15 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     for remark in &remarks {
         let _ = writeln!(text, "<!-- {} -->", comment(remark));
     }
-    let _ = writeln!(text, "<robot name=\"{}\">\n  <link name=\"world\"/>\n  <link name=\"base\"/>", robot.name);
-    fixed(&mut text, "world_to_base", ("world", "base"), chain.base);
+    let _ = writeln!(text, "<robot name=\"{}\">", robot.name);
+    if let Some(body) = &chain.floating_base {
+        link(&mut text, base, body);
+    } else {
+        text.push_str("  <link name=\"world\"/>\n  <link name=\"base\"/>\n");
+        fixed(&mut text, "world_to_base", ("world", "base"), chain.base);
+    }
     let mut names = Names::default();
-    let carrier = |on: Option<usize>| on.map_or_else(|| "base".to_owned(), |joint| format!("link_{}", joint + 1));
+    let carrier = |on: Option<usize>| on.map_or_else(|| base.to_owned(), |joint| format!("link_{}", joint + 1));
     let joints: Vec<String> = chain.joints.iter().map(|joint| names.unique(&joint.name)).collect();
     for (index, joint) in chain.joints.iter().enumerate() {
         let child = format!("link_{}", index + 1);
@@ -161,15 +169,23 @@ fn mimic(joint: &ChainJoint, chain: &Chain, names: &[String]) -> Result<String, 
     Ok(format!("    <mimic joint=\"{leader}\" multiplier=\"{ratio}\" offset=\"{offset}\"/>\n"))
 }
 
+/// The name of the link that is frame 0: that of a floating base, if no other link has it.
+fn name_of_base(robot: &Robot) -> &str {
+    let name = robot.floating_base.as_ref().map_or("base", |base| base.name.as_str());
+    if is_taken(name, robot) { "base" } else { name }
+}
+
+/// Whether a link of the URDF that is no named frame and no base has this name.
+fn is_taken(name: &str, robot: &Robot) -> bool {
+    let number = name.strip_prefix("link_").and_then(|number| number.parse::<usize>().ok());
+    matches!(name, "world" | "tip") || number.is_some_and(|number| (1..=robot.joints.len()).contains(&number))
+}
+
 /// The named frames as links, whose names differ from those of the other links.
 fn as_links(chain: &Chain, robot: &Robot) -> Vec<ChainFrame> {
-    let is_taken = |name: &str| {
-        let number = name.strip_prefix("link_").and_then(|number| number.parse::<usize>().ok());
-        matches!(name, "world" | "tip") || number.is_some_and(|number| (1..=robot.dof()).contains(&number))
-    };
     let named = |frame: &ChainFrame| {
         let mut name = frame.name.clone();
-        while is_taken(&name) || name != frame.name && robot.frames.iter().any(|other| other.name == name) {
+        while is_taken(&name, robot) || name != frame.name && robot.frames.iter().any(|other| other.name == name) {
             name.push_str("_frame");
         }
         ChainFrame { name, ..frame.clone() }
@@ -189,13 +205,18 @@ fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
     for frame in &chain.frames {
         check(format!("a coordinate of the frame {}", frame.name), &frame.place.translation.to_f64())?;
     }
-    for (index, joint) in chain.joints.iter().enumerate() {
-        let (link, number) = (joint.body.to_link(), index + 1);
+    let check_body = |of: &str, body: &Body| {
+        let link = body.to_link();
         let i = link.inertia;
+        check(format!("a coordinate of the centre of mass of {of}"), &link.com)?;
+        check(format!("the mass of {of}"), &[body.mass.to_f64()])?;
+        check(format!("an inertia of {of}"), &[i.xx, i.yy, i.zz, i.xy, i.xz, i.yz])
+    };
+    chain.floating_base.as_ref().map_or(Ok(()), |body| check_body("the floating base", body))?;
+    for (index, joint) in chain.joints.iter().enumerate() {
+        let number = index + 1;
         check(format!("a coordinate of joint {number}"), &joint.place.translation.to_f64())?;
-        check(format!("a coordinate of the centre of mass of link {number}"), &link.com)?;
-        check(format!("the mass of link {number}"), &[joint.body.mass.to_f64()])?;
-        check(format!("an inertia of link {number}"), &[i.xx, i.yy, i.zz, i.xy, i.xz, i.yz])?;
+        check_body(&format!("link {number}"), &joint.body)?;
         if let Some(Friction { damping, friction }) = joint.motor.as_ref().and_then(Friction::of) {
             check(format!("the friction of joint {number}"), &[damping, friction])?;
         }

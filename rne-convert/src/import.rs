@@ -24,6 +24,9 @@ use crate::urdf::Urdf;
 pub struct Options {
     /// The chain that is taken out of the tree.
     pub selection: Selection,
+    /// Links of a whole robot that carry wrenches, beside the tip. They become frames, and the robot file lists the tip
+    /// and them in `tips`.
+    pub more_tips: Vec<String>,
     /// The rows of the table.
     pub convention: Convention,
     /// Whether angles within 2e-4 rad of a multiple of pi/12 are taken for it.
@@ -43,6 +46,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             selection: Selection::default(),
+            more_tips: Vec::new(),
             convention: Convention::Standard,
             snap: true,
             keep_unphysical: false,
@@ -96,6 +100,29 @@ pub struct Account {
     pub lints: Report,
 }
 
+impl Account {
+    /// How many angles were snapped, and how far this moves torques and tip; `None` where none was snapped.
+    #[must_use]
+    pub fn snapping(&self) -> Option<String> {
+        self.change.as_ref().map(|change| snapping(&self.snapped, change))
+    }
+}
+
+/// The words before the number of snapped angles in the notes of a robot file.
+const SNAPPED: &str = "angles snapped to multiples of pi/12: ";
+
+fn snapping(snapped: &[Snapped], Difference { position, torque, .. }: &Difference) -> String {
+    let count = snapped.len();
+    format!("{SNAPPED}{count}; torques move by up to {torque:.1e} of the largest, the tip by {position:.1e} m")
+}
+
+/// What the notes of a robot file that was imported say about snapped angles; `None` where none was snapped.
+#[must_use]
+pub fn snapping_in(notes: &str) -> Option<&str> {
+    let items = notes.lines().filter_map(|line| line.trim().strip_prefix("- "));
+    items.into_iter().find(|item| item.starts_with(SNAPPED))
+}
+
 impl Urdf {
     /// Converts a chain of the tree into a table.
     ///
@@ -132,7 +159,7 @@ impl Urdf {
             let help = "choose the convention `modified`";
             return Err(self.source.error(&(0..0), message.to_owned(), help.to_owned()));
         }
-        if options.selection.whole && !is_tree {
+        if options.selection.whole && !is_tree && options.more_tips.is_empty() {
             let remark = "no link carries two joints, so the robot is a serial arm and its file has `format: 1`";
             told.remarks.push(remark.to_owned());
         }
@@ -149,6 +176,14 @@ impl Urdf {
         if options.frames {
             robot.frames = named_frames(&chain, &table);
             told.remarks.extend(base_remark(&told.base, &frames, transform(table.start)));
+        }
+        if !options.more_tips.is_empty() {
+            let tips = self.tips(options, &told.tip, &frames)?;
+            let all = named_frames(&chain, &table);
+            robot.frames = all.into_iter().filter(|frame| options.frames || tips.contains(&frame.name)).collect();
+            let place = |name: &String| robot.frames.iter().position(|frame| frame.name == *name);
+            robot.tips = tips.iter().filter_map(place).collect();
+            self.refuse_tips_on_base(&robot)?;
         }
         robot.source = format!(
             "{}, {}; imported by rne {}",
@@ -192,6 +227,40 @@ impl Urdf {
             lints: checked.lints,
         };
         Ok(Imported { robot: checked.robot, text, account })
+    }
+
+    /// The frames of the tip `first` and of the other tips; `frames` has the links and their names as frames.
+    fn tips(&self, options: &Options, first: &str, frames: &[(String, String)]) -> Result<Vec<String>, Report> {
+        if !options.selection.whole {
+            let message = "several tips are of a whole robot, and this is one arm";
+            let help = "import the whole robot, or name one tip";
+            return Err(self.source.error(&(0..0), message.to_owned(), help.to_owned()));
+        }
+        let mut tips: Vec<String> = Vec::new();
+        for link in [first].into_iter().chain(options.more_tips.iter().map(String::as_str)) {
+            let index = crate::selection::link(self, link, "tip")?;
+            let Some((_, name)) = frames.iter().find(|(known, _)| known == link) else {
+                let message = format!("the tip {} does not come after the base", quoted(link));
+                return Err(self.source.error(&self.links[index].span, message, None));
+            };
+            if tips.contains(name) {
+                let message = format!("the tip {} is named twice; each tip carries one wrench", quoted(link));
+                return Err(self.source.error(&self.links[index].span, message, None));
+            }
+            tips.push(name.clone());
+        }
+        Ok(tips)
+    }
+
+    /// A tip must be on a link that a joint moves.
+    fn refuse_tips_on_base(&self, robot: &Robot) -> Result<(), Report> {
+        match robot.tips.iter().map(|&tip| &robot.frames[tip]).find(|frame| frame.fixed.on.is_none()) {
+            Some(frame) => {
+                let message = format!("no movable joint moves the tip {}", quoted(&frame.name));
+                Err(self.source.error(&(0..0), message, None))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Bodies of which the inertia has a negative eigenvalue.
@@ -306,13 +375,7 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
         notes.push(format!("- the joint {} is locked at {}", printable(joint), rne_model::exact_digits(*value)));
     }
     notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
-    if let Some(Difference { position, torque, .. }) = change {
-        notes.push(format!(
-            "- angles snapped to multiples of pi/12: {}; torques move by up to {torque:.1e} of the largest, the tip by \
-             {position:.1e} m",
-            told.snapped.len()
-        ));
-    }
+    notes.extend(change.map(|change| format!("- {}", snapping(&told.snapped, change))));
     (!notes.is_empty()).then(|| notes.join("\n"))
 }
 

@@ -89,18 +89,30 @@ fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
     listed.take(LISTED).collect::<Vec<_>>().join("\n") + &more
 }
 
+/// Words in names of tips, the surest last.
+const OF_TIPS: [&str; 8] = ["foot", "hand", "flange", "end_effector", "endeffector", "ee", "tool", "tcp"];
+
 /// How probable it is that a leaf is the tip, by its name: `tool0` is the tip by convention (ROS REP 199, and
-/// ROS-Industrial before it), then names with `tcp` (tool centre point) or `tool`. A leaf that follows another joint,
-/// such as the second finger of a gripper, comes last.
-fn rank(urdf: &Urdf, base: usize, leaf: usize) -> u8 {
+/// ROS-Industrial before it), then names with the words of tips, `tcp` (tool centre point) first. `ee` and `hand` end a
+/// name, but for `_link`, because other words and fingers contain them. A leaf that follows another joint, such as the
+/// second finger of a gripper, comes after the others, and what is drawn or spins in a motor last.
+fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
+    const OTHER: usize = 2;
     let name = urdf.links[leaf].name.to_lowercase();
+    let name = name.trim_end_matches("_link").trim_end_matches("_frame");
     let follows = last_movable(urdf, base, leaf).is_some_and(|joint| urdf.joints[joint].mimic.is_some());
-    match name.as_str() {
-        _ if follows => 0,
-        "tool0" => 4,
-        name if name.contains("tcp") => 3,
-        name if name.contains("tool") => 2,
-        _ => 1,
+    let has = |word: &&str| match *word {
+        "ee" | "hand" => name.strip_suffix(word).is_some_and(|before| before.is_empty() || before.ends_with(['_', '-'])),
+        word => name.contains(word),
+    };
+    if name.contains("visual") || name.contains("rotor") {
+        0
+    } else if follows {
+        1
+    } else if name == "tool0" {
+        OTHER + OF_TIPS.len() + 1
+    } else {
+        OTHER + OF_TIPS.iter().rposition(has).map_or(0, |place| place + 1)
     }
 }
 

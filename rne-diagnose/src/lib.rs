@@ -73,9 +73,7 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
         let tried = Tried::of(robot, seen, slips)?.filter(|tried| tried.fits);
         Ok(tried.map(|Tried { error, .. }| Explanation { slips: slips.to_vec(), error }))
     };
-    let alone =
-        slips.iter().copied().chain(Slip::alone(robot)).chain(Typo::candidates(robot).into_iter().map(Slip::Typo));
-    let found = alone.filter_map(|slip| explains(&[slip]).transpose()).collect::<Result<Vec<_>, _>>()?;
+    let found = one_by_one(robot).into_iter().filter_map(|slip| explains(&[slip]).transpose()).collect::<Result<Vec<_>, _>>()?;
     if !found.is_empty() {
         return Ok(Diagnosis::Explained(found));
     }
@@ -86,6 +84,45 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
     let found = pairs.filter_map(|pair| explains(&pair).transpose()).collect::<Result<Vec<_>, _>>()?;
     let off = right.map_or(f64::NAN, |right| right.error);
     Ok(if found.is_empty() { Diagnosis::Unexplained(off) } else { Diagnosis::Explained(found) })
+}
+
+/// Looks for one slip that explains the torques only nearly, where [`diagnose`] explains them with all of their digits
+/// by none: the angles of one of both programs may be rounded. The tolerance grows until the torques are right, or a
+/// slip gives them; returns this tolerance and the diagnosis, or `None` where nothing explains the torques.
+///
+/// `tolerances` are parts of the largest torque, in ascending order. Pairs of slips are not tried, because some of so
+/// many pairs give almost any torques nearly.
+///
+/// # Errors
+/// When a list of an observation does not have one number per joint.
+pub fn diagnose_nearly(
+    robot: &Robot,
+    seen: &[Observation],
+    tolerances: &[f64],
+) -> Result<Option<(f64, Diagnosis)>, WrongLength> {
+    let right = Tried::of(robot, seen, &[])?.map_or(f64::INFINITY, |right| right.error);
+    let mut tried = Vec::new();
+    for slip in one_by_one(robot) {
+        if let Some(Tried { error, .. }) = Tried::of(robot, seen, &[slip])? {
+            tried.push(Explanation { slips: vec![slip], error });
+        }
+    }
+    let nearest = tried.iter().map(|explanation| explanation.error).fold(f64::INFINITY, f64::min);
+    let Some(&tolerance) = tolerances.iter().find(|tolerance| right.min(nearest) <= **tolerance) else {
+        return Ok(None);
+    };
+    if right <= tolerance {
+        return Ok(Some((tolerance, Diagnosis::Agrees(right))));
+    }
+    // what explains the torques far less well than the best explanation does is a coincidence
+    tried.retain(|explanation| explanation.error <= tolerance.min(3.0 * nearest));
+    Ok(Some((tolerance, Diagnosis::Explained(tried))))
+}
+
+/// The slips that are made one at a time, the likeliest first.
+fn one_by_one(robot: &Robot) -> Vec<Slip> {
+    let typos = Typo::candidates(robot).into_iter().map(Slip::Typo);
+    Slip::candidates(robot).into_iter().chain(Slip::alone(robot)).chain(typos).collect()
 }
 
 /// The torques of a computation that makes some slips, at the state of `at`, whose own torques do not count; `None`

@@ -26,7 +26,9 @@ use crate::{Arguments, CompiledArm, CompiledFunction, EvaluationError, Number, W
 ///
 /// The rotors of the motors belong to the arm only after [`CompiledArm::with_rotors`], as in all functions. Friction is
 /// taken from the velocity before the step, so a long step makes a light joint swing about zero velocity: it is stable
-/// for h < 2 m / (G² B + |G| Tc / width), where m is the joint's inertia in the mass matrix.
+/// for h < 2 m / (G² B + |G| Tc / width), where m is the joint's inertia in the mass matrix. With a longer step, states
+/// may grow until they are infinite or NaN; [`CompiledArm::rollout`] returns them as they are, so test that they are
+/// finite. The other samples keep their numbers.
 ///
 /// ```
 /// use rne_machine::{Arguments, Array, CompiledArm, FrictionWidth, Rollout, RolloutLimits};

@@ -90,7 +90,8 @@ impl Target<'_> {
         })
     }
 
-    /// A stub for a robot that is not known, as [`Target::stub`].
+    /// A stub for a robot that is not known, as [`Target::stub`]. It has no list of frames: with an unknown length of
+    /// this list, no call of `FrameKinematics` would be of one trait.
     pub(crate) fn frames_stub(&self) -> TokenStream {
         let (ident, krate, vis) = (&self.item.ident, self.krate, self.visibility());
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
@@ -98,6 +99,9 @@ impl Target<'_> {
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
         generics.params.push(syn::parse_quote!(const __FRAME: ::core::primitive::usize));
         let (with_both, ..) = generics.split_for_impl();
+        let mut generics = self.item.generics.clone();
+        generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        let (with_joints, ..) = generics.split_for_impl();
         let joints = quote!(__JOINTS);
         let methods =
             Function::of_frames().map(|function| self.signature_at_frame(function, &joints, &quote!(loop {})));
@@ -109,17 +113,18 @@ impl Target<'_> {
             }
 
             #[automatically_derived]
-            impl #with_both #krate::FrameKinematics<__JOINTS, __FRAME> for #ident #type_generics #where_clause {
+            impl #with_joints #krate::FrameKinematics<__JOINTS, 0> for #ident #type_generics #where_clause {
                 fn frame_poses<#number: #krate::Scalar>(
                     &self,
                     _: &[#number; __JOINTS],
-                ) -> [#krate::Pose<#number>; __FRAME] {
+                ) -> [#krate::Pose<#number>; 0] {
                     loop {}
                 }
             }
 
             #[automatically_derived]
             impl #impl_generics #ident #type_generics #where_clause {
+                #vis const FRAME_NAMES: [&'static ::core::primitive::str; 0] = [];
                 #vis const fn frame(_: &::core::primitive::str) -> ::core::primitive::usize {
                     0
                 }

@@ -20,6 +20,13 @@ pub struct BaseMotion<T> {
     pub gravity: [T; 3],
 }
 
+/// A base at rest without gravity: all numbers are zero.
+impl<T: Scalar> Default for BaseMotion<T> {
+    fn default() -> Self {
+        Self::fixed([T::zero(); 3])
+    }
+}
+
 impl<T: Scalar> BaseMotion<T> {
     /// A base at rest under `gravity` (m/s², pointing down, in the axes of frame 0).
     #[must_use]

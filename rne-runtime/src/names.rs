@@ -11,21 +11,24 @@ pub const fn unknown_frame(names: &[&str], name: &str, remark: &str) -> ! {
     panic!("{}", text.with_nearest(names, name).as_str())
 }
 
-/// The first name that differs from `name` in one place only: in its case, in a letter that is missing, too many or
-/// another one, or in two neighbours.
+/// The name that differs least from `name`, in one place only: in its case, in a letter that is missing, too many or
+/// another one, or in two neighbours. Of names that differ equally, the first.
 const fn nearest(names: &[&str], name: &str) -> Option<usize> {
-    let mut index = 0;
+    let (mut index, mut nearest, mut least) = (0, None, usize::MAX);
     while index < names.len() {
-        if is_near(names[index].as_bytes(), name.as_bytes()) {
-            return Some(index);
+        if let Some(differing) = difference(names[index].as_bytes(), name.as_bytes())
+            && differing < least
+        {
+            (nearest, least) = (Some(index), differing);
         }
         index += 1;
     }
-    None
+    nearest
 }
 
-/// Whether two names are alike before one place and after it, and longer than this place.
-const fn is_near(a: &[u8], b: &[u8]) -> bool {
+/// How many letters differ in the one place outside of which two names are alike; `None` where there are more than two,
+/// or where the names are not longer than this place.
+const fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
     let shorter = if a.len() < b.len() { a.len() } else { b.len() };
     let longer = a.len() + b.len() - shorter;
     let mut before = 0;
@@ -37,7 +40,7 @@ const fn is_near(a: &[u8], b: &[u8]) -> bool {
         after += 1;
     }
     let differing = longer - before - after;
-    differing <= 2 && before + after > differing
+    if differing <= 2 && before + after > differing { Some(differing) } else { None }
 }
 
 /// A text that is put together while a constant is computed, where no formatting is; what has no room is left out.
@@ -101,6 +104,8 @@ mod tests {
             assert_eq!(nearest(&names, name), expected, "{name}");
         }
         assert_eq!(nearest(&[], "camera"), None);
+        // one letter too many differs less than two others
+        assert_eq!(nearest(&["link1", "link2", "link3", "link4"], "link_4"), Some(3));
     }
 
     #[test]

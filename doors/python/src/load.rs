@@ -36,6 +36,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
 /// whole : bool
 ///     Of a URDF: take all links after the base, a tree, and not one arm. `tip` is then the link that carries the tip.
+/// floating : bool
+///     Of a URDF, with `whole`: nothing holds the root link, which becomes the floating base.
 /// lock : dict of str to float, optional
 ///     Of a URDF: movable joints that are held still, rad or m.
 /// lock_others : bool
@@ -69,8 +71,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
 ///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`.
 #[pyfunction]
-#[pyo3(signature = (source, *, tip=None, base=None, whole=false, lock=None, lock_others=false, convention=None,
-    snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
+#[pyo3(signature = (source, *, tip=None, base=None, whole=false, floating=false, lock=None, lock_others=false,
+    convention=None, snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
 #[allow(clippy::fn_params_excessive_bools)] // keywords of Python
 pub(crate) fn load(
     py: Python<'_>,
@@ -78,6 +80,7 @@ pub(crate) fn load(
     tip: Option<String>,
     base: Option<String>,
     whole: bool,
+    floating: bool,
     lock: Option<BTreeMap<String, f64>>,
     lock_others: bool,
     convention: Option<&str>,
@@ -125,12 +128,13 @@ pub(crate) fn load(
     };
     let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
-    let selection = Selection { base, tip, lock, lock_others, whole, floating: false };
+    let selection = Selection { base, tip, lock, lock_others, whole, floating };
     let options = Options { selection, convention, snap, keep_unphysical, frames: true, ..Options::default() };
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
     let held = imported.account.held.iter().cloned().collect();
-    let notes = imported.account.remarks.clone();
+    let snapping = imported.account.snapping().map(|told| format!("{told}; `snap=False` keeps the angles of the file"));
+    let notes = snapping.into_iter().chain(imported.account.remarks.iter().cloned()).collect();
     let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, ..origin })?;
     // nobody has written the lines of this robot file, and `snap` has decided on its angles
     let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");

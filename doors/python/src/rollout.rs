@@ -1,6 +1,6 @@
 //! Rollouts of an arm over numpy's arrays.
 
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 
 use numpy::{Element, PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
@@ -55,6 +55,12 @@ impl Arm {
     /// q, qd : arrays of shape (T, n) or (N, T, n)
     ///     The states after each step; the initial state is not among them. An argument without the axis N is that of
     ///     all samples. NaN stays in its sample.
+    ///
+    /// Warns
+    /// -----
+    /// UserWarning
+    ///     When a state is not finite although all arguments are, which a step that is too long for the friction causes:
+    ///     which sample and which step is first, and what to change.
     #[pyo3(signature = (q, qd, tau, step, *, friction=None, limits=None, payload=None, parameters=None, out=None))]
     fn rollout<'py>(
         &self,
@@ -163,6 +169,53 @@ fn warn_of_nothing(py: Python<'_>, robot: &Robot, rollout: &Rollout) -> PyResult
     Ok(())
 }
 
+fn is_finite<T: Number>(number: T) -> bool {
+    let number: f64 = number.into();
+    number.is_finite()
+}
+
+/// A sample whose state is no number any more.
+struct Diverged {
+    sample: usize,
+    /// Counted from 0.
+    step: usize,
+    /// How many samples are so.
+    samples: usize,
+}
+
+impl Diverged {
+    /// The sample that is first not finite, of states of T steps of n joints; `None` where all states are finite.
+    fn of<T: Number>(positions: &[T], velocities: &[T], [steps, dof]: [usize; 2]) -> Option<Self> {
+        let length = (steps * dof).max(1);
+        let states = positions.chunks_exact(length).zip(velocities.chunks_exact(length)).enumerate();
+        let mut diverged = states.filter_map(|(sample, (q, qd))| {
+            let place = q.iter().zip(qd).position(|(&q, &qd)| !is_finite(q) || !is_finite(qd))?;
+            Some((place / dof.max(1), sample))
+        });
+        let first = diverged.next()?;
+        let (first, samples) = diverged.fold((first, 1), |(first, count), other| (first.min(other), count + 1));
+        Some(Self { sample: first.1, step: first.0, samples })
+    }
+
+    /// Says which sample and step, and what to change.
+    fn warn(&self, py: Python<'_>, rollout: &Rollout) -> PyResult<()> {
+        let Self { sample, step, samples } = self;
+        let others = if *samples > 1 { format!("; {samples} samples are not finite") } else { String::new() };
+        let remedy = if rollout.friction.is_some() {
+            "; a joint of the inertia m needs step < 2 m / (G² B + |G| Tc / w): take a shorter `step`, or a larger w \
+             (`friction=w`, `coulomb_width` in the robot file)"
+        } else {
+            "; take a shorter `step`, or smaller torques"
+        };
+        let text = format!(
+            "the state of sample {sample} is not finite after step {step} (both counted from 0), with `step` = {} s\
+             {others}{remedy}",
+            rollout.step
+        );
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(text)?, 1)
+    }
+}
+
 /// The width of Coulomb friction.
 fn width(value: &Bound<'_, PyAny>) -> PyResult<Option<FrictionWidth>> {
     if let Ok(is_there) = value.cast::<PyBool>() {
@@ -225,6 +278,12 @@ fn roll_out<'py, T: Element + Number>(
         let (positions, velocities) = numbers.split_at_mut(numbers.len() / 2);
         py.detach(|| arm.rollout(rollout, samples, &arguments, positions, velocities))
             .map_err(|error| of_evaluation(&error))?;
+        let inputs_are_finite = || columns.iter().flatten().all(|column| column.iter().all(|&x| is_finite(x)));
+        if let Some(diverged) = Diverged::of(positions, velocities, [rollout.steps, arm.dof()])
+            && inputs_are_finite()
+        {
+            diverged.warn(py, rollout)?;
+        }
     }
     PyTuple::new(py, [result.get_item(0)?, result.get_item(1)?])
 }

@@ -1,6 +1,7 @@
 """Logarithms and errors of poses, by numpy: Rodrigues' formula, and the exponential as a power series."""
 
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -110,6 +111,27 @@ def test_limits_and_friction_that_no_joint_has_are_told():
         arm.rollout(*start, friction=0.05)
 
 
+def test_a_step_that_is_too_long_for_the_friction_is_told():
+    arm = rne.load(
+        "format: 1\nname: light\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n"
+        "  - {type: revolute, dh: {theta: 0, d: 0, a: 0.1, alpha: 0}, link: {mass: 0.01, inertia: {zz: 1e-6}},\n"
+        "     motor: {viscous: 10}}\n"
+    )
+    tau = np.zeros((3, 2000, 1))
+    tau[1:] = 1.0
+    with pytest.warns(UserWarning, match=r"the state of sample 1 is not finite after step \d+ .*2 samples.*shorter"):
+        q, qd = arm.rollout([0.0], [0.0], tau, 0.01, friction=0.05)
+    assert np.isfinite(q[0]).all() and not np.isfinite(q[1]).all()
+    first = int(np.argmin((np.isfinite(q[1]) & np.isfinite(qd[1])).all(axis=1)))
+    with pytest.warns(UserWarning, match=f"after step {first} "):
+        arm.rollout([0.0], [0.0], tau, 0.01, friction=0.05)
+    # arguments that are no numbers are not the fault of the step
+    tau[0, 0] = np.nan
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        arm.rollout([0.0], [0.0], tau, 0.01, friction=0.05)
+
+
 URDF = """<robot name="r"><link name="base"/><link name="a"><inertial><mass value="1"/>
 <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="eye"/>
 <joint name="j" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
@@ -123,5 +145,10 @@ def test_an_import_keeps_its_frames_and_notes():
     assert all(isinstance(note, str) for note in arm.notes)
     again = pickle.loads(pickle.dumps(arm))
     assert (again.frames, again.notes) == (arm.frames, arm.notes)
+    assert not any("snapped" in note for note in arm.notes)
+    rounded = URDF.replace('xyz="0.1 0 0.2"', 'xyz="0.1 0 0.2" rpy="1.5708 0 0"')
+    [note] = [note for note in rne.load(rounded).notes if "angles snapped" in note]
+    assert "torques move by" in note and "`snap=False`" in note
+    assert not any("snapped" in note for note in rne.load(rounded, snap=False).notes)
     assert rne.robots.puma560.notes == [] == rne.robots.puma560.frames
     assert rne.__version__.count(".") == 2

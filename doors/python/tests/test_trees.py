@@ -110,6 +110,21 @@ def test_a_whole_urdf_has_the_torques_of_its_arms():
             assert np.allclose(whole.forward_kinematics(states[0]), arm.forward_kinematics(q), atol=1e-12)
 
 
+def test_the_root_of_a_whole_urdf_may_float():
+    fixed, floating = rne.load(urdf(), whole=True, tip="hand"), rne.load(urdf(), whole=True, floating=True, tip="hand")
+    assert "floating_base" in floating.yaml and "floating_base" not in fixed.yaml
+    still = np.zeros(5)
+    zero = {name: np.zeros(3) for name in ["base_omega", "base_omega_dot", "base_acceleration"]}
+    [wrench, tau], [bare, _] = [
+        arm.inverse_dynamics_of_floating_base(still, still, still, base_gravity=[0, 0, -9.81], **zero)
+        for arm in (floating, fixed)
+    ]
+    # the base weighs 1 kg
+    assert np.isclose(wrench[2] - bare[2], 9.81) and np.allclose(tau, fixed.gravity_torques(still))
+    with pytest.raises(rne.RobotFileError, match="whole robot"):
+        rne.load(urdf(), floating=True, tip="hand", lock_others=True)
+
+
 GRIPPER = Path(__file__).parents[3] / "docs/gripper.yaml"
 
 

@@ -23,7 +23,9 @@ use crate::values::state::{Given, State};
 #[derive(Args)]
 #[command(override_usage = "rne diagnose [OPTIONS] --q <Q> --qd <QD> --qdd <QDD> --tau <TAU> <FILE>")]
 #[command(after_help = "\
-Exit status: 1 if the torques differ and no mistake explains them.
+Exit status: 1 if the torques differ and no mistake explains them. Without
+--tolerance, rne accepts up to 1e-4 of the largest torque where no mistake
+explains all digits, and says so.
 
 Examples:
   rne diagnose robots/planar1.yaml --q 0.3 --qd 0.5 --qdd -1 --tau -4.853
@@ -61,7 +63,7 @@ pub(crate) struct Arguments {
         value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
         "write a fraction of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]
     tolerance: Option<f64>,
-    /// Print the answer as JSON: {"agrees": …, "error": …, "explanations": […]}
+    /// Print the answer as JSON: {"agrees": …, "tolerance": …, "error": …, "explanations": […]}
     #[arg(long)]
     json: bool,
 }
@@ -86,6 +88,8 @@ impl std::str::FromStr for Printed {
 #[derive(Serialize)]
 struct Reply {
     agrees: bool,
+    /// The tolerance that was needed beyond the digits of the torques, in parts of the largest torque.
+    tolerance: f64,
     error: f64,
     explanations: Vec<Reason>,
 }
@@ -106,22 +110,47 @@ struct Named {
 /// How far a torque may be off at most, where its digits tell, in parts of the largest.
 const COARSEST: f64 = 1e-3;
 
+/// Tolerances that are tried where nothing explains the torques to their digits, in parts of the largest torque; the
+/// last only where angles of the file were snapped, which moves torques by so much at most.
+const TOLERANCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
+
 /// Explanations that are shown; the others are counted.
 const SHOWN: usize = 5;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.arm.robot_with_payload(Shape::Coupled)?;
     let (seen, right) = observation(arguments, &robot)?;
-    let diagnosis = rne_diagnose::diagnose(&robot, std::slice::from_ref(&seen)).map_err(Failure::usage)?;
-    let at_fault = matches!(diagnosis, Diagnosis::Unexplained(_));
+    let all = std::slice::from_ref(&seen);
+    let snapped = robot.notes.as_deref().and_then(rne_convert::snapping_in);
+    let mut found = (0.0, rne_diagnose::diagnose(&robot, all).map_err(Failure::usage)?);
+    if matches!(found.1, Diagnosis::Unexplained(_)) && arguments.tolerance.is_none() {
+        let tolerances = if snapped.is_some() { &TOLERANCES[..] } else { &TOLERANCES[..2] };
+        found = rne_diagnose::diagnose_nearly(&robot, all, tolerances).map_err(Failure::usage)?.unwrap_or(found);
+    }
+    let (tolerance, diagnosis) = found;
+    let is_near = tolerance > 0.0;
+    let at_fault = match diagnosis {
+        Diagnosis::Unexplained(_) => true,
+        Diagnosis::Agrees(_) => is_near && snapped.is_none(),
+        Diagnosis::Explained(_) => false,
+    };
     if arguments.json {
-        return Ok(Outcome { at_fault, ..Outcome::json(&reply(&robot, &diagnosis))? });
+        let reply = Reply { tolerance, ..reply(&robot, &diagnosis) };
+        let reply = Reply { agrees: reply.agrees && !at_fault, ..reply };
+        return Ok(Outcome { at_fault, ..Outcome::json(&reply)? });
     }
     let text = match diagnosis {
+        Diagnosis::Agrees(error) if is_near => nearly_right(&robot, &table(&robot, &seen, &right), error, snapped),
         Diagnosis::Agrees(error) => {
             format!("{GOOD}ok{GOOD:#} the torques agree with {TITLE}{}{TITLE:#} to {error:.0e}\n", robot.name)
         }
-        Diagnosis::Explained(all) => table(&robot, &seen, &right) + "\n" + &explained(&robot, &all),
+        Diagnosis::Explained(all) => {
+            let remark = match snapped.filter(|_| is_near) {
+                Some(snapped) => format!("{QUIET}{}{QUIET:#}\n", wrap(&of_snapping(snapped), terminal::width(80), "")),
+                None => String::new(),
+            };
+            table(&robot, &seen, &right) + "\n" + &explained(&robot, &all) + &remark
+        }
         Diagnosis::Unexplained(_) => {
             let trace = if robot.is_serial() { "compare link by link: rne eval … --trace; " } else { "" };
             table(&robot, &seen, &right)
@@ -181,7 +210,30 @@ fn reply(robot: &Robot, diagnosis: &Diagnosis) -> Reply {
         }
         Diagnosis::Unexplained(error) => (false, *error, Vec::new()),
     };
-    Reply { agrees, error, explanations }
+    Reply { agrees, tolerance: 0.0, error, explanations }
+}
+
+/// The remark that the angles of the robot file were snapped, from what its notes say.
+fn of_snapping(snapped: &str) -> String {
+    format!("the other program may have read a URDF with other angles; in this file, {snapped}: import with --no-snap")
+}
+
+/// Torques that are nearly right: the angles of a file that was imported explain it, or nothing does.
+fn nearly_right(robot: &Robot, table: &str, error: f64, snapped: Option<&str>) -> String {
+    let (name, width) = (&robot.name, terminal::width(80));
+    if let Some(snapped) = snapped {
+        let remark = wrap(&of_snapping(snapped), width, "");
+        return format!(
+            "{GOOD}ok{GOOD:#} the torques agree with {TITLE}{name}{TITLE:#} to {error:.1e} of the largest\n\
+             {QUIET}{remark}{QUIET:#}\n"
+        );
+    }
+    let hint = "one of both programs may have rounded angles or lengths; accept the difference: --tolerance 1e-3";
+    format!(
+        "{table}\nthe torques agree with {TITLE}{name}{TITLE:#} to {error:.1e} of the largest, but not with all of their \
+         digits;\n{ERROR}no usual mistake{ERROR:#} explains the difference\n{QUIET}{}{QUIET:#}\n",
+        wrap(hint, width, "")
+    )
 }
 
 /// How well slips explain torques.

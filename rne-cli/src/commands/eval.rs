@@ -63,13 +63,13 @@ pub(crate) struct Arguments {
     /// A wrench at the tip N of `tips`; may be repeated
     #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
     tip_wrench: Vec<TipWrench>,
-    /// Angular velocity of a moving base, x,y,z, rad/s
+    /// Angular velocity of the base, rad/s [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
-    /// Angular acceleration of the base, x,y,z, rad/s²
+    /// Its angular acceleration, rad/s² [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
-    /// Its acceleration, x,y,z, m/s², without gravity
+    /// Its acceleration without gravity, m/s² [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
     /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
@@ -188,14 +188,14 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         let error = CompileError::OfEveryLink { function, follower: joint.name.clone() };
         return Err(Failure::usage(error));
     }
-    let zeros = List(vec![0.0; robot.dof()]);
+    let zeros = [robot.dof(), 3].map(|count| List(vec![0.0; count]));
     if arguments.trace && !robot.is_serial() {
         return Err(Failure::usage(
             "--trace takes serial arms, but the robot is a tree; without --trace, `rne eval` computes the torques of a \
              tree, and `rne show` prints the formulas of its joints",
         ));
     }
-    let (given, assumed) = arguments.given(function).at_rest(function, &zeros);
+    let (given, assumed) = arguments.given(function).at_rest(function, zeros.each_ref());
     let state = State::new(function, given, &robot)?;
     let arm = DynArm::from_robot(&robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
@@ -208,8 +208,11 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }
     if !assumed.is_empty() {
-        let (names, verb) = (assumed.join(" and "), if assumed.len() == 1 { "is" } else { "are" });
-        let _ = writeln!(remark, "note: {names} {verb} not given, so these numbers are 0");
+        let names = match assumed.as_slice() {
+            [first @ .., last] if !first.is_empty() => format!("{} and {last} are", first.join(", ")),
+            alone => format!("{} is", alone.concat()),
+        };
+        let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
     let result = || grouped(&function.layout(robot.dof()), &numbers);
     if !arguments.trace {

@@ -20,6 +20,7 @@ Examples:
 
 The links of the URDF are `world`, `base` (frame 0), `link_1` … and `tip`. The
 frame of a link is on the axis of its joint. Named frames and bodies are links.
+A floating base is the root link, with its own name; `world` is then left out.
 A joint that follows another one gets a `mimic`; a URDF has none for a joint
 that follows several. rne writes the friction of a motor as friction of its
 joint: G² B and |G| Tc. A URDF cannot store gravity, so a note reports a

@@ -15,6 +15,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
 use crate::values::choice::{convention, robot_name};
+use crate::values::numbers::not_a_number;
 
 /// Convert a URDF, or an MJCF file of MuJoCo, to a robot file
 #[derive(Args)]
@@ -41,9 +42,9 @@ pub(crate) struct Arguments {
     /// Fixed link at the base of the arm [default: the root link, or the body that floats]
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
-    /// Last link of the arm [default: the last link, if the file has only one end]
+    /// Last link of the arm [default: the last link, if the file has only one end]; with --whole, several give `tips`
     #[arg(long, value_name = "LINK")]
-    tip: Option<String>,
+    tip: Vec<String>,
     /// Convert the whole robot after the base, a tree of links, and not one arm; --tip then says where the tip is
     #[arg(long)]
     whole: bool,
@@ -79,16 +80,21 @@ pub(crate) struct Arguments {
 fn lock(text: &str) -> Result<(String, f64), String> {
     let (joint, value) = text.rsplit_once('=').ok_or("write JOINT=VALUE, such as finger=0.04")?;
     let value = rne_model::number(value.trim())
-        .map_err(|mistake| format!("`{value}` is not a number: {}; write for example {joint}=0.04", mistake.message))?;
+        .map_err(|mistake| format!("{}; write for example {joint}=0.04", not_a_number(value, &mistake.message)))?;
     Ok((joint.to_owned(), value))
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.tip.len() > 1 && !arguments.whole {
+        return Err(Failure::usage(format_args!(
+            "an arm has one tip; {TYPED}--whole{TYPED:#} imports the whole robot, with these links in the list `tips`"
+        )));
+    }
     let (file, text) = read(&arguments.file)?;
     let urdf = Urdf::read(&file, &text).map_err(|report| Failure::from(&report))?;
     let selection = Selection {
         base: arguments.base.clone(),
-        tip: arguments.tip.clone(),
+        tip: arguments.tip.first().cloned(),
         lock: arguments.lock.clone(),
         lock_others: arguments.lock_others,
         whole: arguments.whole,
@@ -96,8 +102,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let usual = if arguments.whole { Convention::Modified } else { Convention::Standard };
     urdf.check_names(&selection).map_err(|report| Failure::unknown_name(&report))?;
+    let more_tips: Vec<String> = arguments.tip.iter().skip(1).cloned().collect();
+    let named = more_tips.iter().map(|tip| Selection { tip: Some(tip.clone()), ..Selection::default() });
+    named.into_iter().try_for_each(|tip| urdf.check_names(&tip)).map_err(|report| Failure::unknown_name(&report))?;
     let options = Options {
         selection,
+        more_tips,
         convention: arguments.convention.unwrap_or(usual),
         snap: !arguments.no_snap,
         keep_unphysical: arguments.keep_unphysical,

@@ -11,7 +11,7 @@ use rne_model::Robot;
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
-use crate::values::numbers::List;
+use crate::values::numbers::{List, not_a_number};
 use crate::values::state::payload;
 
 /// Rotors belong to the arm.
@@ -100,7 +100,7 @@ impl FromStr for Setting {
         }
         let value = rne_model::number(value).map_err(|mistake| {
             let hint = mistake.help.as_deref().unwrap_or("write a number or an expression, such as 0.5 or pi/2");
-            format!("`{value}` is not a number: {}; {hint}", mistake.message)
+            format!("{}; {hint}", not_a_number(value, &mistake.message))
         })?;
         Ok(Self { name: name.to_owned(), value })
     }

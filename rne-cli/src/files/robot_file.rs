@@ -109,9 +109,12 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
         failure
     })?;
     let Account { base, tip, .. } = &imported.account;
+    let snapped = imported.account.snapping().map_or_else(String::new, |snapping| {
+        format!("      {snapping}\n      {TYPED}rne import --no-snap{TYPED:#} keeps the angles of the file\n")
+    });
     remark(format_args!(
         "{TITLE}note{TITLE:#}: {name} is a URDF or an MJCF file, and the arm is from {base} to {tip}\n      \
-         {TYPED}rne import {name}{TYPED:#} prints its robot file and every assumption\n"
+         {TYPED}rne import {name}{TYPED:#} prints its robot file and every assumption\n{snapped}"
     ));
     Ok(imported.text.clone())
 }

@@ -23,11 +23,25 @@ impl FromStr for List {
             rne_model::number(element).map_err(|mistake| {
                 let hint = "write numbers or expressions with commas between them, such as 0.1,-pi/2";
                 let hint = mistake.help.as_deref().unwrap_or(hint);
-                format!("number {place}, `{element}`, is not a number: {}; {hint}", mistake.message)
+                match refused(element, &mistake.message) {
+                    Ok(reason) => format!("number {place}, `{element}`, is not a number: {reason}; {hint}"),
+                    Err(message) => format!("number {place}: {message}; {hint}"),
+                }
             })
         };
         text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(List)
     }
+}
+
+/// Why `text` is not a number: the reason alone, or, where the message about it already says that it is no number, the
+/// message.
+fn refused<'m>(text: &str, message: &'m str) -> Result<&'m str, &'m str> {
+    if message.starts_with(&format!("`{text}` is not a number")) { Err(message) } else { Ok(message) }
+}
+
+/// The message about a text that is not a number.
+pub(crate) fn not_a_number(text: &str, message: &str) -> String {
+    refused(text, message).map_or_else(str::to_owned, |reason| format!("`{text}` is not a number: {reason}"))
 }
 
 /// Texts of numbers, their decimal points in one column.
@@ -105,6 +119,9 @@ mod tests {
         for bad in ["", "1,,2", "1,", "m", "nan", "inf", "1e999", "--qd", "1/0"] {
             assert!(bad.parse::<List>().is_err(), "{bad}");
         }
+        let said = "0.1,nan".parse::<List>().expect_err("no number");
+        assert!(said.starts_with("number 2: `nan` is not a number here: numbers are finite"), "{said}");
+        assert_eq!(said.matches("not a number").count(), 1, "{said}");
     }
 
     #[test]

@@ -26,12 +26,19 @@ pub(crate) struct Given<'a> {
 }
 
 impl<'a> Given<'a> {
-    /// The lists with zeros for velocities and accelerations that a function takes and that are not given; with their
-    /// options.
-    pub(crate) fn at_rest(mut self, function: Function, zeros: &'a List) -> (Self, Vec<&'static str>) {
-        let mut assumed = Vec::new();
-        let lists = [("--qd", &mut self.qd, Argument::Rates), ("--qdd", &mut self.qdd, Argument::Accelerations)];
-        for (name, list, kind) in lists {
+    /// The lists with zeros for velocities and accelerations that a function takes and that are not given, of the joints
+    /// and of a base that moves; with their options. `zeros` has a number for each joint, and three for the base.
+    pub(crate) fn at_rest(mut self, function: Function, zeros: [&'a List; 2]) -> (Self, Vec<&'static str>) {
+        use Argument::{Accelerations, Base, Rates};
+        let (mut assumed, [of_joints, of_base]) = (Vec::new(), zeros);
+        let lists = [
+            ("--qd", &mut self.qd, Rates, of_joints),
+            ("--qdd", &mut self.qdd, Accelerations, of_joints),
+            ("--base-omega", &mut self.base_omega, Base, of_base),
+            ("--base-omega-dot", &mut self.base_omega_dot, Base, of_base),
+            ("--base-acceleration", &mut self.base_acceleration, Base, of_base),
+        ];
+        for (name, list, kind, zeros) in lists {
             if list.is_none() && function.takes(kind) {
                 *list = Some(zeros);
                 assumed.push(name);
@@ -271,6 +278,13 @@ fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Resul
     }
     for (index, TipWrench { tip, numbers: List(numbers) }) in given.iter().enumerate() {
         let Some(place) = names.iter().position(|name| name == tip) else {
+            if robot.frames.iter().any(|frame| frame.name == *tip) {
+                let listed = if robot.tips.is_empty() { tip.clone() } else { format!("{}, {tip}", names.join(", ")) };
+                return Err(Failure::usage(format_args!(
+                    "`{tip}` is a frame of {}, but not a tip; list it under `tips` of the robot file: tips: [{listed}]",
+                    robot.name
+                )));
+            }
             let meant = nearest_name(tip, &names).map(|meant| format!("; did you mean `{meant}`?"));
             return Err(Failure::usage(format_args!(
                 "{} has no tip `{tip}`; its tips are `{}`{}",

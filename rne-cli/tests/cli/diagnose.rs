@@ -92,3 +92,48 @@ fn a_mistyped_sign_is_named() {
         assert!(called.out.contains(part), "no `{part}` in {called:?}");
     }
 }
+
+/// The other program has the angles of the URDF, and the robot file has snapped ones: torques that are right agree
+/// nearly, and a mistake is found all the same.
+#[test]
+fn snapped_angles_hide_no_mistake() {
+    let folder = folder("diagnose_snapped");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let (urdf, snapped, raw, wrong) = (path("arm.urdf"), path("snapped.yaml"), path("raw.yaml"), path("wrong.yaml"));
+    fs::write(&urdf, fine_urdf().replace("1.5707963267948966", "1.5708")).expect("written");
+    for options in [&["-o", &snapped][..], &["--no-snap", "-o", &raw]] {
+        assert_eq!(rne(&[&["import", &urdf][..], options].concat()).status, 0);
+    }
+    let text = fs::read_to_string(&raw).expect("a robot file");
+    assert!(text.contains("gravity: [0, 0, -9.81]"), "{text}");
+    fs::write(&wrong, text.replace("gravity: [0, 0, -9.81]", "gravity: [0, 0, 9.81]")).expect("written");
+    let torques = |file: &str| {
+        let reply: Value = serde_json::from_str(&rne(&[&["eval", file][..], &STATE].concat()).out).expect("JSON");
+        let torques = reply["result"].as_array().expect("torques").iter();
+        format!("--tau={}", torques.map(Value::to_string).collect::<Vec<_>>().join(","))
+    };
+    let state = &STATE[..STATE.len() - 1];
+    let diagnosed = |file: &str, tau: &str| rne(&[&["diagnose", file, tau][..], state].concat());
+    for file in [&snapped, &urdf] {
+        let right = diagnosed(file, &torques(&raw));
+        let said = right.out.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(right.status == 0 && said.starts_with("ok the torques agree with puma560 to "), "{right:?}");
+        assert!(said.contains("angles snapped to multiples of pi/12: ") && said.contains("--no-snap"), "{said}");
+        let mistaken = diagnosed(file, &torques(&wrong));
+        let said = mistaken.out.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(mistaken.status == 0 && said.contains("gravity points the other way"), "{said}");
+        assert!(said.contains("angles snapped to multiples of pi/12: "), "{said}");
+    }
+    // without snapped angles, torques that agree nearly are not right
+    let near = diagnosed(&raw, &torques(&snapped));
+    assert!(near.status == 1 && near.out.contains("of the largest, but not with all of their digits"), "{near:?}");
+    let exact = diagnosed(&raw, &torques(&raw));
+    assert!(exact.status == 0 && !exact.out.contains("snap"), "{exact:?}");
+}
+
+/// The URDF of the PUMA.
+fn fine_urdf() -> String {
+    let exported = rne(&["export", "puma560", "--urdf"]);
+    assert_eq!(exported.status, 0, "{exported:?}");
+    exported.out
+}

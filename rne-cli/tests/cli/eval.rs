@@ -318,7 +318,16 @@ fn a_moving_base_is_under_the_gravity_of_the_file_unless_told() {
     let q = written(&Q);
     let state = ["eval", PUMA, "--function", function, "--q", &q, "--qd", &q, "--qdd", &q];
     let with = |more: &[&'static str]| -> Vec<&str> { state.iter().copied().chain(more.iter().copied()).collect() };
-    fails(2, &with(&motion[..4]), &["needs --base-acceleration, three numbers x,y,z", "in the axes of frame 0"]);
+    // Python's name of a function
+    fails(2, &["eval", PUMA, "--q", &q, "--function", "pose"], &["did you mean forward_kinematics?"]);
+    let at_rest = rne(&with(&motion[..2]));
+    let note = "note: --base-omega-dot and --base-acceleration are not given, so these numbers are 0";
+    assert!(at_rest.status == 0 && at_rest.err.contains(note), "{at_rest:?}");
+    let zeros = ["--base-omega-dot", "0,0,0", "--base-acceleration", "0,0,0"];
+    assert_eq!(at_rest.out, fine(&with(&[&motion[..2], &zeros].concat())));
+    let names = "--base-omega, --base-omega-dot and --base-acceleration are not given";
+    let resting = rne(&with(&[]));
+    assert!(resting.status == 0 && resting.err.contains(names), "{resting:?}");
     fails(2, &with(&["--base-omega", "1,2"]), &["--base-omega needs 3 numbers, not 2"]);
     let worksheet: Vec<&str> = with(&motion).into_iter().chain(["--trace"]).collect();
     assert!(fine(&worksheet).contains("at the base ω0 = (0.100000, 0.200000, -0.300000) rad/s"));

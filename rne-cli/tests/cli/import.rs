@@ -94,6 +94,19 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
 }
 
 #[test]
+fn several_tips_are_of_a_whole_robot() {
+    let urdf = folder("import_tips").join("arm.urdf");
+    fs::write(&urdf, URDF).expect("written");
+    let urdf = urdf.to_str().expect("UTF-8");
+    let tips = ["import", urdf, "--tip", "finger", "--tip", "tip"];
+    let whole = rne(&[&tips[..], &["--whole"]].concat());
+    assert!(whole.status == 0 && whole.out.contains("\ntips: [finger, tip]\n"), "{whole:?}");
+    fails(2, &tips, &["an arm has one tip; --whole imports the whole robot"]);
+    let unknown = [&tips[..5], &["tipp", "--whole"]].concat();
+    fails(2, &unknown, &["no link `tipp` that could be the tip", "did you mean `tip`?"]);
+}
+
+#[test]
 fn a_robot_file_that_is_there_stays() {
     let folder = folder("import_kept");
     let (urdf, out) = (folder.join("arm.urdf"), folder.join("arm.yaml"));
@@ -123,6 +136,14 @@ fn every_command_takes_a_urdf_with_one_arm() {
         assert_eq!((of_urdf.status, &of_urdf.out), (0, &of_yaml.out), "{command:?}: {of_urdf:?}");
         assert!(of_urdf.err.contains("is a URDF or an MJCF file, and the arm is from world to "), "{of_urdf:?}");
         assert!(of_urdf.err.contains(&format!("rne import {urdf}")), "{of_urdf:?}");
+        assert!(!of_urdf.err.contains("snapped"), "the angles are exact: {of_urdf:?}");
+    }
+    let text = fs::read_to_string(&urdf).expect("the URDF");
+    let rounded = path("rounded.urdf");
+    fs::write(&rounded, text.replace("1.5707963267948966", "1.5708")).expect("written");
+    for command in [&["eval", "--q", "1,1,1,1,1,1"][..], &["check"]] {
+        let said = rne(&[command, &[rounded.as_str()]].concat()).said();
+        assert!(said.contains("angles snapped to multiples of pi/12: ") && said.contains("--no-snap"), "{said}");
     }
     let checked = rne(&["check", &urdf]);
     assert!(checked.status == 0 && checked.out.starts_with("ok "), "{checked:?}");

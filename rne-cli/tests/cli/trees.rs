@@ -172,6 +172,14 @@ fn tips_frames_and_bodies_are_named() {
     ] {
         fails(2, &[&state[..], &options[..]].concat(), &[said]);
     }
+    let fewer = fs::read_to_string(format!("{ROOT}/{FILE}")).expect("the file");
+    assert!(fewer.contains("tips: [left_hand, right_hand]"), "{fewer}");
+    let path = folder("trees_tips").join("one_tip.yaml");
+    fs::write(&path, fewer.replace("tips: [left_hand, right_hand]", "tips: [left_hand]")).expect("written");
+    let one_tip = [&["eval", path.to_str().expect("UTF-8")][..], &state[2..], &["--tip-wrench", "right_hand=0,0,0,0,0,2"]];
+    let said = "`right_hand` is a frame of dual_arm, but not a tip; list it under `tips` of the robot file: tips: \
+                [left_hand, right_hand]";
+    fails(2, &one_tip.concat(), &[said]);
     let shown = fine(&["show", FILE]);
     assert!(shown.contains("tip right_hand, in the link frame of right_elbow: (0.3, 0, 0) m"), "{shown}");
     assert!(shown.contains("body camera, 0.6 kg: a part of the link of waist"), "{shown}");

@@ -5,7 +5,7 @@ use super::*;
 /// The URDF of a robot, imported whole, with the gravity that the export reports.
 fn again(robot: &Robot) -> Robot {
     let exported = rne_convert::export(robot).unwrap_or_else(|error| panic!("{}: {error}", robot.name));
-    let selection = Selection { whole: true, tip: Some("tip".to_owned()), ..Selection::default() };
+    let selection = Selection { whole: true, floating: robot.floating_base.is_some(), tip: Some("tip".to_owned()), ..Selection::default() };
     let options = Options {
         selection,
         convention: Convention::Modified,
@@ -110,4 +110,39 @@ fn a_joint_that_follows_two_has_no_urdf() {
     let text = TREE.replace("follows: {left: -0.5}", "follows: {left: -0.5, waist: 1}");
     let said = rne_convert::export(&read(&text)).expect_err("two leaders").to_string();
     assert!(said.contains("follower follows waist and left, and a URDF cannot say this"), "{said}");
+}
+
+/// The base is the root link with its body, and no joint holds it: what moves the robot in free flight is the same.
+#[test]
+fn a_floating_base_is_the_root_of_a_urdf() {
+    let satellite = include_str!("../../../docs/satellite.yaml");
+    let lamp = "bodies: [{name: lamp, on: bus, at: {xyz: [0.1, 0, 1]}, mass: 3, com: [0, 0, 0.1]}]";
+    for text in [satellite.to_owned(), format!("{satellite}{lamp}"), satellite.replace("bus", "link_2")] {
+        let robot = read(&text);
+        assert_same(&robot);
+        let urdf = rne_convert::export(&robot).unwrap().text;
+        let name = if text.contains("bus") { "bus" } else { "base" };
+        assert!(urdf.contains(&format!("<link name=\"{name}\">\n    <inertial>")), "{urdf}");
+        assert!(!urdf.contains("world"), "no joint holds the base: {urdf}");
+        let other = again(&robot);
+        let [one, two] = [&robot, &other].map(|robot| robot.floating_base.as_ref().expect("a base").link);
+        assert!((one.mass - two.mass).abs() < 1e-12 * one.mass && other.floating_base.as_ref().unwrap().name == name);
+        let base = BaseMotion {
+            omega: [0.1, 0.2, -0.3],
+            omega_dot: [1.0, -0.5, 0.3],
+            velocity: [0.0; 3],
+            acceleration: [0.3, 0.2, 0.1],
+            gravity: [0.0, 0.0, -9.81],
+        };
+        let wrench = |robot: &Robot| {
+            let arm = DynArm::from_robot(robot);
+            let (q, qd, qdd) = ([0.3, -0.7], [1.0, -2.0], [3.0, 2.0]);
+            let tips = vec![Wrench::zero(); arm.tips().len()];
+            let (wrench, tau) = arm.inverse_dynamics_of_floating_base(&q, &qd, &qdd, &base, &tips).unwrap();
+            [wrench.force.to_vec(), wrench.moment.to_vec(), tau].concat()
+        };
+        for (a, b) in wrench(&robot).iter().zip(wrench(&other)) {
+            assert!(f64::abs(a - b) < 1e-11, "{a} {b}");
+        }
+    }
 }

@@ -230,7 +230,15 @@ fn a_serial_arm_is_no_tree() {
 #[test]
 fn the_tip_is_the_leaf_that_is_called_so() {
     let follower = format!("{FREE}<mimic joint=\"a\"/>");
-    for (tool, expected) in [("tool0", "tool0"), ("hand_TCP", "hand_TCP"), ("tool_plate", "tool_plate"), ("x", "x")] {
+    for (tool, expected) in [
+        ("tool0", "tool0"),
+        ("hand_TCP", "hand_TCP"),
+        ("tool_plate", "tool_plate"),
+        ("x", "x"),
+        ("rotor_7", "finger_a"),
+        ("arm_visual", "finger_a"),
+        ("ee", "ee"),
+    ] {
         let text = torso(&follower).replace("tool0", tool);
         let urdf = Urdf::read("torso.urdf", &text).unwrap();
         assert_eq!(urdf.import(&options()).unwrap().account.tip, expected);
@@ -244,4 +252,55 @@ fn the_tip_is_the_leaf_that_is_called_so() {
     assert_eq!(Urdf::read("torso.urdf", &text).unwrap().import(&options()).unwrap().account.tip, "finger_a");
     let named = text.replace("\"finger_b\"", "\"finger_tool\"");
     assert_eq!(Urdf::read("torso.urdf", &named).unwrap().import(&options()).unwrap().account.tip, "finger_a");
+}
+
+/// A leaf with the name of a tip is the tip, wherever it stands among the leaves.
+#[test]
+fn names_of_tips_come_before_the_last_leaf() {
+    for tip in ["ee", "ee_link", "left_end_effector", "flange", "panda_hand", "hand", "LF_FOOT", "foot_link"] {
+        // the leaf `tool0`, which is the last one, has no such name
+        let text = torso(FREE).replace("tool0", "plate").replace("finger_a", tip);
+        let urdf = Urdf::read("torso.urdf", &text).unwrap();
+        assert_eq!(urdf.import(&options()).unwrap().account.tip, tip);
+    }
+    // parts of other words
+    for other in ["wheel", "hand_camera", "thigh_rotor_tool"] {
+        let text = torso(FREE).replace("tool0", "plate").replace("finger_a", other);
+        let urdf = Urdf::read("torso.urdf", &text).unwrap();
+        assert_eq!(urdf.import(&options()).unwrap().account.tip, "plate", "{other}");
+    }
+}
+
+/// Several tips become frames and the list `tips`; a wrench at one of them acts as one at the tip alone does.
+#[test]
+fn several_tips_are_listed() {
+    let import = |tips: &[&str], frames: bool| {
+        let names: Vec<String> = tips.iter().map(|&tip| tip.to_owned()).collect();
+        let selection = Selection { tip: names.first().cloned(), ..options().selection };
+        let options = Options { selection, more_tips: names[1..].to_vec(), frames, ..options() };
+        Urdf::read("torso.urdf", &torso(FREE)).and_then(|urdf| urdf.import(&options))
+    };
+    let both = import(&["finger_b", "tool0"], false).unwrap_or_else(|report| panic!("{report}"));
+    assert!(both.text.contains("\ntips: [finger_b, tool0]\n"), "{}", both.text);
+    assert_eq!((both.robot.frames.len(), both.robot.tip().on), (2, Some(3)));
+    let (q, qd, qdd) = ([0.3, -0.7, 0.02, 0.01, 1.1], [1.0, -2.0, 0.5, 0.2, 0.7], [3.0, 2.0, -1.0, 0.1, 0.4]);
+    let wrench = Wrench { force: [1.0, -2.0, 3.0], moment: [0.3, 0.2, -0.1] };
+    let arm = DynArm::from_robot(&both.robot);
+    for (place, tip) in ["finger_b", "tool0"].into_iter().enumerate() {
+        let mut wrenches = [Wrench::zero(); 2];
+        wrenches[place] = wrench;
+        let found = arm.inverse_dynamics_with_wrenches(&q, &qd, &qdd, &wrenches).unwrap();
+        let alone = DynArm::from_robot(&import(&[tip], false).unwrap().robot);
+        let expected = alone.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench).unwrap();
+        assert!(found.iter().zip(&expected).all(|(a, b)| f64::abs(a - b) < 1e-12), "{tip}: {found:?} {expected:?}");
+    }
+    assert!(import(&["finger_b", "tool0"], true).unwrap().robot.frames.len() > 5, "all links are frames");
+    for (tips, words) in [
+        (["tool0", "tool0"], "the tip `tool0` is named twice"),
+        (["tool0", "base"], "no movable joint moves the tip `base"),
+        (["tool0", "tool"], "no link `tool` that could be the tip"),
+    ] {
+        let said = import(&tips, false).unwrap_err().to_string();
+        assert!(said.contains(words), "{said}");
+    }
 }

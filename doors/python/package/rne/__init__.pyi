@@ -342,6 +342,7 @@ def load(
     tip: str | None = ...,
     base: str | None = ...,
     whole: bool = ...,
+    floating: bool = ...,
     lock: Mapping[str, float] | None = ...,
     lock_others: bool = ...,
     convention: Convention | None = ...,
