@@ -477,7 +477,7 @@ def figures(driver, pages):
                 driver.get("about:blank")
                 driver.get(pages[robot].as_uri() + fragment)
                 awaited(driver, 20, lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
-                cut, covered = driver.execute_script(
+                cut, covered, struck = driver.execute_script(
                     """
                     const box = (of) => of.getBoundingClientRect();
                     const seen = (of) => [...document.querySelectorAll(of)].filter(at => at.checkVisibility() && box(at).width > 0);
@@ -489,11 +489,16 @@ def figures(driver, pages):
                       && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4;
                     const covered = words.flatMap((a, at) => words.slice(at + 1).filter(b => isOn(box(a), box(b)))
                       .map(b => [a.textContent, b.textContent]));
-                    return [cut.map(of => of.textContent || of.getAttribute("class")), covered];
+                    const points = (path) => Array.from({ length: path.getTotalLength() }, (_, at) => path.getPointAtLength(at));
+                    const isIn = ({ x, y, width, height }, at) => at.x > x + 2 && at.x < x + width - 2 && at.y > y + 4 && at.y < y + height - 4;
+                    const lines = seen("#arm .drawn").flatMap(points);
+                    const struck = words.filter(of => of.closest(".drawing, .words, .arrow") && lines.some(at => isIn(of.getBBox(), at)));
+                    return [cut.map(of => of.textContent || of.getAttribute("class")), covered, struck.map(of => of.textContent)];
                     """)
                 where = f"{robot}{fragment} at {size[0]}x{size[1]}"
                 check(not cut, f"figure: {where} cuts {cut}")
                 check(not covered, f"figure: {where} writes on each other {covered}")
+                check(not struck, f"figure: {where} draws lines through {struck}")
     seen_on(driver, *SCREENS["desk"])
     print("  figures are whole")
 

@@ -31,16 +31,13 @@ class Exercise {
     return `score: ${right} of ${all.length} right, ${first} at the first attempt; attempts: ${tries}`;
   }
 
-  /** Whether a value is not to be seen: one of the open cell that has not been found yet. */
+  /** Whether a value is not to be seen: one of the open cell that has not been found yet, or another that is the same. */
   hides(name, cell) {
     if (!this.isOn || !cell) return false;
     const owner = this.inspection.owner(name);
-    return (
-      owner !== null &&
-      owner.cell === cell &&
-      !this.solved.has(owner.name) &&
-      this.inspection.components.get(owner.name).became.kind !== "constant"
-    );
+    const isAsked = (of) => !this.solved.has(of.name) && of.became.kind !== "constant";
+    if (owner?.cell === cell) return isAsked(owner);
+    return owner !== null && cell.components.some((of) => isAsked(of) && this.inspection.sameAs(of) === owner);
   }
 
   hasSolved(name) {

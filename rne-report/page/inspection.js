@@ -27,6 +27,9 @@ class Inspection {
     this.dof = data.robot.joints.length;
     /** The joints that follow no other, from 0, in the order of arrays of `rne`. */
     this.coordinates = data.robot.joints.flatMap((joint, index) => (joint.follows ? [] : [index]));
+    // the angle is its constant part and q: two letters
+    const { theta, angle } = data.quantities;
+    if (theta) [theta.letter, angle.meaning] = ["θ\u0304", "constant part θ\u0304 of the table + q"];
     this.components = new Map();
     for (const component of data.table) this.components.set(component.name, component);
     for (const cell of data.cells) {
@@ -182,6 +185,13 @@ class Inspection {
   owner(name) {
     const statement = this.statements.get(name);
     return this.components.get((statement && statement.component) || name) || null;
+  }
+
+  /** The component whose value, or its negative, is that of another as it stands. */
+  sameAs({ became, statements = [] }) {
+    const tree = became.kind === "same" ? became.name : statements.length === 1 ? statements[0].value : null;
+    const name = Array.isArray(tree) && tree[0] === "neg" ? tree[1] : tree;
+    return typeof name === "string" ? this.owner(name.replace(/^-/, "")) : null;
   }
 
   /** The name of a component of a quantity; `carries` tells levers of one link apart. */
