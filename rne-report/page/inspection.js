@@ -164,6 +164,17 @@ class Inspection {
     return carries ? `${joint},${carries}` : String(joint);
   }
 
+  /** A tree in the letters of the lecture: ω₂z · (ω × d)₂y. */
+  lettersOf(tree) {
+    const letters = (name) => {
+      const meaning = this.meaning(name);
+      if (!meaning) return name;
+      const low = this.indexText(meaning).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[digit]);
+      return `${meaning.of.letter}${low}${meaning.component || ""}`;
+    };
+    return minus(codeOf(tree).replace(/\b[A-Za-z_]\w*/g, letters).replaceAll("*", "·"));
+  }
+
   /** What a name means: its quantity, joint and component, and what there is to know of the quantity. */
   meaning(name) {
     const found = Object.hasOwn(this.names, name) ? this.names[name] : null;

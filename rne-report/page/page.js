@@ -77,6 +77,10 @@ class Page {
     this.paintView();
     this.foldSettings();
     this.address = new Address(this);
+    // paper opens nothing by itself
+    window.addEventListener("beforeprint", () => {
+      for (const of of document.querySelectorAll("#cell details")) of.open = true;
+    });
   }
 
   poseAt(q) {
