@@ -35,7 +35,7 @@ use crate::values::state::{Given, State, TipWrench};
 #[command(after_help = "\
 Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
-  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
+  rne eval planar1 --trace --compare mine.csv
   rne eval robots/planar2.yaml --states docs/states.csv -o torques.csv")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
@@ -109,7 +109,7 @@ pub(crate) struct Arguments {
     /// Print the values of --trace as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// With --trace: print the first wrong value of your worksheet (CSV or JSON)
+    /// Print the first error of a worksheet; with --trace
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
     /// Significant digits for --compare [default: 4]

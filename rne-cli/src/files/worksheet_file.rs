@@ -190,8 +190,7 @@ fn steps_of(text: &str) -> Option<Vec<u8>> {
 /// The cells of a text such as `1.4 2.4`: joint and step.
 fn cells_of(text: &str) -> Option<Vec<(usize, u8)>> {
     let cell = |text: &str| {
-        // a spreadsheet of another language has a comma there
-        let (joint, step) = text.split_once(['.', ','])?;
+        let (joint, step) = text.split_once('.')?;
         Some((joint.parse().ok()?, step.parse().ok().filter(|step| (1..=7).contains(step))?))
     };
     text.split_whitespace().map(cell).collect()

@@ -382,7 +382,8 @@ fn worksheets_as_spreadsheets_save_them() {
         assert!(table.contains("ada       32/32  none\n"), "{table}");
     }
     fs::write(&files[0], &little[..little.len() - 1]).expect("a file");
-    fails(1, &["mark", "planar2", "--seed", "7", path(&files[0])], &["ada.csv is not UTF-16 to its end"]);
+    let called = rne(&["mark", "planar2", "--seed", "7", path(&files[0])]);
+    assert!(called.status == 1 && called.err.contains("ada.csv is not UTF-16 to its end"), "{called:?}");
 }
 
 /// What rounding leaves of a zero is 0, and no answer has digits that nobody can use.
@@ -406,12 +407,8 @@ fn answers_have_no_noise() {
 fn cells_that_are_asked_for() {
     let (_, files) = answers("mark_cells", &["ada"]);
     let text = fs::read_to_string(&files[0]).expect("a worksheet");
-    for (cells, points) in [("2.4", "2/2"), ("2.4 1.7", "3/3"), ("2,4", "2/2")] {
-        fs::write(
-            &files[0],
-            text.replace(", student", &format!(", cells {cells}, student")).replace("cells 2,4,", "cells 2,4;"),
-        )
-        .expect("a file");
+    for (cells, points) in [("2.4", "2/2"), ("2.4 1.7", "3/3")] {
+        fs::write(&files[0], text.replace(", student", &format!(", cells {cells}, student"))).expect("a file");
         let call = ["mark", "planar2", "--seed", "7", path(&files[0])];
         let table = fine(&call);
         assert!(table.contains(&format!("ada         {points}  none\n")), "{cells}: {table}");
@@ -419,7 +416,10 @@ fn cells_that_are_asked_for() {
         assert!(fine(&[&call[..], &["--step", "7"]].concat()).contains("2/2"), "{cells}");
     }
     fs::write(&files[0], text.replace(", student", ", cells 2.9, student")).expect("a file");
-    fails(1, &["mark", "planar2", "--seed", "7", path(&files[0])], &["ada.csv:1:", "are not cells", "cells 1.4 2.4"]);
+    let called = rne(&["mark", "planar2", "--seed", "7", path(&files[0])]);
+    for says in ["ada.csv:1:1", "are not cells", "cells 1.4 2.4"] {
+        assert!(called.status == 1 && called.err.contains(says), "{called:?}");
+    }
 }
 
 /// A folder is the worksheets in it; a file that is refused says why in its row, and whose state a worksheet has.
