@@ -69,8 +69,11 @@ def awaited(driver, seconds, what):
     return WebDriverWait(driver, seconds, poll_frequency=0.02).until(what)
 
 
-def opened(driver, page):
-    driver.get(page.as_uri())
+def opened(driver, page, fragment=""):
+    # the same page at another fragment would not be read anew
+    if fragment:
+        driver.get("about:blank")
+    driver.get(page.as_uri() + fragment)
     ready = "return document.documentElement.dataset.ready"
     awaited(driver, 20, lambda driver: driver.execute_script(ready) == "1")
 
@@ -254,9 +257,7 @@ ADDRESS = "#q=0.6,1.3&qd=-0.7,0.25&qdd=1.5,0&f=3,0,-1.5&cell=2.4&look=3D&unfolde
 def address(driver, page):
     """An address opens the exact view, and a view has an address that opens it."""
     def at(fragment):
-        driver.get("about:blank")
-        driver.get(page.as_uri() + fragment)
-        awaited(driver, 20, lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
+        opened(driver, page, fragment)
 
     at(ADDRESS)
     view = driver.execute_script("return rne.view()")
@@ -385,9 +386,7 @@ def headings(driver, page, inspection):
 def teaching(driver, rne, page, folder):
     """What a lecturer and a student use: the figure, large equations, cells that are not needed, a text to hand in."""
     def at(fragment):
-        driver.get("about:blank")
-        driver.get(page.as_uri() + fragment)
-        awaited(driver, 20, lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
+        opened(driver, page, fragment)
 
     at("#q=0.6,-0.9")
     words = driver.execute_script(
@@ -431,6 +430,23 @@ def teaching(driver, rne, page, folder):
                                     ".getBoundingClientRect(); return { left, top, right, bottom, height }", of)
         check(box["top"] >= 0 and box["bottom"] <= 720 and box["height"] > 200, f"lecture: {of} is at {box}")
         check(box["left"] >= 0 and box["right"] <= (1280 if of == "cell" else 500), f"lecture: {of} is at {box}")
+    # numbers in other axes than those of the equations say so, also to the last row
+    at("#cell=2.3&lecture&joint")
+    hint = driver.execute_script("const of = document.querySelector('[data-axes-hint]'); return of?.checkVisibility() ? of.textContent : ''")
+    check("equations and code have them in the axes of link 2" in hint, f"lecture: of the axes is said {hint!r}")
+    at("#cell=2.4")
+    crossed = driver.execute_script("return [document.querySelectorAll('.struck').length, document.querySelectorAll('.struck .struck').length]")
+    check(crossed[0] > 0 and crossed[1] == 0, f"cells: of {crossed[0]} strokes {crossed[1]} are on others")
+    # what an exercise asks for is not the number beside it
+    at("#cell=2.7&exercise")
+    asked, card = driver.execute_script("return [rne.value('tau2').toPrecision(4), document.querySelector('[data-component=tau2]').textContent]")
+    check(asked not in card and "= ? = ?" in card, f"exercise: the card of tau2 says {card!r}")
+    # a slip is told in the letters of the lecture
+    at("#cell=2.4&exercise")
+    slip = driver.execute_script("return rne.value('ddc2_x') + rne.value('w2_z') * rne.value('wxd2_y')")
+    driver.find_element(By.CSS_SELECTOR, '[data-exercise="ddc2_x"]').send_keys(f"{slip:.6f}", Keys.ENTER)
+    told = driver.execute_script("return document.querySelector('[data-component=ddc2_x] .answer').textContent")
+    check("The term ω₂z · (ω×d)₂y is left out" in told, f"exercise: a term that is left out is told as {told!r}")
     # a phone shows the cell of the address
     seen_on(driver, 390, 844)
     at("#cell=2.4")
@@ -447,6 +463,7 @@ def teaching(driver, rne, page, folder):
     driver.execute_script("document.getElementById('hand-in').open = true")
     driver.find_element(By.ID, "student").send_keys("Ada, L.")
     text = driver.execute_script("return document.getElementById('answers').value")
+    check("robot planar2, cells 2.4, student Ada  L.\n" in text, f"exercise: the text does not say what is asked: {text!r}")
     check("score: 1 of 2 right, 1 at the first attempt; attempts: 3" in text, f"exercise: the text has no score: {text!r}")
     sheet, key = folder / "answers.csv", folder / "key.csv"
     sheet.write_text(text)
@@ -454,8 +471,8 @@ def teaching(driver, rne, page, folder):
     marks = json.loads(subprocess.run([rne, "mark", "planar2", "--states", str(key), str(sheet), "--json"],
                                       check=True, capture_output=True).stdout)["marks"]
     first = marks[0].get("first_error") or {}
-    check([marks[0]["student"], marks[0].get("points"), first.get("quantity"), first.get("component")]
-          == ["Ada  L.", 1, "acceleration", "y"], f"exercise: its text is marked {marks}")
+    check([marks[0]["student"], marks[0].get("points"), marks[0].get("of"), first.get("quantity"), first.get("component")]
+          == ["Ada  L.", 1, 2, "acceleration", "y"], f"exercise: its text is marked {marks}")
     quiet(driver, "teaching")
     print("  figure, lecture, cells and a text to hand in")
 
@@ -469,15 +486,13 @@ FIGURES = {
 
 
 def figures(driver, pages):
-    """The figure of a planar arm is whole, and none of its words is on another."""
+    """The figure of a planar arm is whole, none of its words is on another, and at first no line is on a word."""
     for size in ((1280, 720), (390, 844)):
         seen_on(driver, *size)
         for robot, fragments in FIGURES.items():
             for fragment in fragments:
-                driver.get("about:blank")
-                driver.get(pages[robot].as_uri() + fragment)
-                awaited(driver, 20, lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
-                cut, covered = driver.execute_script(
+                opened(driver, pages[robot], fragment)
+                cut, covered, struck = driver.execute_script(
                     """
                     const box = (of) => of.getBoundingClientRect();
                     const seen = (of) => [...document.querySelectorAll(of)].filter(at => at.checkVisibility() && box(at).width > 0);
@@ -489,11 +504,16 @@ def figures(driver, pages):
                       && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4;
                     const covered = words.flatMap((a, at) => words.slice(at + 1).filter(b => isOn(box(a), box(b)))
                       .map(b => [a.textContent, b.textContent]));
-                    return [cut.map(of => of.textContent || of.getAttribute("class")), covered];
+                    const points = (path) => Array.from({ length: path.getTotalLength() }, (_, at) => path.getPointAtLength(at));
+                    const isIn = ({ x, y, width, height }, at) => at.x > x + 2 && at.x < x + width - 2 && at.y > y + 4 && at.y < y + height - 4;
+                    const lines = seen("#arm .drawn").flatMap(points);
+                    const struck = words.filter(of => of.closest(".drawing, .words, .arrow") && lines.some(at => isIn(of.getBBox(), at)));
+                    return [cut.map(of => of.textContent || of.getAttribute("class")), covered, struck.map(of => of.textContent)];
                     """)
                 where = f"{robot}{fragment} at {size[0]}x{size[1]}"
                 check(not cut, f"figure: {where} cuts {cut}")
                 check(not covered, f"figure: {where} writes on each other {covered}")
+                check(fragment or not struck, f"figure: {where} draws lines through {struck}")
     seen_on(driver, *SCREENS["desk"])
     print("  figures are whole")
 
@@ -518,11 +538,37 @@ def dots(driver, page, media):
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
 
 
-def large(driver, page):
+def paper(driver, page):
+    """On paper headings stay with their cards, everything is unfolded, and the heads of numbers stand above them."""
+    opened(driver, page, "#cell=2.4")
+    driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    folded, kept, far = driver.execute_script(
+        """
+        const style = (of) => getComputedStyle(of);
+        const folded = [...document.querySelectorAll("#cell details")].filter(of => !of.open).length;
+        // what is no block of ordinary flow does not break where it should
+        const blocks = ["#steps", ".cell-area", "#cell"].every(of => style(document.querySelector(of)).display === "block");
+        const heads = [...document.querySelectorAll("#cell .cell-head, #cell h4, #cell .on-the-way")];
+        const right = (of) => { const range = document.createRange(); range.selectNodeContents(of); return range.getBoundingClientRect().right; };
+        const far = [...document.querySelectorAll("#sliders thead th")].slice(2).map((head, at) => {
+          const number = document.querySelectorAll("#sliders tbody tr:first-child td")[at + 1].querySelector(".number");
+          return Math.abs(right(head) - number.getBoundingClientRect().right);
+        });
+        return [folded, blocks && heads.every(of => style(of).breakAfter === "avoid"), Math.max(...far)];
+        """)
+    check(folded == 0, f"paper: {folded} parts stay folded")
+    check(kept, "paper: a heading may stand on another page than its cards")
+    check(far < 8, f"paper: a head stands {far} pixels beside its numbers")
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+    print("  paper keeps headings with their cards")
+
+
+def large(driver, pages):
     """The cells of a large tree have room for their numbers, and the state of its joints stays in its card."""
     for size in ((1280, 720), (390, 844)):
         seen_on(driver, *size)
-        opened(driver, page)
+        opened(driver, pages["baxter"])
         cut, outside, tall = driver.execute_script(
             """
             const box = (of) => of.getBoundingClientRect();
@@ -532,11 +578,31 @@ def large(driver, page):
             const outside = [...card.querySelectorAll("input")].filter(of => of.checkVisibility() && box(of).right > box(card).right);
             return [cut, outside.map(of => of.dataset.name || of.dataset.of), box(card).height];
             """)
-        where = f"{page.stem} at {size[0]}x{size[1]}"
+        where = f"baxter at {size[0]}x{size[1]}"
         check(not cut, f"{where}: cells are too narrow for their numbers: {cut}")
         check(not outside, f"{where}: fields stand outside their card: {outside}")
         check(tall < 600, f"{where}: the state is {tall} pixels high")
         narrow(driver, where)
+    seen_on(driver, 1280, 720)
+    for robot, fragment in (("baxter", "#lecture&cell=17.6"), ("panda_hand", "#lecture&cell=9.4")):
+        opened(driver, pages[robot], fragment)
+        cell, seen, hidden, formulas = driver.execute_script(
+            """
+            const box = (of) => of.getBoundingClientRect();
+            const cell = box(document.querySelector("#grid [aria-pressed=true]"));
+            const names = box(document.querySelector("#grid tbody th")), wrap = box(document.querySelector(".grid-wrap"));
+            const hidden = [...document.querySelectorAll("#grid tbody tr")].filter(of => box(of).bottom > box(document.getElementById("views")).top);
+            return [[cell.left, cell.right], [names.right, wrap.right], hidden.length,
+                    [...document.querySelectorAll("#cell .formula")].map(of => of.textContent)];
+            """)
+        check(seen[0] <= cell[0] and cell[1] <= seen[1] + 1, f"{robot}{fragment}: the open cell is at {cell}, seen is {seen}")
+        check(not hidden, f"{robot}{fragment}: the arm lies on {hidden} rows of the table")
+        check(formulas and not any("_" in of for of in formulas), f"{robot}{fragment}: formulas are {formulas}")
+    # the angle and its constant part have letters of their own
+    opened(driver, pages["baxter"], "#cell=2.1")
+    pieces = driver.execute_script(
+        "return [...document.querySelectorAll('[data-component=angle2] dd.general math')].map(of => of.textContent)")
+    check(len(pieces) == 3 and pieces[0].strip("=") not in pieces[1], f"baxter: the angle of joint 2 is {pieces}")
     seen_on(driver, *SCREENS["desk"])
     print("  a large tree fits")
 
@@ -902,7 +968,7 @@ def main():
     pictures = pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else folder
     pictures.mkdir(parents=True, exist_ok=True)
     pages = {}
-    for robot in [*ROBOTS, "planar3", "baxter"]:
+    for robot in [*ROBOTS, "planar3", "panda_hand", "baxter"]:
         pages[robot] = folder / f"{robot}.html"
         pages[robot].unlink(missing_ok=True)
         subprocess.run([rne, "report", robot, "-o", str(pages[robot])], check=True, capture_output=True)
@@ -911,7 +977,8 @@ def main():
         figures(driver, pages)
         for media in ("screen", "print"):
             dots(driver, pages["puma560"], media)
-        large(driver, pages["baxter"])
+        paper(driver, pages["puma560"])
+        large(driver, pages)
         for robot in ROBOTS:
             page = pages[robot]
             print(f"{robot}: {page.stat().st_size} bytes")

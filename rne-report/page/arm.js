@@ -326,11 +326,17 @@ class Arm {
   drawVectors(pose, q) {
     this.q = q;
     this.words.begin(this.width, this.height);
+    const isDrawn = this.isFlat && this.showDrawing;
+    this.rings = [];
     this.drawArrows(pose);
     this.drawForces(pose);
-    const isDrawn = this.isFlat && this.showDrawing;
     if (isDrawn) this.addArm(pose);
     this.drawing.draw(pose, q, isDrawn);
+    // letters of rings keep away from the arcs of angles
+    for (const { text, at } of this.rings.filter(({ text }) => isDrawn && !text.hasAttribute("hidden"))) {
+      const places = [-8, 20, 6].flatMap((dy) => [[13, "start"], [-13, "end"]].map(([dx, anchor]) => ({ point: { x: at.x + dx, y: at.y + dy }, anchor })));
+      this.words.write(text, places);
+    }
   }
 
   /** Words keep away from links, joints and centres of mass. */
@@ -545,7 +551,8 @@ class Arm {
     const place = this.words.inside(arrow.text, beside, to.x < from.x - 2 ? "end" : "start");
     const isInside = to.x >= 0 && to.x <= this.width && to.y >= 0 && to.y <= this.height;
     const isWritten = isInside && (arrow.isLit || this.words.boxes.every((box) => !overlaps(box, place.box)));
-    if (isWritten) this.words.put(arrow.text, place);
+    if (!heads) this.rings.push({ text: arrow.text, at: to });
+    if (isWritten && (heads || !this.isFlat || !this.showDrawing)) this.words.put(arrow.text, place);
     arrow.text.toggleAttribute("hidden", !isWritten);
     const chosen = of.axes ? this.chosen.turn(frame) : null;
     const told = chosen ? turn(chosen, numbers) : numbers;

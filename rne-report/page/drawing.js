@@ -98,7 +98,7 @@ class Drawing {
       const isOutside = box.left < 4 || box.top < 4 || box.right > words.width - 4 || box.bottom > words.height - 4;
       const costs = way.places.map(({ point, anchor }) => words.cost(words.inside(label, point, anchor, size).box));
       const hidden = words.boxes.filter((of) => way.lines.some((line) => crosses(line, of))).length;
-      return { ...way, cost: Math.min(...costs) + (isOutside ? 100 : 0) + 20 * hidden + 2 * index };
+      return { ...way, cost: Math.min(...costs) + (isOutside ? 100 : 0) + 60 * hidden + 2 * index };
     });
     const way = sides[0].cost <= sides[1].cost ? sides[0] : sides[1];
     line.setAttribute("d", way.path);

@@ -20,7 +20,7 @@ function filledElement(of, attributes, children) {
   return of;
 }
 
-const DOTS = { "\u0307": "˙", "\u0308": "¨" };
+const DOTS = { "\u0304": "¯", "\u0307": "˙", "\u0308": "¨" };
 
 /**
  * A letter such as ω̈ or (Iω). Dots are scripts above the letter and no accents: with a font such as DejaVu Math TeX Gyre
@@ -153,7 +153,9 @@ class Typesetter {
    * the root can be pointed at, each with its tree.
    */
   tree(tree, { leaf, isStruck, isRoot = true }) {
-    const inner = { leaf, isStruck, isRoot: false };
+    // what is struck as a whole has no strokes inside
+    const within = (part) => ({ leaf, isStruck: isStruck && !this.isGone(part), isRoot: false });
+    const inner = isRoot && tree[0] === "*" ? within(tree) : { leaf, isStruck, isRoot: false };
     const set = (part, least) => {
       const of = this.tree(part, inner);
       return rank(part, this.inspection) < least ? math("mrow", {}, paren("("), of, paren(")")) : of;
@@ -180,8 +182,8 @@ class Typesetter {
             at === 0 && sign > 0 ? null : math("mo", { form: at === 0 ? "prefix" : "infix" }, sign > 0 ? "+" : "−");
           const isBare = isSum(part) ? at === 0 && !isRoot : at === 0 || rank(part, this.inspection) >= 1;
           const node = isBare
-            ? this.tree(part, inner)
-            : math("mrow", {}, paren("("), this.tree(part, inner), paren(")"));
+            ? this.tree(part, within(part))
+            : math("mrow", {}, paren("("), this.tree(part, within(part)), paren(")"));
           const piece = struck(part, math("mrow", {}, operator, node));
           return isRoot ? this.term(piece, part, sign) : piece;
         });
@@ -191,7 +193,7 @@ class Typesetter {
         const unit = this.unitFactor(tree);
         const factors = parts.map((part, at) => {
           const node = set(part, 2);
-          if (!isStruck || at !== unit) return node;
+          if (!inner.isStruck || at !== unit) return node;
           // of a factor -1 the sign is left
           return this.inspection.constant(part) < 0 ? this.sign(node, tree) : this.strike(node, tree, "one");
         });
@@ -284,13 +286,13 @@ class Typesetter {
     // a line of terms, which breaks between them
     const terms = [[]];
     let depth = 0;
-    const pieces = text.normalize("NFD").match(/[A-Za-zα-ω][\u0300-\u036f]*(?:\d+(?:,\d+)?)?ᵀ?|\d+|\s+|./gu) || [];
+    const pieces = text.normalize("NFD").match(/[A-Za-zα-ω][\u0300-\u036f]*(?:\d+(?:[,_]\d+)?)?ᵀ?|\d+|\s+|./gu) || [];
     for (const piece of pieces) {
       depth += { "(": 1, ")": -1 }[piece] || 0;
       const isOperator = ["+", "-", "="].includes(piece);
       if (isOperator && depth === 0) terms.push([]);
       const row = terms[terms.length - 1];
-      const found = /^([A-Za-zα-ω][\u0300-\u036f]*)(\d+(?:,\d+)?)?(ᵀ)?$/u.exec(piece);
+      const found = /^([A-Za-zα-ω][\u0300-\u036f]*)(\d+(?:[,_]\d+)?)?(ᵀ)?$/u.exec(piece);
       if (found) {
         row.push(withIndices(letter(found[1]), found[2], found[3]), math("mspace", { width: "0.1em" }));
       } else if (/^\d+$/.test(piece)) {
@@ -317,7 +319,7 @@ class Typesetter {
 
 /** A letter with its index and the sign of the transpose, where it has them. */
 function withIndices(base, low, isTransposed) {
-  const index = low ? math("mn", {}, low) : null;
+  const index = low ? math("mn", {}, low.replace("_", ",")) : null;
   const transposed = isTransposed ? math("mi", { mathvariant: "normal" }, "T") : null;
   if (index && transposed) return math("msubsup", {}, base, index, transposed);
   if (index) return math("msub", {}, base, index);

@@ -31,16 +31,13 @@ class Exercise {
     return `score: ${right} of ${all.length} right, ${first} at the first attempt; attempts: ${tries}`;
   }
 
-  /** Whether a value is not to be seen: one of the open cell that has not been found yet. */
+  /** Whether a value is not to be seen: one of the open cell that has not been found yet, or another that is the same. */
   hides(name, cell) {
     if (!this.isOn || !cell) return false;
     const owner = this.inspection.owner(name);
-    return (
-      owner !== null &&
-      owner.cell === cell &&
-      !this.solved.has(owner.name) &&
-      this.inspection.components.get(owner.name).became.kind !== "constant"
-    );
+    const isAsked = (of) => !this.solved.has(of.name) && of.became.kind !== "constant";
+    if (owner?.cell === cell) return isAsked(owner);
+    return owner !== null && cell.components.some((of) => isAsked(of) && this.inspection.sameAs(of) === owner);
   }
 
   hasSolved(name) {
@@ -86,7 +83,7 @@ class Exercise {
     const terms = [];
     collect(this.inspection.components.get(name).general, 1, terms);
     const values = terms.map(({ tree, sign }) => ({ tree, value: sign * this.equations.evaluate(tree) })).filter(({ value }) => value !== 0);
-    return values.length < 2 ? null : `The first term is ${codeOf(values[0].tree)}: it adds ${short(values[0].value)}.`;
+    return values.length < 2 ? null : `The first term is ${this.inspection.lettersOf(values[0].tree)}: it adds ${short(values[0].value)}.`;
   }
 
   /** Each usual slip in a component, in words, with the value that it gives. */
@@ -101,7 +98,7 @@ class Exercise {
     for (const { tree, sign } of terms) {
       const value = sign * this.equations.evaluate(tree);
       if (value === 0) continue;
-      const term = codeOf(tree);
+      const term = this.inspection.lettersOf(tree);
       all.push({ text: `The term ${term} is left out`, value: right - value });
       all.push({ text: `The term ${term} has the other sign`, value: right - 2 * value });
       if (namesIn(tree).some((of) => of.startsWith("twice_")))

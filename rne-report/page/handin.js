@@ -14,7 +14,11 @@ function worksheetOf(page, student) {
   const { robot } = page.inspection;
   const name = student.replaceAll(/[,;"\n\r]/g, " ").trim();
   const { exercise } = page;
-  const lines = [`# rne worksheet, format 1, robot ${robot.name}${name ? `, student ${name}` : ""}`];
+  // only the cells with an answer are marked
+  const { cells: all } = page.inspection;
+  const cells = all.filter((cell) => cell.components.some((of) => exercise.answers.has(of.name)));
+  const asked = cells.length ? `, cells ${cells.map(({ joint, step }) => `${joint}.${step}`).join(" ")}` : "";
+  const lines = [`# rne worksheet, format 1, robot ${robot.name}${asked}${name ? `, student ${name}` : ""}`];
   lines.push(`# ${exercise.score()}`, "joint,step,quantity,component,value,unit,frame");
   robot.joints.forEach((joint, index) => {
     const slides = joint.kind === "prismatic";

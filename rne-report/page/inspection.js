@@ -27,6 +27,9 @@ class Inspection {
     this.dof = data.robot.joints.length;
     /** The joints that follow no other, from 0, in the order of arrays of `rne`. */
     this.coordinates = data.robot.joints.flatMap((joint, index) => (joint.follows ? [] : [index]));
+    // the angle is its constant part and q: two letters
+    const { theta, angle } = data.quantities;
+    if (theta) [theta.letter, angle.meaning] = ["θ\u0304", "constant part θ\u0304 of the table + q"];
     this.components = new Map();
     for (const component of data.table) this.components.set(component.name, component);
     for (const cell of data.cells) {
@@ -161,6 +164,17 @@ class Inspection {
     return carries ? `${joint},${carries}` : String(joint);
   }
 
+  /** A tree in the letters of the lecture: ω₂z · (ω × d)₂y. */
+  lettersOf(tree) {
+    const letters = (name) => {
+      const meaning = this.meaning(name);
+      if (!meaning) return name;
+      const low = this.indexText(meaning).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[digit]);
+      return `${meaning.of.letter}${low}${meaning.component || ""}`;
+    };
+    return minus(codeOf(tree).replace(/\b[A-Za-z_]\w*/g, letters).replaceAll("*", "·"));
+  }
+
   /** What a name means: its quantity, joint and component, and what there is to know of the quantity. */
   meaning(name) {
     const found = Object.hasOwn(this.names, name) ? this.names[name] : null;
@@ -182,6 +196,13 @@ class Inspection {
   owner(name) {
     const statement = this.statements.get(name);
     return this.components.get((statement && statement.component) || name) || null;
+  }
+
+  /** The component whose value, or its negative, is that of another as it stands. */
+  sameAs({ became, statements = [] }) {
+    const tree = became.kind === "same" ? became.name : statements.length === 1 ? statements[0].value : null;
+    const name = Array.isArray(tree) && tree[0] === "neg" ? tree[1] : tree;
+    return typeof name === "string" ? this.owner(name.replace(/^-/, "")) : null;
   }
 
   /** The name of a component of a quantity; `carries` tells levers of one link apart. */

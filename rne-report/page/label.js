@@ -73,7 +73,7 @@ class Labels {
     const near = grown(box, 1);
     const written = this.boxes.filter((other) => overlaps(near, other)).length;
     const struck = this.lines.filter(({ way, around }) => crosses(way, grown(box, around - 1))).length;
-    return 100 * written + 12 * struck;
+    return 100 * written + 40 * struck;
   }
 
   /** Writes words at the best of some places, the one that is wanted most first. */

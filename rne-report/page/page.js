@@ -77,6 +77,10 @@ class Page {
     this.paintView();
     this.foldSettings();
     this.address = new Address(this);
+    // paper opens nothing by itself
+    window.addEventListener("beforeprint", () => {
+      for (const of of document.querySelectorAll("#cell details")) of.open = true;
+    });
   }
 
   poseAt(q) {
@@ -303,6 +307,7 @@ class Page {
     document.documentElement.dataset.lecture = isOn ? "on" : "off";
     byId("lecture").setAttribute("aria-pressed", String(isOn));
     this.foldSettings();
+    this.reachCell();
   }
 
   layersOf(step) {
@@ -498,6 +503,15 @@ class Page {
     );
   }
 
+  /** Scrolls a wide table to the cell that is open; its first column stays in sight. */
+  reachCell() {
+    const [wrap, button] = [byId("grid").parentNode, byId("grid").querySelector('[aria-pressed="true"]')];
+    if (!button) return;
+    const [outer, inner] = [wrap, button].map((of) => of.getBoundingClientRect());
+    const left = outer.left + byId("grid").querySelector("tbody th").offsetWidth;
+    if (inner.left < left || inner.right > outer.right) wrap.scrollLeft += inner.left - (left + outer.right - inner.width) / 2;
+  }
+
   reopen() {
     this.open(this.cell);
     this.update();
@@ -531,6 +545,7 @@ class Page {
       button.firstChild.classList.toggle("not-needed", isNeedless && !this.isWide);
       button.style.setProperty("--share", (button.counts[which] / this.most[which]).toFixed(3));
     }
+    this.reachCell();
     const content = this.form === "reduced" ? this.cards.reducedCode() : this.cards.cellContent(cell);
     byId("cell").replaceChildren(...content);
     if (isOther || this.arm.layers.size === 0) {

@@ -76,9 +76,9 @@ pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileE
     }
     let parts = [
         ("title", template::text(&rne_emit::title(robot))),
-        ("style", STYLE.to_owned()),
+        ("style", template::code(STYLE)),
         ("data", template::json(data)),
         ("script", script),
     ];
-    Ok(template::filled(HTML, &parts))
+    Ok(template::filled(&template::code(HTML), &parts))
 }

@@ -75,14 +75,14 @@ fn without_fractions(value: &mut Value) {
     }
 }
 
-/// A script without its indentation and without the lines that are comments alone: they would be a tenth of a page.
-/// They stand in `page/`. No text of a script may go over several lines.
+/// A source of the page without its indentation and without the lines that are comments alone: they would be a tenth of
+/// a page. They stand in `page/`. No text of a script may go over several lines.
 pub(crate) fn code(script: &str) -> String {
     let mut code = String::new();
     let mut is_inside = false;
     for line in script.lines() {
         let text = line.trim();
-        is_inside |= text.starts_with("/**");
+        is_inside |= text.starts_with("/*");
         if !is_inside && !text.is_empty() && !text.starts_with("//") {
             code.push_str(text);
             code.push('\n');

@@ -19,35 +19,51 @@ use crate::{ClosedForm, MOST_LINES, written};
 type Formula = ([&'static str; 2], [&'static str; 2]);
 
 const FORWARD: [Formula; 4] = [
-    (["ωi", r"\omega_i"], ["Riᵀ ωp + q̇i e", r"R_i^T \omega_p + \dot q_i e"]),
+    (["ωi", r"\boldsymbol\omega_i"], ["Riᵀ ωp + q̇i e", r"R_i^{\mathrm T} \boldsymbol\omega_p + \dot q_i \mathbf e"]),
     (
-        ["ω̇i", r"\dot\omega_i"],
-        ["Riᵀ ω̇p + q̈i e + q̇i ωi × e", r"R_i^T \dot\omega_p + \ddot q_i e + \dot q_i\,\omega_i \times e"],
-    ),
-    (
-        ["c̈i", r"\ddot c_i"],
+        ["ω̇i", r"\dot{\boldsymbol\omega}_i"],
         [
-            "Riᵀ (c̈p + ω̇p × rp + ωp × (ωp × rp)) + ω̇i × di + ωi × (ωi × di)",
+            "Riᵀ ω̇p + q̈i e + q̇i ωi × e",
             concat!(
-                r"R_i^T (\ddot c_p + \dot\omega_p \times \mathbf r_p + \omega_p \times (\omega_p \times \mathbf r_p)) ",
-                r"+ \dot\omega_i \times \mathbf d_i + \omega_i \times (\omega_i \times \mathbf d_i)",
+                r"R_i^{\mathrm T} \dot{\boldsymbol\omega}_p + \ddot q_i \mathbf e ",
+                r"+ \dot q_i\,\boldsymbol\omega_i \times \mathbf e",
             ),
         ],
     ),
-    (["gi", r"g_i"], ["Riᵀ gp", r"R_i^T g_p"]),
+    (
+        ["c̈i", r"\ddot{\mathbf c}_i"],
+        [
+            "Riᵀ (c̈p + ω̇p × rp + ωp × (ωp × rp)) + ω̇i × di + ωi × (ωi × di)",
+            concat!(
+                r"R_i^{\mathrm T} (\ddot{\mathbf c}_p + \dot{\boldsymbol\omega}_p \times \mathbf r_p ",
+                r"+ \boldsymbol\omega_p \times (\boldsymbol\omega_p \times \mathbf r_p)) ",
+                r"+ \dot{\boldsymbol\omega}_i \times \mathbf d_i + \boldsymbol\omega_i \times (\boldsymbol\omega_i \times \mathbf d_i)",
+            ),
+        ],
+    ),
+    (["gi", r"\mathbf g_i"], ["Riᵀ gp", r"R_i^{\mathrm T} \mathbf g_p"]),
 ];
 
 const BACKWARD: [Formula; 4] = [
-    (["ni", r"n_i"], ["Ii ω̇i + ωi × (Ii ωi)", r"I_i \dot\omega_i + \omega_i \times (I_i \omega_i)"]),
-    (["fp,i", r"f_{p,i}"], ["mi (c̈i - gi) + Rk fi,k", r"m_i (\ddot c_i - g_i) + R_k f_{i,k}"]),
     (
-        ["np,i", r"n_{p,i}"],
+        ["ni", r"\mathbf n_i"],
         [
-            "ni + Rk ni,k + di × fp,i + ri × Rk fi,k",
-            r"n_i + R_k n_{i,k} + \mathbf d_i \times f_{p,i} + \mathbf r_i \times R_k f_{i,k}",
+            "Ii ω̇i + ωi × (Ii ωi)",
+            r"I_i \dot{\boldsymbol\omega}_i + \boldsymbol\omega_i \times (I_i \boldsymbol\omega_i)",
         ],
     ),
-    (["τi", r"\tau_i"], ["e · np,i", r"e \cdot n_{p,i}"]),
+    (
+        ["fp,i", r"\mathbf f_{p,i}"],
+        ["mi (c̈i - gi) + Rk fi,k", r"m_i (\ddot{\mathbf c}_i - \mathbf g_i) + R_k \mathbf f_{i,k}"],
+    ),
+    (
+        ["np,i", r"\mathbf n_{p,i}"],
+        [
+            "ni + Rk ni,k + di × fp,i + ri × Rk fi,k",
+            r"\mathbf n_i + R_k \mathbf n_{i,k} + \mathbf d_i \times \mathbf f_{p,i} + \mathbf r_i \times R_k \mathbf f_{i,k}",
+        ],
+    ),
+    (["τi", r"\tau_i"], ["e · np,i", r"\mathbf e \cdot \mathbf n_{p,i}"]),
 ];
 
 /// The formulas, the constants of each link, and the letters; of a tree the reason why there is no closed form.
@@ -69,11 +85,12 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     let mut forward: Vec<Item> = FORWARD.iter().map(formula).collect();
     let mut backward: Vec<Item> = BACKWARD.iter().map(formula).collect();
     besides(form, script, &mut forward, &mut backward);
-    let title = |text: &str| words(text);
-    sections
-        .push(Section { title: title("Forward, i = 1 to the last, p = i - 1; the base stands still"), items: forward });
-    sections
-        .push(Section { title: title("Backward, i from the last to 1, k = i + 1; the tip is free"), items: backward });
+    // words and formulas in turns
+    let title = |parts: [&str; 5]| parts.map(str::to_owned).to_vec();
+    let forward_title = title(["Forward, ", "i = 1", " to the last, ", "p = i - 1", "; the base stands still"]);
+    sections.push(Section { title: forward_title, items: forward });
+    let backward_title = title(["Backward, ", "i", " from the last to 1, ", "k = i + 1", "; the tip is free"]);
+    sections.push(Section { title: backward_title, items: backward });
     let mut collector = Collector::new(composer.notation.constants);
     let mut seen: Vec<Polynomial> = form.table.gravity.0.to_vec();
     let mut items = Vec::new();
@@ -130,7 +147,7 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
             "On the left d is the vector from the joint to the centre of mass, on the right the table's offset.",
         )));
     }
-    sections.push(Section { title: title("Of each link, in the frame at its joint, z along the joint's axis"), items });
+    sections.push(Section { title: words("Of each link, in the frame at its joint, z along the joint's axis"), items });
     sections.extend(letters(composer, &form.table, &used(seen.iter())));
     sections
 }
@@ -164,10 +181,10 @@ fn besides(form: &ClosedForm, script: Script, forward: &mut Vec<Item>, backward:
         forward.push(Item::Words(vec![
             "A sliding joint turns nothing: its link has no terms with e in the first two, and in the third it has "
                 .to_owned(),
-            math("q̈i e + 2 q̇i ωi × e", r"\ddot q_i e + 2\,\dot q_i\,\omega_i \times e"),
+            math("q̈i e + 2 q̇i ωi × e", r"\ddot q_i \mathbf e + 2\,\dot q_i\,\boldsymbol\omega_i \times \mathbf e"),
             " besides.".to_owned(),
         ]));
-        let force = math("e · fp,i", r"e \cdot f_{p,i}");
+        let force = math("e · fp,i", r"\mathbf e \cdot \mathbf f_{p,i}");
         backward.push(Item::Words(vec!["The force of a sliding joint is ".to_owned(), force, ".".to_owned()]));
     }
     if rows.iter().any(|row| !row.rotor.is_zero()) {
@@ -179,10 +196,13 @@ fn besides(form: &ClosedForm, script: Script, forward: &mut Vec<Item>, backward:
             "A link without mass that has a first moment h adds ".to_owned(),
             math(
                 "ω̇i × hi + ωi × (ωi × hi)",
-                r"\dot{\omega}_i \times \mathbf h_i + \omega_i \times (\omega_i \times \mathbf h_i)",
+                concat!(
+                    r"\dot{\boldsymbol\omega}_i \times \mathbf h_i ",
+                    r"+ \boldsymbol\omega_i \times (\boldsymbol\omega_i \times \mathbf h_i)",
+                ),
             ),
             " to the force on it and ".to_owned(),
-            math("hi × (c̈i - gi)", r"\mathbf h_i \times (\ddot c_i - g_i)"),
+            math("hi × (c̈i - gi)", r"\mathbf h_i \times (\ddot{\mathbf c}_i - \mathbf g_i)"),
             " to the moment.".to_owned(),
         ]));
     }

@@ -1,13 +1,12 @@
 //! `rne eval --trace --compare`: somebody's worksheet beside the right one, and where they first differ.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use rne_diagnose::worksheet::{Comparison, Difference, Line, Quantity, Reach, Reason, Situation, Worksheet};
 use rne_model::Robot;
 use serde::Serialize;
 
-use crate::files::worksheet_file::{self, Filled, steps_in_words};
+use crate::files::worksheet_file::{Filled, steps_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{ERROR, FORMULA, FOUND, GOOD, QUIET, TITLE};
 use crate::render::layout::{Align, PAGE, columns, left, wrap};
@@ -59,16 +58,14 @@ struct Because {
 }
 
 pub(crate) fn run(
-    path: &Path,
+    Filled { values, axes, .. }: &Filled,
     robot: &Robot,
     at: &Situation,
-    axes: Option<crate::render::worksheet::Axes>,
     manner: Manner,
 ) -> Result<Outcome, Failure> {
-    let Filled { values, axes, .. } = worksheet_file::read(path, robot, axes.map(Into::into))?;
     let axes = axes.unwrap_or(rne_diagnose::worksheet::Axes::Link);
     let sheet = Worksheet::new(robot, at, axes).map_err(Failure::usage)?;
-    let comparison = sheet.compare(robot, at, &values, manner.digits).map_err(Failure::usage)?;
+    let comparison = sheet.compare(robot, at, values, manner.digits).map_err(Failure::usage)?;
     let at_fault = comparison.first.is_some();
     if manner.json {
         return Ok(Outcome { at_fault, ..Outcome::json(&reply(&sheet, &comparison, manner.hint))? });

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rne::DynArm;
 use rne_codegen::{Argument, CompileError, Function, Layout, Record, Step};
-use rne_diagnose::worksheet::Worksheet;
+use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_model::Robot;
 use serde_json::{Value, json};
 
@@ -16,6 +16,7 @@ use crate::files::chosen_arm::{AtFrame, ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
 use crate::files::plan_file;
 use crate::files::states;
+use crate::files::worksheet_file;
 use crate::files::worksheet_text;
 use crate::outcome::{Failure, Outcome};
 use crate::render::answer;
@@ -34,7 +35,7 @@ use crate::values::state::{Given, State, TipWrench};
 #[command(after_help = "\
 Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
-  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
+  rne eval planar1 --trace --compare mine.csv
   rne eval robots/planar2.yaml --states docs/states.csv -o torques.csv")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
@@ -108,7 +109,7 @@ pub(crate) struct Arguments {
     /// Print the values of --trace as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// With --trace: print the first wrong value of your worksheet (CSV or JSON)
+    /// Print the first error of a worksheet; with --trace
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
     /// Significant digits for --compare [default: 4]
@@ -195,7 +196,20 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
              tree, and `rne show` prints the formulas of its joints",
         ));
     }
-    let (given, assumed) = arguments.given(function).at_rest(function, zeros.each_ref());
+    let read = |path: &PathBuf| worksheet_file::read(path, &robot, arguments.axes.map(Into::into));
+    let sheet = arguments.compare.as_ref().map(read).transpose()?;
+    // a worksheet has its state
+    let of_sheet = [Quantity::Q, Quantity::Qd, Quantity::Qdd]
+        .map(|quantity| sheet.as_ref()?.given(quantity, robot.dof()).map(List));
+    let mut given = arguments.given(function);
+    if given.q.is_none() {
+        let lists = [&mut given.q, &mut given.qd, &mut given.qdd].into_iter().zip(&of_sheet);
+        let kinds = [Argument::Positions, Argument::Rates, Argument::Accelerations];
+        for ((own, of_sheet), kind) in lists.zip(kinds) {
+            *own = own.or(of_sheet.as_ref().filter(|_| function.takes(kind)));
+        }
+    }
+    let (given, assumed) = given.at_rest(function, zeros.each_ref());
     let state = State::new(function, given, &robot)?;
     let arm = DynArm::from_robot(&robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
@@ -222,10 +236,10 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Ok(Outcome { remark, ..Outcome::text(answer::text(&robot, &state, &numbers)) });
     }
     let situation = worksheet::situation(&state, robot.dof());
-    if let Some(path) = &arguments.compare {
+    if let Some(sheet) = &sheet {
         let digits = arguments.digits.unwrap_or(DIGITS_BY_HAND);
         let manner = Manner { digits, json: arguments.json, hint: arguments.hint };
-        return compare::run(path, &robot, &situation, arguments.axes, manner);
+        return compare::run(sheet, &robot, &situation, manner);
     }
     let joint = choice::joint_of(&robot, arguments.joint.as_deref())?;
     let narrowed = Narrowed { joint, step: arguments.step };

@@ -125,6 +125,9 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     let meant = if components.is_empty() { near.into_iter().collect() } else { components };
     let meant =
         if meant.is_empty() { String::new() } else { format!(" (did you mean {TYPED}{}{TYPED:#}?)", meant.join(", ")) };
+    let number = name.split(|c: char| !c.is_ascii_digit()).find_map(|digits| digits.parse::<usize>().ok());
+    let beyond = number.is_some_and(|joint| joint > robot.dof());
+    let meant = if beyond { format!(", which has {} joints", robot.dof()) } else { meant };
     Err(Failure::usage(format_args!(
         "there is no name `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
          code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",

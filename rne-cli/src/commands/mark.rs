@@ -26,7 +26,7 @@ use crate::values::choice;
 #[command(after_help = "\
 Examples:
   rne mark planar1 --states docs/lecture/class/key.csv docs/lecture/class/*.csv
-  rne mark planar2 --seed 7 sheets/*.csv --csv > marks.csv
+  rne mark planar2 --seed 7 sheets --csv > marks.csv
   rne mark planar2 --seed 7 sheets/ada.csv --hint
 
 A point is a right value of a worksheet, as `rne eval --trace --csv` and
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Worksheets that the students filled in: CSV or JSON
+    /// Worksheets that the students filled in: CSV or JSON; of a folder all files .csv
     #[arg(value_name = "WORKSHEET", required = true)]
     worksheets: Vec<PathBuf>,
     #[command(flatten)]
@@ -77,20 +77,38 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = robot_file::robot(&arguments.file, Shape::Chain)?;
     let states = arguments.states.read(&robot)?;
     let is_key = |path: &&PathBuf| arguments.states.states.as_deref().is_some_and(|key| key == path.as_path());
-    let paths: Vec<&PathBuf> = arguments.worksheets.iter().filter(|path| !is_key(path)).collect();
+    let mut paths = Vec::new();
+    for path in arguments.worksheets.iter().filter(|path| !is_key(path)) {
+        paths.extend(if path.is_dir() { worksheets_in(path)? } else { vec![path.clone()] });
+    }
+    paths.retain(|path| !is_key(&path));
     if paths.is_empty() {
         return Err(Failure::usage("the only worksheet is KEY itself; name the files of the students"));
     }
     let steps = numbers_of(&arguments.steps);
-    let mut marked = Vec::new();
+    let (mut marked, mut sheets) = (Vec::new(), Vec::new());
     let mut remark = String::new();
-    for path in paths {
-        match mark(path, &robot, &states, &steps, arguments) {
-            Ok(one) => marked.push(one),
+    for path in &paths {
+        let read = worksheet_file::read(path, &robot, arguments.axes.map(Into::into));
+        match read.and_then(|sheet| Ok((mark(path, &sheet, &robot, &states, &steps, arguments)?, Some(sheet)))) {
+            Ok((one, sheet)) => {
+                marked.push(one);
+                sheets.push(sheet);
+            }
             Err(failure) => {
                 let _ = writeln!(remark, "{}", failure.text.trim_end());
                 marked.push(Marked { student: stem(path), file: path.display().to_string(), mark: Err(failure) });
+                sheets.push(None);
             }
+        }
+    }
+    let mut names = states.students();
+    names.extend(marked.iter().map(|one| one.student.clone()));
+    for (one, sheet) in marked.iter_mut().zip(&sheets).filter(|(one, _)| one.is_for_another_state()) {
+        let has =
+            |name: &&String| states.of(name, &robot).is_ok_and(|at| sheet.as_ref().is_some_and(|own| own.is_at(&at)));
+        if let Some(owner) = names.iter().find(has) {
+            one.name_owner(owner);
         }
     }
     let mut files: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -117,6 +135,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark, remark_last: true, at_fault })
 }
 
+/// The worksheets of a folder: its files `.csv`, by their names.
+fn worksheets_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let unreadable = |error| Failure::input(format_args!("the folder {} cannot be read: {error}", folder.display()));
+    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).map_err(unreadable)?;
+    let is_sheet = |path: &PathBuf| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"));
+    let mut files: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).filter(is_sheet).collect();
+    files.sort();
+    if files.is_empty() {
+        return Err(Failure::input(format_args!("the folder {} has no worksheet: no file .csv", folder.display())));
+    }
+    Ok(files)
+}
+
 /// The name of a student of whom nothing is known but the file.
 fn stem(path: &Path) -> String {
     if is_standard_input(path) {
@@ -127,20 +158,23 @@ fn stem(path: &Path) -> String {
 
 fn mark(
     path: &Path,
+    filled: &Filled,
     robot: &Robot,
     states: &ClassStates,
     steps: &[u8],
     arguments: &Arguments,
 ) -> Result<Marked, Failure> {
-    let Filled { values, axes, student, steps: asked } =
-        worksheet_file::read(path, robot, arguments.axes.map(Into::into))?;
-    let student = student.unwrap_or_else(|| stem(path));
+    let Filled { values, axes, student, steps: asked, cells } = filled;
+    let student = student.clone().unwrap_or_else(|| stem(path));
     let at = states.of(&student, robot)?;
     let sheet = Worksheet::new(robot, &at, axes.unwrap_or(worksheet::Axes::Link)).map_err(Failure::usage)?;
-    let comparison = sheet.compare(robot, &at, &values, arguments.digits).map_err(Failure::usage)?;
+    let comparison = sheet.compare(robot, &at, values, arguments.digits).map_err(Failure::usage)?;
     let always_zero = sheet.always_zero(robot, &at).map_err(Failure::usage)?;
     // what the command line asks for, else what the worksheet asks for
-    let steps = asked.filter(|_| arguments.steps.is_empty()).unwrap_or_else(|| steps.to_vec());
-    let mark = Mark::new(&sheet, comparison, &steps, &always_zero, arguments.carry);
+    let is_free = arguments.steps.is_empty();
+    let steps = asked.as_deref().filter(|_| is_free).unwrap_or(steps);
+    let cells = cells.as_ref().filter(|_| is_free);
+    let is_asked = |joint, step| steps.contains(&step) && cells.is_none_or(|cells| cells.contains(&(joint, step)));
+    let mark = Mark::new(&sheet, comparison, is_asked, &always_zero, arguments.carry);
     Ok(Marked { student, file: path.display().to_string(), mark: Ok(mark) })
 }

@@ -123,7 +123,8 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
     if bytes.len() > LONGEST {
         return Err(Failure::input(format_args!("{name} has more than {LONGEST} bytes: are these states of a class?")));
     }
-    let text = text_of(&name, &bytes)?;
+    let decoded = text_of(&name, &bytes)?;
+    let text = decoded.as_ref();
     let mut mistakes = Mistakes::new(&name, text);
     let mut rows = Vec::new();
     for line in csv_table::lines(text) {

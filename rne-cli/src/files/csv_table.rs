@@ -49,19 +49,42 @@ const TOLD: usize = 20;
 /// each cell.
 const ALIKE: usize = 3;
 
-/// The text of a file, without a byte order mark.
-pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Failure> {
+/// Characters of the bytes 0x80 to 0x9F in Windows-1252, after the index of the WHATWG Encoding Standard; five bytes have
+/// none.
+const WINDOWS: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8D}Ž\u{8F}\u{90}‘’“”•–—˜™š›œ\u{9D}žŸ";
+
+/// The text of a file, without a byte order mark: in UTF-8, or as spreadsheets save `CSV` and `Unicode text`, in
+/// Windows-1252 and in UTF-16 with its mark.
+///
+/// # Errors
+/// A byte, with its line and column, that has no character in UTF-8 and none in Windows-1252; half a character of
+/// UTF-16.
+pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Failure> {
+    let utf_16 = |rest: &[u8], unit: fn([u8; 2]) -> u16| {
+        let units = rest.chunks_exact(2).filter_map(|pair| Some(unit(pair.try_into().ok()?))).collect::<Vec<_>>();
+        let text = String::from_utf16(&units).ok().filter(|_| rest.len() % 2 == 0);
+        let broken = || Failure::input(format_args!("{name} is not UTF-16 to its end; save the file as UTF-8"));
+        text.map(Cow::Owned).ok_or_else(broken)
+    };
+    match bytes {
+        [0xFF, 0xFE, rest @ ..] => return utf_16(rest, u16::from_le_bytes),
+        [0xFE, 0xFF, rest @ ..] => return utf_16(rest, u16::from_be_bytes),
+        _ => {}
+    }
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    std::str::from_utf8(bytes).map_err(|error| {
-        let at = error.valid_up_to();
-        let byte = bytes.get(at).copied().unwrap_or_default();
-        let help = match bytes {
-            [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => "this looks like UTF-16; save the file as UTF-8",
-            _ => "save the file with the encoding UTF-8; spreadsheets call it `CSV UTF-8`",
-        };
-        let text = String::from_utf8_lossy(bytes);
-        Failure::from(&Report::of_error(name, &text, at..at + 3, format!("byte 0x{byte:02X} is not UTF-8"), Some(help)))
-    })
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        return Ok(Cow::Borrowed(text));
+    }
+    let character = |byte: u8| match byte {
+        0x80..=0x9F => WINDOWS.chars().nth(usize::from(byte - 0x80)).filter(|c| !c.is_control()),
+        _ => Some(char::from(byte)),
+    };
+    let text: String = bytes.iter().map(|byte| character(*byte).unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    let Some(at) = text.find(char::REPLACEMENT_CHARACTER) else { return Ok(Cow::Owned(text)) };
+    let byte = bytes.iter().find(|byte| character(**byte).is_none()).copied().unwrap_or_default();
+    let message = format!("byte 0x{byte:02X} is not UTF-8, and no character of Windows-1252");
+    let help = "save the file with the encoding UTF-8; spreadsheets call it `CSV UTF-8`";
+    Err(Failure::from(&Report::of_error(name, &text, at..at + 3, message, Some(help))))
 }
 
 impl<'a> Mistakes<'a> {

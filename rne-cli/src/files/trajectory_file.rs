@@ -40,7 +40,8 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
             "{name} has more than {LONGEST} bytes; give a file with a part of the samples"
         )));
     }
-    let text = text_of(&name, &bytes)?;
+    let decoded = text_of(&name, &bytes)?;
+    let text = decoded.as_ref();
     let mut mistakes = Mistakes::new(&name, text);
     let dof = robot.dof();
     let help =

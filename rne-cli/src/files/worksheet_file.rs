@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 use std::path::Path;
 
-use rne_diagnose::worksheet::{Axes, GivenValue, Quantity};
+use rne_diagnose::worksheet::{Axes, GivenValue, Quantity, Situation};
 use rne_model::{Report, Robot, did_you_mean};
 use serde_json::value::RawValue;
 
@@ -25,7 +25,7 @@ const LONGEST: usize = 4 << 20;
 const MOST: usize = 200;
 
 /// A worksheet that a student filled in.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Filled {
     pub(crate) values: Vec<GivenValue>,
     /// The axes that the file names.
@@ -34,6 +34,24 @@ pub(crate) struct Filled {
     pub(crate) student: Option<String>,
     /// The steps that the file asks for, where it names them.
     pub(crate) steps: Option<Vec<u8>>,
+    /// The cells that the file asks for, joint and step, where it names them.
+    pub(crate) cells: Option<Vec<(usize, u8)>>,
+}
+
+impl Filled {
+    /// The values of q, q̇ or q̈, a number for each joint; `None` if one of them is not given.
+    pub(crate) fn given(&self, quantity: Quantity, dof: usize) -> Option<Vec<f64>> {
+        let of_joint = |joint| self.values.iter().find(|given| given.quantity == quantity && given.joint == joint);
+        (1..=dof).map(|joint| of_joint(joint).map(|given| given.value)).collect()
+    }
+
+    /// Whether the worksheet gives this state.
+    pub(crate) fn is_at(&self, at: &Situation) -> bool {
+        [(Quantity::Q, &at.q), (Quantity::Qd, &at.qd), (Quantity::Qdd, &at.qdd)].into_iter().all(|(quantity, own)| {
+            let given = self.given(quantity, own.len());
+            given.is_some_and(|given| given.iter().zip(own).all(|(a, b)| (a - b).abs() <= 1e-9))
+        })
+    }
 }
 
 /// Contents of the first line of a worksheet.
@@ -41,6 +59,7 @@ pub(crate) struct Filled {
 struct Head {
     student: Option<String>,
     steps: Option<Vec<u8>>,
+    cells: Option<Vec<(usize, u8)>>,
 }
 
 /// The cells of a row, by their columns.
@@ -54,7 +73,8 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
     if bytes.len() > LONGEST {
         return Err(Failure::input(format_args!("{name} has more than {LONGEST} bytes: is this a worksheet?")));
     }
-    let text = text_of(&name, &bytes)?;
+    let decoded = text_of(&name, &bytes)?;
+    let text = decoded.as_ref();
     let keys = ["convention:", "joints:", "format:"];
     if keys.iter().filter(|key| text.lines().any(|line| line.starts_with(**key))).count() > 1 {
         return Err(Failure::input(format_args!(
@@ -70,10 +90,10 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
         csv_rows(text, robot, &mut head, &mut mistakes)
     };
     if mistakes.are_there() {
-        return mistakes.finish(Filled { values: Vec::new(), axes: None, student: None, steps: None });
+        return mistakes.finish(Filled::default());
     }
     let reading = Reading { robot, mistakes, axes, seen: HashMap::new(), values: Vec::new(), text };
-    Ok(Filled { student: head.student, steps: head.steps, ..reading.rows(&rows)? })
+    Ok(Filled { student: head.student, steps: head.steps, cells: head.cells, ..reading.rows(&rows)? })
 }
 
 fn csv_rows<'a>(
@@ -105,7 +125,14 @@ fn csv_rows<'a>(
                     head.steps = named.and_then(steps_of);
                     if named.is_some() && head.steps.is_none() {
                         let help = "write numbers from 1 to 7 with blanks between them, such as `steps 1 2 7`";
-                        mistakes.push(span, "the steps in this line are not steps", Some(help));
+                        mistakes.push(span.clone(), "the steps in this line are not steps", Some(help));
+                    }
+                    let named = word("cells ");
+                    head.cells = named.and_then(cells_of);
+                    if named.is_some() && head.cells.is_none() {
+                        let help =
+                            "write joint and step of each cell with blanks between cells, such as `cells 1.4 2.4`";
+                        mistakes.push(span, "the cells in this line are not cells", Some(help));
                     }
                 }
             }
@@ -158,6 +185,15 @@ fn csv_rows<'a>(
 /// The steps of a text such as `1 2 7`.
 fn steps_of(text: &str) -> Option<Vec<u8>> {
     text.split_whitespace().map(|step| step.parse().ok().filter(|step| (1..=7).contains(step))).collect()
+}
+
+/// The cells of a text such as `1.4 2.4`: joint and step.
+fn cells_of(text: &str) -> Option<Vec<(usize, u8)>> {
+    let cell = |text: &str| {
+        let (joint, step) = text.split_once('.')?;
+        Some((joint.parse().ok()?, step.parse().ok().filter(|step| (1..=7).contains(step))?))
+    };
+    text.split_whitespace().map(cell).collect()
 }
 
 fn too_many(span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) {
@@ -284,7 +320,7 @@ impl Reading<'_> {
             let help = "each row has a joint, a quantity, its component and a value; empty values are left out";
             self.mistakes.push(0..0, "the worksheet has no value to compare", Some(help));
         }
-        let filled = Filled { values: self.values, axes: self.axes, student: None, steps: None };
+        let filled = Filled { values: self.values, axes: self.axes, ..Filled::default() };
         self.mistakes.finish(filled)
     }
 

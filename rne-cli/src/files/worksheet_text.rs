@@ -95,6 +95,18 @@ fn axes(robot: &Robot, axes: Axes) -> String {
     format!("# axes of the vectors: {} = {}{of_table}\n", axes.name(), axes.explained())
 }
 
+/// The largest value of a quantity of all joints.
+fn scale(sheet: &Worksheet, quantity: &str) -> f64 {
+    let of_quantity = sheet.lines.iter().filter(|line| line.quantity.name() == quantity);
+    of_quantity.flat_map(|line| &line.values).fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// A right value with eight significant digits; what rounding leaves of a zero is 0.
+fn answer(value: f64, scale: f64) -> String {
+    let value = if value.abs() <= 1e-12 * scale { 0.0 } else { value };
+    exact_digits(format!("{value:.7e}").parse().unwrap_or(value))
+}
+
 /// A student's worksheet as CSV: the arm and the state are filled in, and with `answers` everything else, too. `comma`
 /// writes numbers with a decimal comma and semicolons between the columns.
 pub(crate) fn of_student(
@@ -107,7 +119,8 @@ pub(crate) fn of_student(
 ) -> String {
     let separator = if comma { ';' } else { ',' };
     let columns = COLUMNS.join(separator.encode_utf8(&mut [0; 4]));
-    let mut text = format!("# rne worksheet, format {FORMAT}, robot {}", robot.name);
+    // with a byte order mark a spreadsheet reads the file as UTF-8: units have m/s²
+    let mut text = format!("\u{feff}# rne worksheet, format {FORMAT}, robot {}", robot.name);
     if steps.len() < 7 {
         let steps: Vec<String> = steps.iter().map(ToString::to_string).collect();
         let _ = write!(text, ", steps {}", steps.join(" "));
@@ -118,7 +131,11 @@ pub(crate) fn of_student(
         if !is_state && !steps.contains(&row.step) {
             continue;
         }
-        let value = if is_state || answers { exact_digits(row.value) } else { String::new() };
+        let value = match answers {
+            _ if is_state => exact_digits(row.value),
+            true => answer(row.value, scale(sheet, row.quantity)),
+            false => String::new(),
+        };
         row.write(&mut text, separator, &if comma { value.replace('.', ",") } else { value });
     }
     text

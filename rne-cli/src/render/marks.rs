@@ -55,18 +55,18 @@ struct FirstError {
 }
 
 impl Mark {
-    /// Points are the right values of these steps without those that are `always_zero`; with `carry`, also the values
+    /// Points are the right values of the cells that are asked for, by joint and step, without those that are `always_zero`; with `carry`, also the values
     /// that are right with the student's own earlier values.
     pub(crate) fn new(
         sheet: &Worksheet,
         comparison: Comparison,
-        steps: &[u8],
+        is_asked: impl Fn(usize, u8) -> bool,
         always_zero: &BTreeSet<(usize, usize)>,
         carry: bool,
     ) -> Self {
         let counts = |place: &(usize, usize)| {
-            let step = sheet.lines.get(place.0).map_or(0, |line| line.quantity.step());
-            steps.contains(&step) && !always_zero.contains(place)
+            let line = sheet.lines.get(place.0);
+            line.is_some_and(|line| is_asked(line.joint, line.quantity.step())) && !always_zero.contains(place)
         };
         let all = sheet.lines.iter().enumerate();
         let all = all.flat_map(|(index, line)| (0..line.values.len()).map(move |component| (index, component)));
@@ -104,7 +104,15 @@ impl Marked {
     /// Whether the worksheet was made for another state.
     pub(crate) fn is_for_another_state(&self) -> bool {
         let first = self.mark.as_ref().ok().and_then(|mark| mark.first_error.as_ref());
-        first.is_some_and(|first| first.cause.as_deref() == Some(OTHER_STATE))
+        first.and_then(|first| first.cause.as_deref()).is_some_and(|cause| cause.starts_with(OTHER_STATE))
+    }
+
+    /// Says whose state a worksheet for another state has.
+    pub(crate) fn name_owner(&mut self, owner: &str) {
+        let first = self.mark.as_mut().ok().and_then(|mark| mark.first_error.as_mut());
+        if let Some(cause) = first.and_then(|first| first.cause.as_mut()) {
+            let _ = write!(cause, ": that of {}", shown(owner));
+        }
     }
 }
 
@@ -117,10 +125,26 @@ pub(crate) fn shown(text: &str) -> String {
     shortened(&visible, 60)
 }
 
+/// Why a file is not marked, in one sentence: the line of the first mistake, if it has one, and what is wrong there.
+fn refusal(failure: &Failure) -> String {
+    let sentence = failure.sentence();
+    let mut lines = sentence.lines();
+    let what = lines.next().unwrap_or_default();
+    let line =
+        lines.next().and_then(|place| place.trim().strip_prefix("--> ")?.rsplit(':').nth(1)?.parse::<u64>().ok());
+    line.map_or_else(|| what.to_owned(), |line| format!("line {line}: {what}"))
+}
+
 /// The cells of a row of the table: name, points, first error, cause.
 fn cells(one: &Marked, hint: bool) -> [String; 4] {
     let student = shown(&one.student);
-    let Ok(mark) = &one.mark else { return [student, "-".to_owned(), "not marked".to_owned(), String::new()] };
+    let mark = match &one.mark {
+        Ok(mark) => mark,
+        Err(failure) => {
+            let points = "-".to_owned();
+            return [student, points, "not marked".to_owned(), shortened(&refusal(failure), 200)];
+        }
+    };
     let points = format!("{}/{}", mark.points, mark.of);
     let Some(first) = &mark.first_error else {
         let missing = match mark.missing {
@@ -215,7 +239,7 @@ pub(crate) fn csv(all: &[Marked], hint: bool) -> Result<String, Failure> {
         let mut cells = vec![harmless(&one.student), harmless(&one.file)];
         let (mark, refused) = match &one.mark {
             Ok(mark) => (Some(mark), String::new()),
-            Err(failure) => (None, harmless(&failure.sentence().replace('\n', " "))),
+            Err(failure) => (None, harmless(&refusal(failure))),
         };
         let first = mark.and_then(|mark| mark.first_error.as_ref());
         let counts = mark.map_or([None; 4], |mark| [mark.points, mark.of, mark.carried, mark.missing].map(Some));

@@ -30,6 +30,22 @@ fn an_arm_that_no_page_holds() {
     insta::assert_snapshot!(fine(&["show", "robots/puma560.yaml", "--symbolic"]));
 }
 
+/// Vectors are bold, a transpose is upright, and a formula in a heading is one.
+#[test]
+fn the_recursion_in_latex() {
+    let latex = fine(&["show", "puma560", "--latex"]);
+    let (_, recursion) =
+        latex.split_once("\\subsection*{Forward, $i = 1$ to the last, $p = i - 1$; the").expect("a heading");
+    let (recursion, _) = recursion.split_once("\\subsection*{Of each link").expect("a heading");
+    let bare = recursion.replace("\\boldsymbol\\omega", "");
+    assert!(!bare.contains("omega") && !bare.contains("^T") && bare.contains("^{\\mathrm T}"), "{recursion}");
+    for letter in ["c", "f", "n", "g", "r", "d"] {
+        let bold = format!("\\mathbf {letter}");
+        let rest = recursion.replace(&bold, "");
+        assert!(recursion.contains(&bold) && !rest.contains(&format!(" {letter}_")), "{letter}: {recursion}");
+    }
+}
+
 #[test]
 fn two_links_in_latex() {
     let latex = fine(&["show", "robots/planar2.yaml", "--latex"]);

@@ -206,7 +206,7 @@ fn hostile_files_are_refused_at_their_line() {
         (b"joint,quantity,value\n1,tau,nan\n", ".csv:2:7"),
         (b"joint,quantity,component,value\n1,omega,z,1\n1,omega,z,2\n", ".csv:3:1"),
         (b"joint,quantity,value\n99,tau,1\n", ".csv:2:1"),
-        (b"joint,quantity,value\n1,t\xff,1\n", ".csv:2:4"),
+        (b"joint,quantity,value\n1,t\x81,1\n", ".csv:2:4"),
         (b"joint,quantity,value\n1,tau,\"1\n", ".csv:2:7"),
         (b"{\"rows\": [[[[", ".csv:1:"),
         (b"# rne worksheet, format 1, robot panda\njoint,quantity,value\n1,tau,1\n", ".csv:1:1"),
@@ -337,6 +337,8 @@ fn the_first_line_says_what_is_asked() {
     let words = ["worksheet", "planar1", "--seed", "7", "--step", "1,2,7", "--answers", "m6", "-o", path(&sheets)];
     assert_eq!(rne(&words).status, 0);
     let text = fs::read_to_string(sheets.join("m6.csv")).expect("a worksheet");
+    // a spreadsheet that is to show m/s² needs the byte order mark
+    let text = text.strip_prefix('\u{feff}').expect("a byte order mark");
     let (head, rest) = text.split_once('\n').expect("a line");
     assert_eq!(head, "# rne worksheet, format 1, robot planar1, steps 1 2 7, student m6");
     // with another name: the student's is in the file
@@ -351,6 +353,107 @@ fn the_first_line_says_what_is_asked() {
     fs::write(&file, text.replace("steps 1 2 7", "steps 1 9")).expect("a file");
     let called = rne(&["mark", "planar1", "--seed", "7", path(&file)]);
     assert!(called.status == 1 && called.err.contains(":1:1") && called.err.contains("are not steps"), "{called:?}");
+}
+
+/// Worksheets of `planar2` with right values: the folder, and a file of each student.
+fn answers(name: &str, students: &[&str]) -> (PathBuf, Vec<PathBuf>) {
+    let sheets = folder(name).join("sheets");
+    let words = ["worksheet", "planar2", "--seed", "7", "--answers", "--axes", "joint", "-o", path(&sheets)];
+    assert_eq!(rne(&[&words, students].concat()).status, 0);
+    let files = students.iter().map(|student| sheets.join(format!("{student}.csv"))).collect();
+    (sheets, files)
+}
+
+/// Excel saves `CSV` in Windows-1252, and `Unicode text` in UTF-16; our own units have a `²`.
+#[test]
+fn worksheets_as_spreadsheets_save_them() {
+    let (_, files) = answers("mark_encodings", &["ada"]);
+    let text = fs::read_to_string(&files[0]).expect("a worksheet");
+    assert!(text.contains("m/s²"), "{text}");
+    let plain = text.trim_start_matches('\u{feff}');
+    let windows = plain.chars().map(|c| u8::try_from(u32::from(c)).expect("Latin-1")).collect::<Vec<u8>>();
+    // “–”, which Windows-1252 has and Latin-1 has not
+    let dash = [b"# \x96\n", windows.as_slice()].concat();
+    let little = text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+    let big = text.encode_utf16().flat_map(u16::to_be_bytes).collect::<Vec<u8>>();
+    for bytes in [windows, dash, little.clone(), big] {
+        fs::write(&files[0], bytes).expect("a file");
+        let table = fine(&["mark", "planar2", "--seed", "7", path(&files[0])]);
+        assert!(table.contains("ada       32/32  none\n"), "{table}");
+    }
+    fs::write(&files[0], &little[..little.len() - 1]).expect("a file");
+    let called = rne(&["mark", "planar2", "--seed", "7", path(&files[0])]);
+    assert!(called.status == 1 && called.err.contains("ada.csv is not UTF-16 to its end"), "{called:?}");
+}
+
+/// What rounding leaves of a zero is 0, and no answer has digits that nobody can use.
+#[test]
+fn answers_have_no_noise() {
+    let (_, files) = answers("mark_noise", &["ada"]);
+    let text = fs::read_to_string(&files[0]).expect("a worksheet");
+    let number =
+        |line: &str| line.split(',').nth(4).and_then(|cell| cell.parse::<f64>().ok().map(|x| (x, cell.to_owned())));
+    let rows = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+    let values: Vec<(f64, String)> = rows.filter_map(number).collect();
+    assert!(values.len() > 70 && text.contains("1,5,gravity,x,0,m/s²,joint"), "{text}");
+    for (value, text) in values {
+        let digits = text.bytes().filter(u8::is_ascii_digit).count();
+        assert!((value == 0.0 || value.abs() > 1e-10) && digits <= 10, "{text}");
+    }
+}
+
+/// Only the cells that the first line names are asked for: joint and step.
+#[test]
+fn cells_that_are_asked_for() {
+    let (_, files) = answers("mark_cells", &["ada"]);
+    let text = fs::read_to_string(&files[0]).expect("a worksheet");
+    for (cells, points) in [("2.4", "2/2"), ("2.4 1.7", "3/3")] {
+        fs::write(&files[0], text.replace(", student", &format!(", cells {cells}, student"))).expect("a file");
+        let call = ["mark", "planar2", "--seed", "7", path(&files[0])];
+        let table = fine(&call);
+        assert!(table.contains(&format!("ada         {points}  none\n")), "{cells}: {table}");
+        // what the command line asks for comes first
+        assert!(fine(&[&call[..], &["--step", "7"]].concat()).contains("2/2"), "{cells}");
+    }
+    fs::write(&files[0], text.replace(", student", ", cells 2.9, student")).expect("a file");
+    let called = rne(&["mark", "planar2", "--seed", "7", path(&files[0])]);
+    for says in ["ada.csv:1:1", "are not cells", "cells 1.4 2.4"] {
+        assert!(called.status == 1 && called.err.contains(says), "{called:?}");
+    }
+}
+
+/// A folder is the worksheets in it; a file that is refused says why in its row, and whose state a worksheet has.
+#[test]
+fn a_folder_of_a_class() {
+    let (sheets, files) = answers("mark_folder", &["ada", "bob", "eve"]);
+    let text = fs::read_to_string(&files[2]).expect("a worksheet");
+    fs::write(&files[2], text.replace("1,1,omega,z,", "1,1,omgea,z,").replace("1,7,tau,", "1,7,tao,")).expect("a file");
+    // bob's, handed in as ada's
+    let text = fs::read_to_string(&files[1]).expect("a worksheet");
+    fs::write(sheets.join("carl.csv"), text.replace("student bob", "student carl")).expect("a file");
+    fs::write(sheets.join("notes.txt"), "no worksheet").expect("a file");
+    let called = rne(&["mark", "planar2", "--seed", "7", path(&sheets)]);
+    for says in [
+        "ada       32/32  none\n",
+        "the worksheet is for another state: that of bob\n",
+        "line 17: `omgea`: there is no such quantity",
+    ] {
+        assert!(called.out.contains(says), "{says}: {}", called.out);
+    }
+    assert!(called.status == 1 && called.err.contains("eve.csv:17:5"), "{called:?}");
+    let csv = rne(&["mark", "planar2", "--seed", "7", path(&sheets), "--csv"]).out;
+    let row = csv.lines().find(|line| line.starts_with("eve,")).expect("a row");
+    assert!(row.ends_with(",line 17: `omgea`: there is no such quantity; did you mean `omega`?"), "{row}");
+    let empty = sheets.join("empty");
+    fs::create_dir(&empty).expect("a folder");
+    fails(1, &["mark", "planar2", "--seed", "7", path(&empty)], &["has no worksheet: no file .csv"]);
+    // a worksheet has its state
+    let compared = fine(&["eval", "planar2", "--trace", "--compare", path(&files[1])]);
+    assert!(compared.starts_with("ok 74 values"), "{compared}");
+    let blank = "joint,quantity,component,value\n1,omega,z,1\n";
+    let file = sheets.join("blank.csv");
+    fs::write(&file, blank).expect("a file");
+    fails(2, &["eval", "planar2", "--trace", "--compare", path(&file)], &["--q"]);
 }
 
 /// A wrong seed is asked about once.

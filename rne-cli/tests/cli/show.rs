@@ -92,6 +92,7 @@ fn what_a_name_in_the_code_is() {
     assert!(reduced.contains("let tau6 = "), "{reduced}");
     fails(2, &["explain", "w2z", "puma560"], &["there is no name `w2z`", "did you mean w2_z"]);
     // a vector is meant with its components, though `c2` is a name that is nearly the same
+    fails(2, &["explain", "w7_z", "puma560"], &["there is no name `w7_z`", "puma560, which has 6 joints"]);
     fails(2, &["explain", "w2", "puma560"], &["there is no name `w2`", "did you mean w2_x, w2_y, w2_z?"]);
     fails(2, &["explain", "functons"], &["did you mean functions", "rne explain w2_z puma560"]);
     fails(1, &["explain", "w2_z", "nowhere.yaml"], &["nowhere.yaml"]);
