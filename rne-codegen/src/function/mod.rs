@@ -130,6 +130,13 @@ impl Function {
         }
     }
 
+    /// Whether it holds the base of a robot still that has a floating base, so that the plan of the robot is not for it.
+    #[must_use]
+    pub fn holds_floating_base(self, robot: &Robot) -> bool {
+        let is_floating = |function: Self| function.capability() == Capability::FloatingBase;
+        is_floating(Self::of_plan(robot)) && !is_floating(self)
+    }
+
     /// Whether it returns the wrench that must act on a base that nothing holds.
     #[must_use]
     pub const fn returns_base_wrench(self) -> bool {
