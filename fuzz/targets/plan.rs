@@ -21,7 +21,7 @@ fuzz_target!(|text: &str| {
             let written = plan.to_yaml();
             let again = PlanFile::read("again.plan.yaml", &written, &ROBOT);
             assert!(again.is_ok(), "what is written is read again:\n{written}");
-            for (function, plans) in plan.described() {
+            for (function, plans) in plan.described(&ROBOT) {
                 // a program is proved before it is returned
                 let _ = Compiler::new(&ROBOT).with_plans(plans).compile(function, Form::Reduced);
             }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks C code of an arm against its Denavit-Hartenberg table, independently of rne.
 
-    python3 check_c.py my_arm.c my_arm.trace.json my_arm.yaml
+    python3 check_c.py [--all] my_arm.c my_arm.trace.json my_arm.yaml
 
 The script shares no code with rne and needs only Python's standard library. It reads the C source as text.
 1. The table: robot_table.py, beside this script, reads the robot file. Each number of the table in the trace must be
@@ -15,17 +15,18 @@ The script shares no code with rne and needs only Python's standard library. It 
 4. Sine and cosine: their source must be one of two texts whose SHA-256 stands in c_source.py. A test of rne compares
    the functions with high precision at 100,000 angles; this script does not.
 
-A source may have more functions, such as friction_torques: the script names them as not checked. c_source.py, beside
-this script, reads the source; it refuses anything else that stands there.
+A source may have more functions, such as friction_torques: the script names them as not checked, and with --all it
+fails. c_source.py, beside this script, reads the source; it refuses anything else that stands there.
 
 The primes have 127 bits. A wrong term survives one point with a probability below 1e-33; there are 8 points.
 Not checked: the header, the compiler and the processor; without a robot file, that the table in the trace is that of the arm.
 Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read, or the robot is not supported: it has
-couplings, loops, motors or bodies.
+couplings, loops, motors, bodies or a floating base.
 """
 import json
 import math
 import random
+import re
 import struct
 import sys
 from decimal import Decimal
@@ -349,13 +350,25 @@ def missing(trace):
     found += [lacks(of, "a function", function=str, steps=list, constants=dict) for of in trace["functions"]]
     return next(filter(None, found), None)
 
+def is_of_another_robot(text, trace):
+    """In words, that functions of the trace have another prefix in the source; None if one of them is there."""
+    for traced in trace["functions"]:
+        function = traced["function"].removeprefix(trace["prefix"] + "_")
+        found = re.findall(rf"\b(\w+_){re.escape(function)}\(", text)
+        if trace["prefix"] + "_" in found:
+            return None
+        if found:
+            return f"the trace is of {trace['prefix']}_, the source has {found[0]}: name the files of one robot and prefix"
+    return None
+
 def main():
-    if len(sys.argv) not in (3, 4):
+    files = [name for name in sys.argv[1:] if name != "--all"]
+    if len(files) not in (2, 3):
         print(__doc__)
         return 2
     try:
         texts = []
-        for name in sys.argv[1:]:
+        for name in files:
             with open(name, encoding="utf-8") as file:
                 texts.append(file.read())
         text, trace, robot = texts[0], json.loads(texts[1]), texts[2] if len(texts) > 2 else None
@@ -363,7 +376,7 @@ def main():
         print(f"error: {error}")
         return 2
     if what := missing(trace):
-        print(f"error: {sys.argv[2]} is no trace that rne certify --evidence writes: {what}")
+        print(f"error: {files[1]} is no trace that rne certify --evidence writes: {what}")
         return 2
     try:
         if trace.get("not_supported"):
@@ -371,7 +384,9 @@ def main():
         robot_table.complete(trace["table"])
         if robot is not None:
             count = robot_table.compare(trace["table"], robot)
-            print(f"{sys.argv[3]}: {count} numbers of the table in the trace are those of the robot file")
+            print(f"{files[2]}: {count} numbers of the table in the trace are those of the robot file")
+        if what := is_of_another_robot(text, trace):
+            raise Wrong(what)
         file = File(text, trace["prefix"], trace["real"])
         for traced in trace["functions"]:
             print(check(file, traced, trace))
@@ -381,6 +396,8 @@ def main():
             raise Wrong("the trace names no function")
         if others:
             print(f"not checked, because the trace does not name them: {', '.join(others)}")
+            if "--all" in sys.argv:
+                raise Wrong("--all asks for every function of the source; these are not checked")
     except NotSupported as error:
         print(f"not supported: {error}")
         return 2

@@ -292,7 +292,7 @@ def table_of(text):
     robot = document.block(0) if document.peek() else {}
     if document.peek() is not None:
         raise document.wrong("this script reads no such line")
-    unsupported = [key for key in ("couplings", "loops", "motors", "bodies") if key in robot]
+    unsupported = [key for key in ("couplings", "loops", "motors", "bodies", "floating_base") if key in robot]
     if unsupported:
         raise NotSupported(f"the robot file has the key {', '.join(unsupported)}, which this script does not compute")
     only(robot, "format name title source notes parameters convention gravity base tool frames tips joints", "the file")

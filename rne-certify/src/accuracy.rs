@@ -4,7 +4,7 @@
 //! ([`Interval`]), which enclose the exact result. The distance of the `f32` result from the farthest number of the
 //! interval is at least the error. So the bound holds at the states of the sample. It says nothing of other states.
 
-use rne_codegen::{Argument, Arguments, Interpreter, Program};
+use rne_codegen::{Argument, Arguments, Interpreter, Output, Program, Value};
 use rne_model::{JointKind, Limits, Robot};
 use serde::Serialize;
 
@@ -55,6 +55,9 @@ const SLIDE: f64 = 1.0;
 pub const PAYLOAD: [f32; 10] = [1.5, 0.01, -0.02, 0.06, 0.003, 0.004, 0.002, 2e-4, -1e-4, 3e-4];
 /// The force, N, and the moment, N m, at each tip in each state, for functions that take them.
 pub const WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];
+/// The motion of the base in each state, for functions that take it: angular velocity, rad/s; angular acceleration,
+/// rad/s²; acceleration, m/s²; gravity, m/s², in the axes of frame 0.
+pub const BASE: [[f32; 3]; 4] = [[0.5, -0.3, 0.7], [1.2, -0.8, 0.6], [0.4, 1.1, -0.9], [0.6, -0.4, -9.78]];
 
 /// The ranges of the joints: the limits of the robot file, and defaults where it has none.
 #[must_use]
@@ -83,7 +86,7 @@ pub fn errors(
     let interpreter = Interpreter::new(program);
     let ranges = ranges(robot);
     let takes_torques = program.function.takes(Argument::Torques);
-    largest_errors(sample, program.outputs.len(), |_, rng| {
+    let errors = largest_errors(sample, program.outputs.len(), |_, rng| {
         let mut between = |(low, high): (f64, f64)| single(low + (high - low) * rng.f64());
         let q: Vec<f32> = ranges.iter().map(|range| between(range.position)).collect();
         let qd: Vec<f32> = ranges.iter().map(|range| between((-range.velocity, range.velocity))).collect();
@@ -91,7 +94,11 @@ pub fn errors(
         let last: Vec<f32> = ranges.iter().map(|range| between((-last(range), last(range)))).collect();
         let found = single_precision(robot, &interpreter, [&q, &qd, &last], &sin_cos)?;
         Some((found, enclosed(robot, &interpreter, [&q, &qd, &last])?))
-    })
+    });
+    // the constant 0 is exact, and has no name
+    let is_zero = |id| program.values.name(id).is_none() && matches!(program.values.get(id), Value::Constant(_));
+    let exact = |(error, output): (Error, &Output)| if is_zero(output.value) { Error::default() } else { error };
+    Some(errors?.into_iter().zip(&program.outputs).map(exact).collect())
 }
 
 /// The largest errors of `length` numbers over the states of a sample. `at` gives the numbers of a state in single
@@ -134,6 +141,7 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
         moment: [nx, ny, nz],
         payload: PAYLOAD.map(exactly),
         wrenches: &wrenches,
+        base: BASE.map(|triple| triple.map(exactly)),
         ..Arguments::of_joints(&q, &qd, &last, zero)
     };
     interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
@@ -158,6 +166,7 @@ pub fn single_precision(
         moment: [nx, ny, nz],
         payload: PAYLOAD,
         wrenches: &wrenches,
+        base: BASE,
         ..Arguments::of_joints(q, qd, last, 0.0)
     };
     interpreter.run(&arguments, single, sin_cos)
@@ -173,7 +182,7 @@ mod tests {
     use rne_codegen::{Compiler, Form, Function};
     use rne_model::Robot;
 
-    use super::{Sample, errors};
+    use super::{Error, Sample, errors};
 
     /// A pendulum: τ = (I + m c²) q̈ + m g c cos q, by hand.
     const PENDULUM: &str = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, -9.81, 0], joints: [
@@ -189,6 +198,10 @@ mod tests {
         assert!(error.largest > 5.0 && error.largest < 5.94, "{error:?}");
         // some roundings of 2⁻²⁴ of the largest torque, and no fewer than half of one
         assert!(error.bound < 8.0 * 5.94 / f64::from(1 << 24) && error.bound > 1e-7, "{error:?}");
+        // without gravity nothing holds it, so that its torque is exactly zero
+        let robot = Robot::from_yaml(&PENDULUM.replace("-9.81", "0")).expect("a robot");
+        let none = Compiler::new(&robot).compile(Function::GravityTorques, Form::Reduced).expect("it compiles");
+        assert_eq!(errors(&robot, &none, sample, f32::sin_cos), Some(vec![Error::default()]));
         // a sine that is wrong by 1e-3 is found
         let wrong = errors(&robot, &program, sample, |x| (x.sin(), x.cos() + 1e-3)).expect("errors")[0];
         assert!(wrong.bound > 4e-3, "{wrong:?}");

@@ -54,6 +54,8 @@ pub struct Call {
     pub length: usize,
     /// Lines before the call; `out` is the place of the result.
     pub before: Vec<String>,
+    /// The struct of these numbers, where the result is no array.
+    pub record: Option<String>,
 }
 
 impl Call {
@@ -62,7 +64,7 @@ impl Call {
     pub fn of_arrays(function: &str, arrays: &[&str], length: usize) -> Self {
         let argument = |array: &&str| ("const float *".to_owned(), format!("s->{array}"));
         let arguments = arrays.iter().map(argument).collect();
-        Self { function: function.to_owned(), arguments, length, before: Vec::new() }
+        Self { function: function.to_owned(), arguments, length, ..Self::default() }
     }
 }
 
@@ -70,7 +72,13 @@ impl Call {
 /// once, its time and that of a function that does nothing.
 #[must_use]
 pub fn cases(header: &str, dof: usize, call: &Call) -> String {
-    let Call { function, arguments, length, before } = call;
+    let Call { function, arguments, length, before, record } = call;
+    let (result, place, declared) = match record {
+        Some(record) => (record.as_str(), "&out", "out".to_owned()),
+        None => ("float", "out", format!("out[{length}]")),
+    };
+    // the members of the struct are numbers, one after another
+    let numbers = if record.is_some() { "(const float *)&out" } else { "out" };
     let list = |each: &dyn Fn(usize, &(String, String)) -> String| -> String {
         arguments.iter().enumerate().map(|(index, argument)| each(index, argument)).collect()
     };
@@ -86,17 +94,17 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
     let before: String = before.iter().flat_map(|line| ["    ", line, "\n"]).collect();
     format!(
         "#include \"board.h\"\n#include \"{header}\"\n\n\
-         typedef void certified({types}float *);\n\n\
-         __attribute__((noinline, noipa)) static void nothing({parameters}float *out)\n{{\n{voids}    \
+         typedef void certified({types}{result} *);\n\n\
+         __attribute__((noinline, noipa)) static void nothing({parameters}{result} *out)\n{{\n{voids}    \
          (void)out;\n}}\n\n\
          __attribute__((noinline, noipa)) static void measure(\n    \
-         const char *what, certified *function, {parameters}float *out)\n{{\n    \
+         const char *what, certified *function, {parameters}{result} *out)\n{{\n    \
          const uint32_t start = timer();\n    function({names}out);\n    const uint32_t end = timer();\n    \
          print_ticks(what, start, end);\n}}\n\n\
          void run_cases(uint32_t number)\n{{\n    const struct state state = state_of(number, {dof}u);\n    \
-         const struct state *s = &state;\n    float out[{length}];\n{before}    {function}({values}out);\n    \
-         print_results(\"results\", number, out, {length}u);\n    if (number == 0u) {{\n        \
-         measure(\"function\", {function}, {values}out);\n        measure(\"nothing\", nothing, {values}out);\n    \
+         const struct state *s = &state;\n    {result} {declared};\n{before}    {function}({values}{place});\n    \
+         print_results(\"results\", number, {numbers}, {length}u);\n    if (number == 0u) {{\n        \
+         measure(\"function\", {function}, {values}{place});\n        measure(\"nothing\", nothing, {values}{place});\n    \
          }}\n}}\n"
     )
 }

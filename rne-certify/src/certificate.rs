@@ -119,6 +119,10 @@ pub struct Accuracy {
 pub struct NamedError {
     /// The name of the number.
     pub name: String,
+    /// The name of its joint; `None` for a number of the base.
+    pub joint: Option<String>,
+    /// Its unit.
+    pub unit: &'static str,
     /// Its error.
     #[serde(flatten)]
     pub error: Error,
@@ -139,9 +143,10 @@ pub struct Traced {
 
 /// The statements of a function in emitted C or Rust, with the comments above them: the step, and its equations.
 ///
-/// `head` is the beginning of the function: `arm_inverse_dynamics(` in C, `fn inverse_dynamics<` in Rust.
+/// `head` is the beginning of the function: `arm_inverse_dynamics(` in C, `fn inverse_dynamics<` in Rust. `joints` are
+/// the names of the joints in the order of the elements of q.
 #[must_use]
-pub fn trace(source: &str, head: &str) -> Vec<Traced> {
+pub fn trace(source: &str, head: &str, joints: &[&str]) -> Vec<Traced> {
     let mut traced = Vec::new();
     let mut lines = source.lines().enumerate().skip_while(|(_, line)| !line.contains(head));
     let Some((start, _)) = lines.by_ref().find(|(_, line)| line.trim_end() == "{" || line.ends_with('{')) else {
@@ -164,11 +169,17 @@ pub fn trace(source: &str, head: &str) -> Vec<Traced> {
             continue;
         }
         is_comment = false;
-        let name = words.split(" = ").next().and_then(|left| left.split_whitespace().last());
         let is_statement = words.contains(" = ") || words.ends_with(" =");
-        if let Some(name) = name.filter(|_| is_statement) {
-            let step = if step.is_empty() { "argument".to_owned() } else { step.clone() };
-            traced.push(Traced { line: index + 1, name: name.to_owned(), step, equations: equations.join("; ") });
+        // a long expression begins on the next line
+        let left = words.split(" =").next().unwrap_or_default();
+        if let Some(name) = left.split_whitespace().last().filter(|_| is_statement) {
+            // what is returned is stored after all steps, and belongs to none
+            let (step, equations) = match result(left, joints).filter(|_| step.contains(", step ")) {
+                Some(result) => (result, String::new()),
+                None if step.is_empty() => ("argument".to_owned(), String::new()),
+                None => (step.clone(), equations.join("; ")),
+            };
+            traced.push(Traced { line: index + 1, name: name.to_owned(), step, equations });
         } else if words.contains("_sin_cos(") {
             let names = words.split(['&', ',', ')']).filter(|word| words.contains(&format!("&{word}")));
             let name = names.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
@@ -176,6 +187,14 @@ pub fn trace(source: &str, head: &str) -> Vec<Traced> {
         }
     }
     traced
+}
+
+/// What an element of the result is, `tau[1]` or `torques->wrench.force[0]`; `None` for a variable.
+fn result(place: &str, joints: &[&str]) -> Option<String> {
+    let (array, index) = place.strip_suffix(']')?.rsplit_once('[')?;
+    let is_of_base = ["force", "moment"].iter().any(|part| array.ends_with(&format!(".{part}")));
+    let joint = joints.get(index.parse::<usize>().ok()?).filter(|_| !is_of_base && !array.ends_with(']'));
+    Some(joint.map_or("result".to_owned(), |joint| format!("result: joint {joint}")))
 }
 
 impl Certificate {
@@ -206,7 +225,8 @@ impl Certificate {
         text.push_str("\n## Trace\n\nEach line of the code with the step that it belongs to.\n\n");
         text.push_str("| line | name | step | equations |\n|---:|---|---|---|\n");
         for Traced { line, name, step, equations } in &self.trace {
-            let _ = writeln!(text, "| {line} | `{name}` | {step} | {} |", equations.replace('|', "\\|"));
+            let [step, equations] = [step, equations].map(|words| words.replace('|', "\\|"));
+            let _ = writeln!(text, "| {line} | `{name}` | {step} | {equations} |");
         }
         text
     }
@@ -319,10 +339,13 @@ impl Certified {
             let _ = writeln!(text, "- {range}");
         }
         text.push_str(
-            "\n| result | largest magnitude | largest bound of the error | at state |\n|---|---:|---:|---:|\n",
+            "\n| result | joint | unit | largest magnitude | largest bound of the error | at state |\n\
+             |---|---|---|---:|---:|---:|\n",
         );
-        for NamedError { name, error: Error { largest, bound, state } } in results {
-            let _ = writeln!(text, "| {name} | {largest:.4} | {bound:.2e} | {state} |");
+        for NamedError { name, joint, unit, error: Error { largest, bound, state } } in results {
+            let joint = joint.as_deref().unwrap_or("base").replace('|', "\\|");
+            let bound = if *bound == 0.0 { "0".to_owned() } else { format!("{bound:.2e}") };
+            let _ = writeln!(text, "| {name} | {joint} | {unit} | {largest:.4} | {bound} | {state} |");
         }
     }
 }
@@ -336,8 +359,9 @@ mod tests {
         let source = "// head\nvoid a_f(\n    const float q[1], float tau[1])\n{\n    const float q1 = q[0];\n\n    \
                       // constants\n    const float k_1 = 0.5f;\n\n    // joint 1, step 1: angular velocity\n    \
                       // ω1 = z\n    const float w1_z = q1\n        + k_1;\n\n    a_sin_cos(q1, &s1, &c1);\n    \
-                      tau[0] = w1_z;\n}\n";
-        let traced = trace(source, "a_f(");
+                      const float w1_y =\n        w1_z;\n    out->wrench.force[0] = w1_y;\n    tau[0] = w1_z;\n    \
+                      tau[1] =\n        w1_z;\n}\n";
+        let traced = trace(source, "a_f(", &["waist", "elbow"]);
         let lines: Vec<_> = traced.iter().map(|line| (line.line, line.name.as_str(), line.step.as_str())).collect();
         let step = "joint 1, step 1: angular velocity";
         let expected = [
@@ -345,7 +369,10 @@ mod tests {
             (8, "k_1", "constants"),
             (12, "w1_z", step),
             (15, "s1, c1", step),
-            (16, "tau[0]", step),
+            (16, "w1_y", step),
+            (18, "out->wrench.force[0]", "result"),
+            (19, "tau[0]", "result: joint waist"),
+            (20, "tau[1]", "result: joint elbow"),
         ];
         assert_eq!(lines, expected);
         assert_eq!(traced[2].equations, "ω1 = z");

@@ -65,7 +65,7 @@ impl JointFunction {
         });
         let before = vec![format!("const float tau[{dof}] = {{{}}};", torques.collect::<Vec<_>>().join(", "))];
         let arguments = vec![("const float *".to_owned(), "tau".to_owned())];
-        Call { function, arguments, length: dof, before }
+        Call { function, arguments, length: dof, before, record: None }
     }
 
     /// The numbers that [`call`](Self::call) writes at a state.

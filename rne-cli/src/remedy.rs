@@ -17,7 +17,9 @@ pub(crate) fn worded(report: &Report) -> Report {
                 let file = file.as_deref().unwrap_or("FILE");
                 format!("`rne import {file} -o robot.yaml` converts a URDF or MJCF file to a robot file")
             }
-            Remedy::NameTip => "name the tip with --tip LINK".to_owned(),
+            Remedy::NameTip => {
+                "name the tip with --tip LINK; `rne import FILE --whole` takes all of them, as a tree".to_owned()
+            }
             Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE locks `{joint}` at this value"),
             Remedy::LockOthers => {
                 "--lock JOINT=VALUE locks one joint at this value, --lock-others locks all others at zero".to_owned()

@@ -178,13 +178,13 @@ impl<'r> Compiler<'r> {
         if !Algorithm::is_planned(function) {
             return Ok(self.numbered(function, reference, Vec::new()));
         }
-        let plans = self.plans();
-        match self.planned(plans, function, &reference) {
+        let plans = self.plans().of_function(robot, function);
+        match self.planned(&plans, function, &reference) {
             Ok(program) => Ok(program),
             // fewer choices make no program shorter
             Err(error @ CompileError::TooLarge { .. }) => Err(error),
             // a plan file answers for what it was made for; for other functions it is a suggestion
-            Err(error) if plans.is_of_build() || function != Function::InverseDynamics && error.is_refusal() => {
+            Err(error) if plans.is_of_build() || function != Function::of_plan(robot) && error.is_refusal() => {
                 let mut refusals = vec![Refusal::of_error(Attempt::Planned(LeftOut::Nothing), error)];
                 for (left_out, plans) in plans.with_ever_fewer_choices() {
                     match self.planned(&plans, function, &reference) {

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use rne_model::{Body, Convention, Coupling, Drive, FixedFrame, Frame, Robot, Rotor, Transform, one_line};
+use rne_model::{
+    Body, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Robot, Rotor, Transform, one_line,
+};
 
 use super::inert;
 use super::table::{angle, carrier, dh_table};
@@ -90,6 +92,13 @@ impl Heading {
                 None => "on the base, without effect".to_owned(),
             };
             let _ = write!(frames, "\nbody {name}, {} kg: {link}", matter.mass);
+        }
+        if let Some(FloatingBase { name, link }) = &robot.floating_base {
+            let (name, mass) = (one_line(name), link.mass);
+            let _ = write!(
+                frames,
+                "\nbase {name}, {mass} kg: functions of a floating base let it move; all other functions hold it still"
+            );
         }
         Self {
             title: inert::title(robot),

@@ -340,7 +340,10 @@ fn yaml_itself() {
         ("# nothing\n", 1, 1, "the file is empty"),
         ("\u{FEFF}", 1, 1, "the file is empty"),
         ("format: 1\nname: [1, 2\nsource: x\n", 3, 7, "this is not YAML"),
-        ("format: 1\njoints:\n\t- a: 1\n", 3, 2, "this is not YAML: tabs"),
+        ("format: 1\njoints:\n\t- a: 1\n", 3, 1, "line 3 is indented with a tab; use spaces"),
+        // the parser reads the tab as a part of the line before
+        ("format: 1\njoints:\n  - type: a\n\n\tdh: {}\n", 5, 1, "line 5 is indented with a tab; use spaces"),
+        ("format: 1\njoints:\n  - dh:\n  \t  a: 1\n", 4, 3, "line 4 is indented with a tab; use spaces"),
         ("source: a: b\n", 1, 10, "this is not YAML: mapping values"),
         ("format: 1\n---\nformat: 1\n", 2, 1, "a second YAML document begins"),
         ("format: !!int 1\n", 1, 9, "YAML tag in `!!int 1`; tags are not allowed"),

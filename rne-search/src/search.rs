@@ -112,7 +112,8 @@ fn without_rewriting(robot: &Robot, reduced: &Reduced, function: Function) -> Re
     if !Algorithm::is_planned(function) {
         return Ok(Formulation::numbered(robot, function).cost());
     }
-    let (plan, algorithm) = PlanSet::from(reduced.plan.clone()).cheapest(robot, function);
+    let plans = PlanSet::from(reduced.plan.clone());
+    let (plan, algorithm) = plans.of_function(robot, function).cheapest(robot, function);
     Ok(Formulation::by_plan(robot, &plan, function, algorithm)?.cost())
 }
 
@@ -155,7 +156,12 @@ fn candidates(robot: &Robot, function: Function, search: &mut Exploration<'_>) -
         return vec![Rewritten::default()];
     }
     // those of the torques differ little; what the plan means to another function, its algorithm hides
-    let most = if function == Function::InverseDynamics { 16 } else { 4 };
+    let most = match function {
+        Function::InverseDynamics if !function.holds_floating_base(robot) => 16,
+        // it has one plan, which is none of those
+        _ if function.holds_floating_base(robot) => 1,
+        _ => 4,
+    };
     let best = search.plans.best().1.clone();
     let mut found: Vec<_> = search.pool.iter().map(|(_, plan)| plan.clone()).filter(|plan| *plan != best).collect();
     found.insert(0, best);
@@ -163,7 +169,7 @@ fn candidates(robot: &Robot, function: Function, search: &mut Exploration<'_>) -
     let mut found: Vec<_> = found.iter().map(|plan| search.plans.tidied(plan)).collect();
     found.dedup();
     let candidate = |plan| {
-        let (plan, algorithm) = PlanSet::from(plan).cheapest(robot, function);
+        let (plan, algorithm) = PlanSet::from(plan).of_function(robot, function).cheapest(robot, function);
         Rewritten { plan: Some(plan), algorithm, ..Rewritten::default() }
     };
     found.into_iter().map(candidate).collect()

@@ -30,7 +30,7 @@ use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::{self, Compiler};
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::TYPED;
+use crate::palette::{TITLE, TYPED};
 use crate::values::choice;
 
 /// Certify code for a microcontroller: cycles, stack, error
@@ -105,8 +105,8 @@ pub(crate) struct Arguments {
     /// Fail without these tools: qemu, cppcheck, or both
     #[arg(long, value_enum, value_name = "TOOLS", value_delimiter = ',', hide_possible_values = true)]
     pub(super) require: Vec<Tool>,
-    /// Number of random states
-    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    /// Number of random states, at least 1
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = states)]
     pub(super) states: usize,
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -206,6 +206,17 @@ impl Arguments {
 fn core(text: &str) -> Result<Core, String> {
     Core::named(text).ok_or_else(|| "the processors are cortex-m4 and cortex-m7".to_owned())
 }
+
+fn states(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("without a state there is no bound of the error; give 1 or more".to_owned()),
+        Ok(states) => Ok(states),
+        Err(_) => Err("it is no number of states; give a whole number, such as 10000".to_owned()),
+    }
+}
+
+/// Fewer states than these say little about the error.
+const FEW_STATES: usize = 100;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     fits_together(arguments)?;
@@ -312,6 +323,14 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         (compiler.clone(), version),
         (objdump.clone(), toolchain::version(&objdump)?),
     ]);
+    remarks += &arguments.rotors.note(&robot);
+    if arguments.states < FEW_STATES {
+        let states = arguments.states;
+        let _ = writeln!(
+            remarks,
+            "{TITLE}note{TITLE:#}: {states} random states are few: the bound of the error says little about others"
+        );
+    }
     let folder = tempfile::tempdir().map_err(Failure::input)?;
     let folder = folder.path();
     if let Some(evidence) = &arguments.evidence {
@@ -362,7 +381,8 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         }
         (Language::C, _) => vec![format!("{}(", call.function)],
     });
-    let trace = heads.flat_map(|head| trace(&code.text, &head)).collect();
+    let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
+    let trace = heads.flat_map(|head| trace(&code.text, &head, &joints)).collect();
     let certificate = Certificate {
         command: command(arguments),
         emit: emit(arguments, &code.source),

@@ -7,7 +7,7 @@ use rne_certify::board::{self, Call};
 use rne_certify::certificate::{Accuracy, NamedError};
 use rne_certify::joint_functions::{BEYOND, JointFunction};
 use rne_certify::observer::{self, LowPass};
-use rne_codegen::{Argument, Function, Interpreter, Layout, Program};
+use rne_codegen::{Argument, Function, Interpreter, Layout, Name, Program, Quantity, Record};
 use rne_model::{JointKind, Limits, Robot};
 
 use crate::outcome::Failure;
@@ -51,7 +51,7 @@ impl Subject<'_> {
             )));
         }
         Ok(match self {
-            Self::Program(program) => program_call(program, &format!("{prefix}_{}", self.name()))?,
+            Self::Program(program) => program_call(program, prefix)?,
             Self::Observer(_, low_pass) => low_pass.call(prefix, dof),
             Self::Joints(function) => function.call(prefix, dof),
         })
@@ -100,14 +100,24 @@ impl Subject<'_> {
     pub(super) fn accuracy(&self, robot: &Robot, sample: Sample) -> Result<Accuracy, Failure> {
         let errors = self.errors(robot, sample);
         let errors = errors.ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
-        let names: Vec<String> = match self {
-            Self::Program(program) => program.outputs.iter().map(|output| output.name.to_string()).collect(),
-            Self::Observer(..) => (0..robot.dof()).map(|joint| format!("`external[{joint}]`")).collect(),
-            Self::Joints(function) => {
-                (0..robot.dof()).map(|joint| format!("`{}[{joint}]`", function.result())).collect()
-            }
+        let of_joints = |array: &str| {
+            let joints = robot.coordinates().enumerate();
+            joints
+                .map(|(index, joint)| {
+                    (format!("`{array}[{index}]`"), Some(joint), robot.joints[joint].row.kind.effort_unit())
+                })
+                .collect()
         };
-        let results = errors.into_iter().zip(names).map(|(error, name)| NamedError { name, error }).collect();
+        let names: Vec<(String, Option<usize>, &str)> = match self {
+            Self::Program(program) => program.outputs.iter().map(|output| named(program, robot, output.name)).collect(),
+            Self::Observer(..) => of_joints("external"),
+            Self::Joints(function) => of_joints(function.result()),
+        };
+        let named = |(error, (name, joint, unit)): (Error, (String, Option<usize>, &'static str))| {
+            let joint = joint.and_then(|joint| robot.joints.get(joint)).map(|joint| joint.name.clone());
+            NamedError { name, joint, unit, error }
+        };
+        let results = errors.into_iter().zip(names).map(named).collect();
         let Sample { states, seed } = sample;
         Ok(Accuracy { how: self.how(sample), states, seed, ranges: self.ranges(robot), results })
     }
@@ -184,18 +194,60 @@ fn fixed(function: Function) -> String {
         let _ =
             write!(words, " At each state the payload is {payload}: mass (kg), centre of mass (m), inertia (kg m²).");
     }
+    if function.takes(Argument::Sines) {
+        words.push_str(" Sines and cosines are those of the code's own function; the bound includes their errors.");
+    }
+    if function.takes(Argument::Base) {
+        let [omega, omega_dot, acceleration, gravity] = accuracy::BASE.map(|triple| list(&triple));
+        let _ = write!(
+            words,
+            " At each state the base has the angular velocity {omega} (rad/s), the angular acceleration {omega_dot} \
+             (rad/s²) and the acceleration {acceleration} (m/s²), and gravity is {gravity} (m/s²)."
+        );
+    }
     if function.takes(Argument::Wrench) || function.takes(Argument::Wrenches) {
         let _ = write!(words, " At each state each wrench is {}: force (N), moment (N m).", list(&accuracy::WRENCH));
     }
     words
 }
 
-/// The call of a function with arrays of a state of the board, and with the payload and the wrenches of
-/// [`accuracy`].
-fn program_call(program: &Program, symbol: &str) -> Result<Call, Failure> {
+/// A number that a program returns: its name, its joint and its unit.
+fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>, &'static str) {
+    let joint = name.joint.checked_sub(1);
+    let unit = match (name.quantity, joint) {
+        (Quantity::BaseMoment, _) => "N m",
+        (Quantity::BaseForce, _) | (_, None) => "N",
+        (_, Some(joint)) if program.function.returns_accelerations() => match robot.joints[joint].row.kind {
+            JointKind::Revolute => "rad/s²",
+            JointKind::Prismatic => "m/s²",
+        },
+        (_, Some(joint)) => robot.joints[joint].row.kind.effort_unit(),
+    };
+    let is_of_base = matches!(name.quantity, Quantity::BaseForce | Quantity::BaseMoment);
+    (name.to_string(), joint.filter(|_| !is_of_base), unit)
+}
+
+/// Sines or cosines of the positions at the states of the board, in C.
+fn turns(dof: usize, name: &str, of: impl Fn(f32) -> f32) -> String {
+    let list = |numbers: Vec<String>| numbers.join(", ");
+    let row = |number| {
+        let [q, ..] = board::state(number, dof);
+        format!("{{{}}}", list(q.into_iter().map(|q| format!("{:?}f", of(q))).collect()))
+    };
+    format!(
+        "static const float {name}[{}][{dof}] = {{{}}};",
+        board::STATES,
+        list((0..board::STATES).map(row).collect())
+    )
+}
+
+/// The call of a function with arrays of a state of the board, and with the payload, the wrenches and the motion of the
+/// base of [`accuracy`].
+fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
     let function = program.function;
     let numbers = |numbers: &[f32]| numbers.iter().map(|x| format!("{x:?}f")).collect::<Vec<_>>().join(", ");
-    let mut call = Call { function: symbol.to_owned(), length: program.outputs.len(), ..Call::default() };
+    let name = format!("{prefix}_{function}");
+    let mut call = Call { function: name, length: program.outputs.len(), ..Call::default() };
     for argument in function.arguments() {
         let (kind, name) = match argument {
             Argument::Positions => ("const float *", "s->q"),
@@ -218,21 +270,42 @@ fn program_call(program: &Program, symbol: &str) -> Result<Call, Failure> {
                 call.before.push(format!("const float wrenches[{tips}][6] = {{{rows}}};"));
                 ("const float (*)[6]", "wrenches")
             }
-            Argument::Sines | Argument::Cosines | Argument::Base | Argument::BaseVelocity => {
-                return Err(not_called(program));
+            Argument::Sines => {
+                call.before.push(turns(program.dof, "sines", |q| rne_emit::sin_cos_f32(q).0));
+                ("const float *", "sines[number]")
+            }
+            Argument::Cosines => {
+                call.before.push(turns(program.dof, "cosines", |q| rne_emit::sin_cos_f32(q).1));
+                ("const float *", "cosines[number]")
+            }
+            Argument::Base => {
+                for (part, triple) in argument.parts().zip(accuracy::BASE) {
+                    call.before.push(format!("const float {}[3] = {{{}}};", part.name, numbers(&triple)));
+                    call.arguments.push(("const float *".to_owned(), part.name.to_owned()));
+                }
+                continue;
+            }
+            Argument::BaseVelocity => {
+                call.before.push(format!("const float omega[3] = {{{}}};", numbers(&accuracy::BASE[0])));
+                ("const float *", "omega")
             }
         };
         call.arguments.push((kind.to_owned(), name.to_owned()));
     }
-    let is_array = matches!(function.layout(program.dof), Layout::Array(_, of) if matches!(*of, Layout::Number));
-    if is_array { Ok(call) } else { Err(not_called(program)) }
+    match function.layout(program.dof) {
+        Layout::Array(_, of) if matches!(*of, Layout::Number) => Ok(call),
+        Layout::Record(record @ Record::FloatingTorques, _) => {
+            Ok(Call { record: Some(rne_emit::record_name(prefix, record)), ..call })
+        }
+        _ => Err(not_called(program)),
+    }
 }
 
 fn not_called(program: &Program) -> Failure {
     Failure::usage(format_args!(
-        "rne certify cannot call {}: it takes functions of positions, velocities, accelerations, torques, a payload \
-         and wrenches that return one number per joint, such as inverse_dynamics, gravity_torques, bias_torques and \
-         forward_dynamics. {TYPED}--observer{TYPED:#} certifies the momentum observer",
+        "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics, \
+         gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, and \
+         inverse_dynamics_of_floating_base. {TYPED}--observer{TYPED:#} certifies the momentum observer",
         program.function
     ))
 }

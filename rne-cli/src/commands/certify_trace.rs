@@ -25,6 +25,7 @@ fn not_supported(robot: &Robot) -> Vec<&'static str> {
         ("couplings", robot.has_couplings()),
         ("motors", !robot.drives.is_empty()),
         ("bodies", !robot.bodies.list.is_empty()),
+        ("floating_base", robot.floating_base.is_some()),
     ];
     keys.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| key).collect()
 }

@@ -190,6 +190,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         checked.identifiers.map_err(|report| Failure::from(&report))?;
     }
     let mut outcome = emitted(arguments, &robot, &bytes, out, header)?;
+    outcome.remark += &arguments.rotors.note(&robot);
     outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);
     Ok(outcome)
 }

@@ -163,7 +163,9 @@ const EXIT_STATUS: &str = "\
        search.
      - The result of one state is not finite.
      - `rne check --physics`: an arm violates a law of mechanics.
-     - `rne emit --check`: the file is out of date.
+     - `rne emit --check`, `rne certify --check`: the file is out of date.
+     - `rne certify`: the code branches, computes in double precision, or has
+       other results in QEMU; or a tool is not installed.
      - `rne diagnose`: torques differ, and rne does not find the reason.
      - `rne eval --trace --compare`: a value differs.
      - `rne watch`: there is an event, a log cannot be compared, or the model

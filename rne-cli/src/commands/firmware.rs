@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_codegen::{Form, Function};
-use rne_model::{Robot, plan_of};
+use rne_model::{Robot, did_you_mean, plan_of};
 
 use crate::files::output_file::unwritable;
 use crate::files::output_folder;
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(&arguments.name));
     output_folder::is_free(&folder, "a firmware")?;
     let dependency = dependency(arguments.rne_path.as_deref())?;
-    let robot_file = robot_of(arguments);
+    let robot_file = robot_of(arguments)?;
     let (checked, bytes) = robot_file::read_with_run_time(&robot_file, &[], Frames::Dropped, Shape::Coupled)?;
     let robot = checked.robot;
     let yaml = String::from_utf8(bytes).map_err(|error| Failure::input(error.utf8_error()))?;
@@ -95,13 +95,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     files.push((ROBOT.into(), yaml));
     files.extend(plan.map(|plan| (plan_of(Path::new(ROBOT)), plan)));
     output_folder::write(&folder, &files).map_err(|(path, error)| unwritable(&path, &error))?;
-    Ok(Outcome::remark(next(&folder, &files)))
+    Ok(Outcome::remark(next(&folder, &files, &robot_file)))
 }
 
-/// The file or name that was given; else a shipped robot, that of the firmware's name if there is one.
-fn robot_of(arguments: &Arguments) -> PathBuf {
-    let shipped = rne_robots::find(&arguments.name).map_or("puma560", |robot| robot.name);
-    arguments.robot.clone().unwrap_or_else(|| shipped.into())
+/// The robot of a firmware whose name is that of no shipped robot.
+const DEFAULT: &str = "puma560";
+
+/// The file or name that was given; else a shipped robot, that of the firmware's name if there is one. A misspelt name
+/// of a shipped robot is an error.
+fn robot_of(arguments: &Arguments) -> Result<PathBuf, Failure> {
+    if let Some(robot) = &arguments.robot {
+        return Ok(robot.clone());
+    }
+    let name = &arguments.name;
+    if let Some(robot) = rne_robots::find(name) {
+        return Ok(robot.name.into());
+    }
+    let names: Vec<&str> = rne_robots::all().map(|robot| robot.name).collect();
+    let begun = || names.iter().copied().find(|known| name.len() > 2 && known.starts_with(name.as_str()));
+    match did_you_mean(name, names.iter().copied()).or_else(begun) {
+        None => Ok(DEFAULT.into()),
+        Some(near) => Err(Failure::usage(format_args!(
+            "there is no shipped robot {name}; did you mean {TYPED}--robot {near}{TYPED:#}? {name} is then the name of \
+             the crate; for the PUMA 560, write {TYPED}--robot {DEFAULT}{TYPED:#}"
+        ))),
+    }
 }
 
 /// The line of `rne` in the manifest of the template.
@@ -154,9 +172,9 @@ fn files(name: &str, robot: &Robot, dependency: &str) -> Vec<(PathBuf, String)> 
     files.map(|(file, text)| (file.into(), text)).into()
 }
 
-/// The list of files, and the commands to type next.
-fn next(folder: &Path, files: &[(PathBuf, String)]) -> String {
-    let mut text = String::new();
+/// The robot, the list of files, and the commands to type next.
+fn next(folder: &Path, files: &[(PathBuf, String)], robot: &Path) -> String {
+    let mut text = format!("robot: {}\n", robot.display());
     for (file, _) in files {
         let _ = writeln!(text, "{GOOD}wrote{GOOD:#} {}", folder.join(file).display());
     }

@@ -13,13 +13,14 @@ use rne_certify::listing;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// The Debian package of a program.
-fn package(program: &str) -> &'static str {
+/// The Debian package of a program that rne starts without being told its name.
+fn package(program: &str) -> Option<&'static str> {
     match program {
-        "qemu-system-arm" => "qemu-system-arm",
-        "cppcheck" => "cppcheck",
-        program if program.ends_with("objdump") => "binutils-arm-none-eabi",
-        _ => "gcc-arm-none-eabi libnewlib-arm-none-eabi",
+        "qemu-system-arm" => Some("qemu-system-arm"),
+        "cppcheck" => Some("cppcheck"),
+        "arm-none-eabi-objdump" => Some("binutils-arm-none-eabi"),
+        "arm-none-eabi-gcc" => Some("gcc-arm-none-eabi libnewlib-arm-none-eabi"),
+        _ => None,
     }
 }
 
@@ -42,10 +43,16 @@ fn output(command: &mut Command) -> Result<Output, Failure> {
         Err(error) if error.kind() == ErrorKind::NotFound && program == "rustc" => {
             Err(Failure::input("there is no rustc; https://rustup.rs installs it"))
         }
-        Err(error) if error.kind() == ErrorKind::NotFound => Err(Failure::input(format_args!(
-            "there is no program {program}; on Debian and Ubuntu, {TYPED}apt-get install {}{TYPED:#} installs it",
-            package(&program)
-        ))),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(match package(&program) {
+            Some(package) => Failure::input(format_args!(
+                "there is no program {program}; on Debian and Ubuntu, {TYPED}apt-get install {package}{TYPED:#} \
+                 installs it"
+            )),
+            None => Failure::input(format_args!(
+                "there is no program {program}; install it, or leave out {TYPED}--cc{TYPED:#}: the compiler is then \
+                 arm-none-eabi-gcc or rustc"
+            )),
+        }),
         Err(error) => Err(Failure::input(format_args!("{program} cannot be started: {error}"))),
     }
 }

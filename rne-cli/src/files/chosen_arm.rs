@@ -10,7 +10,7 @@ use rne_model::Robot;
 
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::Failure;
-use crate::palette::TYPED;
+use crate::palette::{TITLE, TYPED};
 use crate::values::numbers::{List, not_a_number};
 use crate::values::state::payload;
 
@@ -31,6 +31,17 @@ impl Rotors {
     /// A robot that has been read.
     pub(crate) fn of(self, robot: Robot) -> Robot {
         Robot { rotors: self.rotors, ..robot }
+    }
+
+    /// A note where the option has no effect on a robot.
+    pub(crate) fn note(self, robot: &Robot) -> String {
+        if !self.rotors || robot.has_rotors() {
+            return String::new();
+        }
+        format!(
+            "{TITLE}note{TITLE:#}: no joint of {} has a rotor inertia, so {TYPED}--rotors{TYPED:#} changes nothing\n",
+            robot.name
+        )
     }
 }
 

@@ -100,7 +100,7 @@ fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec
                 return Ok((None, Vec::new()));
             };
             let compiles = |(function, plans): &(Function, PlanSet)| compiled(robot, *function, plans.clone()).is_ok();
-            let mut described = plan.described().into_iter();
+            let mut described = plan.described(robot).into_iter();
             // a plan that cannot be proved is as good as none
             if !described.next().is_some_and(|torques| compiles(&torques)) {
                 return Ok((None, plan.rewritten.into_keys().collect()));
@@ -135,7 +135,7 @@ fn located(name: &str, text: &str, described: (Function, &PlanSet), error: &Comp
 
 /// Whether all programs that a plan file describes can be proved; an error is at its place in the plan file.
 pub(crate) fn is_proved(robot: &Robot, Read { name, text, plan }: &Read) -> Result<(), Failure> {
-    plan.described().into_iter().try_for_each(|(function, plans)| {
+    plan.described(robot).into_iter().try_for_each(|(function, plans)| {
         let program = compiled(robot, function, plans.clone());
         program.map(drop).map_err(|error| located(name, text, (function, &plans), &error))
     })
@@ -150,7 +150,7 @@ pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<
         plan.counts(name, text, &program).map_err(|report| Failure::plan(report, Remedy::CountAnew))?;
         Ok((function, program.is_rewritten, program.operations().total()))
     };
-    plan.described().into_iter().map(count).collect()
+    plan.described(robot).into_iter().map(count).collect()
 }
 
 /// An arm whose functions run over many states, by its plan file if it has one.

@@ -60,6 +60,7 @@ pub(crate) fn fine(arguments: &[&str]) -> String {
     let is_note = |line: &str| {
         line.starts_with("note: q") && line.contains(" is outside of the limits of ")
             || line.contains(" in the robot file; rne check ")
+            || line.contains(" random states are few: ")
             || EFFORTS.lines().any(|of| of == line)
     };
     let said: Vec<&str> = called.err.lines().filter(|line| !is_note(line)).collect();

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::call::{ROOT, fails, fine, folder, rne};
-use crate::certify::{checked, has_tools};
+use crate::certify::{checked, has_tools, run_checker};
 
 /// An arm with friction in all joints, and effort limits of 40, 40 and 15 N m.
 const ARM: &str = "docs/desk_arm_identified.yaml";
@@ -127,7 +127,17 @@ fn the_checker_takes_a_file_with_several_functions() {
         }
         let names_friction = said.lines().any(|line| line.contains("not checked") && line.contains("friction_torques"));
         assert_eq!(names_friction, more.contains(&"--friction"), "{more:?}: {said}");
+        // where everything is to be checked, a function that is not is an error
+        let option = Path::new("--all");
+        let (is_accepted, said) = run_checker(&[option, &source, &trace, &robot]);
+        assert_eq!(is_accepted, more == functions, "{more:?}: {said}");
     }
+    let emit = ["emit", ARM, "--lang", "c", "--force", "--prefix", "kf", "-o", source.to_str().expect("UTF-8")];
+    assert_eq!(rne(&emit).status, 0);
+    let (is_accepted, said) = checked(&source, &trace, &robot);
+    assert!(!is_accepted && said.contains("wrong: the trace is of desk_arm_, the source has kf_"), "{said}");
+    let emit = ["emit", ARM, "--lang", "c", "--force", "-o", source.to_str().expect("UTF-8")];
+    assert_eq!(rne(&[&emit[..], &all].concat()).status, 0);
     let text = fs::read_to_string(&source).expect("it was written");
     let gravity = text.find("void desk_arm_gravity_torques(").expect("a function");
     let bias = text.find("void desk_arm_bias_torques(").expect("a function");

@@ -98,6 +98,39 @@ fn functions_with_a_payload_and_wrenches_are_certified() {
     fails(2, &["certify", "docs/dual_arm.yaml", "--function", "jacobian"], &["a payload and wrenches", "jacobian"]);
 }
 
+/// What a controller calls: the functions that `rne emit` writes by default, among them one that takes sines and
+/// cosines; and the torques of a robot that walks, whose results are a struct in C.
+#[test]
+fn functions_of_a_controller_are_certified() {
+    if !has_tools() {
+        return;
+    }
+    let json = |robot: &str, functions: &str| -> Value {
+        let certify = ["certify", robot, "--states", "5", "--function", functions, "--json"];
+        serde_json::from_str(&fine(&certify)).expect("JSON")
+    };
+    // a sliding joint, whose sine and cosine are not used
+    let found = json("scara_cobra600", "inverse_dynamics,inverse_dynamics_from_sin_cos");
+    assert_eq!(found["more"][0]["emulation"]["states"], 32, "{found}");
+    let instructions = |found: &Value| found["cost"]["instructions"].as_u64().expect("a number");
+    assert!(instructions(&found["more"][0]) < instructions(&found), "no sine is computed: {found}");
+    let units: Vec<&Value> =
+        found["accuracy"]["results"].as_array().expect("results").iter().map(|of| &of["unit"]).collect();
+    assert_eq!(units, ["N m", "N m", "N", "N m"]);
+
+    let found = json("tests/functions/floating/grid_hyq.yaml", "inverse_dynamics_of_floating_base");
+    assert_eq!(found["emulation"]["states"], 32);
+    let results = found["accuracy"]["results"].as_array().expect("results");
+    let about = |at: usize| ["joint", "unit"].map(|key| results[at][key].as_str());
+    assert_eq!(results.len(), 6 + 12);
+    assert_eq!([about(0), about(3)], [[None, Some("N")], [None, Some("N m")]]);
+    assert_eq!(about(6), [Some("lf_haa_joint"), Some("N m")]);
+    // the robot weighs some 85 kg
+    assert!(results[2]["largest"].as_f64().is_some_and(|force| (500.0..2000.0).contains(&force)), "{results:?}");
+    let how = found["accuracy"]["how"].as_str().expect("words");
+    assert!(how.contains("At each state the base has the angular velocity 0.5, -0.3, 0.7 (rad/s)"), "{how}");
+}
+
 /// The figures of robots/README.md are those of the compiler that is named there.
 #[test]
 fn the_figures_of_trees_are_those_of_their_certificates() {
@@ -193,19 +226,21 @@ fn the_checker_says_what_it_does_not_support() {
     }
     let folder = folder("checker_supports");
     let path = folder.to_str().expect("UTF-8");
-    for (robot, key) in
-        [("docs/gripper.yaml", "couplings"), ("wam7_coupled", "motors"), ("docs/dual_arm.yaml", "bodies")]
-    {
+    for (robot, key) in [
+        ("docs/gripper.yaml", "couplings"),
+        ("wam7_coupled", "motors"),
+        ("docs/dual_arm.yaml", "bodies"),
+        ("tests/functions/floating/grid_hyq.yaml", "floating_base"),
+    ] {
         let certified = rne(&["certify", robot, "--states", "5", "--evidence", path]);
         assert_eq!(certified.status, 0, "{certified:?}");
         let note = format!("note: check_c.py does not support robots with {key}");
         assert!(certified.err.contains(&note), "{certified:?}");
         let stem = Path::new(robot).file_stem().expect("a name").to_str().expect("UTF-8");
         let (source, trace) = (folder.join(format!("{stem}.c")), folder.join(format!("{stem}.trace.json")));
-        let yaml = match robot.strip_prefix("docs/") {
-            Some(_) => Path::new(ROOT).join(robot),
-            None => Path::new(ROOT).join(format!("robots/trees/{robot}.yaml")),
-        };
+        let is_file = robot.contains('/');
+        let shipped = format!("robots/trees/{robot}.yaml");
+        let yaml = Path::new(ROOT).join(if is_file { robot } else { &shipped });
         let (is_accepted, said) = checked(&source, &trace, &yaml);
         assert!(!is_accepted && said.starts_with("not supported: ") && said.contains(key), "{said}");
     }

@@ -43,6 +43,7 @@ fn a_firmware_is_written_once() {
     let typed = ["torque", "--rne-path", ROOT];
     let Called { out, err, status } = firmware(&empty, &typed);
     assert_eq!((status, out.as_str()), (0, ""), "{err}");
+    assert!(err.starts_with("robot: puma560\n"), "{err}");
     let written = empty.join("torque");
     let expected = FILES.into_iter().chain(["robot.plan.yaml"]).map(str::to_owned).collect();
     assert_eq!(files(&written), expected);
@@ -116,6 +117,9 @@ fn wrong_requests_for_a_firmware() {
         (2, &["cortex_m"], "this name is reserved"),
         (2, &["torque", "-o", "file"], "file is not a folder and is not changed"),
         (2, &["torque", "--rne-path", "."], "not a clone of the rne repository"),
+        // misspelt names of shipped robots
+        (2, &["ur55"], "did you mean --robot ur5?"),
+        (2, &["puma"], "did you mean --robot puma560?"),
         (1, &["torque", "--robot", "nothing"], "there is no robot file nothing"),
         (1, &["torque", "--robot", "wrong.yaml"], "wrong.yaml"),
     ] {
@@ -123,7 +127,9 @@ fn wrong_requests_for_a_firmware() {
         assert_eq!(called.status, status, "{arguments:?}: {called:?}");
         assert!(called.err.contains(said), "{arguments:?}: {called:?}");
     }
-    assert!(!empty.join("torque").exists(), "nothing is left behind");
+    assert!(!empty.join("torque").exists() && !empty.join("ur55").exists(), "nothing is left behind");
+    let called = firmware(&empty, &["ur55", "--robot", "ur5"]);
+    assert!(called.status == 0 && called.err.starts_with("robot: ur5\n"), "{called:?}");
 }
 
 /// The template is typed once: `firmware/example`, which CI runs in QEMU, has its files. `RNE_WRITE_DOCUMENTS` writes

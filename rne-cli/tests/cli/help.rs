@@ -57,6 +57,7 @@ fn topics_are_explained() {
     assert!(fine(&["explain", "mcx2"]).starts_with("mcx2 is a moment of mass of link 2, in kg m"));
     // with a robot a name in the code comes first
     assert!(fine(&["explain", "Jzz3", "puma560"]).starts_with("Jzz3 is the element zz of the inertia of link 3"));
+    assert!(fine(&["explain", "exit-status"]).contains("`rne certify --check`"));
     fails(2, &["explain", "nothing"], &["exit-status", "Jzz3"]);
     fails(2, &["explain", "puma560", "w2_z"], &["the name comes first", "rne explain w2_z puma560"]);
     fails(2, &["explain", "robots/ur5.yaml", "w2_z"], &["rne explain w2_z robots/ur5.yaml"]);

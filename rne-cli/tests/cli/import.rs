@@ -73,7 +73,11 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
     ] {
         assert!(called.err.contains(part), "no `{part}` in {}", called.err);
     }
-    fails(1, &["import", urdf], &["`base` has 2 end links", "`finger` (3 joints)", "`tip` (2 joints)", "--tip"]);
+    fails(
+        1,
+        &["import", urdf],
+        &["`base` has 2 end links", "`finger` (3 joints)", "`tip` (2 joints)", "--tip", "--whole"],
+    );
     fails(
         1,
         &["import", urdf, "--tip", "tip"],

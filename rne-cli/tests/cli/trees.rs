@@ -176,7 +176,8 @@ fn tips_frames_and_bodies_are_named() {
     assert!(fewer.contains("tips: [left_hand, right_hand]"), "{fewer}");
     let path = folder("trees_tips").join("one_tip.yaml");
     fs::write(&path, fewer.replace("tips: [left_hand, right_hand]", "tips: [left_hand]")).expect("written");
-    let one_tip = [&["eval", path.to_str().expect("UTF-8")][..], &state[2..], &["--tip-wrench", "right_hand=0,0,0,0,0,2"]];
+    let one_tip =
+        [&["eval", path.to_str().expect("UTF-8")][..], &state[2..], &["--tip-wrench", "right_hand=0,0,0,0,0,2"]];
     let said = "`right_hand` is a frame of dual_arm, but not a tip; list it under `tips` of the robot file: tips: \
                 [left_hand, right_hand]";
     fails(2, &one_tip.concat(), &[said]);
@@ -204,4 +205,49 @@ fn code_of_tips_takes_a_wrench_at_each() {
     let rust = fine(&["emit", FILE]);
     assert!(rust.contains("pub fn inverse_dynamics_with_wrenches<"), "{rust}");
     assert!(!fine(&["emit", "docs/tree.yaml", "--lang", "c"]).contains("with_wrenches"));
+}
+
+/// The C code of a robot that walks: the functions that hold the base still cost what they cost on a fixed base, a plan
+/// file is for the function that lets it move, and each header says what its functions take.
+#[test]
+fn a_floating_base_has_its_functions_in_c() {
+    let folder = folder("floating_c");
+    let text = fs::read_to_string(Path::new(ROOT).join("tests/functions/floating/grid_hyq.yaml")).expect("a robot");
+    let (start, end) = (text.find("floating_base:").expect("a base"), text.find("joints:").expect("joints"));
+    let held = format!("{}{}", &text[..start], &text[end..]).replace("base_link_0", "base");
+    let emit = |name: &str, text: &str, more: &[&str]| {
+        let file = folder.join(name);
+        fs::write(&file, text).expect("written");
+        let called = rne(&[&["emit", file.to_str().expect("UTF-8"), "--lang", "c"], more].concat());
+        assert_eq!(called.status, 0, "{called:?}");
+        called.out
+    };
+    let counts = |code: &str| -> Vec<String> {
+        code.lines().filter(|line| line.contains(" -> ")).skip(1).map(str::to_owned).collect()
+    };
+    let floating = emit("walks.yaml", &text, &[]);
+    assert!(counts(&floating).len() >= 5, "{floating}");
+    assert_eq!(counts(&floating), counts(&emit("stands.yaml", &held, &[])));
+    assert!(!floating.contains("Not every reduced form"), "{floating}");
+    assert!(floating.contains("all other functions hold it still"), "{floating}");
+    // a function that refers to others
+    let alone = emit("walks.yaml", &text, &["--function", "inverse_dynamics_of_floating_base"]);
+    for part in ["base_omega (rad/s), base_omega_dot", "exerted BY the robot ON its environment"] {
+        let comments: String = alone.lines().filter_map(|line| line.strip_prefix("/// ")).collect::<Vec<_>>().join(" ");
+        assert!(comments.contains(part), "no `{part}` in {comments}");
+    }
+    // a plan of a search is read again, by the function that it is for and by those that it is not for
+    let file = folder.join("walks.yaml");
+    let search = rne(&["search", file.to_str().expect("UTF-8"), "--seconds", "1"]);
+    assert_eq!(search.status, 0, "{search:?}");
+    fine(&["check", folder.join("walks.plan.yaml").to_str().expect("UTF-8")]);
+    assert_eq!(counts(&emit("walks.yaml", &text, &[])), counts(&floating));
+}
+
+/// An option that changes nothing says so.
+#[test]
+fn rotors_that_are_not_there_are_told() {
+    let called = rne(&["emit", "planar2", "--rotors", "--function", "gravity_torques"]);
+    assert!(called.status == 0 && called.err.contains("note: no joint of planar2 has a rotor inertia"), "{called:?}");
+    assert!(!rne(&["emit", "puma560", "--rotors", "--function", "gravity_torques"]).err.contains("rotor inertia"));
 }

@@ -130,6 +130,12 @@ impl Function {
         }
     }
 
+    /// Whether it holds the base of a robot still that has a floating base, so that the plan of the robot is not for it.
+    #[must_use]
+    pub fn holds_floating_base(self, robot: &Robot) -> bool {
+        Self::of_plan(robot).is_of_floating_base() && !self.is_of_floating_base()
+    }
+
     /// Whether it is a function of a robot whose base nothing holds.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {

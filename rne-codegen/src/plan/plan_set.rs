@@ -1,6 +1,8 @@
 //! The choices by which the functions of a robot are compiled in the reduced form.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
 
 use rne_model::Robot;
 
@@ -19,6 +21,8 @@ pub struct PlanSet {
     /// The functions whose graphs have been rewritten.
     pub rewritten: BTreeMap<Function, Rewritten>,
     maker: Maker,
+    /// The plan of the functions that hold a floating base still, made when one of them is first compiled.
+    held: Arc<OnceLock<Plan>>,
 }
 
 /// The origin of the choices.
@@ -41,6 +45,18 @@ impl PlanSet {
     #[must_use]
     pub fn default_of(robot: &Robot) -> Self {
         Self { maker: Maker::Build, ..Self::from(default_plan(robot, &[])) }
+    }
+
+    /// The choices for a function. A function that holds a floating base still has those of a build of the same robot on
+    /// a fixed base: the other choices are for a base that is a link. No choice fits every function.
+    #[must_use]
+    pub fn of_function(&self, robot: &Robot, function: Function) -> Cow<'_, Self> {
+        if !function.holds_floating_base(robot) || self.plan == Plan::new(robot.joints.len()) {
+            return Cow::Borrowed(self);
+        }
+        let held = || default_plan(&Robot { floating_base: None, ..robot.clone() }, &[]);
+        let plan = self.held.get_or_init(held).clone();
+        Cow::Owned(Self { plan, maker: Maker::Build, ..self.clone() })
     }
 
     pub(crate) fn is_of_build(&self) -> bool {
@@ -129,7 +145,7 @@ fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorit
 /// A plan that is compiled without a change.
 impl From<Plan> for PlanSet {
     fn from(plan: Plan) -> Self {
-        Self { plan, rewritten: BTreeMap::new(), maker: Maker::PlanFile }
+        Self { plan, rewritten: BTreeMap::new(), maker: Maker::PlanFile, held: Arc::default() }
     }
 }
 

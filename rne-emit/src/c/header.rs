@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Argument, Name, Program, Quantity, Record};
+use rne_codegen::{Argument, Function, Name, Program, Quantity, Record};
 use rne_model::JointIdentifier;
 
 use super::signature::{fields, head, parameters_type, record_type, records};
@@ -53,6 +53,9 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
         if !details.is_empty() {
             text.push_str(&comment("///", details));
         }
+        for function in referred(file, program.function) {
+            text.push_str(&comment("///", &format!("{function}, not in this header: {}", function.details())));
+        }
         if let Some(frame) = about_frame(program) {
             text.push_str(&comment("///", &frame));
         }
@@ -63,6 +66,28 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
     text.push_str(&motors::declarations(file));
     text.push_str("\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
     Ok(text)
+}
+
+/// The functions to which the words on a function refer and which the header does not have. In headers of chains, the
+/// bytes stay what they were.
+fn referred(file: &File, function: Function) -> Vec<Function> {
+    if file.robot.is_serial() && file.robot.floating_base.is_none() {
+        return Vec::new();
+    }
+    let mut referred = Vec::new();
+    let mut open = vec![function];
+    while let Some(function) = open.pop() {
+        let names = function.details().split("as in ").skip(1);
+        let names = names.filter_map(|words| words.split(|c: char| !c.is_ascii_lowercase() && c != '_').next());
+        for other in names.filter_map(|name| name.parse::<Function>().ok()) {
+            let is_there = file.programs.iter().any(|program| program.function == other);
+            if !is_there && !referred.contains(&other) {
+                referred.push(other);
+                open.push(other);
+            }
+        }
+    }
+    referred
 }
 
 /// The struct of the run-time parameters, and an initialiser with the values of the file.

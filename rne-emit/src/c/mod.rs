@@ -20,6 +20,7 @@ use super::wrap::{WIDTH, fill};
 
 pub use joint_functions::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
+pub use signature::record_name;
 pub(super) use signature::{array_name, element_type, elements_of, inputs, result_elements};
 #[cfg(test)]
 pub(crate) use source::UNUSED;

@@ -95,7 +95,9 @@ pub(super) fn record_type(file: &File, record: Record) -> String {
     record_name(file.prefix, record)
 }
 
-fn record_name(prefix: &str, record: Record) -> String {
+/// The name of a record's type, of a file with this prefix.
+#[must_use]
+pub fn record_name(prefix: &str, record: Record) -> String {
     let name = match record {
         Record::Pose => "pose",
         Record::Wrench => "wrench",

@@ -65,6 +65,12 @@ impl<'t> Builder<'t> {
                 if error.info().contains("recursion limit") {
                     return self.too_deep(at..at + 1);
                 }
+                if let Some(tab) = self.tab(at).filter(|_| error.info().contains("tab")) {
+                    let line = line(&self.breaks, tab);
+                    let message = format!("line {line} is indented with a tab; use spaces");
+                    return Diagnostic::error(tab..tab + 1, message)
+                        .help("YAML does not allow tabs in the indentation");
+                }
                 syntax_error(at, error.info()).maybe_help(self.open_bracket().or_else(|| self.around(at)))
             })?;
             let span = self.offset(span.start.index())..self.offset(span.end.index());
@@ -131,6 +137,19 @@ impl<'t> Builder<'t> {
                 format!("a space is missing after the colon{place}: write `{key}: {}`", crate::source::one_line(value))
             })
         })
+    }
+
+    /// The first tab in the indentation of a line from that of `at` on: the parser names the line before it.
+    fn tab(&self, at: usize) -> Option<usize> {
+        let mut start = self.text.get(..at)?.rfind('\n').map_or(0, |newline| newline + 1);
+        for line in self.text.get(start..)?.split_inclusive('\n') {
+            let indentation = line.len() - line.trim_start_matches([' ', '\t']).len();
+            if let Some(tab) = line[..indentation].find('\t').filter(|_| !line.trim().is_empty()) {
+                return Some(start + tab);
+            }
+            start += line.len();
+        }
+        None
     }
 
     fn offset(&self, index: usize) -> usize {
@@ -287,9 +306,7 @@ impl<'t> Builder<'t> {
 }
 
 fn syntax_error(at: usize, info: &str) -> Diagnostic {
-    let help = if info.contains(" tab") {
-        Some("indent with spaces; YAML does not allow tabs in the indentation")
-    } else if info.contains("':'") || info.contains("mapping values") {
+    let help = if info.contains("':'") || info.contains("mapping values") {
         Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")
     } else if info.contains("unknown anchor") {
         Some("an alias `*name` needs a value marked `&name` before it")

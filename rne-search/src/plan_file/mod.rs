@@ -190,8 +190,8 @@ impl PlanFile {
     /// The functions whose programs the file describes, as a compiler takes them from it: the torques by the plan, and
     /// those that are rewritten.
     #[must_use]
-    pub fn described(&self) -> Vec<(Function, PlanSet)> {
-        let plan = (Function::InverseDynamics, PlanSet::from(self.reduced.plan.clone()));
+    pub fn described(&self, robot: &Robot) -> Vec<(Function, PlanSet)> {
+        let plan = (Function::of_plan(robot), PlanSet::from(self.reduced.plan.clone()));
         let rewritten = self.rewritten.keys().map(|&function| (function, PlanSet::from(self.clone())));
         [plan].into_iter().chain(rewritten).collect()
     }
