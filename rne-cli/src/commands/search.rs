@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
     let searched = Searched { file: &arguments.file, robot: &robot, known, fresh: arguments.fresh };
     let Kept { plan, left_out, written } = searched.keep(found, || ())?;
-    Ok(Outcome::text(summary(&plan, searched.known.plan.as_ref(), &left_out, &path, written)))
+    Ok(Outcome::text(summary(&plan, &searched, &left_out, &path, written)))
 }
 
 /// The robot and the functions of a search.
@@ -227,11 +227,13 @@ fn watched(
     found
 }
 
-fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], path: &Path, written: Written) -> String {
+fn summary(found: &PlanFile, searched: &Searched<'_>, left_out: &[Function], path: &Path, written: Written) -> String {
+    let known = searched.known.plan.as_ref();
     let mut text = String::new();
     let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
+    let planned = format!("{}, planned", Function::of_plan(searched.robot));
     let names = found.rewritten.keys().map(|function| function.name().len());
-    let width = names.max().map_or("reduced".len(), |longest| longest.max("inverse_dynamics, planned".len()));
+    let width = names.max().map_or("reduced".len(), |longest| longest.max(planned.len()));
     let mut line = |name: &str, operations: &Cost, accuracy: &Accuracy| {
         let _ = writeln!(
             text,
@@ -244,8 +246,11 @@ fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], pa
             accuracy.single_of_seven_steps,
         );
     };
-    let planned = if found.rewritten.is_empty() { "reduced" } else { "inverse_dynamics, planned" };
-    line(planned, &found.reduced.operations, &found.reduced.accuracy);
+    line(
+        if found.rewritten.is_empty() { "reduced" } else { &planned },
+        &found.reduced.operations,
+        &found.reduced.accuracy,
+    );
     for (function, rewritten) in &found.rewritten {
         line(function.name(), &rewritten.operations, &rewritten.accuracy);
     }
