@@ -9,6 +9,9 @@ its own, a product with 0, 1 or -1 and a sum with 0 cost nothing, equal subexpre
 torque needs is left out. The rules that only help the peer: the base is turned into the frame of each joint on it,
 and the constant angle of a last joint is part of its link. Followers cost their linear form. Rotors in `motors` are
 no part of the peer here.
+
+Where nothing holds the base, ω, ω̇ and a - g of the base are arguments, and the wrench on the base is a result, too. The
+base has its ten parameters. Ours takes a wrench at one tip, which the peer does not have.
 """
 
 import json
@@ -22,8 +25,10 @@ import yaml
 
 # Bars of the issue, and the peer where this script has none, with its source.
 BARS = {"hyq": 634, "anymal_c": 694, "go2": 672, "solo12": 554, "atlas": 2158, "g1": 2600, "sr400": 517}
-BARS["mini_cheetah"] = 563
+BARS |= {"mini_cheetah": 563, "hyq_floating": 1304, "anymal_c_floating": 1328, "go2_floating": 1295}
+BARS |= {"solo12_floating": 1024, "atlas_floating": 2746, "g1_floating": 3082, "mini_cheetah_floating": 1219}
 TOLD = {"mini_cheetah": "704 (rotors as 12 more bodies: specification)"}
+TOLD["mini_cheetah_floating"] = "1469 (rotors as 12 more bodies: specification)"
 
 AXES = range(3)
 NOTHING = [0.0, 0.0, 0.0]
@@ -216,19 +221,23 @@ class Row:
         along = applied(turn, [dh["a"], 0.0, dh.get("b", 0.0)])
         xyz = [number(x) for x in at.get("xyz", NOTHING)]
         self.p = [exact(xyz[i] + along[i] + dh["d"] * u[i]) for i in AXES]
-        link = joint.get("link", {})
-        mass = number(link.get("mass", 0.0))
-        c = [number(x) for x in link.get("com", NOTHING)]
-        of = {key: number(value) for key, value in link.get("inertia", {}).items()}
-        tensor = [[of.get("".join(sorted("xyz"[i] + "xyz"[j])), 0.0) for j in AXES] for i in AXES]
-        square = 0.0 if link.get("inertia_about") == "origin" else mass * sum(x * x for x in c)
-        moved = 0.0 if link.get("inertia_about") == "origin" else mass
-        inertia = [[tensor[i][j] + (square if i == j else 0.0) - moved * c[i] * c[j] for j in AXES] for i in AXES]
-        self.matter = Matter(mass, [mass * x for x in c], inertia)
+        self.matter = matter_of(joint.get("link", {}), number)
+
+
+def matter_of(link, number):
+    """The matter of a link of the file."""
+    mass = number(link.get("mass", 0.0))
+    c = [number(x) for x in link.get("com", NOTHING)]
+    of = {key: number(value) for key, value in link.get("inertia", {}).items()}
+    tensor = [[of.get("".join(sorted("xyz"[i] + "xyz"[j])), 0.0) for j in AXES] for i in AXES]
+    square = 0.0 if link.get("inertia_about") == "origin" else mass * sum(x * x for x in c)
+    moved = 0.0 if link.get("inertia_about") == "origin" else mass
+    inertia = [[tensor[i][j] + (square if i == j else 0.0) - moved * c[i] * c[j] for j in AXES] for i in AXES]
+    return Matter(mass, [mass * x for x in c], inertia)
 
 
 def read(path):
-    """Rows, the joints that each follower follows, and gravity."""
+    """Rows, the joints that each follower follows, gravity, and the matter of a floating base, or None."""
     file = yaml.safe_load(path.read_text())
     if file["convention"] != "modified":
         raise SystemExit(f"{path}: only modified rows are counted")
@@ -250,7 +259,9 @@ def read(path):
         rows[follower].theta += number(coupling.get("offset", 0.0))
     for loop in file.get("loops", []):
         follows |= parallelogram(rows, names, loop, number)
-    return rows, follows, [number(x) for x in file["gravity"]]
+    floating = file.get("floating_base")
+    base = floating and matter_of(floating["link"], number)
+    return rows, follows, [number(x) for x in file["gravity"]], base
 
 
 def parallelogram(rows, names, loop, number):
@@ -268,7 +279,7 @@ def parallelogram(rows, names, loop, number):
     return {last: ratios for last, (ratios, _) in follows.items()}
 
 
-def peer(rows, follows, gravity):
+def peer(rows, follows, gravity, base):
     """Products and sums of Khalil's algorithm with base parameters."""
     ends = set(range(len(rows))) - {row.parent for row in rows}
     for index, row in enumerate(rows):
@@ -280,8 +291,9 @@ def peer(rows, follows, gravity):
         rod = (row.matter.mass, row.matter.h[2], row.matter.inertia[1][1])
         row.matter.add_rod([-x for x in rod], NOTHING, [0.0, 0.0, 1.0])
         row.matter.clean()
-        if row.parent >= 0:
-            rows[row.parent].matter.add_rod(rod, row.p, [line[2] for line in row.turn])
+        carrier = rows[row.parent].matter if row.parent >= 0 else base
+        if carrier is not None:
+            carrier.add_rod(rod, row.p, [line[2] for line in row.turn])
     sheet = Sheet()
 
     def moving(quantity, index):
@@ -299,11 +311,15 @@ def peer(rows, follows, gravity):
             [sheet.minus(square[0][2], wd[1]), sheet.plus(square[1][2], wd[0]), sheet.plus(minus[0], minus[1])],
         ]
 
+    told = [[sheet.argument(f"{quantity}{axis}") for axis in AXES] for quantity in ("w0", "wd0", "a0")]
+    of_base = (*told, gradient(*told[:2])) if base else None
     moved = []
     for index, row in enumerate(rows):
         sine, cosine = sheet.turn(moving("q", index), row.theta)
         turn, place = row.turn, row.p
-        if row.parent < 0:
+        if row.parent < 0 and base:
+            w, wd, a, u = of_base
+        elif row.parent < 0:
             # the base does not move, and is turned into the frame of the joint
             w, wd, a, u = NOTHING, NOTHING, applied(transposed(turn), [-g for g in gravity]), [NOTHING] * 3
             turn, place = about(2, 0.0), NOTHING
@@ -327,28 +343,37 @@ def peer(rows, follows, gravity):
         ]
         acceleration = sheet.of(back, sheet.add(a, sheet.of(u, place)))
         moved.append((omega, omega_dot, acceleration, gradient(omega, omega_dot), r))
-    carried = [(NOTHING, NOTHING) for _ in rows]
+    # the last one is that of the base
+    carried = [(NOTHING, NOTHING) for _ in range(len(rows) + 1)]
     torques = [0.0] * len(rows)
-    for index in reversed(range(len(rows))):
-        row, (w, wd, a, u, r) = rows[index], moved[index]
-        matter = row.matter
+
+    def wrench(matter, motion, of_others):
+        w, wd, a, u = motion
         force = sheet.add([sheet.times(matter.mass, x) for x in a], sheet.of(u, matter.h))
         moment = sheet.add(sheet.of(matter.inertia, wd), sheet.cross(w, sheet.of(matter.inertia, w)))
-        force = sheet.add(force, carried[index][0])
-        moment = sheet.add(sheet.add(moment, carried[index][1]), sheet.cross(matter.h, a))
+        return sheet.add(force, of_others[0]), sheet.add(sheet.add(moment, of_others[1]), sheet.cross(matter.h, a))
+
+    for index in reversed(range(len(rows))):
+        row, (*motion, r) = rows[index], moved[index]
+        force, moment = wrench(row.matter, motion, carried[index])
         torques[index] = moment[2]
-        if row.parent >= 0:
+        if row.parent >= 0 or base:
             of, about_parent = carried[row.parent], sheet.of(r, force)
             lever = sheet.add(sheet.of(r, moment), sheet.cross(row.p, about_parent))
             carried[row.parent] = (sheet.add(of[0], about_parent), sheet.add(of[1], lever))
     for follower, ratios in follows.items():
         for joint, ratio in ratios:
             torques[joint] = sheet.plus(torques[joint], sheet.times(ratio, torques[follower]))
-    return sheet.operations([torque for index, torque in enumerate(torques) if index not in follows])
+    results = [torque for index, torque in enumerate(torques) if index not in follows]
+    if base:
+        base.clean()
+        results += [x for part in wrench(base, of_base, carried[-1]) for x in part]
+    return sheet.operations(results)
 
 
-def ours(rne, path):
-    command = [rne, "ops", str(path), "--function", "inverse_dynamics", "--json"]
+def ours(rne, path, floats):
+    function = "inverse_dynamics_of_floating_base" if floats else "inverse_dynamics"
+    command = [rne, "ops", str(path), "--function", function, "--json"]
     entries = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     return next((entry["mul"], entry["add"]) for entry in entries if entry["form"] == "reduced")
 
@@ -358,15 +383,15 @@ def main():
     print("| robot | joints | Khalil, base parameters | rne, reduced | ratio | bar |\n|---|---:|---:|---:|---:|---:|")
     holds = True
     for path in map(pathlib.Path, paths):
-        rows, follows, gravity = read(path)
+        rows, follows, gravity, base = read(path)
         joints = len(rows) - len(follows)
         bar = BARS.get(path.stem)
-        products, sums = ours(rne, path)
+        products, sums = ours(rne, path, base is not None)
         total = products + sums
         if path.stem in TOLD:
             told, ratio = TOLD[path.stem], total / float(TOLD[path.stem].split()[0])
         else:
-            of_peer = peer(rows, follows, gravity)
+            of_peer = peer(rows, follows, gravity, base)
             told, ratio = f"{of_peer[0]} + {of_peer[1]} = {sum(of_peer)}", total / sum(of_peer)
         holds &= bar is None or total <= bar
         of_rne = f"{products} + {sums} = {total}"
