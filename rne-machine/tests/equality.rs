@@ -55,7 +55,8 @@ impl States {
         // no payload has a mass below zero
         rows[8].iter_mut().step_by(10).for_each(|mass| *mass = mass.abs());
         // the base has one angular velocity
-        rows[10] = rows[9].clone();
+        let omega = rows[9].clone();
+        rows[10] = omega;
         Self { dof, rows }
     }
 
