@@ -146,6 +146,9 @@ fn every_function_of_every_robot_is_the_program() {
                     if index == 0 && !cfg!(target_feature = "fma") {
                         assert!(are_same(&found, &expected), "{what}: {found:?} {expected:?}");
                     }
+                    if function == Function::FloatingForwardDynamics && robot.floating_base.is_none() {
+                        continue; // a base without mass: its matrix is singular but for rounding
+                    }
                     // A fused multiply-add rounds once, on the scale of what is summed: of the largest of all states
                     // where results are sums, of a state's where a matrix that may be nearly singular is divided by.
                     let width = compiled.outputs();
