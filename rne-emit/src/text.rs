@@ -398,7 +398,8 @@ impl Piece {
         let (mut text, mut column) = (start, WIDTH);
         for element in texts {
             let width = element.as_str().len();
-            if !fills || column + 1 + width > WIDTH {
+            // rustfmt leaves the last column of a line empty here
+            if !fills || column + 1 + width >= WIDTH {
                 text = text + "\n" + " ".repeat(indent + 4);
                 column = indent + 4 + width;
             } else {

@@ -150,7 +150,8 @@ impl Driver<'_> {
                 | Function::Jacobian
                 | Function::PotentialEnergy
                 | Function::CentreOfMass
-                | Function::CentreOfMassJacobian => "q",
+                | Function::CentreOfMassJacobian
+                | Function::FloatingMassMatrix => "q",
                 Function::WrenchTorques => "q, force, moment",
                 Function::BiasTorques
                 | Function::CoriolisMatrix
@@ -161,7 +162,7 @@ impl Driver<'_> {
                 Function::InverseDynamicsOfFloatingBase => {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
-                Function::FloatingMassMatrix | Function::CentroidalMomentumMatrix => "q",
+                Function::CentroidalMomentumMatrix => "q",
                 Function::CentroidalBias => "q, qd, omega",
                 Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
                 Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),

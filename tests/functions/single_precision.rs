@@ -78,7 +78,9 @@ struct Row {
 
 impl Row {
     fn measured() -> impl Iterator<Item = Self> {
-        let rows = Function::ALL.into_iter().flat_map(|function| Maker::CODE.map(|maker| (function, maker)));
+        // the base of these robots has no mass, so it has no forward dynamics
+        let solvable = Function::ALL.into_iter().filter(|function| *function != Function::FloatingForwardDynamics);
+        let rows = solvable.flat_map(|function| Maker::CODE.map(|maker| (function, maker)));
         rows.map(|(function, maker)| {
             let of = |name: &String| worst(Arm::from_file(&format!("robots/{name}.yaml"), maker), function);
             Self { heading: format!("{} | {maker}", function.name()), errors: ROBOTS.iter().map(of).collect() }

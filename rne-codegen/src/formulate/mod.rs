@@ -70,11 +70,10 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
-        Function::InverseDynamicsOfFloatingBase => derivation.floating_torques(),
+        Function::InverseDynamicsOfFloatingBase | Function::FloatingBias => derivation.floating_torques(),
         Function::FloatingMassMatrix => {
             floating_mass_matrix(builder, &derivation.system(), &derivation.floating_half())
         }
-        Function::FloatingBias => derivation.floating_torques(),
         Function::FloatingForwardDynamics => floating_forward_dynamics(
             builder,
             &derivation.system(),

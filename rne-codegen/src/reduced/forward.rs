@@ -187,9 +187,12 @@ pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
     // accelerations, gravity included, are zero where they are no arguments
     let is_told = |quantity| quantity == Quantity::Omega || builder.function.takes(Argument::Base);
-    let told = |quantity| match is_told(quantity) {
-        true => Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis)))),
-        false => builder.no_vector(),
+    let told = |quantity| {
+        if is_told(quantity) {
+            Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))))
+        } else {
+            builder.no_vector()
+        }
     };
     let [omega, omega_dot] = [Quantity::Omega, Quantity::OmegaDot].map(told);
     builder.at(Quantity::OriginAcceleration, 0);
