@@ -189,7 +189,7 @@ pub fn trace(source: &str, head: &str, joints: &[&str]) -> Vec<Traced> {
     traced
 }
 
-/// What an element of the result is, `tau[1]` or `torques->wrench.force[0]`; `None` for a variable.
+/// An element of the result, such as `tau[1]` or `torques->wrench.force[0]`, in words; `None` for a variable.
 fn result(place: &str, joints: &[&str]) -> Option<String> {
     let (array, index) = place.strip_suffix(']')?.rsplit_once('[')?;
     let is_of_base = ["force", "moment"].iter().any(|part| array.ends_with(&format!(".{part}")));

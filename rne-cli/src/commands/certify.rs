@@ -323,14 +323,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         (compiler.clone(), version),
         (objdump.clone(), toolchain::version(&objdump)?),
     ]);
-    remarks += &arguments.rotors.note(&robot);
-    if arguments.states < FEW_STATES {
-        let states = arguments.states;
-        let _ = writeln!(
-            remarks,
-            "{TITLE}note{TITLE:#}: {states} random states are few: the bound of the error says little about others"
-        );
-    }
+    remarks += &notes(arguments, &robot);
     let folder = tempfile::tempdir().map_err(Failure::input)?;
     let folder = folder.path();
     if let Some(evidence) = &arguments.evidence {
@@ -400,6 +393,19 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         trace,
     };
     Ok((certificate, remarks + &robot_file::lint_remark(&checked.lints, &arguments.file)))
+}
+
+/// Notes on options that have no effect, or a small one.
+fn notes(arguments: &Arguments, robot: &Robot) -> String {
+    let mut notes = arguments.rotors.note(robot);
+    let states = arguments.states;
+    if states < FEW_STATES {
+        let _ = writeln!(
+            notes,
+            "{TITLE}note{TITLE:#}: {states} random states are few: the bound of the error says little about others"
+        );
+    }
+    notes
 }
 
 /// How often the code violates each rule of MISRA C:2012, where a deviation is recorded for all of them.

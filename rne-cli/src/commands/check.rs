@@ -161,8 +161,8 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
     };
     let counts = plan_file::verify(&robot, &read)?;
     let planned = counts.first().map_or(0, |(.., total)| *total);
-    let torques =
-        counts.iter().find(|(function, is_rewritten, _)| *is_rewritten && *function == Function::InverseDynamics);
+    let of_plan = Function::of_plan(&robot);
+    let torques = counts.iter().find(|(function, is_rewritten, _)| *is_rewritten && *function == of_plan);
     let rewritten = torques.map_or_else(String::new, |(.., total)| format!(", rewritten {total}"));
     let others = counts.len() - 1 - usize::from(torques.is_some());
     let others = match others {
@@ -170,6 +170,6 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
         1 => "; 1 other function rewritten".to_owned(),
         others => format!("; {others} other functions rewritten"),
     };
-    let about = format!("plan of {}: inverse_dynamics {planned} operations{rewritten}{others}; proved", robot.name);
+    let about = format!("plan of {}: {of_plan} {planned} operations{rewritten}{others}; proved", robot.name);
     Ok(Good { about, lints: None, warnings: 0, laws: None })
 }
