@@ -109,7 +109,7 @@ pub(crate) struct Arguments {
     /// Print the values of --trace as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// Print the first error of a worksheet; with --trace
+    /// With --trace: print a worksheet's first error
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
     /// Significant digits for --compare [default: 4]
