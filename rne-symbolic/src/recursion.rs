@@ -37,7 +37,8 @@ const FORWARD: [Formula; 4] = [
             concat!(
                 r"R_i^{\mathrm T} (\ddot{\mathbf c}_p + \dot{\boldsymbol\omega}_p \times \mathbf r_p ",
                 r"+ \boldsymbol\omega_p \times (\boldsymbol\omega_p \times \mathbf r_p)) ",
-                r"+ \dot{\boldsymbol\omega}_i \times \mathbf d_i + \boldsymbol\omega_i \times (\boldsymbol\omega_i \times \mathbf d_i)",
+                r"+ \dot{\boldsymbol\omega}_i \times \mathbf d_i ",
+                r"+ \boldsymbol\omega_i \times (\boldsymbol\omega_i \times \mathbf d_i)",
             ),
         ],
     ),
@@ -60,7 +61,10 @@ const BACKWARD: [Formula; 4] = [
         ["np,i", r"\mathbf n_{p,i}"],
         [
             "ni + Rk ni,k + di × fp,i + ri × Rk fi,k",
-            r"\mathbf n_i + R_k \mathbf n_{i,k} + \mathbf d_i \times \mathbf f_{p,i} + \mathbf r_i \times R_k \mathbf f_{i,k}",
+            concat!(
+                r"\mathbf n_i + R_k \mathbf n_{i,k} + \mathbf d_i \times \mathbf f_{p,i} ",
+                r"+ \mathbf r_i \times R_k \mathbf f_{i,k}",
+            ),
         ],
     ),
     (["τi", r"\tau_i"], ["e · np,i", r"\mathbf e \cdot \mathbf n_{p,i}"]),

@@ -16,7 +16,7 @@ use crate::files::chosen_arm::{AtFrame, ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
 use crate::files::plan_file;
 use crate::files::states;
-use crate::files::worksheet_file;
+use crate::files::worksheet_file::{self, Filled};
 use crate::files::worksheet_text;
 use crate::outcome::{Failure, Outcome};
 use crate::render::answer;
@@ -109,7 +109,7 @@ pub(crate) struct Arguments {
     /// Print the values of --trace as CSV
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// Print the first error of a worksheet; with --trace
+    /// With --trace: print a worksheet's first error
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
     /// Significant digits for --compare [default: 4]
@@ -196,20 +196,8 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
              tree, and `rne show` prints the formulas of its joints",
         ));
     }
-    let read = |path: &PathBuf| worksheet_file::read(path, &robot, arguments.axes.map(Into::into));
-    let sheet = arguments.compare.as_ref().map(read).transpose()?;
-    // a worksheet has its state
-    let of_sheet = [Quantity::Q, Quantity::Qd, Quantity::Qdd]
-        .map(|quantity| sheet.as_ref()?.given(quantity, robot.dof()).map(List));
-    let mut given = arguments.given(function);
-    if given.q.is_none() {
-        let lists = [&mut given.q, &mut given.qd, &mut given.qdd].into_iter().zip(&of_sheet);
-        let kinds = [Argument::Positions, Argument::Rates, Argument::Accelerations];
-        for ((own, of_sheet), kind) in lists.zip(kinds) {
-            *own = own.or(of_sheet.as_ref().filter(|_| function.takes(kind)));
-        }
-    }
-    let (given, assumed) = given.at_rest(function, zeros.each_ref());
+    let (sheet, of_sheet) = arguments.sheet(function, &robot)?;
+    let (given, assumed) = arguments.given(function).or_state(&of_sheet).at_rest(function, zeros.each_ref());
     let state = State::new(function, given, &robot)?;
     let arm = DynArm::from_robot(&robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
@@ -241,8 +229,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         let manner = Manner { digits, json: arguments.json, hint: arguments.hint };
         return compare::run(sheet, &robot, &situation, manner);
     }
-    let joint = choice::joint_of(&robot, arguments.joint.as_deref())?;
-    let narrowed = Narrowed { joint, step: arguments.step };
+    let narrowed = Narrowed { joint: choice::joint_of(&robot, arguments.joint.as_deref())?, step: arguments.step };
     let axes = arguments.axes.unwrap_or(Axes::Link).into();
     let sheet = Worksheet::new(&robot, &situation, axes).map_err(Failure::usage)?;
     if arguments.csv {
@@ -261,6 +248,22 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 impl Arguments {
+    /// The worksheet that is compared, and q, q̇ and q̈ that it gives, of those that a function takes.
+    fn sheet(&self, function: Function, robot: &Robot) -> Result<(Option<Filled>, [Option<List>; 3]), Failure> {
+        let read = |path: &PathBuf| worksheet_file::read(path, robot, self.axes.map(Into::into));
+        let sheet = self.compare.as_ref().map(read).transpose()?;
+        let lists = [
+            (Quantity::Q, Argument::Positions),
+            (Quantity::Qd, Argument::Rates),
+            (Quantity::Qdd, Argument::Accelerations),
+        ];
+        let given = lists.map(|(quantity, kind)| {
+            let given = sheet.as_ref().filter(|_| function.takes(kind))?.given(quantity, robot.dof());
+            given.map(List)
+        });
+        Ok((sheet, given))
+    }
+
     /// The function and the robot with the payload: an argument where the function has one, else a part of a link.
     fn loaded(&self, function: Function, robot: Robot) -> Result<(Function, Robot), Failure> {
         let carried = &self.arm.carried;

@@ -49,8 +49,8 @@ const TOLD: usize = 20;
 /// each cell.
 const ALIKE: usize = 3;
 
-/// Characters of the bytes 0x80 to 0x9F in Windows-1252, after the index of the WHATWG Encoding Standard; five bytes have
-/// none.
+/// Characters of the bytes 0x80 to 0x9F in Windows-1252, after the index of the WHATWG Encoding Standard; five of these
+/// bytes have none.
 const WINDOWS: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8D}Ž\u{8F}\u{90}‘’“”•–—˜™š›œ\u{9D}žŸ";
 
 /// The text of a file, without a byte order mark: in UTF-8, or as spreadsheets save `CSV` and `Unicode text`, in
@@ -62,7 +62,7 @@ const WINDOWS: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8D}Ž\u{8F}\u{90
 pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Failure> {
     let utf_16 = |rest: &[u8], unit: fn([u8; 2]) -> u16| {
         let units = rest.chunks_exact(2).filter_map(|pair| Some(unit(pair.try_into().ok()?))).collect::<Vec<_>>();
-        let text = String::from_utf16(&units).ok().filter(|_| rest.len() % 2 == 0);
+        let text = String::from_utf16(&units).ok().filter(|_| rest.len().is_multiple_of(2));
         let broken = || Failure::input(format_args!("{name} is not UTF-16 to its end; save the file as UTF-8"));
         text.map(Cow::Owned).ok_or_else(broken)
     };

@@ -55,8 +55,8 @@ struct FirstError {
 }
 
 impl Mark {
-    /// Points are the right values of the cells that are asked for, by joint and step, without those that are `always_zero`; with `carry`, also the values
-    /// that are right with the student's own earlier values.
+    /// Points are the right values of the cells that are asked for, by joint and step, without those that are
+    /// `always_zero`; with `carry`, also the values that are right with the student's own earlier values.
     pub(crate) fn new(
         sheet: &Worksheet,
         comparison: Comparison,

@@ -26,6 +26,16 @@ pub(crate) struct Given<'a> {
 }
 
 impl<'a> Given<'a> {
+    /// The lists with q, q̇ and q̈ of a state, where no positions are given.
+    pub(crate) fn or_state(mut self, state: &'a [Option<List>; 3]) -> Self {
+        if self.q.is_none() {
+            for (own, of_state) in [&mut self.q, &mut self.qd, &mut self.qdd].into_iter().zip(state) {
+                *own = own.or(of_state.as_ref());
+            }
+        }
+        self
+    }
+
     /// The lists with zeros for velocities and accelerations that a function takes and that are not given, of the joints
     /// and of a base that moves; with their options. `zeros` has a number for each joint, and three for the base.
     pub(crate) fn at_rest(mut self, function: Function, zeros: [&'a List; 2]) -> (Self, Vec<&'static str>) {
