@@ -13,7 +13,7 @@ from statistics import median
 
 from arm import ROBOTS
 
-BATCH_KINDS = {3, 4}  # RP_ID_BATCH, RP_OTHER_BATCH of rnepeer.h
+BATCH_KINDS = {3, 4, 5}  # RP_ID_BATCH, RP_OTHER_BATCH, RP_FD_BATCH of rnepeer.h
 TOLERANCE = 1e-10  # of the largest torque
 
 # What the project asks of its own rows. Columns: the six larger robots.
