@@ -17,6 +17,11 @@ struct FlatRobot {
   std::string name;
   double gravity[3];
   std::vector<FlatJoint> joints;
+  bool branches() const {
+    for (size_t i = 0; i < joints.size(); i++)
+      if (joints[i].parent != int(i) - 1) return true;
+    return false;
+  }
 };
 
 inline FlatRobot read_flat(const std::string& dir, const std::string& robot) {

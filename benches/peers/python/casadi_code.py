@@ -8,6 +8,9 @@ Three formulations, from what a textbook has to what an expert would do:
 
 and `pin`, Pinocchio's RNEA on CasADi's symbols, where pinocchio_casadi has written OUT/<robot>_pin.casadi.
 
+Of robots with branches also the mass matrix (`m`, the derivative of `base` by the accelerations), forward dynamics (`fd`,
+`m` factorised without fill-in), and the functions of Pinocchio that pinocchio_casadi has written.
+
 SX folds x*0, x+0 and x*1 while it builds, constants are exact at right angles, and casadi.cse comes last.
 Writes OUT/<robot>_<form>.c, OUT/<robot>_<form>_v.h (the same over vectors of states) and OUT/operations.csv.
 """
@@ -20,7 +23,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 
-from arm import constant_d, constant_theta, load, parent, sin_cos, tensor, turn_x, turn_z
+from arm import TREES, constant_d, constant_theta, load, parent, sin_cos, tensor, turn_x, turn_z
 
 FORMS = ("dh", "jf", "base")
 
@@ -287,10 +290,21 @@ def function(robot, form):
     return ca.Function("id", [q, v, a], [ca.cse(ca.densify(tau))])
 
 
+def other_functions(robot):
+    """Mass matrix and forward dynamics from the torques of `base`."""
+    count = len(robot["joints"])
+    q, v, a = ca.SX.sym("q", count), ca.SX.sym("v", count), ca.SX.sym("a", count)
+    torques = torques_joint_frames(robot, q, v, a, True)
+    matrix = ca.triu2symm(ca.triu(ca.jacobian(torques, a)))
+    bias = ca.substitute(torques, a, ca.SX.zeros(count))
+    acceleration = ca.ldl_solve(a - bias, *ca.ldl(matrix))
+    return {form: ca.Function("id", [q, v, a], [ca.cse(ca.densify(x))]) for form, x in (("m", matrix), ("fd", acceleration))}
+
+
 def function_of_pinocchio(path, count):
     saved = ca.Function.load(str(path))
     x = [ca.SX.sym(f"x{i}", count) for i in range(3)]
-    return ca.Function("id", x, [ca.cse(ca.densify(saved(*x)))])
+    return ca.Function("id", x, ca.cse([ca.densify(y) for y in saved.call(x)]))
 
 
 def operations(f):
@@ -334,10 +348,14 @@ def main():
         functions = {form: function(robot, form) for form in FORMS}
         for form, f in functions.items():
             Path(f"{name}_{form}_v.h").write_text(vectorised(write(f, f"{name}_{form}")))
-        saved = Path(f"{name}_pin.casadi")
-        if saved.exists():
-            functions["pin"] = function_of_pinocchio(saved, len(robot["joints"]))
-            write(functions["pin"], f"{name}_pin")
+        others = other_functions(robot) if name in TREES else {}
+        for form in ("pin", "pinm", "pinfd", "pind"):
+            saved = Path(f"{name}_{form}.casadi")
+            if saved.exists():
+                others[form] = function_of_pinocchio(saved, len(robot["joints"]))
+        for form, f in others.items():
+            write(f, f"{name}_{form}")
+        functions |= others
         rows += [",".join(map(str, (name, form, *operations(f).values()))) for form, f in functions.items()]
     Path("operations.csv").write_text("\n".join(rows) + "\n")
 
