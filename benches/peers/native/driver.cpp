@@ -164,7 +164,6 @@ std::vector<Peer> peers_of(const std::vector<Plugin>& plugins, const std::string
 // All quantities that a competitor says it computes; each deviation is over the largest value of its quantity.
 void check_results(Peer& peer, const States& s, double* out) {
   if (!peer.result) return;
-  if (peer.keep) peer.keep(peer.index, peer.context, 1);
   for (size_t k = 0; k < s.count; k++) {
     const size_t i = k * s.joints;
     rp_call(peer.function)(peer.context, s.q + i, s.qd + i, s.qdd + i, out);
@@ -176,7 +175,6 @@ void check_results(Peer& peer, const States& s, double* out) {
       peer.error = std::isnan(peer.error) ? error : std::max(peer.error, error);
     }
   }
-  if (peer.keep) peer.keep(peer.index, peer.context, 0);
 }
 
 // The same of many states in one call.
@@ -194,7 +192,7 @@ void check_batch_results(Peer& peer, const States& s, double* out) {
   }
 }
 
-void check(Peer& peer, const States& s, double* out) {
+void check_kind(Peer& peer, const States& s, double* out) {
   if (peer.kind == RP_OTHER_BATCH) return check_batch_results(peer, s, out);
   if (peer.kind == RP_OTHER) return check_results(peer, s, out);
   const size_t size = s.joints * s.count;
@@ -211,6 +209,12 @@ void check(Peer& peer, const States& s, double* out) {
     rp_call(peer.function)(peer.context, s.q + i, s.qd + i, (forward ? s.tau : s.qdd) + i, out + i);
   peer.error =
       forward ? deviation(out, s.qdd, size) / s.largest_qdd : deviation(out, s.tau, size) / s.largest[RP_TAU];
+}
+
+void check(Peer& peer, const States& s, double* out) {
+  if (peer.keep) peer.keep(peer.index, peer.context, 1);
+  check_kind(peer, s, out);
+  if (peer.keep) peer.keep(peer.index, peer.context, 0);
 }
 
 void time_batch(Peer& peer, const States& s, double* out, bool counts) {

@@ -50,7 +50,8 @@ void build_tree(Context& c, const FlatRobot& robot) {
     const KDL::Frame before = frame(j.before_R, j.before_p);
     const KDL::Joint joint(name(i), before.p, before.M.UnitZ(),
                            j.prismatic ? KDL::Joint::TransAxis : KDL::Joint::RotAxis);
-    c.tree.addSegment(KDL::Segment(name(i), joint, before * frame(j.after_R, j.after_p), inertia_of(j)), name(j.parent));
+    const KDL::Frame link = before * frame(j.after_R, j.after_p);
+    c.tree.addSegment(KDL::Segment(name(i), joint, link, inertia_of(j)), name(j.parent));
   }
   c.tree_solver = new KDL::TreeIdSolver_RNE(c.tree, KDL::Vector(robot.gravity[0], robot.gravity[1], robot.gravity[2]));
 }

@@ -34,7 +34,8 @@ int main(int argc, char** argv) {
     };
     const Vector at_q = vector(q), at_qd = vector(qd), at_third = vector(third);
     auto save = [&](const std::string& form, const std::vector<SX>& results) {
-      casadi::Function("id", {q, qd, third}, results).save(std::string(argv[2]) + "/" + argv[i] + "_" + form + ".casadi");
+      const std::string file = std::string(argv[2]) + "/" + argv[i] + "_" + form + ".casadi";
+      casadi::Function("id", {q, qd, third}, results).save(file);
     };
     pinocchio::DataTpl<SX> data(model);
     pinocchio::rnea(model, data, at_q, at_qd, at_third);

@@ -50,8 +50,8 @@ enum {
    thing. The driver checks all that are there. A matrix does not fit into `out`: a competitor keeps it and writes one
    element into `out`. After a batch the result has element e of state k at e*count + k. */
 RP_EXPORT const double *rp_result(int k, void *ctx, const double *out, int what);
-/* Optional, for a competitor that keeps results only to be checked: whether it does in the calls to come. At first it
-   does not. */
+/* Optional: whether the results of the calls to come are checked. At first they are not. A competitor may keep results,
+   or correct what it computes for another gravity, only then. */
 RP_EXPORT void rp_keep(int k, void *ctx, int keep);
 #ifdef __cplusplus
 }

@@ -8,8 +8,8 @@ Three formulations, from what a textbook has to what an expert would do:
 
 and `pin`, Pinocchio's RNEA on CasADi's symbols, where pinocchio_casadi has written OUT/<robot>_pin.casadi.
 
-Of robots with branches also the mass matrix (`m`, the derivative of `base` by the accelerations), forward dynamics (`fd`,
-`m` factorised without fill-in), and the functions of Pinocchio that pinocchio_casadi has written.
+Of robots with branches also the mass matrix (`m`, the derivative of `base` by the accelerations), forward dynamics
+(`fd`, `m` factorised without fill-in), and the functions of Pinocchio that pinocchio_casadi has written.
 
 SX folds x*0, x+0 and x*1 while it builds, constants are exact at right angles, and casadi.cse comes last.
 Writes OUT/<robot>_<form>.c, OUT/<robot>_<form>_v.h (the same over vectors of states) and OUT/operations.csv.
@@ -298,7 +298,8 @@ def other_functions(robot):
     matrix = ca.triu2symm(ca.triu(ca.jacobian(torques, a)))
     bias = ca.substitute(torques, a, ca.SX.zeros(count))
     acceleration = ca.ldl_solve(a - bias, *ca.ldl(matrix))
-    return {form: ca.Function("id", [q, v, a], [ca.cse(ca.densify(x))]) for form, x in (("m", matrix), ("fd", acceleration))}
+    results = {"m": matrix, "fd": acceleration}
+    return {form: ca.Function("id", [q, v, a], [ca.cse(ca.densify(x))]) for form, x in results.items()}
 
 
 def function_of_pinocchio(path, count):

@@ -9,11 +9,24 @@ use std::{ptr, slice};
 
 use dynibo::Robot;
 
-/// A robot, and the mass matrix of the last call.
+/// Gravity of dynibo over that of the states, both along -z: dynibo's cannot be set.
+const GRAVITY: f64 = 9.80665 / 9.81;
+
+/// A robot, the mass matrix of the last call, and room for the torques at rest while results are checked.
 struct Context {
     robot: Robot,
     joints: usize,
     matrix: Vec<f64>,
+    at_rest: Vec<f64>,
+    is_checked: bool,
+}
+
+impl Context {
+    /// What gravity of the states adds to the torques.
+    fn missing_torques(&mut self, q: &[f64]) -> impl Iterator<Item = f64> {
+        assert!(self.robot.gravity(q, &[], &mut self.at_rest).is_ok(), "the sizes are those of the robot");
+        self.at_rest.iter().map(|torque| torque * (1.0 / GRAVITY - 1.0))
+    }
 }
 
 type Call = unsafe extern "C" fn(*mut c_void, *const f64, *const f64, *const f64, *mut f64);
@@ -32,20 +45,28 @@ unsafe extern "C" fn call<const FUNCTION: usize>(
     out: *mut f64,
 ) {
     // SAFETY: a context of ours, which nobody else has meanwhile.
-    let Context { robot, joints, matrix } = unsafe { &mut *context.cast() };
+    let context = unsafe { &mut *context.cast::<Context>() };
     // SAFETY: a number for each joint, which nobody writes meanwhile.
-    let [q, qd, third] = [q, qd, third].map(|x| unsafe { slice::from_raw_parts(x, *joints) });
+    let [q, qd, third] = [q, qd, third].map(|x| unsafe { slice::from_raw_parts(x, context.joints) });
     // SAFETY: as many, which overlap nothing.
-    let out = unsafe { slice::from_raw_parts_mut(out, *joints) };
+    let out = unsafe { slice::from_raw_parts_mut(out, context.joints) };
     let done = match FUNCTION {
-        0 => robot.inverse_dynamics(q, qd, third, &[], out),
+        0 => context.robot.inverse_dynamics(q, qd, third, &[], out),
         1 => {
-            let done = robot.mass_matrix(q, matrix);
-            out[0] = matrix[0];
+            let done = context.robot.mass_matrix(q, &mut context.matrix);
+            out[0] = context.matrix[0];
             done
         }
-        _ => robot.forward_dynamics(q, qd, third, &[], out),
+        _ if context.is_checked => {
+            let tau: Vec<f64> =
+                third.iter().zip(context.missing_torques(q)).map(|(tau, missing)| tau - missing).collect();
+            context.robot.forward_dynamics(q, qd, &tau, &[], out)
+        }
+        _ => context.robot.forward_dynamics(q, qd, third, &[], out),
     };
+    if FUNCTION == 0 && context.is_checked {
+        out.iter_mut().zip(context.missing_torques(q)).for_each(|(tau, missing)| *tau += missing);
+    }
     assert!(done.is_ok(), "the sizes are those of the robot");
 }
 
@@ -81,7 +102,18 @@ pub unsafe extern "C" fn rp_open(_k: c_int, robot: *const c_char, folder: *const
     let [robot, folder] = [robot, folder].map(|text| unsafe { CStr::from_ptr(text) }.to_string_lossy());
     let robot = Robot::from_urdf(format!("{folder}/{robot}.urdf")).unwrap_or_else(|error| panic!("{robot}: {error}"));
     let joints = robot.generalized_count();
-    ptr::from_mut(Box::leak(Box::new(Context { robot, joints, matrix: vec![0.0; joints * joints] }))).cast()
+    let [matrix, at_rest] = [joints * joints, joints].map(|size| vec![0.0; size]);
+    ptr::from_mut(Box::leak(Box::new(Context { robot, joints, matrix, at_rest, is_checked: false }))).cast()
+}
+
+/// While results are checked they are those of the gravity of the states.
+///
+/// # Safety
+/// As the page of the crate says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rp_keep(_k: c_int, context: *mut c_void, keep: c_int) {
+    // SAFETY: a context of ours, which nobody else has meanwhile.
+    unsafe { (*context.cast::<Context>()).is_checked = keep != 0 }
 }
 
 /// # Safety

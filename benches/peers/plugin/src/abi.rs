@@ -341,7 +341,12 @@ pub unsafe extern "C" fn rp_open(k: c_int, robot: *const c_char, _folder: *const
 /// # Safety
 /// The context is one that [`rp_open`] made.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn rp_keep(_k: c_int, context: *mut c_void, keep: c_int) {
+pub unsafe extern "C" fn rp_keep(k: c_int, context: *mut c_void, keep: c_int) {
+    #[cfg(feature = "machine")]
+    if let Some((_, Function::Machine(_))) = competitor(&crate::ROBOTS[0], k) {
+        return;
+    }
+    let _ = k;
     // SAFETY: a context of ours, which nobody else has meanwhile.
     unsafe { (*context.cast::<Results>()).keep = keep != 0 }
 }
