@@ -344,6 +344,8 @@ pub unsafe extern "C" fn rp_open(k: c_int, robot: *const c_char, _folder: *const
 pub unsafe extern "C" fn rp_keep(k: c_int, context: *mut c_void, keep: c_int) {
     #[cfg(feature = "machine")]
     if let Some((_, Function::Machine(_))) = competitor(&crate::ROBOTS[0], k) {
+        // SAFETY: a context of ours, which nobody else has meanwhile.
+        unsafe { (*context.cast::<crate::machine::Machine>()).keeps_all = keep != 0 };
         return;
     }
     let _ = k;
