@@ -11,11 +11,10 @@ use crate::{number, time, user};
 /// Derives, and calls of their functions.
 const DERIVES: [(&[&str], &[&str]); 13] = [
     (&["InverseDynamics"], &["inverse_dynamics(q, qd, qdd)"]),
-    (&["InverseDynamics", "MassMatrix", "ForwardDynamics"], &[
-        "inverse_dynamics(q, qd, qdd)",
-        "mass_matrix(q)",
-        "forward_dynamics(q, qd, qdd)",
-    ]),
+    (
+        &["InverseDynamics", "MassMatrix", "ForwardDynamics"],
+        &["inverse_dynamics(q, qd, qdd)", "mass_matrix(q)", "forward_dynamics(q, qd, qdd)"],
+    ),
     (&["MassMatrix"], &["mass_matrix(q)"]),
     (&["ForwardDynamics"], &["forward_dynamics(q, qd, qdd)"]),
     (&["InverseDynamicsDerivatives"], &["inverse_dynamics_derivatives(q, qd, qdd)"]),
@@ -40,11 +39,8 @@ pub(crate) fn print(file: &str) {
     for (capabilities, calls) in DERIVES {
         let user = user::Crate::of(&path.display().to_string(), capabilities, calls, joints, Form::Reduced);
         let (is_built, seconds) = time::of(Instant::now(), || user.build("release"));
-        let [seconds, memory, code] = if is_built {
-            [seconds, user.most_memory(), user.code_size() as f64]
-        } else {
-            [f64::NAN; 3]
-        };
+        let [seconds, memory, code] =
+            if is_built { [seconds, user.most_memory(), user.code_size() as f64] } else { [f64::NAN; 3] };
         let cells = [number(seconds, 1), number(memory, 0), number(code, 0)].join(" | ");
         println!("| {} | {cells} |", capabilities.join(", "));
     }

@@ -36,7 +36,9 @@ impl Growth {
         let shell = machine::shell()?;
         let command = match self.arms {
             Some(arms) => printing(&shell, arms),
-            None if self.robot.is_some() => command(&shell, &["--robot".into(), self.robot.clone().unwrap_or_default()]),
+            None if self.robot.is_some() => {
+                command(&shell, &["--robot".into(), self.robot.clone().unwrap_or_default()])
+            }
             None => command(&shell, &words(&self.joints)),
         };
         Ok(Verdict::from(command.run().is_ok()))

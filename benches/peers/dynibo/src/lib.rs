@@ -12,6 +12,9 @@ use dynibo::Robot;
 /// Gravity of dynibo over that of the states, both along -z: dynibo's cannot be set.
 const GRAVITY: f64 = 9.80665 / 9.81;
 
+/// Gravity of these is not along -z, and an inertia of the source of Atlas is not that of a body.
+const REFUSED: [&CStr; 4] = [c"planar2", c"dense6_2p", c"dense7", c"atlas"];
+
 /// A robot. dynibo has an order of joints of its own: `joints[i]` is the driver's number of its joint i.
 struct Context {
     robot: Robot,
@@ -130,8 +133,8 @@ pub extern "C" fn rp_kind(k: c_int) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rp_func(k: c_int, robot: *const c_char) -> *const c_void {
     // SAFETY: a string of C that outlives this call.
-    if unsafe { CStr::from_ptr(robot) } == c"atlas" {
-        return ptr::null(); // dynibo refuses it: an inertia of its source is not that of a body
+    if REFUSED.contains(&unsafe { CStr::from_ptr(robot) }) {
+        return ptr::null();
     }
     competitor(k).map_or(ptr::null(), |(.., call)| *call as *const c_void)
 }
