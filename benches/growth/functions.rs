@@ -34,7 +34,7 @@ pub(crate) fn print(file: &str) {
     let path = Path::new(file).canonicalize().unwrap_or_else(|error| panic!("{file}: {error}"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
     let reader = Reader::new(file).trees().couplings().read(text.as_bytes());
-    let joints = reader.unwrap_or_else(|report| panic!("{report}")).robot.joints().len();
+    let joints = reader.unwrap_or_else(|report| panic!("{report}")).robot.joints.len();
     println!("| {file}: derives | release, s | most memory, MB | code, bytes |\n|---|---:|---:|---:|");
     for (capabilities, calls) in DERIVES {
         let user = user::Crate::of(&path.display().to_string(), capabilities, calls, joints, Form::Reduced);
