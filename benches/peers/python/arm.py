@@ -65,7 +65,7 @@ def tree(name):
             )
         )
         numbers[joint["name"]] = i
-    return dict(name=name, convention="modified", gravity=file["gravity"], joints=joints, source=file["source"])
+    return dict(name=name, title=file["name"], convention="modified", gravity=file["gravity"], joints=joints)
 
 
 def value(x):

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from statistics import median
 
-from arm import ROBOTS, TREES
+from arm import ROBOTS, TREES, tree
 from wrap import FORMS
 
 BATCH_KINDS = {3, 4, 5}  # RP_ID_BATCH, RP_OTHER_BATCH, RP_FD_BATCH of rnepeer.h
@@ -44,7 +44,7 @@ FUNCTIONS = {
 }
 
 # Robots with branches: functions, our rows of single calls and what is asked against the best of the rivals, our rows
-# of batches and what is asked against Pinocchio. The ends of names are targets of ours and compilers of generated C.
+# of batches and what is asked against Pinocchio, which has none: single calls in a loop count for both. The ends of names are targets of ours and compilers of generated C.
 FUNCTIONS_OF_TREES = {
     "torques": (
         ["rne"],
@@ -57,21 +57,21 @@ FUNCTIONS_OF_TREES = {
         ["rne_mass_matrix"],
         ["pin_crba", "pin_casadi_crba", "casadi_mass_matrix", "dynibo_mass_matrix"],
         1.5,
-        ["rne_machine_mass_matrix"],
+        ["rne_machine_mass_matrix", "rne_mass_matrix"],
         8,
     ),
     "forward dynamics": (
         ["rne_forward_dynamics"],
         ["pin_aba", "pin_casadi_aba", "casadi_forward_dynamics", "dynibo_aba"],
         1.5,
-        ["rne_machine_forward_dynamics"],
+        ["rne_machine_forward_dynamics", "rne_forward_dynamics"],
         8,
     ),
     "derivatives": (
         ["rne_derivatives", "rne_derivatives_tau_m"],
         ["pin_rnea_deriv", "pin_casadi_deriv"],
         1.5,
-        ["rne_machine_derivatives"],
+        ["rne_machine_derivatives", "rne_derivatives"],
         8,
     ),
 }
@@ -373,10 +373,12 @@ def operations(casadi, ours):
 
     for row in csv.DictReader(casadi.open()):
         count(FORMS[row["form"]][0], row["robot"], row["mul"], row["add"], row["sin"])
-    for row in json.loads(ours.read_text()):
+    names = {tree(name)["title"]: name for name in TREES}
+    rows = [row | {"robot": names.get(row["robot"], row["robot"])} for row in json.loads(ours.read_text())]
+    for row in rows:
         if row["function"] == "inverse_dynamics":
             count(f"**rne, {row['form']}**", row["robot"], row["mul"], row["add"], row["sincos"])
-    for row in json.loads(ours.read_text()):
+    for row in rows:
         if row["function"] in OTHER_FUNCTIONS and row["form"] == "reduced":
             count(f"**rne, {row['function']}**", row["robot"], row["mul"], row["add"], row["sincos"])
     robots = [robot for robot in ROBOTS if any(robot == r for _, r in counts)]
