@@ -44,7 +44,8 @@ FUNCTIONS = {
 }
 
 # Robots with branches: functions, our rows of single calls and what is asked against the best of the rivals, our rows
-# of batches and what is asked against Pinocchio, which has none: single calls in a loop count for both. The ends of names are targets of ours and compilers of generated C.
+# of batches and what is asked against Pinocchio, which has none: single calls in a loop count for both. The ends of
+# names are targets of ours and compilers of generated C.
 FUNCTIONS_OF_TREES = {
     "torques": (
         ["rne"],
