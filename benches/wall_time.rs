@@ -5,17 +5,14 @@
 //! - `chained`: every `q` depends on the torques of the call before (times 1e-30, below rounding), so latency counts.
 //! - `gravity`, `mass_matrix`, `forward_dynamics`, `derivatives`: the other functions, independent.
 //!
-//! `arm` is `rne::Arm`, which reads the same table at run time and does the same steps in loops; `dynibo` is the other
-//! Rust crate. It reads URDF, which [`rne_benches::urdf`] writes from the table, has double precision only, and its
-//! gravity is 9.80665 m/s² along -z. Before it is timed its torques are compared with those of `Arm` under that
-//! gravity.
+//! `arm` is `rne::Arm`, which reads the same table at run time and does the same steps in loops.
 
 use std::hint::black_box;
 use std::path::Path;
 
 use divan::Bencher;
 use rne::{Arm, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Scalar};
-use rne_benches::{GRAVITY, PandaReduced, PandaSevenSteps, Puma560Reduced, Puma560SevenSteps, states, urdf};
+use rne_benches::{PandaReduced, PandaSevenSteps, Puma560Reduced, Puma560SevenSteps, states};
 
 fn main() {
     // 200 samples of 1000 calls; the machine's clock is too coarse for one call.
@@ -97,110 +94,35 @@ fn arm<const DOF: usize>(name: &str) -> Arm<DOF> {
     Arm::from_file(robot_file(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The arm of a robot file for `dynibo`, after a comparison of torques.
-fn dynibo<const DOF: usize>(name: &str) -> dynibo::Robot {
-    let text = std::fs::read_to_string(robot_file(name)).expect("a robot file");
-    let mut robot = rne::model::Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).with_extension("urdf");
-    std::fs::write(&file, urdf(&robot)).expect("a writable folder");
-    let mut other = dynibo::Robot::from_urdf(&file).unwrap_or_else(|error| panic!("{error}"));
-
-    robot.gravity = [0.0, 0.0, -GRAVITY];
-    let own = Arm::<DOF>::from_robot(&robot).expect("the right number of joints");
-    for state in states::<DOF, f64>() {
-        let expected = own.inverse_dynamics(&state.q, &state.qd, &state.qdd);
-        let mut found = [0.0; DOF];
-        other.inverse_dynamics(&state.q, &state.qd, &state.qdd, &[], &mut found).expect("torques");
-        let largest = expected.iter().fold(0.0, |largest, torque: &f64| torque.abs().max(largest));
-        for (expected, found) in expected.iter().zip(found) {
-            assert!((expected - found).abs() <= 1e-12 * largest, "{name}: {expected} is not {found}");
-        }
-    }
-    other
-}
-
-fn dynibo_independent<const DOF: usize>(bencher: Bencher, name: &str) {
-    let (mut robot, states) = (dynibo::<DOF>(name), states::<DOF, f64>());
-    let mut index = 0;
-    bencher.bench_local(|| {
-        index = (index + 1) % states.len();
-        let state = black_box(&states[index]);
-        let mut torques = [0.0; DOF];
-        robot.inverse_dynamics(&state.q, &state.qd, &state.qdd, &[], &mut torques).expect("torques");
-        torques
-    });
-}
-
-fn dynibo_chained<const DOF: usize>(bencher: Bencher, name: &str) {
-    let (mut robot, states) = (dynibo::<DOF>(name), states::<DOF, f64>());
-    let mut index = 0;
-    let mut torques = [0.0; DOF];
-    bencher.bench_local(|| {
-        index = (index + 1) % states.len();
-        let state = black_box(&states[index]);
-        let q = behind(state.q, &torques);
-        robot.inverse_dynamics(&q, &state.qd, &state.qdd, &[], &mut torques).expect("torques");
-    });
-    black_box(torques);
-}
-
-fn dynibo_gravity<const DOF: usize>(bencher: Bencher, name: &str) {
-    let (mut robot, states) = (dynibo::<DOF>(name), states::<DOF, f64>());
-    let mut index = 0;
-    bencher.bench_local(|| {
-        index = (index + 1) % states.len();
-        let mut torques = [0.0; DOF];
-        robot.gravity(&black_box(&states[index]).q, &[], &mut torques).expect("torques");
-        torques
-    });
-}
-
 /// The benchmarks of one robot: a module per measurement, a function per competitor and scalar.
 macro_rules! robot {
     ($name:ident, $dof:literal, $seven_steps:ident, $reduced:ident) => {
         mod $name {
-            robot!(@measurement independent, dynibo_independent, $name, $dof, $seven_steps, $reduced);
-            robot!(@measurement chained, dynibo_chained, $name, $dof, $seven_steps, $reduced);
-            robot!(@measurement gravity, dynibo_gravity, $name, $dof, $seven_steps, $reduced);
+            robot!(@function independent, $name, $dof, $seven_steps, $reduced);
+            robot!(@function chained, $name, $dof, $seven_steps, $reduced);
+            robot!(@function gravity, $name, $dof, $seven_steps, $reduced);
             robot!(@function mass_matrix, $name, $dof, $seven_steps, $reduced);
             robot!(@function forward_dynamics, $name, $dof, $seven_steps, $reduced);
             robot!(@function derivatives, $name, $dof, $seven_steps, $reduced);
-        }
-    };
-    (
-        @measurement $measurement:ident, $dynibo:ident, $name:ident, $dof:literal, $seven_steps:ident, $reduced:ident
-    ) => {
-        mod $measurement {
-            use divan::{Bencher, bench};
-
-            robot!(@ours $measurement, $name, $dof, $seven_steps, $reduced);
-
-            #[bench]
-            fn dynibo(bencher: Bencher) {
-                crate::$dynibo::<$dof>(bencher, stringify!($name));
-            }
         }
     };
     (@function $measurement:ident, $name:ident, $dof:literal, $seven_steps:ident, $reduced:ident) => {
         mod $measurement {
             use divan::{Bencher, bench};
 
-            robot!(@ours $measurement, $name, $dof, $seven_steps, $reduced);
-        }
-    };
-    (@ours $measurement:ident, $name:ident, $dof:literal, $seven_steps:ident, $reduced:ident) => {
-        robot!(@form $measurement, $dof, seven_steps, seven_steps_f32, $seven_steps);
-        robot!(@form $measurement, $dof, reduced, reduced_f32, $reduced);
+            robot!(@form $measurement, $dof, seven_steps, seven_steps_f32, $seven_steps);
+            robot!(@form $measurement, $dof, reduced, reduced_f32, $reduced);
 
-        #[bench]
-        fn arm(bencher: Bencher) {
-            crate::$measurement::<$dof, f64>(bencher, &crate::arm::<$dof>(stringify!($name)));
-        }
+            #[bench]
+            fn arm(bencher: Bencher) {
+                crate::$measurement::<$dof, f64>(bencher, &crate::arm::<$dof>(stringify!($name)));
+            }
 
-        #[bench]
-        fn arm_f32(bencher: Bencher) {
-            let arm = rne::Arm::new(crate::arm::<$dof>(stringify!($name)).model().to_f32());
-            crate::$measurement::<$dof, f32>(bencher, &arm);
+            #[bench]
+            fn arm_f32(bencher: Bencher) {
+                let arm = rne::Arm::new(crate::arm::<$dof>(stringify!($name)).model().to_f32());
+                crate::$measurement::<$dof, f32>(bencher, &arm);
+            }
         }
     };
     (@form $measurement:ident, $dof:literal, $double:ident, $single:ident, $robot:ident) => {

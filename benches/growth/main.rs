@@ -16,10 +16,18 @@
 //!   expansion included; its dependencies are built already
 //! - code: bytes of instructions in the object file of that crate, release profile
 //!
+//! ```sh
+//! cargo xtask growth --robot benches/trees/g1.yaml    # what each function of a robot file costs a release build
+//! ```
+//!
+//! A row for each derive: its `cargo build --release` as above, with calls of its functions, and code. The derives
+//! come in the form `reduced`, with the plan file beside the robot file.
+//!
 //! Times are processor time where the system is Linux, since a machine may be shared, else time of the clock. `fails`:
 //! the compiler gave up.
 
 mod chain;
+mod functions;
 mod time;
 mod user;
 
@@ -45,6 +53,9 @@ const COLUMNS: [(&str, usize); 5] =
     [("operations", 0), ("expansion, ms", 1), ("dev, s", 2), ("release, s", 2), ("code, bytes", 0)];
 
 fn main() {
+    if std::env::args().nth(1).is_some_and(|word| word == "--robot") {
+        return std::env::args().skip(2).for_each(|file| functions::print(&file));
+    }
     let given: Result<Vec<usize>, _> = std::env::args().skip(1).map(|word| word.parse()).collect();
     let joints = match given {
         Ok(given) if given.is_empty() => JOINTS.to_vec(),

@@ -1,10 +1,13 @@
-//! A crate that derives a chain, in a folder of its own.
+//! A crate that derives a robot, in a folder of its own.
 
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use rne_codegen::Form;
+
+const TIME: &str = "/usr/bin/time";
 
 /// The crate of a user, changed before every build.
 pub(crate) struct Crate {
@@ -13,8 +16,16 @@ pub(crate) struct Crate {
 }
 
 impl Crate {
-    /// The crate, with its dependencies built in both profiles.
+    /// A crate that derives a chain and calls its torques, with its dependencies built in both profiles.
     pub(crate) fn new(yaml: &str, joints: usize, form: Form) -> Self {
+        let user = Self::of("../chain.yaml", &["InverseDynamics"], &["inverse_dynamics(q, qd, qdd)"], joints, form);
+        fs::write(user.folder.join("chain.yaml"), yaml).expect("the robot file");
+        user
+    }
+
+    /// A crate that derives capabilities of a robot file and makes calls with arguments `q`, `qd`, `qdd`; a relative
+    /// path starts at the source of the crate.
+    pub(crate) fn of(file: &str, capabilities: &[&str], calls: &[&str], joints: usize, form: Form) -> Self {
         let package = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("benches is a folder of rne");
         let folder = target().join("chain");
         let manifest = format!(
@@ -23,14 +34,19 @@ impl Crate {
             package.display()
         );
         let arguments = format!("q: &[f64; {joints}], qd: &[f64; {joints}], qdd: &[f64; {joints}]");
-        let program = format!(
-            "use rne::InverseDynamics;\n\n#[derive(InverseDynamics)]\n\
-             #[robot(path = \"../chain.yaml\", form = \"{form}\")]\npub struct Chain;\n\n#[inline(never)]\n\
-             pub fn torques({arguments}) -> [f64; {joints}] {{\n    Chain.inverse_dynamics(q, qd, qdd)\n}}\n"
+        let mut program = format!(
+            "use rne::*;\n\n#[derive({})]\n#[robot(path = \"{file}\", form = \"{form}\")]\npub struct Chain;\n",
+            capabilities.join(", ")
         );
+        for (number, call) in calls.iter().enumerate() {
+            let _ = write!(
+                program,
+                "\n#[inline(never)]\npub fn call{number}({arguments}) {{\n    \
+                 std::hint::black_box(Chain.{call});\n}}\n"
+            );
+        }
         fs::create_dir_all(folder.join("src")).expect("a folder for sources");
         fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
-        fs::write(folder.join("chain.yaml"), yaml).expect("the robot file");
         // The versions that are at hand, since they built the workspace.
         fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
         let user = Self { folder, program };
@@ -56,7 +72,13 @@ impl Crate {
     }
 
     fn run_cargo(&self, profile: &str) -> bool {
-        let output = Command::new(env!("CARGO"))
+        // GNU time says how much memory the largest process below it took.
+        let measured = Path::new(TIME).exists().then(|| Command::new(TIME)).map(|mut time| {
+            time.args(["-f", "%M", "-o"]).arg(self.folder.join("memory")).arg(env!("CARGO"));
+            time
+        });
+        let output = measured
+            .unwrap_or_else(|| Command::new(env!("CARGO")))
             .args(["rustc", "--offline", "--quiet", "--lib", "--profile", profile, "--target-dir"])
             .arg(target().join("target"))
             .args(["--", "-C", "codegen-units=1", "--emit"])
@@ -72,6 +94,12 @@ impl Crate {
             eprintln!("{}", String::from_utf8_lossy(&output.stderr));
         }
         output.status.success()
+    }
+
+    /// Megabytes of the largest process of the last build, which is the compiler; not a number without GNU time.
+    pub(crate) fn most_memory(&self) -> f64 {
+        let text = fs::read_to_string(self.folder.join("memory")).unwrap_or_default();
+        text.trim().parse().map_or(f64::NAN, |kilobytes: f64| kilobytes * 1024e-6)
     }
 
     /// Bytes of the executable sections of the object file that was built last; only in the format ELF, of 64 bits.

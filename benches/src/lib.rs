@@ -1,9 +1,7 @@
-//! What both benchmarks share: derived robots in each form, states, and the same arms for the crate `dynibo`.
+//! What both benchmarks share: derived robots in each form, and states.
 
 mod robots;
 mod states;
-mod urdf;
 
 pub use robots::*;
 pub use states::{State, states};
-pub use urdf::{GRAVITY, urdf};

@@ -15,6 +15,8 @@ use crate::machine;
 Examples:
   cargo xtask growth           1, 2, 5, 10, 20, 30, 40 and 50 joints
   cargo xtask growth 1 5 10    these only
+  cargo xtask growth --robot benches/trees/g1.yaml
+                               what each derive of this robot costs a release build
   cargo xtask growth --arms 300    random arms of 7 to 12 joints instead: what it
                                takes to write each function in the reduced form")]
 pub(crate) struct Growth {
@@ -24,6 +26,9 @@ pub(crate) struct Growth {
     /// Measure this number of random arms instead, and fail if a function takes more than a second
     #[arg(long, value_name = "N", conflicts_with = "joints", value_parser = clap::value_parser!(u16).range(1..))]
     arms: Option<u16>,
+    /// Measure the release build of each derive of this robot file instead
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["joints", "arms"])]
+    robot: Option<String>,
 }
 
 impl Growth {
@@ -31,7 +36,10 @@ impl Growth {
         let shell = machine::shell()?;
         let command = match self.arms {
             Some(arms) => printing(&shell, arms),
-            None => command(&shell, &self.joints),
+            None if self.robot.is_some() => {
+                command(&shell, &["--robot".into(), self.robot.clone().unwrap_or_default()])
+            }
+            None => command(&shell, &words(&self.joints)),
         };
         Ok(Verdict::from(command.run().is_ok()))
     }
@@ -40,18 +48,21 @@ impl Growth {
 /// The tables as text.
 pub(crate) fn measured(joints: &[u16]) -> Result<String> {
     let shell = machine::shell()?;
-    Ok(command(&shell, joints).read()?)
+    Ok(command(&shell, &words(joints)).read()?)
 }
 
 /// Cargo compiles macros without optimisation in all profiles, so that of development measures what a build does.
-fn command<'a>(shell: &'a xshell::Shell, joints: &[u16]) -> Cmd<'a> {
-    let joints: Vec<String> = joints.iter().map(u16::to_string).collect();
+fn command<'a>(shell: &'a xshell::Shell, words: &[String]) -> Cmd<'a> {
     let manifest = "--manifest-path=benches/Cargo.toml";
     cmd!(
         shell,
-        "cargo run --quiet --locked {manifest} --no-default-features --features growth --bin growth -- {joints...}"
+        "cargo run --quiet --locked {manifest} --no-default-features --features growth --bin growth -- {words...}"
     )
     .quiet()
+}
+
+fn words(joints: &[u16]) -> Vec<String> {
+    joints.iter().map(u16::to_string).collect()
 }
 
 /// As the installed command line is built.

@@ -42,7 +42,7 @@ struct Peer {
   Keep* keep;      // null where it has no rp_keep
   std::vector<double> independent, chained;  // ns per state, one sample per stretch
   double error = NAN;                        // largest deviation from the reference over its largest value
-  bool is_batch() const { return kind == RP_ID_BATCH || kind == RP_OTHER_BATCH; }
+  bool is_batch() const { return kind >= RP_ID_BATCH; }
 };
 
 // The states of a robot and their reference torques, as [state][joint] and as structure of arrays [joint][state], and
@@ -164,7 +164,6 @@ std::vector<Peer> peers_of(const std::vector<Plugin>& plugins, const std::string
 // All quantities that a competitor says it computes; each deviation is over the largest value of its quantity.
 void check_results(Peer& peer, const States& s, double* out) {
   if (!peer.result) return;
-  if (peer.keep) peer.keep(peer.index, peer.context, 1);
   for (size_t k = 0; k < s.count; k++) {
     const size_t i = k * s.joints;
     rp_call(peer.function)(peer.context, s.q + i, s.qd + i, s.qdd + i, out);
@@ -176,17 +175,33 @@ void check_results(Peer& peer, const States& s, double* out) {
       peer.error = std::isnan(peer.error) ? error : std::max(peer.error, error);
     }
   }
-  if (peer.keep) peer.keep(peer.index, peer.context, 0);
 }
 
-void check(Peer& peer, const States& s, double* out) {
-  if (peer.kind == RP_OTHER_BATCH) return;
+// The same of many states in one call.
+void check_batch_results(Peer& peer, const States& s, double* out) {
+  rp_batch(peer.function)(peer.context, s.soa_q, s.soa_qd, s.soa_qdd, out, s.count);
+  for (int what = RP_TAU; peer.result && what < RP_QUANTITIES; what++) {
+    const double* result = peer.result(peer.index, peer.context, out, what);
+    if (!result) continue;
+    const size_t size = s.size_of(what);
+    std::vector<double> rows(size * s.count);
+    for (size_t k = 0; k < s.count; k++)
+      for (size_t e = 0; e < size; e++) rows[k * size + e] = result[e * s.count + k];
+    const double error = deviation(rows.data(), s.references[what], rows.size()) / s.largest[what];
+    peer.error = std::isnan(peer.error) ? error : std::max(peer.error, error);
+  }
+}
+
+void check_kind(Peer& peer, const States& s, double* out) {
+  if (peer.kind == RP_OTHER_BATCH) return check_batch_results(peer, s, out);
   if (peer.kind == RP_OTHER) return check_results(peer, s, out);
   const size_t size = s.joints * s.count;
   std::fill(out, out + size, NAN);
   if (peer.is_batch()) {
-    rp_batch(peer.function)(peer.context, s.soa_q, s.soa_qd, s.soa_qdd, out, s.count);
-    peer.error = deviation(out, s.soa_tau, size) / s.largest[RP_TAU];
+    const bool forward = peer.kind == RP_FD_BATCH;
+    rp_batch(peer.function)(peer.context, s.soa_q, s.soa_qd, forward ? s.soa_tau : s.soa_qdd, out, s.count);
+    peer.error = forward ? deviation(out, s.soa_qdd, size) / s.largest_qdd
+                         : deviation(out, s.soa_tau, size) / s.largest[RP_TAU];
     return;
   }
   const bool forward = peer.kind == RP_FD;
@@ -196,10 +211,16 @@ void check(Peer& peer, const States& s, double* out) {
       forward ? deviation(out, s.qdd, size) / s.largest_qdd : deviation(out, s.tau, size) / s.largest[RP_TAU];
 }
 
+void check(Peer& peer, const States& s, double* out) {
+  if (peer.keep) peer.keep(peer.index, peer.context, 1);
+  check_kind(peer, s, out);
+  if (peer.keep) peer.keep(peer.index, peer.context, 0);
+}
+
 void time_batch(Peer& peer, const States& s, double* out, bool counts) {
   const auto call = rp_batch(peer.function);
   const double start = now();
-  call(peer.context, s.soa_q, s.soa_qd, s.soa_qdd, out, s.count);
+  call(peer.context, s.soa_q, s.soa_qd, peer.kind == RP_FD_BATCH ? s.soa_tau : s.soa_qdd, out, s.count);
   const double end = now();
   if (counts) peer.independent.push_back((end - start) / double(s.count));
 }

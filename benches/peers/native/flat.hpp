@@ -6,8 +6,9 @@
 #include <vector>
 
 struct FlatJoint {
+  int parent;                       // -1: frame 0
   int prismatic;
-  double before_R[9], before_p[3];  // placement of the joint in link frame i-1
+  double before_R[9], before_p[3];  // placement of the joint in the link frame of its parent
   double after_R[9], after_p[3];    // link frame i seen from the frame that moves with the joint
   double mass, com[3], inertia[6];  // in link frame i; xx yy zz xy xz yz about the centre of mass
 };
@@ -16,6 +17,11 @@ struct FlatRobot {
   std::string name;
   double gravity[3];
   std::vector<FlatJoint> joints;
+  bool branches() const {
+    for (size_t i = 0; i < joints.size(); i++)
+      if (joints[i].parent != int(i) - 1) return true;
+    return false;
+  }
 };
 
 inline FlatRobot read_flat(const std::string& dir, const std::string& robot) {
@@ -37,7 +43,7 @@ inline FlatRobot read_flat(const std::string& dir, const std::string& robot) {
   numbers(result.gravity, 3);
   for (int i = 0; i < count; i++) {
     FlatJoint joint;
-    if (std::fscanf(file, "%d", &joint.prismatic) != 1) fail();
+    if (std::fscanf(file, "%d %d", &joint.parent, &joint.prismatic) != 2) fail();
     numbers(joint.before_R, 9), numbers(joint.before_p, 3), numbers(joint.after_R, 9), numbers(joint.after_p, 3);
     numbers(&joint.mass, 1), numbers(joint.com, 3), numbers(joint.inertia, 6);
     result.joints.push_back(joint);

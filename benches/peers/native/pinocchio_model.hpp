@@ -15,20 +15,22 @@ inline pinocchio::Model pinocchio_model(const FlatRobot& robot) {
   pinocchio::Model model;
   model.name = robot.name;
   model.gravity.linear() = Eigen::Vector3d(robot.gravity[0], robot.gravity[1], robot.gravity[2]);
-  pinocchio::JointIndex parent = 0;
-  pinocchio::SE3 link = pinocchio::SE3::Identity();
+  // Of frame 0, then of every joint.
+  std::vector<pinocchio::JointIndex> joints{0};
+  std::vector<pinocchio::SE3> links{pinocchio::SE3::Identity()};
   for (size_t i = 0; i < robot.joints.size(); i++) {
     const FlatJoint& j = robot.joints[i];
-    const pinocchio::SE3 place = link * placement(j.before_R, j.before_p);
+    const pinocchio::JointIndex parent = joints[j.parent + 1];
+    const pinocchio::SE3 place = links[j.parent + 1] * placement(j.before_R, j.before_p);
     const std::string name = "j" + std::to_string(i + 1);
-    parent = j.prismatic ? model.addJoint(parent, pinocchio::JointModelPZ(), place, name)
-                         : model.addJoint(parent, pinocchio::JointModelRZ(), place, name);
+    joints.push_back(j.prismatic ? model.addJoint(parent, pinocchio::JointModelPZ(), place, name)
+                                 : model.addJoint(parent, pinocchio::JointModelRZ(), place, name));
     const double* I = j.inertia;
     Eigen::Matrix3d inertia;
     inertia << I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2];
-    link = placement(j.after_R, j.after_p);
+    links.push_back(placement(j.after_R, j.after_p));
     const Eigen::Vector3d com(j.com[0], j.com[1], j.com[2]);
-    model.appendBodyToJoint(parent, pinocchio::Inertia(j.mass, com, inertia), link);
+    model.appendBodyToJoint(joints.back(), pinocchio::Inertia(j.mass, com, inertia), links.back());
   }
   return model;
 }

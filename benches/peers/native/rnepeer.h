@@ -15,7 +15,8 @@ enum {
   RP_FD = 1,         /* forward dynamics: third input = tau, out = qdd; checked */
   RP_OTHER = 2,      /* anything else, one state per call; checked as far as rp_result says */
   RP_ID_BATCH = 3,   /* inverse dynamics of many states per call; checked */
-  RP_OTHER_BATCH = 4 /* anything else, many states per call */
+  RP_OTHER_BATCH = 4, /* anything else, many states per call; checked as far as rp_result says */
+  RP_FD_BATCH = 5 /* forward dynamics of many states per call; checked */
 };
 
 /* One state per call: `q`, `qd`, `qdd` and `out` each hold as many numbers as the robot has joints. `out` overlaps
@@ -47,10 +48,10 @@ enum {
 };
 /* Optional: the quantity `what` of the last call of an RP_OTHER with this `ctx` and `out`, null if it computes no such
    thing. The driver checks all that are there. A matrix does not fit into `out`: a competitor keeps it and writes one
-   element into `out`. */
+   element into `out`. After a batch the result has element e of state k at e*count + k. */
 RP_EXPORT const double *rp_result(int k, void *ctx, const double *out, int what);
-/* Optional, for a competitor that keeps results only to be checked: whether it does in the calls to come. At first it
-   does not. */
+/* Optional: whether the results of the calls to come are checked. At first they are not. A competitor may keep results,
+   or correct what it computes for another gravity, only then. */
 RP_EXPORT void rp_keep(int k, void *ctx, int keep);
 #ifdef __cplusplus
 }

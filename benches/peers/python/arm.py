@@ -1,4 +1,4 @@
-"""A robot of models/*.json: its table, its constant transforms, the random states of the comparison.
+"""A robot of models/*.json or TREES: its table, its constant transforms, the random states of the comparison.
 
 The JSON of one robot
 ---------------------
@@ -13,6 +13,10 @@ joints[i]   type "R" or "P", theta, d, a, alpha, offset, m, com[3], I[6], Jm, G
                     tensor itself
             Jm, G   rotor inertia and gear ratio; no torque of this comparison includes them
 source      where the numbers come from
+parent      of a robot with branches: number of the joint before this one, -1 on frame 0
+gamma, b    of a robot with branches: Rz(gamma) Tz(b) before A_i, on the axis of the parent
+
+A robot with branches is a robot file of rne with modified rows, read as it is.
 
 standard:  A_i = Rz(theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i), link frame i at the far end of link i
 modified:  A_i = Rx(alpha_i) Tx(a_i) Rz(theta_i) Tz(d_i), link frame i on joint axis i
@@ -20,17 +24,62 @@ modified:  A_i = Rx(alpha_i) Tx(a_i) Rz(theta_i) Tz(d_i), link frame i on joint 
 
 import json
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
+import yaml
 
 MODELS = Path(__file__).resolve().parent.parent / "models"
-ROBOTS = ["planar2", "puma560", "stanford", "panda", "iiwa14", "dense6_2p", "dense7"]
+ROOT = MODELS.parent.parent.parent
+ARMS = ["planar2", "puma560", "stanford", "panda", "iiwa14", "dense6_2p", "dense7"]
+TREES = {"hyq": "robots/trees/hyq.yaml", "atlas": "benches/trees/atlas.yaml", "g1": "benches/trees/g1.yaml"}
+ROBOTS = [*ARMS, *TREES]
 STATES, SEED = 1024, 77
 
 
 def load(name):
-    return json.loads((MODELS / f"{name}.json").read_text())
+    return tree(name) if name in TREES else json.loads((MODELS / f"{name}.json").read_text())
+
+
+def tree(name):
+    """A robot file in the terms of the JSON. What this comparison lacks is refused."""
+    file = yaml.safe_load((ROOT / TREES[name]).read_text())
+    if file["convention"] != "modified" or {"parameters", "couplings", "loops", "base"} & set(file):
+        sys.exit(f"{TREES[name]}: only modified rows of numbers on a fixed base are compared")
+    numbers, joints = {}, []
+    for i, joint in enumerate(file["joints"]):
+        if not {"name", "parent", "type", "dh", "link", "limits"} >= set(joint):
+            sys.exit(f"{TREES[name]}: {joint['name']} has what is not compared: {', '.join(joint)}")
+        dh, link = ({key: value(x) for key, x in joint[part].items()} for part in ("dh", "link"))
+        inertia = link.get("inertia", {})
+        joints.append(
+            dict(
+                {"gamma": 0.0, "b": 0.0, "offset": 0.0},
+                **dh,
+                type="R" if joint["type"] == "revolute" else "P",
+                parent=numbers.get(joint["parent"], -1) if "parent" in joint else i - 1,
+                m=link["mass"],
+                com=link.get("com", [0, 0, 0]),
+                I=[inertia.get(key, 0.0) for key in ("xx", "yy", "zz", "xy", "xz", "yz")],
+            )
+        )
+        numbers[joint["name"]] = i
+    return dict(name=name, title=file["name"], convention="modified", gravity=file["gravity"], joints=joints)
+
+
+def value(x):
+    """Numbers of a robot file, where expressions with pi are text."""
+    if isinstance(x, str):
+        return float(eval(x, {"__builtins__": {}}, {"pi": math.pi}))
+    if isinstance(x, dict):
+        return {key: value(y) for key, y in x.items()}
+    return [value(y) for y in x] if isinstance(x, list) else x
+
+
+def parent(robot, i):
+    """The joint before joint i; -1 on frame 0."""
+    return robot["joints"][i].get("parent", i - 1)
 
 
 def sin_cos(angle):
@@ -73,14 +122,15 @@ def constant_d(joint):
 def split(robot, i):
     """(before, after): A_i = before J(q_i) after, where J = Rz(q) or Tz(q) and both others are constant.
 
-    `before` places joint i in link frame i-1; `after` places link frame i in the frame that moves with the joint.
+    `before` places joint i in the link frame of its parent; `after` places link frame i in the frame that moves with the joint.
     """
     joint = robot["joints"][i]
     along_z = homogeneous(turn_z(constant_theta(joint)), [0, 0, constant_d(joint)])
     along_x = homogeneous(turn_x(joint["alpha"]), [joint["a"], 0, 0])
     if robot["convention"] == "standard":
         return np.eye(4), along_z @ along_x
-    return along_x @ along_z, np.eye(4)
+    on_parent = homogeneous(turn_z(joint.get("gamma", 0.0)), [0, 0, joint.get("b", 0.0)])
+    return on_parent @ along_x @ along_z, np.eye(4)
 
 
 def states(robot, count=STATES, seed=SEED):

@@ -8,6 +8,9 @@ Three formulations, from what a textbook has to what an expert would do:
 
 and `pin`, Pinocchio's RNEA on CasADi's symbols, where pinocchio_casadi has written OUT/<robot>_pin.casadi.
 
+Of robots with branches also the mass matrix (`m`, the derivative of `base` by the accelerations), forward dynamics
+(`fd`, `m` factorised without fill-in), and the functions of Pinocchio that pinocchio_casadi has written.
+
 SX folds x*0, x+0 and x*1 while it builds, constants are exact at right angles, and casadi.cse comes last.
 Writes OUT/<robot>_<form>.c, OUT/<robot>_<form>_v.h (the same over vectors of states) and OUT/operations.csv.
 """
@@ -20,7 +23,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 
-from arm import constant_d, constant_theta, load, sin_cos, tensor, turn_x, turn_z
+from arm import TREES, constant_d, constant_theta, load, parent, sin_cos, tensor, turn_x, turn_z
 
 FORMS = ("dh", "jf", "base")
 
@@ -60,12 +63,14 @@ def turn_by(q, theta):
 
 def torques_dh(robot, q, v, a):
     standard = robot["convention"] == "standard"
-    w, dw, acceleration = ZERO, ZERO, constant(-np.array(robot["gravity"]))
-    turns, offsets, forces, moments = [], [], [], []
+    base = ZERO, ZERO, constant(-np.array(robot["gravity"]))
+    motions, turns, offsets, forces, moments = [], [], [], [], []
     for i, j in enumerate(robot["joints"]):
         prismatic = j["type"] == "P"
         sa, ca_ = sin_cos(j["alpha"])
-        Rx = constant(turn_x(j["alpha"]))
+        Rx = constant(before_angle(j))
+        above = parent(robot, i)
+        w, dw, acceleration = base if above < 0 else motions[above]
         Rz = constant(turn_z(j["theta"])) if prismatic else turn_by(q[i], constant_theta(j))
         d = j["d"] + q[i] + j["offset"] if prismatic else j["d"]
         if standard:
@@ -91,7 +96,7 @@ def torques_dh(robot, q, v, a):
                 return Rz.T @ (Rx.T @ x)
 
             turns.append((Rx, Rz))
-            offset = ca.vertcat(j["a"], -sa * d, ca_ * d)  # origin i in frame i-1
+            offset = offset_in_parent(j, d)  # origin i in the frame of the parent
             acceleration = into(acceleration + cross(dw, offset) + cross(w, cross(w, offset)))
             if prismatic:
                 w, dw = into(w), into(dw)
@@ -100,30 +105,44 @@ def torques_dh(robot, q, v, a):
                 before = into(w)
                 dw = into(dw) + cross(before, E_Z * v[i]) + E_Z * a[i]
                 w = before + E_Z * v[i]
+        motions.append((w, dw, acceleration))
         offsets.append(offset)
         com, inertia = constant(j["com"]), constant(tensor(j["I"]))
         forces.append(j["m"] * (acceleration + cross(dw, com) + cross(w, cross(w, com))))
         moments.append(inertia @ dw + cross(w, inertia @ w))
 
     count = len(robot["joints"])
-    force, moment, tau = ZERO, ZERO, [None] * count
+    from_children, tau = [(ZERO, ZERO)] * count, [None] * count
     for i, j in reversed(list(enumerate(robot["joints"]))):
-        com, last = constant(j["com"]), i + 1 == count
-
-        def back(x):
-            return x if last else turns[i + 1][0] @ (turns[i + 1][1] @ x)
-
-        child_force, child_moment = back(force), back(moment)
+        com = constant(j["com"])
+        child_force, child_moment = from_children[i]
         force = child_force + forces[i]
         if standard:  # moment about origin i-1, in frame i
             moment = child_moment + cross(offsets[i], child_force) + cross(offsets[i] + com, forces[i]) + moments[i]
             axis = constant(turn_x(j["alpha"])).T @ E_Z
             tau[i] = ca.dot(force if j["type"] == "P" else moment, axis)
         else:  # moment about origin i, in frame i
-            arm = ZERO if last else offsets[i + 1]
-            moment = moments[i] + child_moment + cross(com, forces[i]) + cross(arm, child_force)
+            moment = moments[i] + child_moment + cross(com, forces[i])
             tau[i] = (force if j["type"] == "P" else moment)[2]
+        above = parent(robot, i)
+        if above >= 0:
+            force, moment = (turns[i][0] @ (turns[i][1] @ x) for x in (force, moment))
+            if not standard:
+                moment = moment + cross(offsets[i], force)
+            from_children[above] = from_children[above][0] + force, from_children[above][1] + moment
     return ca.vertcat(*tau)
+
+
+def before_angle(joint):
+    """The constant turn before that of the joint."""
+    return turn_z(joint.get("gamma", 0.0)) @ turn_x(joint["alpha"])
+
+
+def offset_in_parent(joint, d):
+    """Origin of the frame of a modified row in the frame of the parent; d may be a symbol."""
+    along = before_angle(joint)[:, 2]
+    constant_part = turn_z(joint.get("gamma", 0.0))[:, 0] * joint["a"] + np.array([0, 0, joint.get("b", 0.0)])
+    return constant(constant_part) + constant(along) * d
 
 
 def joint_frames(robot):
@@ -143,6 +162,9 @@ def joint_frames(robot):
                 prismatic=j["type"] == "P",
                 alpha=alpha,
                 a=a,
+                gamma=j.get("gamma", 0.0),
+                b=j.get("b", 0.0),
+                parent=parent(robot, i),
                 theta=constant_theta(j),
                 d=constant_d(j),
                 mass=mass,
@@ -176,18 +198,18 @@ def regroup(links):
         link["mass"] -= mass
         link["first"] = link["first"] - first
         link["inertia"] = link["inertia"] - inertia
-        if i == 0:
+        if link["parent"] < 0:
             continue
-        turn = turn_x(link["alpha"])
+        turn = before_angle(link)
         if link["prismatic"]:  # inertia alone moves, wherever the slide is
             turn = turn @ turn_z(link["theta"])
             inertia = turn @ inertia @ turn.T
         else:
             transform = np.eye(4)
             transform[:3, :3] = turn
-            transform[:3, 3] = turn @ np.array([0, 0, link["d"]]) + np.array([link["a"], 0, 0])
+            transform[:3, 3] = np.array(ca.DM(ca.evalf(offset_in_parent(link, link["d"])))).ravel()
             mass, first, inertia = transformed(transform, mass, first, inertia)
-        before = links[i - 1]
+        before = links[link["parent"]]
         before["mass"] += mass
         before["first"] = before["first"] + first
         before["inertia"] = before["inertia"] + inertia
@@ -202,12 +224,12 @@ def torques_joint_frames(robot, q, v, a, base):
     links = joint_frames(robot)
     if base:
         links = regroup(links)
-    w, dw, acceleration = ZERO, ZERO, constant(-np.array(robot["gravity"]))
-    U = ca.SX(3, 3)
-    turns, offsets, forces, moments = [], [], [], []
-    for i, link in enumerate(links):
-        sa, ca_ = sin_cos(link["alpha"])
-        Rx = constant(turn_x(link["alpha"]))
+    still = ZERO, ZERO, constant(-np.array(robot["gravity"])), ca.SX(3, 3)
+    motions, turns, offsets, forces, moments = [], [], [], [], []
+    for link in links:
+        i = len(motions)
+        w, dw, acceleration, U = still if link["parent"] < 0 else motions[link["parent"]]
+        Rx = constant(before_angle(link))
         if link["prismatic"]:
             Rz, d = constant(turn_z(link["theta"])), link["d"] + q[i]
         else:
@@ -216,8 +238,8 @@ def torques_joint_frames(robot, q, v, a, base):
         def into(x):
             return Rz.T @ (Rx.T @ x)
 
-        offset = ca.vertcat(link["a"], -sa * d, ca_ * d)
-        acceleration = into(acceleration + U @ ca.SX(offset)) if i else into(acceleration)
+        offset = offset_in_parent(link, d)
+        acceleration = into(acceleration) if link["parent"] < 0 else into(acceleration + U @ ca.SX(offset))
         w, dw = into(w), into(dw)
         if link["prismatic"]:
             acceleration = acceleration + ca.vertcat(2 * w[1] * v[i], -2 * w[0] * v[i], a[i])
@@ -241,18 +263,20 @@ def torques_joint_frames(robot, q, v, a, base):
             Izz * dw[2] + (Iyy - Ixx) * xy + Ixz * (dw[0] - yz) + Iyz * (dw[1] + xz) + Ixy * (xx - yy),
         )
         moments.append(moment + cross(first, acceleration))
+        motions.append((w, dw, acceleration, U))
         turns.append((Rx, Rz))
         offsets.append(offset)
 
-    count = len(links)
-    force, moment, tau = ZERO, ZERO, [None] * count
-    for i in reversed(range(count)):
-        if i + 1 < count:
-            outer, inner = turns[i + 1]
+    tau = [None] * len(links)
+    for i, link in reversed(list(enumerate(links))):
+        force, moment = forces[i], moments[i]  # of this link and all behind it
+        tau[i] = (force if link["prismatic"] else moment)[2]
+        above = link["parent"]
+        if above >= 0:
+            outer, inner = turns[i]
             force, moment = outer @ (inner @ force), outer @ (inner @ moment)
-            moment = moment + cross(offsets[i + 1], force)
-        force, moment = force + forces[i], moment + moments[i]
-        tau[i] = (force if links[i]["prismatic"] else moment)[2]
+            forces[above] = forces[above] + force
+            moments[above] = moments[above] + moment + cross(offsets[i], force)
     return ca.vertcat(*tau)
 
 
@@ -266,10 +290,22 @@ def function(robot, form):
     return ca.Function("id", [q, v, a], [ca.cse(ca.densify(tau))])
 
 
+def other_functions(robot):
+    """Mass matrix and forward dynamics from the torques of `base`."""
+    count = len(robot["joints"])
+    q, v, a = ca.SX.sym("q", count), ca.SX.sym("v", count), ca.SX.sym("a", count)
+    torques = torques_joint_frames(robot, q, v, a, True)
+    matrix = ca.triu2symm(ca.triu(ca.jacobian(torques, a)))
+    bias = ca.substitute(torques, a, ca.SX.zeros(count))
+    acceleration = ca.ldl_solve(a - bias, *ca.ldl(matrix))
+    results = {"m": matrix, "fd": acceleration}
+    return {form: ca.Function("id", [q, v, a], [ca.cse(ca.densify(x))]) for form, x in results.items()}
+
+
 def function_of_pinocchio(path, count):
     saved = ca.Function.load(str(path))
     x = [ca.SX.sym(f"x{i}", count) for i in range(3)]
-    return ca.Function("id", x, [ca.cse(ca.densify(saved(*x)))])
+    return ca.Function("id", x, ca.cse([ca.densify(y) for y in saved.call(x)]))
 
 
 def operations(f):
@@ -313,10 +349,14 @@ def main():
         functions = {form: function(robot, form) for form in FORMS}
         for form, f in functions.items():
             Path(f"{name}_{form}_v.h").write_text(vectorised(write(f, f"{name}_{form}")))
-        saved = Path(f"{name}_pin.casadi")
-        if saved.exists():
-            functions["pin"] = function_of_pinocchio(saved, len(robot["joints"]))
-            write(functions["pin"], f"{name}_pin")
+        others = other_functions(robot) if name in TREES else {}
+        for form in ("pin", "pinm", "pinfd", "pind"):
+            saved = Path(f"{name}_{form}.casadi")
+            if saved.exists():
+                others[form] = function_of_pinocchio(saved, len(robot["joints"]))
+        for form, f in others.items():
+            write(f, f"{name}_{form}")
+        functions |= others
         rows += [",".join(map(str, (name, form, *operations(f).values()))) for form, f in functions.items()]
     Path("operations.csv").write_text("\n".join(rows) + "\n")
 

@@ -3,19 +3,21 @@
 import numpy as np
 import pinocchio
 
-from arm import split, tensor
+from arm import parent, split, tensor
 
 
 def build(robot):
     model = pinocchio.Model()
     model.name = robot["name"]
     model.gravity = pinocchio.Motion(np.array(robot["gravity"], dtype=float), np.zeros(3))
-    parent, link = 0, np.eye(4)
+    joints, links = [0], [np.eye(4)]  # of frame 0, then of every joint
     for i, j in enumerate(robot["joints"]):
         before, after = split(robot, i)
         kind = pinocchio.JointModelRZ() if j["type"] == "R" else pinocchio.JointModelPZ()
-        parent = model.addJoint(parent, kind, pinocchio.SE3(link @ before), f"j{i + 1}")
+        above = parent(robot, i) + 1
+        joint = model.addJoint(joints[above], kind, pinocchio.SE3(links[above] @ before), f"j{i + 1}")
         inertia = pinocchio.Inertia(float(j["m"]), np.array(j["com"], dtype=float), tensor(j["I"]))
-        model.appendBodyToJoint(parent, inertia, pinocchio.SE3(after))
-        link = after
+        model.appendBodyToJoint(joint, inertia, pinocchio.SE3(after))
+        joints.append(joint)
+        links.append(after)
     return model

@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio
 
 import pinocchio_arm
-from arm import STATES, load, split, states
+from arm import STATES, load, parent, split, states
 
 try:
     import mujoco
@@ -30,7 +30,7 @@ def flat(robot):
 
     lines = [str(len(robot["joints"])), line(*robot["gravity"])]
     for i, j in enumerate(robot["joints"]):
-        lines.append(str(int(j["type"] == "P")))
+        lines.append(f"{parent(robot, i)} {int(j['type'] == 'P')}")
         for transform in split(robot, i):
             lines += [line(*transform[:3, :3].ravel()), line(*transform[:3, 3])]
         lines += [line(j["m"], *j["com"]), line(*j["I"])]

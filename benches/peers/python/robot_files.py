@@ -9,7 +9,7 @@ Numbers are the shortest decimals that give the number of the JSON back; right a
 import math
 import sys
 
-from arm import MODELS, ROBOTS, load
+from arm import ARMS, MODELS, load
 
 
 def number(x):
@@ -72,7 +72,7 @@ def yaml(robot):
 
 def main():
     stale = []
-    for name in ROBOTS:
+    for name in ARMS:
         path, text = MODELS / f"{name}.yaml", yaml(load(name))
         if sys.argv[1:] != ["--check"]:
             path.write_text(text)

@@ -11,9 +11,10 @@ import sys
 from pathlib import Path
 from statistics import median
 
-from arm import ROBOTS
+from arm import ROBOTS, TREES, tree
+from wrap import FORMS
 
-BATCH_KINDS = {3, 4}  # RP_ID_BATCH, RP_OTHER_BATCH of rnepeer.h
+BATCH_KINDS = {3, 4, 5}  # RP_ID_BATCH, RP_OTHER_BATCH, RP_FD_BATCH of rnepeer.h
 TOLERANCE = 1e-10  # of the largest torque
 
 # What the project asks of its own rows. Columns: the six larger robots.
@@ -41,6 +42,41 @@ FUNCTIONS = {
     "derivatives": ("pin_rnea_deriv", "rne_derivatives", asked(3, 2)),
     "derivatives, torques, mass matrix": ("pin_rnea_deriv", "rne_derivatives_tau_m", asked(3, 2)),
 }
+
+# Robots with branches: functions, our rows of single calls and what is asked against the best of the rivals, our rows
+# of batches and what is asked against Pinocchio, which has none: single calls in a loop count for both. The ends of
+# names are targets of ours and compilers of generated C.
+FUNCTIONS_OF_TREES = {
+    "torques": (
+        ["rne"],
+        "pin_rnea pin_casadi casadi_dh casadi_jf casadi_base kdl_rne mj_inverse mj_kin+rne dynibo_rnea".split(),
+        2.2,
+        ["rne_batch", "rne_machine_batch"],
+        25,
+    ),
+    "mass matrix": (
+        ["rne_mass_matrix"],
+        ["pin_crba", "pin_casadi_crba", "casadi_mass_matrix", "dynibo_mass_matrix"],
+        1.5,
+        ["rne_machine_mass_matrix", "rne_mass_matrix"],
+        8,
+    ),
+    "forward dynamics": (
+        ["rne_forward_dynamics"],
+        ["pin_aba", "pin_casadi_aba", "casadi_forward_dynamics", "dynibo_aba"],
+        1.5,
+        ["rne_machine_forward_dynamics", "rne_forward_dynamics"],
+        8,
+    ),
+    "derivatives": (
+        ["rne_derivatives", "rne_derivatives_tau_m"],
+        ["pin_rnea_deriv", "pin_casadi_deriv"],
+        1.5,
+        ["rne_machine_derivatives", "rne_derivatives"],
+        8,
+    ),
+}
+COMPILERS = ["", "_ffast", "_clang_ffast"]
 
 
 class Times:
@@ -91,7 +127,9 @@ class Times:
 
     def best_casadi(self, robot, key):
         """The fastest of CasADi's functions of one state, as (time, name), or None."""
-        peers = [p for p in self.peers if p.startswith(("casadi_", "pin_casadi")) and not self.is_batch(p)]
+        forms = [form[0] for form in FORMS.values() if "casadi" in form[0] and form[1] == "RP_ID"]
+        names = {name + end for name in forms for end in COMPILERS}
+        peers = [p for p in self.peers if p in names]
         times = [(self.get(robot, p, key), p) for p in peers if self.get(robot, p, key) is not None]
         return min(times, default=None)
 
@@ -281,6 +319,49 @@ def spread(times):
     )
 
 
+def rows_of_trees(times):
+    """(function, calls, what is required, our rows, their rivals) in the order of the tables."""
+    for function, (own, rivals, single, batches, batch) in FUNCTIONS_OF_TREES.items():
+        ends = times.targets()
+        names = [name + end for name in own for end in ends]
+        against = [name + end for name in rivals for end in COMPILERS]
+        yield function, "single", single, names, [name for name in against if name in times.peers]
+        yield function, "batch", batch, [name + end for name in batches for end in ends], rivals[:1]
+
+
+def trees(times):
+    """Times of every row, then ratios and what is asked."""
+    single, batch, ratios, reached, total = [], [], [], 0, 0
+    for function, calls, required, own, rivals in rows_of_trees(times):
+        own = [name for name in own if name in times.peers]
+        for peer in [*rivals, *own] if calls == "single" else own:
+            errors = [x for robot in times.robots if (x := times.get(robot, peer, "error")) is not None]
+            name, *cells = time_cells(times, peer, "independent")
+            row = [function, name, *cells, f"{max(errors):.1e}" if errors else "-"]
+            (single if calls == "single" else batch).append(row)
+        for peer in own:
+            cells = []
+            for robot in times.robots:
+                time = times.get(robot, peer, "independent")
+                best = min((x, rival) for rival in rivals if (x := times.get(robot, rival, "independent")) is not None)
+                is_reached = best[0] / time >= required
+                reached, total = reached + is_reached, total + 1
+                name = f" ({best[1]})" if calls == "single" else ""
+                cells.append(f"{best[0] / time:.2f}{name} {'reached' if is_reached else 'not reached'}")
+            against = f"{calls}, against {'the best' if calls == 'single' else rivals[0]}"
+            ratios.append([function, against, peer, f"≥ {required}", *cells])
+    times_head = ["function", "competitor", *times.robots, "deviation"]
+    return [
+        "### Independent calls, one state per call: median ns (minimum ns)",
+        markdown(times_head, single),
+        "### Batch of 1024 states: median ns (minimum ns) per state",
+        markdown(times_head, batch),
+        "### Ratios of medians, and what is required",
+        markdown(["function", "calls", "our row", "required", *times.robots], ratios),
+        f"{reached} of {total} reached.",
+    ]
+
+
 OTHER_FUNCTIONS = "gravity_torques", "bias_torques", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives"
 
 
@@ -292,12 +373,13 @@ def operations(casadi, ours):
         counts[function, robot] = f"{mul} + {add} = {int(mul) + int(add)}, {angles}"
 
     for row in csv.DictReader(casadi.open()):
-        name = "pin_casadi" if row["form"] == "pin" else f"casadi_{row['form']}"
-        count(name, row["robot"], row["mul"], row["add"], row["sin"])
-    for row in json.loads(ours.read_text()):
+        count(FORMS[row["form"]][0], row["robot"], row["mul"], row["add"], row["sin"])
+    names = {tree(name)["title"]: name for name in TREES}
+    rows = [row | {"robot": names.get(row["robot"], row["robot"])} for row in json.loads(ours.read_text())]
+    for row in rows:
         if row["function"] == "inverse_dynamics":
             count(f"**rne, {row['form']}**", row["robot"], row["mul"], row["add"], row["sincos"])
-    for row in json.loads(ours.read_text()):
+    for row in rows:
         if row["function"] in OTHER_FUNCTIONS and row["form"] == "reduced":
             count(f"**rne, {row['function']}**", row["robot"], row["mul"], row["add"], row["sincos"])
     robots = [robot for robot in ROBOTS if any(robot == r for _, r in counts)]
@@ -310,10 +392,15 @@ def report(work):
     own = times.ours(batch=False)
     single = [peer for peer in times.peers if not times.is_batch(peer) and (peer in own or not is_ours(peer))]
     batch = [peer for peer in times.peers if times.is_batch(peer)]
+    head = [(work / "conditions.md").read_text().strip(), correctness(times), spread(times)]
+    counts = [
+        "### Operations: products + sums = both, angles",
+        operations(work / "build/generated/operations.csv", work / "build/operations.json"),
+    ]
+    if set(times.robots) <= set(TREES):
+        return "\n\n".join([*head, *trees(times), *counts]) + "\n", times
     parts = [
-        (work / "conditions.md").read_text().strip(),
-        correctness(times),
-        spread(times),
+        *head,
         "### Independent calls, one state per call: median ns (minimum ns)",
         time_table(times, single, "independent"),
         "### Chained calls, each needs the result before: median ns (minimum ns)",
@@ -328,8 +415,7 @@ def report(work):
         "### Where our code loses",
         losses(times),
         *functions(times),
-        "### Operations: products + sums = both, angles",
-        operations(work / "build/generated/operations.csv", work / "build/operations.json"),
+        *counts,
     ]
     return "\n\n".join(part for part in parts if part) + "\n", times
 
@@ -343,15 +429,17 @@ def write_csv(times, path):
             writer.writerow([robot, peer, int(row["batch"]), *(f"{x:.3f}" for x in numbers), f"{row['error']:.1e}"])
 
 
-BEGIN, END = "<!-- begin: measured, written by: benches/peers/run --write-readme -->", "<!-- end -->"
+END = "<!-- end -->"
 
 
-def write_readme(path, tables):
-    head, begin, rest = path.read_text().partition(BEGIN)
+def write_readme(path, tables, robots):
+    what = "trees" if set(robots) <= set(TREES) else "measured"
+    marker = f"<!-- begin: {what}, written by: benches/peers/run --write-readme -->"
+    head, begin, rest = path.read_text().partition(marker)
     _, end, tail = rest.partition(END)
     if not begin or not end:
-        sys.exit(f"{path.name} has no section between {BEGIN} and {END}")
-    path.write_text(f"{head}{BEGIN}\n{tables}{END}{tail}")
+        sys.exit(f"{path.name} has no section between {marker} and {END}")
+    path.write_text(f"{head}{marker}\n{tables}{END}{tail}")
 
 
 def main():
@@ -360,7 +448,7 @@ def main():
     (work / "tables.md").write_text(tables)
     write_csv(times, work / "times.csv")
     if sys.argv[2:3] == ["--readme"]:
-        write_readme(Path(sys.argv[3]), tables)
+        write_readme(Path(sys.argv[3]), tables, times.robots)
     print(tables)
     if "**Wrong results**" in tables:
         sys.exit(1)

@@ -26,6 +26,8 @@ type Batch = unsafe extern "C" fn(*mut c_void, *const f64, *const f64, *const f6
 /// A robot and what is offered for it; the same competitors in the same order for all robots.
 pub(crate) struct Robot {
     pub(crate) name: &'static str,
+    #[cfg(feature = "machine")]
+    pub(crate) file: &'static str,
     pub(crate) competitors: &'static [(&'static CStr, Function)],
 }
 
@@ -39,6 +41,9 @@ pub(crate) enum Function {
     /// These quantities in the context.
     Matrices(&'static [c_int], Call),
     Batch(Batch),
+    /// Many states of an arm that is compiled at run time.
+    #[cfg(feature = "machine")]
+    Machine(rne_codegen::Function),
 }
 
 /// The quantities of `rnepeer.h`.
@@ -63,7 +68,7 @@ struct Results {
     by_qd: [f64; MOST_JOINTS * MOST_JOINTS],
 }
 
-const MOST_JOINTS: usize = 7;
+const MOST_JOINTS: usize = 30;
 
 /// `DOF` numbers from C.
 ///
@@ -223,9 +228,42 @@ pub(crate) unsafe extern "C" fn batch<R: BatchInverseDynamics<DOF> + Default, co
     assert!(done.is_ok(), "all slices have the same length");
 }
 
+/// Many states of an arm that is compiled at run time.
+///
+/// # Safety
+/// The pointers are as the module's page says, for `count` states of the robot of the context.
+#[cfg(feature = "machine")]
+unsafe extern "C" fn machine(
+    context: *mut c_void,
+    q: *const f64,
+    qd: *const f64,
+    third: *const f64,
+    out: *mut f64,
+    count: usize,
+) {
+    use std::slice;
+    // SAFETY: a context of ours, which nobody else has meanwhile.
+    let machine = unsafe { &mut *context.cast::<crate::machine::Machine>() };
+    let numbers = machine.dof() * count;
+    // SAFETY: `numbers` initialised ones each, which nobody writes meanwhile.
+    let arguments = [q, qd, third].map(|x| unsafe { slice::from_raw_parts(x, numbers) });
+    // SAFETY: as many, which overlap nothing and are initialised, because the driver's memory is.
+    machine.call(arguments, unsafe { slice::from_raw_parts_mut(out, numbers) }, count);
+}
+
 /// Competitor `k` of a robot.
 fn competitor(robot: &Robot, k: c_int) -> Option<&'static (&'static CStr, Function)> {
     usize::try_from(k).ok().and_then(|k| robot.competitors.get(k))
+}
+
+/// The robot of this name.
+///
+/// # Safety
+/// `robot` is a string of C, which outlives this call.
+unsafe fn find(robot: *const c_char) -> Option<&'static Robot> {
+    // SAFETY: as this function's.
+    let name = unsafe { CStr::from_ptr(robot) };
+    crate::ROBOTS.iter().find(|robot| robot.name.as_bytes() == name.to_bytes())
 }
 
 /// How many competitors there are.
@@ -247,6 +285,12 @@ pub extern "C" fn rp_kind(k: c_int) -> c_int {
         Some((_, Function::InverseDynamics(_))) => 0,
         Some((_, Function::ForwardDynamics(_))) => 1,
         Some((_, Function::Batch(_))) => 3,
+        #[cfg(feature = "machine")]
+        Some((_, Function::Machine(crate::machine::TORQUES))) => 3,
+        #[cfg(feature = "machine")]
+        Some((_, Function::Machine(crate::machine::FORWARD_DYNAMICS))) => 5,
+        #[cfg(feature = "machine")]
+        Some((_, Function::Machine(_))) => 4,
         Some((_, Function::Other(..) | Function::Matrices(..))) | None => 2,
     }
 }
@@ -257,24 +301,35 @@ pub extern "C" fn rp_kind(k: c_int) -> c_int {
 /// `robot` is a string of C.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rp_func(k: c_int, robot: *const c_char) -> *const c_void {
-    // SAFETY: the driver passes a string of C that outlives this call.
-    let name = unsafe { CStr::from_ptr(robot) };
-    let robot = crate::ROBOTS.iter().find(|robot| robot.name.as_bytes() == name.to_bytes());
-    match robot.and_then(|robot| competitor(robot, k)) {
+    // SAFETY: as this function's.
+    match unsafe { find(robot) }.and_then(|robot| competitor(robot, k)) {
         Some((_, function)) => match function {
             Function::InverseDynamics(call)
             | Function::ForwardDynamics(call)
             | Function::Other(_, call)
             | Function::Matrices(_, call) => *call as *const c_void,
             Function::Batch(batch) => *batch as *const c_void,
+            #[cfg(feature = "machine")]
+            Function::Machine(_) => machine as *const c_void,
         },
         None => ptr::null(),
     }
 }
 
-/// The context of competitor `k`: room for results. It stays to the end of the process.
+/// The context of competitor `k`: room for results, or the compiled arm. It stays to the end of the process.
+///
+/// # Safety
+/// `robot` is a string of C.
+#[cfg_attr(not(feature = "machine"), allow(unused_variables))]
 #[unsafe(no_mangle)]
-pub extern "C" fn rp_open(_k: c_int, _robot: *const c_char, _folder: *const c_char) -> *mut c_void {
+pub unsafe extern "C" fn rp_open(k: c_int, robot: *const c_char, _folder: *const c_char) -> *mut c_void {
+    // SAFETY: as this function's.
+    #[cfg(feature = "machine")]
+    if let Some(robot) = unsafe { find(robot) }
+        && let Some((_, Function::Machine(function))) = competitor(robot, k)
+    {
+        return ptr::from_mut(Box::leak(Box::new(crate::machine::Machine::new(robot.file, *function)))).cast();
+    }
     let nothing = [f64::NAN; MOST_JOINTS * MOST_JOINTS];
     let tau = [f64::NAN; MOST_JOINTS];
     let results = Results { keep: false, tau, mass_matrix: nothing, by_q: nothing, by_qd: nothing };
@@ -286,7 +341,14 @@ pub extern "C" fn rp_open(_k: c_int, _robot: *const c_char, _folder: *const c_ch
 /// # Safety
 /// The context is one that [`rp_open`] made.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn rp_keep(_k: c_int, context: *mut c_void, keep: c_int) {
+pub unsafe extern "C" fn rp_keep(k: c_int, context: *mut c_void, keep: c_int) {
+    #[cfg(feature = "machine")]
+    if let Some((_, Function::Machine(_))) = competitor(&crate::ROBOTS[0], k) {
+        // SAFETY: a context of ours, which nobody else has meanwhile.
+        unsafe { (*context.cast::<crate::machine::Machine>()).keeps_all = keep != 0 };
+        return;
+    }
+    let _ = k;
     // SAFETY: a context of ours, which nobody else has meanwhile.
     unsafe { (*context.cast::<Results>()).keep = keep != 0 }
 }
@@ -298,6 +360,12 @@ pub unsafe extern "C" fn rp_keep(_k: c_int, context: *mut c_void, keep: c_int) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rp_result(k: c_int, context: *mut c_void, out: *const f64, what: c_int) -> *const f64 {
     match competitor(&crate::ROBOTS[0], k) {
+        #[cfg(feature = "machine")]
+        Some((_, Function::Machine(_))) => {
+            // SAFETY: a context of ours, which nobody writes during this call.
+            let machine = unsafe { &*context.cast::<crate::machine::Machine>() };
+            return machine.matrices(what).map_or(ptr::null(), <[f64]>::as_ptr);
+        }
         Some((_, Function::Matrices(quantities, _))) if quantities.contains(&what) => {}
         Some((_, Function::Other(quantity, _))) if *quantity == what => return out,
         _ => return ptr::null(),

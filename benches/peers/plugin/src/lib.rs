@@ -1,16 +1,19 @@
 //! The robots of the comparison, one struct each, and the table that the C interface looks them up in.
 
 mod abi;
+#[cfg(feature = "machine")]
+mod machine;
 
 #[cfg(feature = "functions")]
 use abi::quantity::{BIAS, DTAU_DQ, DTAU_DQD, GRAVITY, MASS_MATRIX, TAU};
 use abi::{Function, Robot};
 use rne::InverseDynamics;
 
-/// One line per robot: its struct, the number of its joints, its file.
+/// One line per robot: its name and feature, its struct, the number of its joints, its file.
 macro_rules! robots {
-    ($($name:ident $dof:literal $path:literal)*) => {
+    ($($robot:literal $name:ident $dof:literal $path:literal)*) => {
         $(
+            #[cfg(feature = $robot)]
             #[doc = concat!("The robot of `", $path, "`.")]
             #[derive(Clone, Copy, Debug, Default, InverseDynamics)]
             #[cfg_attr(feature = "batch", derive(rne::BatchInverseDynamics))]
@@ -23,9 +26,11 @@ macro_rules! robots {
             pub struct $name;
         )*
 
-        /// Every robot, by the name in its file.
-        static ROBOTS: &[Robot] = &[$(Robot {
-            name: $name::NAME,
+        /// Every robot, by the name that the comparison gives it.
+        static ROBOTS: &[Robot] = &[$(#[cfg(feature = $robot)] Robot {
+            name: $robot,
+            #[cfg(feature = "machine")]
+            file: concat!(env!("CARGO_MANIFEST_DIR"), "/src/", $path),
             competitors: &[
                 (c"rne", Function::InverseDynamics(abi::inverse_dynamics::<$name, $dof>)),
                 #[cfg(feature = "batch")]
@@ -45,17 +50,28 @@ macro_rules! robots {
                     c"rne_derivatives_tau_m",
                     Function::Matrices(&[DTAU_DQ, DTAU_DQD, TAU, MASS_MATRIX], abi::derivatives::<$name, $dof, true>),
                 ),
+                #[cfg(feature = "machine")]
+                (c"rne_machine_batch", Function::Machine(machine::TORQUES)),
+                #[cfg(feature = "machine")]
+                (c"rne_machine_mass_matrix", Function::Machine(machine::MASS_MATRIX)),
+                #[cfg(feature = "machine")]
+                (c"rne_machine_forward_dynamics", Function::Machine(machine::FORWARD_DYNAMICS)),
+                #[cfg(feature = "machine")]
+                (c"rne_machine_derivatives", Function::Machine(machine::DERIVATIVES)),
             ],
         }),*];
     };
 }
 
 robots! {
-    Planar2  2 "../../models/planar2.yaml"
-    Puma560  6 "../../models/puma560.yaml"
-    Stanford 6 "../../models/stanford.yaml"
-    Panda    7 "../../models/panda.yaml"
-    Iiwa14   7 "../../models/iiwa14.yaml"
-    Dense6P2 6 "../../models/dense6_2p.yaml"
-    Dense7   7 "../../models/dense7.yaml"
+    "planar2"   Planar2  2  "../../models/planar2.yaml"
+    "puma560"   Puma560  6  "../../models/puma560.yaml"
+    "stanford"  Stanford 6  "../../models/stanford.yaml"
+    "panda"     Panda    7  "../../models/panda.yaml"
+    "iiwa14"    Iiwa14   7  "../../models/iiwa14.yaml"
+    "dense6_2p" Dense6P2 6  "../../models/dense6_2p.yaml"
+    "dense7"    Dense7   7  "../../models/dense7.yaml"
+    "hyq"       Hyq      12 "../../../../robots/trees/hyq.yaml"
+    "atlas"     Atlas    30 "../../../trees/atlas.yaml"
+    "g1"        G1       29 "../../../trees/g1.yaml"
 }
