@@ -8,7 +8,7 @@ use crate::Verdict;
 use crate::machine::{self, Missing};
 
 /// Robots that are counted: shipped ones, and those of benches/trees.
-const ROBOTS: [&str; 8] = [
+const ROBOTS: [&str; 15] = [
     "robots/trees/hyq.yaml",
     "benches/trees/anymal_c.yaml",
     "benches/trees/go2.yaml",
@@ -17,11 +17,18 @@ const ROBOTS: [&str; 8] = [
     "benches/trees/g1.yaml",
     "benches/trees/sr400.yaml",
     "robots/trees/mini_cheetah.yaml",
+    "benches/trees/hyq_floating.yaml",
+    "benches/trees/anymal_c_floating.yaml",
+    "benches/trees/go2_floating.yaml",
+    "benches/trees/solo12_floating.yaml",
+    "benches/trees/atlas_floating.yaml",
+    "benches/trees/g1_floating.yaml",
+    "benches/trees/mini_cheetah_floating.yaml",
 ];
 
 /// Counts the operations of robots with branches beside Khalil's algorithm
 ///
-/// Inverse dynamics in the form reduced, by the plan files, and the customised Newton-Euler algorithm with base
+/// Inverse dynamics in the form reduced, on fixed and on floating bases, by the plan files, and the customised Newton-Euler algorithm with base
 /// parameters, from the same robot files. `xtask/tree_counts.py` has the rules of both counts.
 #[derive(Args)]
 #[command(after_help = "\
