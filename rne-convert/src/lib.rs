@@ -37,7 +37,7 @@ pub use comparison::Difference;
 pub use conventions::{Converted, convert};
 pub use description::{Description, OpenError, shipped, shipped_at};
 pub use export::{Exported, NoUrdf, export};
-pub use import::{snapping_in, Account, Imported, Options};
+pub use import::{Account, Imported, Options, snapping_in};
 pub use kept::{import, import_arm};
 pub use payload::{carrying, carrying_at};
 pub use selection::Selection;

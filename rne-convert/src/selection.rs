@@ -102,7 +102,9 @@ fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
     let name = name.trim_end_matches("_link").trim_end_matches("_frame");
     let follows = last_movable(urdf, base, leaf).is_some_and(|joint| urdf.joints[joint].mimic.is_some());
     let has = |word: &&str| match *word {
-        "ee" | "hand" => name.strip_suffix(word).is_some_and(|before| before.is_empty() || before.ends_with(['_', '-'])),
+        "ee" | "hand" => {
+            name.strip_suffix(word).is_some_and(|before| before.is_empty() || before.ends_with(['_', '-']))
+        }
         word => name.contains(word),
     };
     if name.contains("visual") || name.contains("rotor") {

@@ -73,7 +73,10 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
         let tried = Tried::of(robot, seen, slips)?.filter(|tried| tried.fits);
         Ok(tried.map(|Tried { error, .. }| Explanation { slips: slips.to_vec(), error }))
     };
-    let found = one_by_one(robot).into_iter().filter_map(|slip| explains(&[slip]).transpose()).collect::<Result<Vec<_>, _>>()?;
+    let found = one_by_one(robot)
+        .into_iter()
+        .filter_map(|slip| explains(&[slip]).transpose())
+        .collect::<Result<Vec<_>, _>>()?;
     if !found.is_empty() {
         return Ok(Diagnosis::Explained(found));
     }

@@ -176,7 +176,8 @@ fn tips_frames_and_bodies_are_named() {
     assert!(fewer.contains("tips: [left_hand, right_hand]"), "{fewer}");
     let path = folder("trees_tips").join("one_tip.yaml");
     fs::write(&path, fewer.replace("tips: [left_hand, right_hand]", "tips: [left_hand]")).expect("written");
-    let one_tip = [&["eval", path.to_str().expect("UTF-8")][..], &state[2..], &["--tip-wrench", "right_hand=0,0,0,0,0,2"]];
+    let one_tip =
+        [&["eval", path.to_str().expect("UTF-8")][..], &state[2..], &["--tip-wrench", "right_hand=0,0,0,0,0,2"]];
     let said = "`right_hand` is a frame of dual_arm, but not a tip; list it under `tips` of the robot file: tips: \
                 [left_hand, right_hand]";
     fails(2, &one_tip.concat(), &[said]);

@@ -5,7 +5,12 @@ use super::*;
 /// The URDF of a robot, imported whole, with the gravity that the export reports.
 fn again(robot: &Robot) -> Robot {
     let exported = rne_convert::export(robot).unwrap_or_else(|error| panic!("{}: {error}", robot.name));
-    let selection = Selection { whole: true, floating: robot.floating_base.is_some(), tip: Some("tip".to_owned()), ..Selection::default() };
+    let selection = Selection {
+        whole: true,
+        floating: robot.floating_base.is_some(),
+        tip: Some("tip".to_owned()),
+        ..Selection::default()
+    };
     let options = Options {
         selection,
         convention: Convention::Modified,
