@@ -116,7 +116,7 @@ fn snapping(snapped: &[Snapped], Difference { position, torque, .. }: &Differenc
     format!("{SNAPPED}{count}; torques move by up to {torque:.1e} of the largest, the tip by {position:.1e} m")
 }
 
-/// What the notes of a robot file that was imported say about snapped angles; `None` where none was snapped.
+/// The note on snapped angles in the notes of a robot file that was imported; `None` where no angle was snapped.
 #[must_use]
 pub fn snapping_in(notes: &str) -> Option<&str> {
     let items = notes.lines().filter_map(|line| line.trim().strip_prefix("- "));
