@@ -102,7 +102,8 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
          const uint32_t start = timer();\n    function({names}out);\n    const uint32_t end = timer();\n    \
          print_ticks(what, start, end);\n}}\n\n\
          void run_cases(uint32_t number)\n{{\n    const struct state state = state_of(number, {dof}u);\n    \
-         const struct state *s = &state;\n    {result} {declared};\n{before}    {function}({values}{place});\n    \
+         const struct state *s = &state;\n    {result} {declared};\n\
+         {before}    {function}({values}{place});\n    \
          print_results(\"results\", number, {numbers}, {length}u);\n    if (number == 0u) {{\n        \
          measure(\"function\", {function}, {values}{place});\n        measure(\"nothing\", nothing, {values}{place});\n    \
          }}\n}}\n"

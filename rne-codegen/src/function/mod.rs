@@ -130,7 +130,7 @@ impl Function {
         }
     }
 
-    /// Whether it holds the base of a robot still that has a floating base, so that the plan of the robot is not for it.
+    /// Whether it holds still the base of a robot with a floating base: the plan of the robot is not for it.
     #[must_use]
     pub fn holds_floating_base(self, robot: &Robot) -> bool {
         Self::of_plan(robot).is_of_floating_base() && !self.is_of_floating_base()

@@ -47,7 +47,7 @@ impl PlanSet {
         Self { maker: Maker::Build, ..Self::from(default_plan(robot, &[])) }
     }
 
-    /// The choices for a function. A function that holds a floating base still has those of a build of the same robot on
+    /// The choices for a function. One that holds a floating base still has those of a build of the same robot on
     /// a fixed base: the other choices are for a base that is a link. No choice fits every function.
     #[must_use]
     pub fn of_function(&self, robot: &Robot, function: Function) -> Cow<'_, Self> {
