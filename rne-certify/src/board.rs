@@ -105,8 +105,8 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
          const struct state *s = &state;\n    {result} {declared};\n\
          {before}    {function}({values}{place});\n    \
          print_results(\"results\", number, {numbers}, {length}u);\n    if (number == 0u) {{\n        \
-         measure(\"function\", {function}, {values}{place});\n        measure(\"nothing\", nothing, {values}{place});\n    \
-         }}\n}}\n"
+         measure(\"function\", {function}, {values}{place});\n        \
+         measure(\"nothing\", nothing, {values}{place});\n    }}\n}}\n"
     )
 }
 

@@ -50,15 +50,16 @@ impl<T: Scalar> BaseTwist<T> {
 }
 
 impl<T: Scalar> BaseMotion<T> {
-    /// What an inertial measurement unit in frame 0 reads: ω (rad/s), its rate ω̇ (rad/s²), which is a difference of
-    /// readings or zero, and the specific force a - g (m/s²). At rest the accelerometer reads -g: upwards.
+    /// The motion that an inertial measurement unit in frame 0 reads: ω (rad/s), its rate ω̇ (rad/s²), which is a
+    /// difference of readings or zero, and the specific force a - g (m/s²). At rest the accelerometer reads -g: upwards.
     #[must_use]
     pub fn from_imu(gyroscope: [T; 3], gyroscope_rate: [T; 3], accelerometer: [T; 3]) -> Self {
         let zero = [T::zero(); 3];
         Self { omega: gyroscope, omega_dot: gyroscope_rate, velocity: zero, acceleration: accelerometer, gravity: zero }
     }
 
-    /// As [`from_imu`](Self::from_imu), of a unit that is mounted at `imu` in frame 0. Its readings are in its own axes.
+    /// As [`from_imu`](Self::from_imu), of a unit that is mounted at `imu` in frame 0. Its readings are in its own
+    /// axes.
     #[must_use]
     pub fn from_imu_at(imu: &Pose<T>, gyroscope: [T; 3], gyroscope_rate: [T; 3], accelerometer: [T; 3]) -> Self {
         let [omega, omega_dot, there] =
@@ -69,7 +70,8 @@ impl<T: Scalar> BaseMotion<T> {
         Self::from_imu(omega, omega_dot, here)
     }
 
-    /// From the first elements of Pinocchio's `q` (7), `v` (6) and `a` (6) with a free flyer, and gravity in world axes.
+    /// From the first elements of Pinocchio's `q` (7), `v` (6) and `a` (6) with a free flyer, and gravity in world
+    /// axes.
     ///
     /// Pinocchio's acceleration is spatial: the classical one of frame 0's origin is a + ω × v.
     #[must_use]
@@ -89,8 +91,8 @@ impl<T: Scalar> BaseMotion<T> {
         joined(core::array::from_fn(|i| self.acceleration[i] - turning[i]), self.omega_dot)
     }
 
-    /// From the first elements of MuJoCo's `qpos` (7), `qvel` (6) and `qacc` (6) with a free joint, and gravity in world
-    /// axes.
+    /// From the first elements of MuJoCo's `qpos` (7), `qvel` (6) and `qacc` (6) with a free joint, and gravity in
+    /// world axes.
     #[must_use]
     pub fn from_mujoco(qpos: &[T; 7], qvel: &[T; 6], qacc: &[T; 6], gravity: [T; 3]) -> Self {
         let base = Pose::from_mujoco(qpos);
@@ -143,8 +145,8 @@ impl<T: Scalar + Float> Pose<T> {
     }
 }
 
-/// The wrench on a floating base ([`FloatingTorques::wrench`](crate::FloatingTorques::wrench)) as the first six elements
-/// of a generalised force.
+/// The wrench on a floating base ([`FloatingTorques::wrench`](crate::FloatingTorques::wrench)) as the first six
+/// elements of a generalised force.
 impl<T: Scalar> Wrench<T> {
     /// As in Pinocchio's `tau`: force, moment, in axes of the base.
     #[must_use]

@@ -447,8 +447,8 @@ pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
 }
 
 /// Momentum of a robot whose base nothing holds, about its centre of mass. `NV` velocities and accelerations, and the
-/// base, are those of [`FloatingBase`]: all vectors are in axes of frame 0. Turned by the rotation of the base, force and
-/// moment are those in world axes.
+/// base, are those of [`FloatingBase`]: all vectors are in axes of frame 0. Turned by the rotation of the base, force
+/// and moment are those in world axes.
 pub trait CentroidalMomentum<const DOF: usize, const NV: usize> {
     /// The matrix A: A v is the momentum (N s), then the angular momentum about the centre of mass (N m s).
     ///

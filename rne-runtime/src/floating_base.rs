@@ -83,7 +83,8 @@ impl<J: PerJoint, T: Scalar> FloatingMass<J, T> {
 }
 
 impl<T: Scalar> Centre<T> {
-    /// Makes rows of the momentum about the centre of mass from columns of wrenches that are about the origin of frame 0.
+    /// Makes rows of the momentum about the centre of mass from columns of wrenches that are about the origin of frame
+    /// 0.
     fn take<R: AsRef<[T]> + AsMut<[T]>>(&self, rows: &mut [R; BASE]) {
         for column in 0..rows[0].as_ref().len() {
             let moment = self.moment(&core::array::from_fn(|row| rows[row].as_ref()[column]));
@@ -292,8 +293,8 @@ impl<S: Constant> DynArm<S> {
         Ok(force.into_iter().chain(moment).chain(tau).collect())
     }
 
-    /// As [`CentroidalMomentum::centroidal_momentum_matrix`](crate::CentroidalMomentum::centroidal_momentum_matrix): six
-    /// rows of 6 + n numbers.
+    /// As [`CentroidalMomentum::centroidal_momentum_matrix`](crate::CentroidalMomentum::centroidal_momentum_matrix):
+    /// six rows of 6 + n numbers.
     ///
     /// # Errors
     /// When the argument does not have one element per joint.

@@ -28,8 +28,9 @@ const ROBOTS: [&str; 15] = [
 
 /// Counts the operations of robots with branches beside Khalil's algorithm
 ///
-/// Inverse dynamics in the form reduced, on fixed and on floating bases, by the plan files, and the customised Newton-Euler algorithm with base
-/// parameters, from the same robot files. `xtask/tree_counts.py` has the rules of both counts.
+/// Inverse dynamics in the form reduced, on fixed and on floating bases, by the plan files, and the customised
+/// Newton-Euler algorithm with base parameters, from the same robot files. `xtask/tree_counts.py` has the rules of both
+/// counts.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a robot needs more operations than its bar. Needs python3 with PyYAML.

@@ -72,7 +72,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`.
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, whole=false, floating=false, lock=None, lock_others=false,
-    convention=None, snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
+    convention=None, snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced",
+    rotors=false))]
 #[allow(clippy::fn_params_excessive_bools)] // keywords of Python
 pub(crate) fn load(
     py: Python<'_>,

@@ -59,8 +59,8 @@ impl Arm {
     /// Warns
     /// -----
     /// UserWarning
-    ///     When a state is not finite although all arguments are, which a step that is too long for the friction causes:
-    ///     which sample and which step is first, and what to change.
+    ///     When a state is not finite although all arguments are, which a step that is too long for the friction
+    ///     causes: which sample and which step is first, and what to change.
     #[pyo3(signature = (q, qd, tau, step, *, friction=None, limits=None, payload=None, parameters=None, out=None))]
     fn rollout<'py>(
         &self,

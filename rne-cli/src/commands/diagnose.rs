@@ -230,8 +230,8 @@ fn nearly_right(robot: &Robot, table: &str, error: f64, snapped: Option<&str>) -
     }
     let hint = "one of both programs may have rounded angles or lengths; accept the difference: --tolerance 1e-3";
     format!(
-        "{table}\nthe torques agree with {TITLE}{name}{TITLE:#} to {error:.1e} of the largest, but not with all of their \
-         digits;\n{ERROR}no usual mistake{ERROR:#} explains the difference\n{QUIET}{}{QUIET:#}\n",
+        "{table}\nthe torques agree with {TITLE}{name}{TITLE:#} to {error:.1e} of the largest, but not with all of \
+         their digits;\n{ERROR}no usual mistake{ERROR:#} explains the difference\n{QUIET}{}{QUIET:#}\n",
         wrap(hint, width, "")
     )
 }

@@ -176,26 +176,8 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         return golden::file(&robot, states, &settings).map(Outcome::text);
     }
     let (function, robot) = arguments.loaded(function, robot)?;
-    if arguments.trace && !function.returns_torques() {
-        let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
-        return Err(Failure::usage(format_args!(
-            "--trace prints the steps that compute torques, but {function} does not compute torques; use one of these \
-             functions: {}",
-            with.join(", ")
-        )));
-    }
-    let follower = robot.joints.iter().find(|joint| joint.coupling.is_some());
-    if let Some(joint) = follower.filter(|_| function.is_of_every_link()) {
-        let error = CompileError::OfEveryLink { function, follower: joint.name.clone() };
-        return Err(Failure::usage(error));
-    }
+    arguments.check(function, &robot)?;
     let zeros = [robot.dof(), 3].map(|count| List(vec![0.0; count]));
-    if arguments.trace && !robot.is_serial() {
-        return Err(Failure::usage(
-            "--trace takes serial arms, but the robot is a tree; without --trace, `rne eval` computes the torques of a \
-             tree, and `rne show` prints the formulas of its joints",
-        ));
-    }
     let (sheet, of_sheet) = arguments.sheet(function, &robot)?;
     let (given, assumed) = arguments.given(function).or_state(&of_sheet).at_rest(function, zeros.each_ref());
     let state = State::new(function, given, &robot)?;
@@ -248,6 +230,30 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 impl Arguments {
+    /// Whether the function can be computed and traced for a robot.
+    fn check(&self, function: Function, robot: &Robot) -> Result<(), Failure> {
+        if self.trace && !function.returns_torques() {
+            let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
+            return Err(Failure::usage(format_args!(
+                "--trace prints the steps that compute torques, but {function} does not compute torques; use one of these \
+                 functions: {}",
+                with.join(", ")
+            )));
+        }
+        let follower = robot.joints.iter().find(|joint| joint.coupling.is_some());
+        if let Some(joint) = follower.filter(|_| function.is_of_every_link()) {
+            let error = CompileError::OfEveryLink { function, follower: joint.name.clone() };
+            return Err(Failure::usage(error));
+        }
+        if self.trace && !robot.is_serial() {
+            return Err(Failure::usage(
+                "--trace takes serial arms, but the robot is a tree; without --trace, `rne eval` computes the torques of a \
+                 tree, and `rne show` prints the formulas of its joints",
+            ));
+        }
+        Ok(())
+    }
+
     /// The worksheet that is compared, and q, q̇ and q̈ that it gives, of those that a function takes.
     fn sheet(&self, function: Function, robot: &Robot) -> Result<(Option<Filled>, [Option<List>; 3]), Failure> {
         let read = |path: &PathBuf| worksheet_file::read(path, robot, self.axes.map(Into::into));

@@ -142,7 +142,7 @@ impl Kept {
     }
 }
 
-/// The joint of a robot that is told by its number, counted from 1 at the base, or by its name.
+/// The joint of a robot with this number, counted from 1 at the base, or with this name.
 pub(crate) fn joint_of(robot: &Robot, told: Option<&str>) -> Result<Option<usize>, Failure> {
     let Some(told) = told else { return Ok(None) };
     let number = told.parse().ok().filter(|number| (1..=robot.joints.len()).contains(number));
