@@ -51,7 +51,8 @@ impl<T: Scalar> BaseTwist<T> {
 
 impl<T: Scalar> BaseMotion<T> {
     /// The motion that an inertial measurement unit in frame 0 reads: ω (rad/s), its rate ω̇ (rad/s²), which is a
-    /// difference of readings or zero, and the specific force a - g (m/s²). At rest the accelerometer reads -g: upwards.
+    /// difference of readings or zero, and the specific force a - g (m/s²). At rest the accelerometer reads -g:
+    /// upwards.
     #[must_use]
     pub fn from_imu(gyroscope: [T; 3], gyroscope_rate: [T; 3], accelerometer: [T; 3]) -> Self {
         let zero = [T::zero(); 3];

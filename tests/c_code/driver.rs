@@ -151,7 +151,8 @@ impl Driver<'_> {
                 | Function::PotentialEnergy
                 | Function::CentreOfMass
                 | Function::CentreOfMassJacobian
-                | Function::FloatingMassMatrix => "q",
+                | Function::FloatingMassMatrix
+                | Function::CentroidalMomentumMatrix => "q",
                 Function::WrenchTorques => "q, force, moment",
                 Function::BiasTorques
                 | Function::CoriolisMatrix
@@ -162,7 +163,6 @@ impl Driver<'_> {
                 Function::InverseDynamicsOfFloatingBase => {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
-                Function::CentroidalMomentumMatrix => "q",
                 Function::CentroidalBias => "q, qd, omega",
                 Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
                 Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
@@ -183,7 +183,7 @@ impl Driver<'_> {
                 Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
                 Function::CentreOfMass => (format!("{real} x[3]"), "x"),
                 Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
-                Function::JacobianRateTimesVelocity => (format!("{real} x[6]"), "x"),
+                Function::JacobianRateTimesVelocity | Function::CentroidalBias => (format!("{real} x[6]"), "x"),
                 Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
                 Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
                     (format!("{prefix}_torque_derivatives x"), "&x")
@@ -196,7 +196,6 @@ impl Driver<'_> {
                 Function::FloatingMassMatrix => (format!("{real} x[{0}][{0}]", 6 + n), "x"),
                 Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
                 Function::CentroidalMomentumMatrix => (format!("{real} x[6][{}]", 6 + n), "x"),
-                Function::CentroidalBias => (format!("{real} x[6]"), "x"),
                 Function::FloatingForwardDynamics => (format!("{prefix}_floating_accelerations x"), "&x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
             };

@@ -235,8 +235,8 @@ impl Arguments {
         if self.trace && !function.returns_torques() {
             let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
             return Err(Failure::usage(format_args!(
-                "--trace prints the steps that compute torques, but {function} does not compute torques; use one of these \
-                 functions: {}",
+                "--trace prints the steps that compute torques, but {function} does not compute torques; use one of \
+                 these functions: {}",
                 with.join(", ")
             )));
         }
@@ -247,8 +247,8 @@ impl Arguments {
         }
         if self.trace && !robot.is_serial() {
             return Err(Failure::usage(
-                "--trace takes serial arms, but the robot is a tree; without --trace, `rne eval` computes the torques of a \
-                 tree, and `rne show` prints the formulas of its joints",
+                "--trace takes serial arms, but the robot is a tree; without --trace, `rne eval` computes the torques \
+                 of a tree, and `rne show` prints the formulas of its joints",
             ));
         }
         Ok(())

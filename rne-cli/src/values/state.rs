@@ -37,7 +37,8 @@ impl<'a> Given<'a> {
     }
 
     /// The lists with zeros for velocities and accelerations that a function takes and that are not given, of the
-    /// joints and of a base that moves; with their options. `zeros` has a number for each joint, and three for the base.
+    /// joints and of a base that moves; with their options. `zeros` has a number for each joint, and three for the
+    /// base.
     pub(crate) fn at_rest(mut self, function: Function, zeros: [&'a List; 2]) -> (Self, Vec<&'static str>) {
         use Argument::{Accelerations, Base, Rates};
         let (mut assumed, [of_joints, of_base]) = (Vec::new(), zeros);

@@ -59,7 +59,8 @@ fn a_part_that_is_no_body_is_told() {
     let motor = |yz: &str| {
         format!(
             "<link name=\"motor\"><inertial><origin xyz=\"0.02 0 0\"/><mass value=\"0.14765\"/><inertia \
-             ixx=\"0.000115\" ixy=\"0.000052\" ixz=\"0.000025\" iyy=\"0.000153\" iyz=\"{yz}\" izz=\"0.00019\"/></inertial></link>"
+             ixx=\"0.000115\" ixy=\"0.000052\" ixz=\"0.000025\" iyy=\"0.000153\" iyz=\"{yz}\" \
+             izz=\"0.00019\"/></inertial></link>"
         )
     };
     let remarks = |yz: &str| {
