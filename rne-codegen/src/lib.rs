@@ -21,6 +21,7 @@ mod equation;
 mod error;
 mod exact;
 mod expression;
+mod factorization;
 pub mod fma;
 mod formulate;
 mod formulation;
@@ -48,7 +49,7 @@ pub use equation::{Equation, Operation as TermOperation, Term};
 pub use error::{CompileError, Extreme, GraphMistake, Remedy, Suspect};
 pub use exact::ExactFunction;
 pub use expression::{Expression, ExpressionKind};
-pub use formulate::ldlt::Factorization;
+pub use factorization::Factorization;
 pub use function::{
     Answer, AnswerTable, Argument, ArgumentPart, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit,
     Own, Record, Returned, Shape,

@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
     /// Its angular acceleration, rad/s² [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
-    /// Its acceleration without gravity, m/s² [default: 0]
+    /// Its acceleration, m/s² [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
     /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
@@ -100,7 +100,7 @@ pub(crate) struct Arguments {
     /// Axes of --trace: link (default), joint, base
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
-    /// Print only this joint of --trace, by its number or its name
+    /// Print only this joint of --trace, a number or name
     #[arg(long, value_name = "JOINT", requires = "trace", conflicts_with = "compare")]
     joint: Option<String>,
     /// Print only step S of --trace, 1 to 7

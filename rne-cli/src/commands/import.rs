@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     /// Last link of the arm [default: the last link, if the file has only one end]; with --whole, several give `tips`
     #[arg(long, value_name = "LINK")]
     tip: Vec<String>,
-    /// Convert the whole robot after the base, a tree of links, and not one arm; --tip then says where the tip is
+    /// Convert the whole robot after the base, a tree, and not one arm; --tip then says where the tip is
     #[arg(long)]
     whole: bool,
     /// With --whole: nothing holds the root link, which becomes the floating base

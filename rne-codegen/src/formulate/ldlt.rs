@@ -8,12 +8,9 @@
 //! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less.
 //! Six rows of a base that nothing holds stand before those of the joints and are the last to be eliminated.
 
-use rne_model::Robot;
-
 use crate::coordinates::Coordinates;
 use crate::function::{Function, Length};
-use crate::ir::{Axis, Builder, Component, Embedding, Name, Policy, Quantity, Symbol, WithRespectTo};
-use crate::program::Operations;
+use crate::ir::{Axis, Builder, Component, Cost, Embedding, Name, Policy, Quantity, Symbol, WithRespectTo};
 
 /// Whose mass matrix is solved by.
 pub(crate) struct System<'a> {
@@ -106,8 +103,8 @@ impl<'a> System<'a> {
         (0..self.size()).map(row).sum()
     }
 
-    /// Products, sums and divisions of L and D where every element of M that is not zero is an argument.
-    pub(crate) fn operations(&self) -> Operations {
+    /// Products and sums of L and D where every element of M that is not zero is an argument.
+    pub(crate) fn cost_of_factors(&self) -> Cost {
         let mut builder = Builder::untraced(Policy::Value, Embedding::default(), Function::ForwardDynamics);
         let element = |row: usize, column: usize| {
             // any argument that no other element has
@@ -121,27 +118,7 @@ impl<'a> System<'a> {
             rows.iter().flatten().map(|(l, _)| l.at).chain(inverses.iter().map(|inverse| inverse.at)).collect();
         let graph = builder.graph.get_mut();
         graph.outputs = outputs;
-        let cost = graph.cost(&mut Vec::new());
-        Operations { mul: cost.mul, add: cost.add, div: self.size(), ..Operations::default() }
-    }
-}
-
-/// How large the mass matrix of a robot is, and what its factors L and D take.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Factorization {
-    /// Elements on and above the diagonal that are not zero whatever the numbers of the robot are.
-    pub elements: usize,
-    /// Operations of L and D from these elements.
-    pub operations: Operations,
-}
-
-impl Factorization {
-    /// Counts the mass matrix by which a function solves: with six rows of the base, if that floats in it.
-    #[must_use]
-    pub fn of(robot: &Robot, function: Function) -> Self {
-        let coordinates = Coordinates::of(robot);
-        let system = System::new(function, &coordinates, (0..robot.joints.len()).map(|joint| robot.parent(joint)));
-        Self { elements: system.elements(), operations: system.operations() }
+        graph.cost(&mut Vec::new())
     }
 }
 
@@ -312,7 +289,7 @@ mod tests {
     fn factors_of_a_tree_take_no_more_operations_than_its_elements_ask() {
         let operations = |function, parents: &[Option<usize>]| {
             let coordinates = Coordinates::of_free_joints(parents.len());
-            System::new(function, &coordinates, parents.iter().copied()).operations().total()
+            System::new(function, &coordinates, parents.iter().copied()).cost_of_factors().total()
         };
         let mut hyq = Vec::new();
         branches(&mut hyq, None, &[3; 4]);
