@@ -146,6 +146,16 @@ impl<'py, T: Element + Number> Held<'py, T> {
         }
     }
 
+    /// Whether all its numbers pass a test.
+    pub(crate) fn all(&self, test: impl Fn(T) -> bool) -> bool {
+        let pass =
+            |array: &PyReadonlyArrayDyn<'py, T>| array.as_slice().is_ok_and(|slice| slice.iter().all(|&x| test(x)));
+        match &self.layout {
+            Layout::Rows(array) | Layout::Fortran(array) => pass(array),
+            Layout::Columns(columns) => columns.iter().all(pass),
+        }
+    }
+
     pub(crate) fn name(&self) -> &'static str {
         self.name
     }

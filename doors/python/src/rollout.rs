@@ -278,7 +278,7 @@ fn roll_out<'py, T: Element + Number>(
         let (positions, velocities) = numbers.split_at_mut(numbers.len() / 2);
         py.detach(|| arm.rollout(rollout, samples, &arguments, positions, velocities))
             .map_err(|error| of_evaluation(&error))?;
-        let inputs_are_finite = || columns.iter().flatten().all(|column| column.iter().all(|&x| is_finite(x)));
+        let inputs_are_finite = || held.iter().all(|held| held.all(is_finite));
         if let Some(diverged) = Diverged::of(positions, velocities, [rollout.steps, arm.dof()])
             && inputs_are_finite()
         {
