@@ -4,12 +4,12 @@
 //! Pinocchio, whose states have a quaternion and spatial vectors.
 
 use nalgebra::Vector3;
-use rne::{BaseMotion, Wrench};
+use rne::{BaseMotion, Quaternion, Wrench};
 use rne_codegen::{Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::{Reader, Robot};
 
 use crate::arm::{Arm, Given, Maker};
-use crate::check::{ROOT, Worst, conditioning, error_on_scale, json, numbers};
+use crate::check::{ROOT, Worst, conditioning, dot, error_on_scale, json, numbers, product};
 use crate::trees::{State, robot};
 
 const TOLERANCE: f64 = 1e-12;
@@ -199,5 +199,57 @@ fn the_base_of_a_robot_at_rest_bears_its_weight() {
         assert!((moment - centre.cross(&weight)).norm() < 1e-11 * weight.norm(), "{name}: {moment}");
         let held = arm.runtime.gravity_torques(&q).expect("one per joint");
         assert!(error_on_scale(&tau, &held, weight.norm()) < 1e-14, "{name}");
+    }
+}
+
+/// A satellite in free flight, Runge and Kutta's fourth order: energy, momentum and the angular momentum about the centre
+/// of mass stay what they are, in the world, while its arm swings.
+#[test]
+fn free_flight_conserves_energy_and_momentum() {
+    // q, q̇, v and ω of the base in its axes, and its quaternion w, x, y, z
+    type State = [f64; 14];
+    let robot = robot(&std::fs::read_to_string(format!("{ROOT}/docs/satellite.yaml")).expect("the satellite"));
+    for maker in Maker::ALL {
+        let arm = Arm::by_no_choice(&robot, maker);
+        let of = |function, state: &State| {
+            let base = BaseMotion { omega: [state[7], state[8], state[9]], ..BaseMotion::fixed([0.0; 3]) };
+            let given = Given { base, ..Given::of_joints(&state[..2], &state[2..4], &[0.0; 2]) };
+            arm.numbers(function, &Given { tau: &[0.0; 2], ..given })
+        };
+        let turn = |state: &State| Quaternion { w: state[10], x: state[11], y: state[12], z: state[13] };
+        // nothing weighs here
+        let rate = |state: &State| -> State {
+            let found = of(Function::FloatingForwardDynamics, state);
+            let [v, omega] = [&state[4..7], &state[7..10]].map(Vector3::from_column_slice);
+            let acceleration = Vector3::from_column_slice(&found[..3]) - omega.cross(&v);
+            let half = Quaternion { w: 0.0, x: omega.x / 2.0, y: omega.y / 2.0, z: omega.z / 2.0 };
+            let turning = turn(state).then(&half).to_wxyz();
+            let parts = [&state[2..4], &found[6..8], acceleration.as_slice(), &found[3..6], &turning];
+            parts.concat().try_into().expect("14 numbers")
+        };
+        let moved =
+            |state: &State, by: &State, step: f64| -> State { std::array::from_fn(|i| state[i] + by[i] * step) };
+        // in the world, to which the base is turned
+        let conserved = |state: &State| -> Vec<f64> {
+            let velocities = [&state[4..10], &state[2..4]].concat();
+            let times = |matrix: Vec<f64>| product(&matrix.chunks(8).collect::<Vec<_>>(), &velocities);
+            let energy = dot(&velocities, &times(of(Function::FloatingMassMatrix, state))) / 2.0;
+            let momentum = times(of(Function::CentroidalMomentumMatrix, state));
+            let turned = |part: &[f64]| product(&turn(state).rotation(), part);
+            [vec![energy], turned(&momentum[..3]), turned(&momentum[3..])].concat()
+        };
+        let mut state: State = [0.4, -1.1, 1.5, -2.0, 0.3, -0.2, 0.5, 0.2, 0.7, -0.4, 0.5, -0.5, 0.5, 0.5];
+        let before = conserved(&state);
+        let step = 1e-3;
+        for _ in 0..1000 {
+            let first = rate(&state);
+            let second = rate(&moved(&state, &first, step / 2.0));
+            let third = rate(&moved(&state, &second, step / 2.0));
+            let fourth = rate(&moved(&state, &third, step));
+            let mean = std::array::from_fn(|i| (first[i] + (second[i] + third[i]) * 2.0 + fourth[i]) / 6.0);
+            state = moved(&state, &mean, step);
+        }
+        let error = error_on_scale(&conserved(&state), &before, 0.0);
+        assert!(error < 1e-9, "{maker}: {error:e}");
     }
 }
