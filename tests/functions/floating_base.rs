@@ -202,8 +202,8 @@ fn the_base_of_a_robot_at_rest_bears_its_weight() {
     }
 }
 
-/// A satellite in free flight, Runge and Kutta's fourth order: energy, momentum and the angular momentum about the centre
-/// of mass stay what they are, in the world, while its arm swings.
+/// A satellite in free flight, by Runge and Kutta's fourth order: energy, momentum and the angular momentum about the
+/// centre of mass stay what they are, in the world, while its arm swings.
 #[test]
 fn free_flight_conserves_energy_and_momentum() {
     // q, q̇, v and ω of the base in its axes, and its quaternion w, x, y, z
