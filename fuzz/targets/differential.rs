@@ -43,7 +43,7 @@ struct State {
     qdd: Vec<f64>,
     tau: Vec<f64>,
     wrench: Wrench<f64>,
-    /// The same wrench, in the list of wrenches at tips, which has one element.
+    /// A list of one wrench for the functions that take a wrench at each tip. It is the same wrench.
     at_tips: [[f64; 6]; 1],
     payload: [f64; 10],
     base: BaseMotion<f64>,

@@ -157,9 +157,9 @@ fn candidates(robot: &Robot, function: Function, search: &mut Exploration<'_>) -
     }
     // those of the torques differ little; what the plan means to another function, its algorithm hides
     let most = match function {
-        Function::InverseDynamics if !function.holds_floating_base(robot) => 16,
-        // it has one plan, which is none of those
+        // a function that holds a floating base still has a plan of its own, and this one only
         _ if function.holds_floating_base(robot) => 1,
+        Function::InverseDynamics => 16,
         _ => 4,
     };
     let best = search.plans.best().1.clone();

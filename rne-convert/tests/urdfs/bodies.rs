@@ -53,7 +53,8 @@ fn bodies_that_are_none() {
     assert!(!kept.robot.joints[0].is_physical());
 }
 
-/// A lumped body can be one where a part of it is none: the motor of Talos' gripper, in Gepetto/example-robot-data#130.
+/// The import names a link whose inertia no body can have, even if the links that are fixed to it hide this. The link
+/// is the motor of Talos' gripper (Gepetto/example-robot-data#130).
 #[test]
 fn a_part_that_is_no_body_is_told() {
     let motor = |yz: &str| {

@@ -14,8 +14,8 @@ pub(crate) const FORWARD_DYNAMICS: Function = Function::ForwardDynamics;
 /// Both derivatives of the torques.
 pub(crate) const DERIVATIVES: Function = Function::InverseDynamicsDerivatives;
 
-/// Matrices of so many states are computed to the same room again and again, so that it stays in the cache: as
-/// Pinocchio, call by call, overwrites the matrix in its `Data`.
+/// The number of states whose matrices are computed at a time. Each block overwrites the one before, so the memory stays
+/// in the cache. Pinocchio does the same: each call overwrites the matrix in its `Data`.
 const BLOCK: usize = 32;
 
 /// A function of an arm, and the matrices of its last block: element by element, in each the states.
