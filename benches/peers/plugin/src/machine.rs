@@ -14,8 +14,8 @@ pub(crate) const FORWARD_DYNAMICS: Function = Function::ForwardDynamics;
 /// Both derivatives of the torques.
 pub(crate) const DERIVATIVES: Function = Function::InverseDynamicsDerivatives;
 
-/// The number of states whose matrices are computed at a time. Each block overwrites the one before, so the memory stays
-/// in the cache. Pinocchio does the same: each call overwrites the matrix in its `Data`.
+/// The number of states whose matrices are computed at a time. Each block overwrites the one before, so the memory
+/// stays in the cache. Pinocchio does the same: each call overwrites the matrix in its `Data`.
 const BLOCK: usize = 32;
 
 /// A function of an arm, and the matrices of its last block: element by element, in each the states.
