@@ -55,7 +55,7 @@ RP_EXPORT int rp_kind(int k) { return table[k].kind; }
 RP_EXPORT void *rp_func(int k, const char *robot) { return (void)robot, table[k].function; }
 RP_EXPORT void *rp_open(int k, const char *robot, const char *dir) {
   char path[4096];
-  int joints, prismatic;
+  int joints, parent, prismatic;
   double skipped;
   (void)k;
   snprintf(path, sizeof path, "%s/%s.txt", dir, robot);
@@ -63,7 +63,7 @@ RP_EXPORT void *rp_open(int k, const char *robot, const char *dir) {
   struct context *c = calloc(1, sizeof *c);
   if (!file || !c || fscanf(file, "%d %lf %lf %lf", &joints, &skipped, &skipped, &skipped) != 4) exit(2);
   for (int i = 0; i < joints; i++) {
-    if (fscanf(file, "%d", &prismatic) != 1) exit(2);
+    if (fscanf(file, "%d %d", &parent, &prismatic) != 2) exit(2);
     for (int j = 0; j < 34; j++)
       if (fscanf(file, "%lf", &skipped) != 1) exit(2);
     if (!prismatic) c->revolute[c->count++] = i;
