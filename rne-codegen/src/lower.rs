@@ -4,7 +4,9 @@ mod cells;
 mod equations;
 mod writing;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use rne_model::{JointKind, Robot};
 use writing::Writing;
@@ -53,7 +55,7 @@ pub(crate) fn lower(
         quantity.is_of_an_angle() && !(quantity == Quantity::FollowerPosition && slides(definition.name))
     };
     let (of_angles, definitions): (Vec<_>, Vec<_>) = definitions.into_iter().partition(is_angle);
-    let mut writing = Writing { lowering: &lowering, values: Values::default(), known: HashMap::new() };
+    let mut writing = Writing { lowering: &lowering, values: Values::default(), known: FxHashMap::default() };
     for name in lowering.arguments() {
         writing.leaf(name, Value::Argument);
     }
@@ -100,7 +102,7 @@ pub(crate) fn lower(
 /// The name of an argument is that of nothing else: gravity that is given is another number than gravity of the table.
 fn leave_names_to_arguments(written: &mut Traced) {
     let argument = |(at, op)| if let Op::Input(input) = op { Some((input.name(), at)) } else { None };
-    let arguments: HashMap<Name, Ref> = written.graph.nodes().filter_map(argument).collect();
+    let arguments: FxHashMap<Name, Ref> = written.graph.nodes().filter_map(argument).collect();
     let is_free = |name: &Name, at: Ref| arguments.get(name).is_none_or(|argument| *argument == at.magnitude());
     written.trace.definitions.retain(|definition| is_free(&definition.name, definition.at));
 }
@@ -108,7 +110,7 @@ fn leave_names_to_arguments(written: &mut Traced) {
 /// The name of a result is that of nothing else: a torque that followers add to is another number than that of the
 /// joint alone.
 fn leave_names_to_results(written: &mut Traced, names: &[Name]) {
-    let results: HashMap<Name, Ref> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
+    let results: FxHashMap<Name, Ref> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
     let is_free = |name: &Name, at: Ref| results.get(name).is_none_or(|result| *result == at);
     written.trace.definitions.retain(|definition| is_free(&definition.name, definition.at));
 }
@@ -155,7 +157,7 @@ struct Lowering<'w> {
     is_output: Vec<bool>,
     names: Vec<Option<Given>>,
     /// Whether a name means the negative of its node.
-    signs: HashMap<Name, bool>,
+    signs: FxHashMap<Name, bool>,
 }
 
 impl<'w> Lowering<'w> {
@@ -216,11 +218,11 @@ impl<'w> Lowering<'w> {
     fn name_shared_terms(&mut self) {
         let given = self.names.iter().flatten().map(|given| given.name);
         let defined = self.written.trace.definitions.iter().map(|definition| definition.name);
-        let mut taken: HashSet<String> = given.chain(defined).map(|name| name.to_string()).collect();
+        let mut taken: FxHashSet<String> = given.chain(defined).map(|name| name.to_string()).collect();
         // the first link of each quantity between two links, which is not always the link before
         let between = self.written.trace.definitions.iter().map(|definition| definition.name);
         let between = between.filter(|name| name.quantity.indices() == Indices::Links);
-        let between: HashMap<(Quantity, usize), [usize; 2]> =
+        let between: FxHashMap<(Quantity, usize), [usize; 2]> =
             between.map(|name| ((name.quantity, name.joint), name.indices)).collect();
         let mut parts: BTreeMap<Name, usize> = BTreeMap::new();
         for (id, node) in self.written.graph.nodes() {
@@ -332,8 +334,8 @@ impl<'w> Lowering<'w> {
     }
 
     /// The live nodes that use each constant, in order.
-    fn users_of_constants(&self) -> HashMap<Ref, Vec<Ref>> {
-        let mut users: HashMap<Ref, Vec<Ref>> = HashMap::new();
+    fn users_of_constants(&self) -> FxHashMap<Ref, Vec<Ref>> {
+        let mut users: FxHashMap<Ref, Vec<Ref>> = FxHashMap::default();
         for (user, node) in self.live_nodes() {
             for operand in node.operands().map(Ref::magnitude) {
                 if matches!(self.written.graph.op(operand), Op::Constant(_)) {
@@ -350,7 +352,7 @@ impl<'w> Lowering<'w> {
             return Vec::new();
         }
         let returned = self.names[id.index()].filter(|_| self.is_output[id.index()]);
-        let mut seen = HashSet::new();
+        let mut seen = FxHashSet::default();
         let used = users.iter().filter_map(|&user| self.constant_name(user, id));
         used.chain(returned).filter(|given| seen.insert(given.name)).collect()
     }
@@ -379,7 +381,7 @@ impl<'w> Lowering<'w> {
         }
         let mut returned = Vec::with_capacity(outputs.len());
         let definitions = self.written.trace.definitions.iter().enumerate();
-        let first: HashMap<Name, usize> =
+        let first: FxHashMap<Name, usize> =
             definitions.rev().map(|(order, definition)| (definition.name, order)).collect();
         let mut stated = BTreeSet::new();
         for &(name, at) in outputs {

@@ -2,7 +2,7 @@
 //!
 //! One `Program`, many renderers: tokens, text, counts, an interpreter, a machine.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 use crate::CompileError;
 use crate::equation::Equation;
@@ -216,7 +216,7 @@ impl Program {
     /// # Errors
     /// [`CompileError::TwoOfOneName`], with the first such name.
     pub fn check_names(&self) -> Result<(), CompileError> {
-        let mut taken: HashSet<String> = self.reserved_names().map(str::to_owned).collect();
+        let mut taken: FxHashSet<String> = self.reserved_names().map(str::to_owned).collect();
         let turns = self.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
         let constants = self.constants().map(|constant| constant.name);
         let statements = self.angles.iter().chain(&self.statements).map(|statement| statement.name);

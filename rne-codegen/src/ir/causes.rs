@@ -1,6 +1,6 @@
 //! Causes of constants while formulas are written: each kept once, symbols hold their numbers.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{Alternatives, Cause, Causes};
 
@@ -16,16 +16,16 @@ impl CausesId {
 /// The causes of zeros and ones, each kept once, and what they give together.
 pub(crate) struct KnownCauses {
     list: Vec<Alternatives>,
-    ids: HashMap<Alternatives, CausesId>,
+    ids: FxHashMap<Alternatives, CausesId>,
     /// The joint causes of two of them, and whether both are needed.
-    joined: HashMap<(CausesId, CausesId, bool), CausesId>,
+    joined: FxHashMap<(CausesId, CausesId, bool), CausesId>,
 }
 
 impl Default for KnownCauses {
     fn default() -> Self {
         let arithmetic = Alternatives::single(Cause::Arithmetic);
-        let ids = HashMap::from([(arithmetic.clone(), CausesId::ARITHMETIC)]);
-        Self { list: vec![arithmetic], ids, joined: HashMap::new() }
+        let ids = FxHashMap::from_iter([(arithmetic.clone(), CausesId::ARITHMETIC)]);
+        Self { list: vec![arithmetic], ids, joined: FxHashMap::default() }
     }
 }
 

@@ -5,14 +5,14 @@
 //! notes from which images it computed its result. The first way to compute an image is kept, so no constant depends on
 //! itself. Outside [`recorded`], an operation only asks a flag of the thread.
 
+use rustc_hash::FxHashMap;
 use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
 
 use super::numbers::canonical;
 use super::{ExactAngle, Name, Number, Residue};
 
 /// The exact constants of a program: each as a number and, if it is an angle, as a turn.
-pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
+pub(crate) type Exactly = FxHashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A step of an expression, by the places of its operands among the steps before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ thread_local! {
     /// The constants of the programs that are lowered.
     static LOWERED: RefCell<Vec<Exactly>> = const { RefCell::new(Vec::new()) };
     /// By images without their signs: whether the way leads to the negative image, and the way.
-    static WAYS: RefCell<HashMap<Residue, (bool, Way)>> = RefCell::new(HashMap::new());
+    static WAYS: RefCell<FxHashMap<Residue, (bool, Way)>> = RefCell::new(FxHashMap::default());
 }
 
 /// Runs an action and returns its result with the ways of all constants that it computes.
@@ -123,7 +123,7 @@ pub(crate) fn note(image: Residue, way: impl FnOnce() -> Way) {
 /// The ways of images, and the constants of all programs that were lowered.
 #[derive(Default)]
 pub(crate) struct Ways {
-    ways: HashMap<Residue, (bool, Way)>,
+    ways: FxHashMap<Residue, (bool, Way)>,
     lowered: Vec<Exactly>,
 }
 
@@ -137,7 +137,7 @@ impl Ways {
         // what was lowered before was refused, or is what the program was compared with
         let exactly = self.lowered.iter().rev().find(is_of_program)?;
         let mut derivation = Derivation::default();
-        let mut places = HashMap::new();
+        let mut places = FxHashMap::default();
         for &(name, _) in constants {
             let (number, turn) = exactly.get(&name)?;
             let mut place = |number: &Number| self.place(number.residue, &mut derivation.steps, &mut places);
@@ -150,7 +150,12 @@ impl Ways {
         Some(derivation)
     }
 
-    fn place(&self, image: Residue, steps: &mut Vec<ExactStep>, places: &mut HashMap<Residue, usize>) -> Option<usize> {
+    fn place(
+        &self,
+        image: Residue,
+        steps: &mut Vec<ExactStep>,
+        places: &mut FxHashMap<Residue, usize>,
+    ) -> Option<usize> {
         if let Some(&place) = places.get(&image) {
             return Some(place);
         }

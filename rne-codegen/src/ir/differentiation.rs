@@ -1,6 +1,6 @@
 //! The product rule on a graph.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{Birth, Builder, Cause, Definition, Input, Name, Op, Place, Ref, Symbol, WithRespectTo, mark_live};
 
@@ -8,7 +8,7 @@ use super::{Birth, Builder, Cause, Definition, Input, Name, Op, Place, Ref, Symb
 struct Formulas {
     ops: Vec<Op>,
     births: Vec<Option<Birth>>,
-    definitions: HashMap<usize, Vec<Definition>>,
+    definitions: FxHashMap<usize, Vec<Definition>>,
     live: Vec<bool>,
 }
 
@@ -21,7 +21,7 @@ impl Builder {
         by: impl Iterator<Item = WithRespectTo>,
     ) -> Vec<Vec<Symbol<'s>>> {
         let (births, all) = self.told();
-        let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();
+        let mut definitions: FxHashMap<usize, Vec<Definition>> = FxHashMap::default();
         for definition in all.into_iter().filter(|definition| definition.name.by.is_none()) {
             definitions.entry(definition.at.index()).or_default().push(definition);
         }

@@ -10,7 +10,7 @@
 //!   gathered, c₁ x + c₂ x = (c₁ + c₂) x. With [`Policy::Numbered`] two nodes of one value, up to sign, are one node
 //!   besides, however they came about: the first one written stays.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use hashbrown::HashTable;
 
@@ -64,7 +64,7 @@ pub(crate) struct Graph {
     /// Where the residues are taken, and how constants are read there.
     pub(crate) point: SamplePoint,
     /// The turns of constants that are angles, by their places.
-    pub(super) turns: HashMap<u32, ExactAngle>,
+    pub(super) turns: FxHashMap<u32, ExactAngle>,
     /// Indices of nodes by operation and by value. Looked up, never iterated.
     structures: HashTable<u32>,
     values: HashTable<u32>,
@@ -78,7 +78,7 @@ impl Graph {
             outputs: Vec::new(),
             policy,
             point: SamplePoint::new(embedding, 0),
-            turns: HashMap::new(),
+            turns: FxHashMap::default(),
             structures: HashTable::new(),
             values: HashTable::new(),
         };

@@ -1,7 +1,7 @@
 //! The trace of a graph, for those who read the code: names, places, causes, and what became of every operation. A
 //! search, which counts thousands of plans, keeps none.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{
     Axis, Cause, Causes, CausesId, Component, Fold, FoldReport, Graph, Name, Operation, Outcome, Place, Ref, Side,
@@ -38,7 +38,7 @@ pub(crate) struct Trace {
     /// The place of each node; `None` for a node that belongs to no step.
     pub(crate) births: Vec<Option<Birth>>,
     /// As what a constant entered a node: (node, constant) → its name there.
-    pub(crate) roles: HashMap<(Ref, Ref), Name>,
+    pub(crate) roles: FxHashMap<(Ref, Ref), Name>,
     pub(crate) causes: KnownCauses,
     /// The formulas as they were written, if they are kept.
     pub(crate) terms: Option<WrittenTerms>,

@@ -3,7 +3,7 @@
 //! A value that two joints share stands at the first of them that asked for it. Where joints follow others or rotors
 //! turn with several joints, that is not always the first cell that uses it.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::ir::{Name, Place, Step};
 use crate::program::{SineCosine, Statement};
@@ -22,9 +22,9 @@ fn order(place: &Place) -> Order {
 /// alone to the first such cell, another one's users to its own. `statements` are in an order in which each stands
 /// before its users.
 pub(super) fn settle(values: &Values, statements: &mut [Statement], turns: &[SineCosine]) {
-    let index: HashMap<Name, usize> =
+    let index: FxHashMap<Name, usize> =
         statements.iter().enumerate().map(|(index, statement)| (statement.name, index)).collect();
-    let turned: HashMap<Name, Place> =
+    let turned: FxHashMap<Name, Place> =
         turns.iter().flat_map(|turn| turn.sine.iter().chain(&turn.cosine).map(|name| (*name, turn.place))).collect();
     let used: Vec<Vec<Name>> =
         statements.iter().map(|statement| values.defined(statement.value).names().collect()).collect();

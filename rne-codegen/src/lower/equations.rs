@@ -1,6 +1,6 @@
 //! The formulas before folding, beside the code that is left of them.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 use super::{Lowering, sign};
 use crate::equation::{Equation, Operation, Term};
@@ -12,7 +12,7 @@ impl Lowering<'_> {
         if self.written.trace.terms.is_none() {
             return Vec::new();
         }
-        let mut seen = HashSet::new();
+        let mut seen = FxHashSet::default();
         let definitions = self.written.trace.definitions.iter().filter(|definition| seen.insert(definition.name));
         let equation = |definition: &crate::ir::Definition| {
             let term = match definition.term {

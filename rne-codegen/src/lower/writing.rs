@@ -1,6 +1,6 @@
 //! The values of a program, statement by statement, with signs where they cost nothing.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::{Definition, Lowering, Returned};
 use crate::ir::{Name, Op, Operator, Place, Quantity, Ref, Step};
@@ -11,7 +11,7 @@ use crate::values::{Value, ValueId, Values};
 pub(super) struct Writing<'w> {
     pub(super) lowering: &'w Lowering<'w>,
     pub(super) values: Values,
-    pub(super) known: HashMap<Name, ValueId>,
+    pub(super) known: FxHashMap<Name, ValueId>,
 }
 
 impl Writing<'_> {

@@ -1,6 +1,6 @@
 //! Branches of a tree: those of the base share no operation, and branches that look alike can share their choices.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 use crate::coordinates::Coordinates;
@@ -16,7 +16,7 @@ pub(crate) struct BaseBranch {
     rows: Range<usize>,
     pub(crate) joint_frames: JointFrames,
     /// Costs of its plans. A unit may come from another branch, so the scales are told by their values.
-    pub(crate) known: HashMap<(Plan, [Residue; 2]), Option<Cost>>,
+    pub(crate) known: FxHashMap<(Plan, [Residue; 2]), Option<Cost>>,
 }
 
 impl BaseBranch {
@@ -40,7 +40,7 @@ impl BaseBranch {
         }
         let branch = |rows: Range<usize>| {
             let joint_frames = joint_frames.of_rows(rows.clone());
-            Self { rows, joint_frames, known: HashMap::new() }
+            Self { rows, joint_frames, known: FxHashMap::default() }
         };
         ranges.into_iter().map(branch).collect()
     }

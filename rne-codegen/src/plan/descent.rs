@@ -1,7 +1,7 @@
 //! The short search of a build that finds no plan file: a fixed number of plans is counted, in a fixed order, so that
 //! every machine chooses the same.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use rne_model::Robot;
 
@@ -25,7 +25,7 @@ pub struct Descent<'v> {
     without: Vec<Trick>,
     /// Refuses plans that would be the best but for something else that is wrong with them.
     veto: Option<Veto<'v>>,
-    known: HashMap<Plan, Option<Cost>>,
+    known: FxHashMap<Plan, Option<Cost>>,
     counted: usize,
     best: (Cost, Plan),
 }
@@ -39,7 +39,7 @@ impl<'v> Descent<'v> {
         // the plain plan applies to every robot
         let best = (evaluator.cost(&plan).unwrap_or_default(), plan);
         let (open, without) = (evaluator.open_choices(), without.to_vec());
-        Self { evaluator, open, without, veto: None, known: HashMap::new(), counted: 0, best }
+        Self { evaluator, open, without, veto: None, known: FxHashMap::default(), counted: 0, best }
     }
 
     /// The choices that the robot leaves open.

@@ -9,7 +9,7 @@
 //! A number among the operands counts back: `1` is the value before, `2` the one before that; among constants it counts
 //! constants, and operations elsewhere.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::error::GraphMistake;
 use crate::function::Function;
@@ -203,8 +203,8 @@ pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Trac
 }
 
 /// Values that a graph uses without computing them: its arguments, and the sines and cosines of its angles.
-fn leaves<'s>(graph: &Graph, builder: &'s Builder) -> HashMap<String, Symbol<'s>> {
-    let mut leaves = HashMap::new();
+fn leaves<'s>(graph: &Graph, builder: &'s Builder) -> FxHashMap<String, Symbol<'s>> {
+    let mut leaves = FxHashMap::default();
     for (_, op) in graph.nodes() {
         match op {
             Op::Input(input) => _ = leaves.insert(input.name().to_string(), builder.argument(input.name())),
@@ -238,7 +238,7 @@ pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
     let mut graph = plan.clone();
     graph.clear_nodes();
     let mut map: Vec<Ref> = Vec::with_capacity(read.len());
-    let mut places: HashMap<u32, Ref> = HashMap::new();
+    let mut places: FxHashMap<u32, Ref> = FxHashMap::default();
     for node in &read.nodes {
         let at = match node.op {
             Op::Constant(place) => constant_on(&mut graph, &read.numbers, &mut places, place),
@@ -251,7 +251,7 @@ pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
 }
 
 /// Computes a constant of another graph again, from the same operands as there.
-fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, Ref>, place: u32) -> Ref {
+fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut FxHashMap<u32, Ref>, place: u32) -> Ref {
     if let Some(&known) = places.get(&place) {
         return known;
     }
@@ -287,7 +287,7 @@ struct Reader<'s> {
     /// Divisors of the graph before. Nothing else may be divided by: it could be zero where that is not.
     divisors: Vec<Residue>,
     builder: &'s Builder,
-    leaves: HashMap<String, Symbol<'s>>,
+    leaves: FxHashMap<String, Symbol<'s>>,
     /// The section that is being read.
     section: &'static str,
     constants: Vec<Symbol<'s>>,
