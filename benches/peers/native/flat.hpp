@@ -5,18 +5,23 @@
 #include <string>
 #include <vector>
 
-struct FlatJoint {
+struct FlatBody {
+  double mass, com[3], inertia[6];  // in its link frame; xx yy zz xy xz yz about the centre of mass
+};
+
+struct FlatJoint : FlatBody {
   int parent;                       // -1: frame 0
   int prismatic;
   double before_R[9], before_p[3];  // placement of the joint in the link frame of its parent
   double after_R[9], after_p[3];    // link frame i seen from the frame that moves with the joint
-  double mass, com[3], inertia[6];  // in link frame i; xx yy zz xy xz yz about the centre of mass
 };
 
 struct FlatRobot {
   std::string name;
   double gravity[3];
   std::vector<FlatJoint> joints;
+  bool floats;    // whether nothing holds frame 0, the frame of this body
+  FlatBody base;
   bool branches() const {
     for (size_t i = 0; i < joints.size(); i++)
       if (joints[i].parent != int(i) - 1) return true;
@@ -48,6 +53,8 @@ inline FlatRobot read_flat(const std::string& dir, const std::string& robot) {
     numbers(&joint.mass, 1), numbers(joint.com, 3), numbers(joint.inertia, 6);
     result.joints.push_back(joint);
   }
+  result.floats = std::fscanf(file, "%lf", &result.base.mass) == 1;
+  if (result.floats) numbers(result.base.com, 3), numbers(result.base.inertia, 6);
   std::fclose(file);
   return result;
 }

@@ -34,38 +34,45 @@ MODELS = Path(__file__).resolve().parent.parent / "models"
 ROOT = MODELS.parent.parent.parent
 ARMS = ["planar2", "puma560", "stanford", "panda", "iiwa14", "dense6_2p", "dense7"]
 TREES = {"hyq": "robots/trees/hyq.yaml", "atlas": "benches/trees/atlas.yaml", "g1": "benches/trees/g1.yaml"}
+# Nothing holds the bases of these; ../floating compares them.
+FLOATING = {f"{name}_floating": f"benches/trees/{name}_floating.yaml" for name in ("hyq", "g1")}
 ROBOTS = [*ARMS, *TREES]
 STATES, SEED = 1024, 77
 
 
 def load(name):
-    return tree(name) if name in TREES else json.loads((MODELS / f"{name}.json").read_text())
+    return tree(name) if name in TREES | FLOATING else json.loads((MODELS / f"{name}.json").read_text())
 
 
 def tree(name):
     """A robot file in the terms of the JSON. What this comparison lacks is refused."""
-    file = yaml.safe_load((ROOT / TREES[name]).read_text())
+    path = (TREES | FLOATING)[name]
+    file = yaml.safe_load((ROOT / path).read_text())
     if file["convention"] != "modified" or {"parameters", "couplings", "loops", "base"} & set(file):
-        sys.exit(f"{TREES[name]}: only modified rows of numbers on a fixed base are compared")
+        sys.exit(f"{path}: only modified rows of numbers on a fixed base are compared")
     numbers, joints = {}, []
     for i, joint in enumerate(file["joints"]):
         if not {"name", "parent", "type", "dh", "link", "limits"} >= set(joint):
-            sys.exit(f"{TREES[name]}: {joint['name']} has what is not compared: {', '.join(joint)}")
-        dh, link = ({key: value(x) for key, x in joint[part].items()} for part in ("dh", "link"))
-        inertia = link.get("inertia", {})
+            sys.exit(f"{path}: {joint['name']} has what is not compared: {', '.join(joint)}")
+        dh = {key: value(x) for key, x in joint["dh"].items()}
         joints.append(
             dict(
                 {"gamma": 0.0, "b": 0.0, "offset": 0.0},
                 **dh,
                 type="R" if joint["type"] == "revolute" else "P",
                 parent=numbers.get(joint["parent"], -1) if "parent" in joint else i - 1,
-                m=link["mass"],
-                com=link.get("com", [0, 0, 0]),
-                I=[inertia.get(key, 0.0) for key in ("xx", "yy", "zz", "xy", "xz", "yz")],
+                **body(joint["link"]),
             )
         )
         numbers[joint["name"]] = i
-    return dict(name=name, title=file["name"], convention="modified", gravity=file["gravity"], joints=joints)
+    robot = dict(name=name, title=file["name"], convention="modified", gravity=file["gravity"], joints=joints)
+    return robot | ({"base": body(file["floating_base"]["link"])} if "floating_base" in file else {})
+
+
+def body(link):
+    link = {key: value(x) for key, x in link.items()}
+    inertia = [link.get("inertia", {}).get(key, 0.0) for key in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    return dict(m=link["mass"], com=link.get("com", [0, 0, 0]), I=inertia)
 
 
 def value(x):

@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio
 
 import pinocchio_arm
-from arm import STATES, load, parent, split, states
+from arm import FLOATING, STATES, load, parent, split, states
 
 try:
     import mujoco
@@ -34,6 +34,8 @@ def flat(robot):
         for transform in split(robot, i):
             lines += [line(*transform[:3, :3].ravel()), line(*transform[:3, 3])]
         lines += [line(j["m"], *j["com"]), line(*j["I"])]
+    if "base" in robot:
+        lines += [line(robot["base"]["m"], *robot["base"]["com"]), line(*robot["base"]["I"])]
     return "\n".join(lines) + "\n"
 
 
@@ -62,6 +64,8 @@ def main():
     for name in names:
         robot = load(name)
         (folder / f"{name}.txt").write_text(flat(robot))
+        if name in FLOATING:
+            continue  # its states are made by ../floating
         (folder / f"{name}.states").write_bytes(states_and_torques(robot))
         if mujoco:
             mujoco.mj_saveModel(mujoco_arm.bare(robot), str(folder / f"{name}.mjb"))

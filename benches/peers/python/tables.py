@@ -432,8 +432,7 @@ def write_csv(times, path):
 END = "<!-- end -->"
 
 
-def write_readme(path, tables, robots):
-    what = "trees" if set(robots) <= set(TREES) else "measured"
+def write_readme(path, tables, what):
     marker = f"<!-- begin: {what}, written by: benches/peers/run --write-readme -->"
     head, begin, rest = path.read_text().partition(marker)
     _, end, tail = rest.partition(END)
@@ -444,11 +443,13 @@ def write_readme(path, tables, robots):
 
 def main():
     work = Path(sys.argv[1])
+    if sys.argv[2:3] == ["--floating"]:
+        return write_readme(Path(sys.argv[3]), (work / "floating.md").read_text(), "floating")
     tables, times = report(work)
     (work / "tables.md").write_text(tables)
     write_csv(times, work / "times.csv")
     if sys.argv[2:3] == ["--readme"]:
-        write_readme(Path(sys.argv[3]), tables, times.robots)
+        write_readme(Path(sys.argv[3]), tables, "trees" if set(times.robots) <= set(TREES) else "measured")
     print(tables)
     if "**Wrong results**" in tables:
         sys.exit(1)
