@@ -77,6 +77,8 @@ pub struct Account {
     pub base: String,
     /// The link at the end of the chain.
     pub tip: String,
+    /// Whether the link that floats in the file became the floating base, or is fixed; `None` where none floats.
+    pub floats: Option<bool>,
     /// Joints that are held, and where, rad or m.
     pub held: Vec<(String, f64)>,
     /// Movable joints on fixed links, which do not belong to the arm.
@@ -218,6 +220,7 @@ impl Urdf {
             lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
             base: told.base,
             tip: told.tip,
+            floats: told.floats,
             held: told.held,
             frames,
             aside: told.aside,
