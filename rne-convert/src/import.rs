@@ -171,6 +171,9 @@ impl Urdf {
         robot.title = title(&self.name);
         if let Some(base) = &mut robot.floating_base {
             base.name = as_identifier(&told.base);
+            while robot.joints.iter().any(|joint| joint.name == base.name) {
+                base.name.push_str("_base");
+            }
         }
         let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
         let chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };

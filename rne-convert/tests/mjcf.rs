@@ -164,6 +164,13 @@ fn a_base_floats_or_is_fixed_as_the_selection_says() {
     assert_eq!(scene(Some(true), Some("world")).expect("a robot").robot.floating_base.expect("a base").link.mass, 7.0);
     let said = scene(Some(true), Some("ball")).expect_err("no base").to_string();
     assert!(said.contains("or the link that floats in the file") && said.contains("scene.xml:5:1"), "{said}");
+    // no frame and no joint has the name of the base
+    let text = SCENE.replace("'hip'", "'trunk'");
+    let options = Options { frames: true, ..whole() };
+    let robot = Urdf::read("scene.xml", &text).and_then(|urdf| urdf.import(&options)).expect("a robot").robot;
+    assert_eq!(robot.floating_base.expect("a base").name, "trunk_base");
+    assert_eq!(robot.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(), ["trunk_frame", "leg"]);
+    import("g1_29dof", &options);
     // one arm stands on the trunk
     let arm = Urdf::read("scene.xml", SCENE).and_then(|urdf| urdf.import(&Options::default())).expect("an arm");
     assert!(arm.robot.floating_base.is_none() && arm.account.floats == Some(false) && arm.account.base == "trunk");

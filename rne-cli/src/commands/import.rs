@@ -48,11 +48,10 @@ pub(crate) struct Arguments {
     /// Convert the whole robot after the base, a tree, and not one arm; --tip then says where the tip is
     #[arg(long)]
     whole: bool,
-    /// With --whole: nothing holds the root link, which becomes the floating base [default: if a floating joint or a
-    /// free joint moves the base in the file]
+    /// With --whole: nothing holds the root link, which becomes the floating base [default: as in the file]
     #[arg(long, requires = "whole")]
     floating: bool,
-    /// With --whole: fix the base where the file has it, although it floats there
+    /// With --whole: fix a base that floats in the file
     #[arg(long, requires = "whole", conflicts_with = "floating")]
     fixed: bool,
     /// Denavit-Hartenberg convention of the new table: standard or modified [default: standard; modified for a tree]
@@ -67,7 +66,7 @@ pub(crate) struct Arguments {
     /// Keep angles that are nearly exact: 1.5708 stays 1.5708 and does not become pi/2
     #[arg(long)]
     no_snap: bool,
-    /// Keep the links of the arm, and the links fixed to them, as named frames in the list `frames` of the robot file
+    /// Keep the links, and links fixed to them, as named frames: the list `frames` of the robot file
     #[arg(long)]
     frames: bool,
     /// Accept inertias that no physical body can have
