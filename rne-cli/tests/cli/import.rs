@@ -131,7 +131,10 @@ fn a_base_that_floats_in_the_file_floats() {
     assert_eq!(whole(&["--floating"]).0, floats);
     let (fixed, told) = whole(&["--fixed"]);
     assert!(!fixed.contains("floating_base"), "{fixed}");
-    assert!(told.contains("rne fixes it where the file has it note: without --fixed, it is the floating base"), "{told}");
+    assert!(
+        told.contains("rne fixes it where the file has it note: without --fixed, it is the floating base"),
+        "{told}"
+    );
     let arm = rne(&["import", urdf, "--tip", "tip", "--lock-others"]);
     assert!(!arm.out.contains("floating_base") && arm.err.contains("with --whole"), "{arm:?}");
     fails(2, &["import", urdf, "--whole", "--fixed", "--floating"], &["cannot be used with"]);
