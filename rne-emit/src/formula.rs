@@ -74,9 +74,9 @@ impl Numbers {
         }
     }
 
-    /// The numbers of a joint of a robot, counted from 1, in the formulas of a function. From n + 1 on they are the tips
-    /// at which the function takes wrenches, or the payload. A chain has the tip of the lecture in every function, free
-    /// or not.
+    /// The numbers of a joint of a robot, counted from 1, in the formulas of a function. From n + 1 on they are the
+    /// tips at which the function takes wrenches, or the payload. A chain has the tip of the lecture in every function,
+    /// free or not.
     pub(super) fn of(robot: &Robot, joint: usize, function: Function) -> Self {
         let last = robot.joints.len();
         let tips: Vec<_> = if robot.is_chain() || function.takes(Argument::Payload) {

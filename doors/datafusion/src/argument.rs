@@ -88,8 +88,8 @@ fn has_numbers(of: &DataType) -> bool {
     }
 }
 
-/// How many of the columns from `first` on are one argument of a robot: one list, or a column per number. Wrenches at the
-/// tips may be left out at the end: the tips are free then.
+/// How many of the columns from `first` on are one argument of a robot: one list, or a column per number. Wrenches at
+/// the tips may be left out at the end: the tips are free then.
 fn width(function: &str, argument: &str, columns: &[Column<'_>], first: usize, robot: &Robot) -> Result<usize> {
     let (length, why) = needed(argument, robot);
     let Some(Column { name, of }) = columns.get(first) else {

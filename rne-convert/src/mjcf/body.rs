@@ -344,14 +344,14 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// Of the bodies that float, the one that carries all joints is the base of the robot.
+    /// Makes the body that floats and carries all joints the base of the robot.
     fn find_base(&mut self) {
         self.urdf.find_floating(&self.floating);
         for &link in self.floating.iter().filter(|&&link| self.urdf.floats != Some(link)) {
             let name = quoted(&self.urdf.links[link].name);
             self.urdf.remarks.push(format!(
-                "the body {name} has a free joint, and rne fixes it where the file has it: only a body that carries all \
-                 other joints can be a floating base"
+                "the body {name} has a free joint, and rne fixes it where the file has it: only a body that carries \
+                 all other joints can be a floating base"
             ));
         }
     }
