@@ -156,12 +156,7 @@ pub(crate) fn extract(
         // it has no place in the world
         chain.base = Pose::identity();
     }
-    if urdf.floats.is_some() {
-        let name = quoted(&urdf.links[urdf.base].name);
-        let then = if floats { "so the robot has a floating base" } else { "and rne fixes it where the file has it" };
-        walk.told.remarks.push(format!("the link {name} floats in the file, {then}"));
-        walk.told.floats = Some(floats);
-    }
+    walk.look_at_floating(floats);
     if selection.whole {
         walk.whole(base, tip, &mut chain)?;
         walk.couple(&mut chain);
@@ -245,6 +240,15 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
+    /// Tells whether the link that floats in the file is a floating base.
+    fn look_at_floating(&mut self, floats: bool) {
+        let Some(link) = self.urdf.floats else { return };
+        let name = quoted(&self.urdf.links[link].name);
+        let then = if floats { "so the robot has a floating base" } else { "and rne fixes it where the file has it" };
+        self.told.remarks.push(format!("the link {name} floats in the file, {then}"));
+        self.told.floats = Some(floats);
+    }
+
     /// World → base: the joints up to there are held.
     fn base(&mut self, base: usize) -> Result<Pose, Report> {
         let before = path(self.urdf, self.urdf.root, base)?;
