@@ -4,7 +4,8 @@ Usage: python mjcf.py FOLDER         writes the torques beside each MJCF file of
        python mjcf.py FOLDER TARGET  saves each URDF and MJCF file of the folder as MJCF, with the torques, in TARGET
 
 `cargo xtask urdf --mjcf FOLDER` calls the second one and then the test that reads the target. MuJoCo reads each URDF
-without its meshes. A free joint stands still. Joints that follow others do so: their torques act on the joints that
+without its meshes. A free joint stands still; where it is the first joint, a second file, NAME.floating.csv, has
+the motion of the base, too. Joints that follow others do so: their torques act on the joints that
 they follow. Rotors are included.
 """
 
@@ -54,9 +55,16 @@ class Model:
         for _ in range(number):
             yield [random.uniform(-size, size, len(self.free)) for size in (1.0, 2.0, 5.0)]
 
-    def torques(self, q, qd, qdd):
+    def torques(self, q, qd, qdd, base=None):
+        """Torques; of a base that moves, with ω, ω̇, acceleration and rotation, its force and moment first."""
         model, data = self.model, self.data
         data.qpos[:], data.qvel[:], data.qacc[:] = model.qpos0, 0, 0
+        if base:
+            omega, omega_dot, acceleration, turn = base
+            mujoco.mju_mat2Quat(data.qpos[3:7], turn.flatten())
+            # the velocity of the origin is no matter
+            data.qvel[:6] = [0.3, -0.2, 0.1, *omega]
+            data.qacc[:6] = [*(turn @ acceleration), *omega_dot]
         place = {joint: k for k, joint in enumerate(self.free)}
         for joint, (leader, ratio, offset) in self.follows.items():
             at, dof = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
@@ -80,15 +88,32 @@ class Model:
         for joint, (leader, ratio, _) in self.follows.items():
             if leader is not None:
                 result[place[leader]] += ratio * tau[model.jnt_dofadr[joint]]
-        return result
+        return np.concatenate([base[3].T @ tau[:3], tau[3:6], result]) if base else result
+
+
+def line(*vectors):
+    return ",".join(repr(float(x)) for x in np.concatenate(vectors))
+
+
+def floating(model):
+    """A line per state: q, qd, qdd, then ω, ω̇, acceleration and gravity in axes of the base, force, moment, torques."""
+    random = np.random.default_rng(11)
+    for state in model.states():
+        turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
+        turn *= np.linalg.det(turn)
+        base = random.normal(size=(3, 3))
+        gravity = turn.T @ model.model.opt.gravity
+        yield line(*state, *base, gravity, model.torques(*state, base=(*base, turn)))
 
 
 def golden(path):
     """Writes names, states and torques beside an MJCF file."""
     model = Model(path)
+    if model.model.njnt and int(model.model.jnt_type[0]) == int(mujoco.mjtJoint.mjJNT_FREE):
+        path.with_suffix(".floating.csv").write_text("\n".join([",".join(model.names), *floating(model)]) + "\n")
     lines = [",".join(model.names)]
     for q, qd, qdd in model.states():
-        lines.append(",".join(repr(float(x)) for x in np.concatenate([q, qd, qdd, model.torques(q, qd, qdd)])))
+        lines.append(line(q, qd, qdd, model.torques(q, qd, qdd)))
     path.with_suffix(".csv").write_text("\n".join(lines) + "\n")
     print(f"{path.name}: {len(model.free)} joints")
 

@@ -14,7 +14,7 @@ use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::selection::{End, Selection, link, locks, path, refuse_value, tip};
 use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted, some};
-use crate::urdf::{Joint, Link, Urdf};
+use crate::urdf::{Joint, Urdf};
 
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
@@ -92,6 +92,8 @@ pub(crate) struct Extracted {
     /// Movable joints on fixed links, which do not belong to the arm.
     pub(crate) aside: Vec<String>,
     pub(crate) snapped: Vec<Snapped>,
+    /// Whether the link that floats in the file is a floating base here; `None` where none floats.
+    pub(crate) floats: Option<bool>,
     /// Links whose bodies are in the arm.
     pub(crate) links: BTreeSet<usize>,
     /// Joints of the chain, and those that are held.
@@ -113,6 +115,7 @@ pub(crate) fn extract(
         Some(name) => link(urdf, name, "base")?,
         None => urdf.base,
     };
+    let floats = selection.floats(urdf, base)?;
     let End { link: end, others } = tip(urdf, base, selection)?;
     let path = path(urdf, base, end)?;
     let tip = path.last().map_or(base, |&joint| urdf.joints[joint].child);
@@ -142,18 +145,18 @@ pub(crate) fn extract(
     let mut chain = Chain {
         base: walk.base(base)?,
         gravity: Vector::decimal(gravity),
-        floating_base: selection.floating.then_some(Body::NONE),
+        floating_base: floats.then_some(Body::NONE),
         joints: Vec::new(),
         tip_on: 0,
         tip: Pose::identity(),
         frames: Vec::new(),
     };
-    if selection.floating && (base != urdf.root || !selection.whole) {
-        let message = "a floating base is the root link of a whole robot";
-        let help = "import the whole robot, and name no other base";
-        return Err(urdf.source.error(&urdf.links[base].span, message.to_owned(), help.to_owned()));
-    }
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;
+    if floats {
+        // it has no place in the world
+        chain.base = Pose::identity();
+    }
+    walk.look_at_floating(floats);
     if selection.whole {
         walk.whole(base, tip, &mut chain)?;
         walk.couple(&mut chain);
@@ -237,6 +240,15 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
+    /// Tells whether the link that floats in the file is a floating base.
+    fn look_at_floating(&mut self, floats: bool) {
+        let Some(link) = self.urdf.floats else { return };
+        let name = quoted(&self.urdf.links[link].name);
+        let then = if floats { "so the robot has a floating base" } else { "and rne fixes it where the file has it" };
+        self.told.remarks.push(format!("the link {name} floats in the file, {then}"));
+        self.told.floats = Some(floats);
+    }
+
     /// World → base: the joints up to there are held.
     fn base(&mut self, base: usize) -> Result<Pose, Report> {
         let before = path(self.urdf, self.urdf.root, base)?;
@@ -285,7 +297,7 @@ impl Walk<'_> {
         let mut open = vec![link];
         while let Some(index) = open.pop() {
             let link = &self.urdf.links[index];
-            if has_mass(link) {
+            if link.has_mass() {
                 return true;
             }
             open.extend(link.children.iter().map(|&joint| self.urdf.joints[joint].child));
@@ -428,7 +440,7 @@ impl Walk<'_> {
         let link = &self.urdf.links[index];
         self.told.links.insert(index);
         self.frames.push(ChainFrame { name: link.name.clone(), on, place: pose });
-        if !has_mass(link) {
+        if !link.has_mass() {
             return Body::NONE;
         }
         let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
@@ -536,11 +548,6 @@ impl Walk<'_> {
             }
         }
     }
-}
-
-/// Whether a link has a body of its own.
-fn has_mass(link: &Link) -> bool {
-    link.mass != 0.0 || link.inertia != rne_model::Inertia::default()
 }
 
 /// Whether a position is within limits, to a millionth: limits are rounded, too.

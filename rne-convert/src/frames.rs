@@ -18,10 +18,11 @@ pub(crate) fn named_frames(chain: &Chain, table: &Table) -> Vec<Frame> {
     chain.frames.iter().map(frame).collect()
 }
 
-/// Gives frames names that a robot file takes: identifiers, none of which is `base`, the name of a joint, or the name
-/// of another frame.
+/// Gives frames names that a robot file takes: identifiers, none of which is the name of the base, of a joint, or of
+/// another frame.
 pub(crate) fn as_identifiers(frames: Vec<ChainFrame>, robot: &Robot) -> Vec<ChainFrame> {
-    let is_reserved = |name: &str| name == "base" || robot.joints.iter().any(|joint| joint.name == name);
+    let is_base = |name: &str| name == "base" || robot.floating_base.as_ref().is_some_and(|base| base.name == name);
+    let is_reserved = |name: &str| is_base(name) || robot.joints.iter().any(|joint| joint.name == name);
     let mut taken = BTreeSet::new();
     let named = |frame: ChainFrame| {
         let mut name: String = frame.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();

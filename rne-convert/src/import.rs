@@ -77,6 +77,8 @@ pub struct Account {
     pub base: String,
     /// The link at the end of the chain.
     pub tip: String,
+    /// Whether the link that floats in the file became the floating base, or is fixed; `None` where none floats.
+    pub floats: Option<bool>,
     /// Joints that are held, and where, rad or m.
     pub held: Vec<(String, f64)>,
     /// Movable joints on fixed links, which do not belong to the arm.
@@ -169,6 +171,9 @@ impl Urdf {
         robot.title = title(&self.name);
         if let Some(base) = &mut robot.floating_base {
             base.name = as_identifier(&told.base);
+            while robot.joints.iter().any(|joint| joint.name == base.name) {
+                base.name.push_str("_base");
+            }
         }
         let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
         let chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };
@@ -218,6 +223,7 @@ impl Urdf {
             lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
             base: told.base,
             tip: told.tip,
+            floats: told.floats,
             held: told.held,
             frames,
             aside: told.aside,

@@ -36,8 +36,7 @@ const WIDTH: usize = 110;
 #[must_use]
 pub fn write(robot: &Robot) -> String {
     let mut text = String::new();
-    let is_old = robot.is_serial() && !robot.has_couplings() && robot.drives.is_empty() && robot.tips.is_empty();
-    let format = if is_old && robot.floating_base.is_none() { 1 } else { 2 };
+    let format = if robot.is_chain() { 1 } else { 2 };
     let _ = writeln!(text, "format: {format}\nname: {}", robot.name);
     if let Some(title) = &robot.title {
         let _ = writeln!(text, "title: {}", scalar(title));

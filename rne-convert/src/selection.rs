@@ -25,8 +25,9 @@ pub struct Selection {
     /// Whether every movable joint after the base is taken: the robot is a tree, and `tip` is only where its tip frame
     /// is.
     pub whole: bool,
-    /// Whether nothing holds the root link of a whole robot: it becomes the floating base.
-    pub floating: bool,
+    /// Whether nothing holds the base of a whole robot, which is then its floating base: the root link, or the link
+    /// that floats in the file [default: where the base floats in the file].
+    pub floating: Option<bool>,
 }
 
 impl Urdf {
@@ -39,6 +40,39 @@ impl Urdf {
         selection.base.as_ref().map_or(Ok(0), |name| link(self, name, "base"))?;
         selection.tip.as_ref().map_or(Ok(0), |name| link(self, name, "tip"))?;
         selection.lock.iter().try_for_each(|(name, _)| joint(self, name).map(|_| ()))
+    }
+}
+
+impl Selection {
+    /// Whether the robot has a floating base.
+    pub(crate) fn floats(&self, urdf: &Urdf, base: usize) -> Result<bool, Report> {
+        let floats = self.floating.unwrap_or(self.whole && urdf.floats == Some(base));
+        let may_float = self.whole && (base == urdf.root || urdf.floats == Some(base));
+        if floats && !may_float {
+            let message = "a floating base is the root link of a whole robot, or the link that floats in the file";
+            let help = "import the whole robot, and name no other base";
+            return Err(urdf.source.error(&urdf.links[base].span, message.to_owned(), help.to_owned()));
+        }
+        Ok(floats)
+    }
+}
+
+impl Urdf {
+    /// Chooses the base of a robot that floats: of these links that a free joint moves, the one that carries all other
+    /// joints.
+    pub(crate) fn find_floating(&mut self, floating: &[usize]) {
+        let carried = |link: usize| {
+            let (mut joints, mut open) = (0, vec![link]);
+            while let Some(link) = open.pop() {
+                let below = self.links[link].children.iter().map(|&joint| &self.joints[joint]);
+                joints += below.clone().filter(|joint| joint.kind.has_one_freedom()).count();
+                open.extend(below.map(|joint| joint.child));
+            }
+            joints
+        };
+        let all = carried(self.root);
+        self.floats = floating.iter().copied().find(|&link| all > 0 && carried(link) == all);
+        self.base = self.floats.unwrap_or(self.root);
     }
 }
 

@@ -24,8 +24,11 @@ pub struct Urdf {
     pub(crate) gears: Vec<Gear>,
     /// The link that no joint moves.
     pub(crate) root: usize,
-    /// The link at the base of an arm that names none: the root, or the body of an MJCF file that floats.
+    /// The link at the base of an arm that names none: the root, or the link that floats.
     pub(crate) base: usize,
+    /// The link that carries all joints and that nothing holds: a floating joint in a URDF, or a free joint in an MJCF
+    /// file, moves it. This joint is `Fixed` here.
+    pub(crate) floats: Option<usize>,
     /// The acceleration of gravity in the axes of the root, m/s², where the file says it.
     pub(crate) gravity: Option<[f64; 3]>,
     /// Remarks on what the file has and a robot file has not, in sentences.
@@ -192,6 +195,7 @@ impl Urdf {
             gears: Vec::new(),
             root: 0,
             base: 0,
+            floats: None,
             gravity: None,
             remarks: Vec::new(),
             unknown: Vec::new(),
@@ -342,7 +346,14 @@ impl Urdf {
                 "connect all links with joints to one tree".to_owned(),
             ));
         }
-        (self.root, self.base) = (root, root);
+        self.root = root;
+        // a root with mass is a body of its own, and no world
+        let floating = |joint: &&Joint| joint.kind == Kind::Floating && joint.parent == root;
+        let floating = self.joints.iter().filter(floating).filter(|_| !self.links[root].has_mass());
+        self.find_floating(&floating.map(|joint| joint.child).collect::<Vec<_>>());
+        if let Some(joint) = self.floats.and_then(|link| self.links[link].parent) {
+            self.joints[joint].kind = Kind::Fixed;
+        }
         Ok(())
     }
 
@@ -439,6 +450,11 @@ impl Link {
             parent: None,
             children: Vec::new(),
         }
+    }
+
+    /// Whether it has a body of its own.
+    pub(crate) fn has_mass(&self) -> bool {
+        self.mass != 0.0 || self.inertia != Inertia::default()
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rne_convert::{Imported, Options, Selection, Urdf};
 use rne_model::{Convention, Reader, Robot};
-use rne_runtime::DynArm;
+use rne_runtime::{BaseMotion, DynArm, Wrench};
 
 fn whole() -> Options {
     let selection = Selection { whole: true, ..Selection::default() };
@@ -99,12 +99,88 @@ fn what_a_robot_file_has_is_kept() {
     assert!((robot.gravity[0] - 1.0).abs() < 1e-15, "{:?}", robot.gravity);
 }
 
+/// A body with a free joint is the floating base of a whole robot, and its force, moment and torques are MuJoCo's.
 #[test]
-fn a_floating_base_is_fixed_and_equalities_couple() {
-    let Imported { robot, account, text, .. } = import("gripper", &whole());
-    assert_eq!(account.base, "arm", "the body that floats");
+fn a_free_joint_makes_the_base_float() {
+    for name in ["gripper", "g1_29dof"] {
+        let Imported { robot, account, .. } = import(name, &whole());
+        let base = robot.floating_base.as_ref().unwrap_or_else(|| panic!("{name}: a floating base"));
+        assert_eq!((&base.name, account.floats), (&account.base, Some(true)));
+        let told = account.remarks.join("\n");
+        let expected = format!("the link `{}` floats in the file, so the robot has a floating base", base.name);
+        assert!(told.contains(&expected), "{told}");
+        let arm = DynArm::from_robot(&robot).with_rotors();
+        let golden = fs::read_to_string(file(name).replace(".xml", ".floating.csv")).expect("a golden file");
+        for line in golden.lines().skip(1) {
+            let numbers: Vec<f64> = line.split(',').map(|number| number.parse().expect("a number")).collect();
+            let (joints, base) = numbers.split_at(3 * robot.dof());
+            let (base, expected) = base.split_at(12);
+            let vector = |part: usize| -> [f64; 3] { base[3 * part..][..3].try_into().expect("three numbers") };
+            let [omega, omega_dot, acceleration, gravity] = [0, 1, 2, 3].map(vector);
+            let base = BaseMotion { omega, omega_dot, acceleration, gravity, ..BaseMotion::default() };
+            let [q, qd, qdd] = [0, 1, 2].map(|part| &joints[part * robot.dof()..][..robot.dof()]);
+            let free = vec![Wrench::zero(); arm.tips().len()];
+            let (wrench, tau) = arm.inverse_dynamics_of_floating_base(q, qd, qdd, &base, &free).expect("a state");
+            let found = [wrench.force.to_vec(), wrench.moment.to_vec(), tau].concat();
+            let scale = expected.iter().fold(0.0, |largest: f64, torque| largest.max(torque.abs()));
+            assert_eq!(found.len(), expected.len(), "{name}");
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-9 * scale, "{name}: {found} {expected}");
+            }
+        }
+    }
+}
+
+const SCENE: &str = "<mujoco><worldbody>
+<body name='trunk' pos='1 2 3' quat='0 1 0 0'><joint type='free' armature='0.1'/>
+<inertial pos='0 0 0' mass='2' diaginertia='1 1 1'/>
+<body name='leg'><joint name='hip' axis='0 1 0'/><inertial pos='0 0 -1' mass='1' diaginertia='1 1 1'/></body></body>
+<body name='ball'><freejoint/><inertial pos='0 0 0' mass='5' diaginertia='1 1 1'/></body>
+</worldbody></mujoco>";
+
+#[test]
+fn a_base_floats_or_is_fixed_as_the_selection_says() {
+    let scene = |floating, base: Option<&str>| {
+        let selection = Selection { floating, base: base.map(str::to_owned), ..whole().selection };
+        Urdf::read("scene.xml", SCENE).expect("MJCF").import(&Options { selection, ..whole() })
+    };
+    for (floating, base) in [(None, None), (Some(true), None), (None, Some("trunk")), (Some(true), Some("trunk"))] {
+        let Imported { robot, account, .. } = scene(floating, base).expect("a robot");
+        let trunk = robot.floating_base.expect("a floating base");
+        assert_eq!((trunk.name.as_str(), trunk.link.mass), ("trunk", 2.0), "without the ball");
+        // z of the trunk points down
+        assert_eq!((robot.base, robot.gravity), (rne_model::Transform::IDENTITY, [0.0, 0.0, 9.81]));
+        let told = account.remarks.join("\n");
+        assert!(told.contains("the body `ball` has a free joint, and rne fixes it"), "{told}");
+        assert!(told.contains("springs of free joints are left out: `trunk`"), "{told}");
+    }
+    let Imported { robot, account, .. } = scene(Some(false), None).expect("a robot");
+    assert!(robot.floating_base.is_none() && account.floats == Some(false));
+    assert_eq!(account.base, "trunk");
+    assert!((robot.base.xyz[2] - 3.0).abs() < 1e-15, "{:?}", robot.base);
     let told = account.remarks.join("\n");
-    assert!(told.contains("the body `arm` floats, because it has a free joint"), "{told}");
+    assert!(told.contains("the link `trunk` floats in the file, and rne fixes it where the file has it"), "{told}");
+    // the world floats with all that no joint moves
+    assert_eq!(scene(Some(true), Some("world")).expect("a robot").robot.floating_base.expect("a base").link.mass, 7.0);
+    let said = scene(Some(true), Some("ball")).expect_err("no base").to_string();
+    assert!(said.contains("or the link that floats in the file") && said.contains("scene.xml:5:1"), "{said}");
+    // no frame and no joint has the name of the base
+    let text = SCENE.replace("'hip'", "'trunk'");
+    let options = Options { frames: true, ..whole() };
+    let robot = Urdf::read("scene.xml", &text).and_then(|urdf| urdf.import(&options)).expect("a robot").robot;
+    assert_eq!(robot.floating_base.expect("a base").name, "trunk_base");
+    assert_eq!(robot.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(), ["trunk_frame", "leg"]);
+    import("g1_29dof", &options);
+    // one arm stands on the trunk
+    let arm = Urdf::read("scene.xml", SCENE).and_then(|urdf| urdf.import(&Options::default())).expect("an arm");
+    assert!(arm.robot.floating_base.is_none() && arm.account.floats == Some(false) && arm.account.base == "trunk");
+}
+
+#[test]
+fn equalities_couple() {
+    let selection = Selection { floating: Some(false), ..whole().selection };
+    let Imported { robot, account, text, .. } = import("gripper", &Options { selection, ..whole() });
+    let told = account.remarks.join("\n");
     assert!(told.contains("joints that an equality holds are fixed: `held`"), "{told}");
     assert!(told.contains("equalities that are not active are left out"), "{told}");
     // right - 0.02 = 0.01 - 0.5 (left - 0.01); wheel = 0.2 + 30 (right - 0.02)

@@ -1,6 +1,6 @@
 //! The formulas of the seven steps and of the reduced form, for the comments of generated code.
 
-use rne_codegen::{Quantity, Step};
+use rne_codegen::{Argument, Function, Quantity, Step};
 use rne_model::JointKind::{self, Prismatic, Revolute};
 use rne_model::Robot;
 
@@ -18,19 +18,46 @@ pub struct Formula {
 type Templates = &'static [(Quantity, &'static str)];
 
 /// The numbers in the formulas of a joint: its own, that of its parent, and those of the joints that its link carries
-/// and of the tip if it carries that.
+/// and of the tips that it carries.
 #[derive(Clone, Debug)]
 pub(super) struct Numbers {
     joint: String,
     parent: String,
     /// The subscript of r from the parent to the joint.
     lever: String,
-    /// Everything that the link carries, with the subscript of r.
-    carried: Vec<[String; 2]>,
+    /// Everything that the link carries.
+    carried: Vec<Carried>,
     /// The joints that follow this one, with their ratios.
     followers: Vec<(f64, JointKind, Numbers)>,
     /// Whether this one follows others: what it needs is then a part of their torques.
     is_follower: bool,
+}
+
+/// A joint or a tip that a link carries.
+#[derive(Clone, Debug)]
+struct Carried {
+    number: String,
+    /// The subscript of r from the link to it.
+    lever: String,
+    /// Force and moment of a tip, in axes of the tip, as the code names them.
+    wrench: Option<[String; 2]>,
+}
+
+impl Carried {
+    /// A term of a template, with a force or a moment `{n}`. That of a tip is turned from the axes of the tip.
+    fn term(&self, term: &str) -> String {
+        let term = match &self.wrench {
+            Some([force, moment]) => {
+                let [force, moment] = [force, moment].map(|part| format!("R{{n}} {part}"));
+                let is_turned = term.contains("R{n}");
+                let [of_force, of_moment] =
+                    if is_turned { ["R{n} f{n}", "R{n} n{n}"] } else { ["f{i},{n}", "n{i},{n}"] };
+                term.replace(of_force, &force).replace(of_moment, &moment)
+            }
+            None => term.to_owned(),
+        };
+        term.replace("{n}", &self.number).replace("{rn}", &self.lever)
+    }
 }
 
 impl Numbers {
@@ -39,7 +66,7 @@ impl Numbers {
         let [joint, parent, next] = ["i", "h", "j"].map(str::to_owned);
         Self {
             lever: parent.clone(),
-            carried: vec![[next, joint.clone()]],
+            carried: vec![Carried { number: next, lever: joint.clone(), wrench: None }],
             joint,
             parent,
             followers: Vec::new(),
@@ -47,31 +74,49 @@ impl Numbers {
         }
     }
 
-    /// The numbers of a joint of a robot, counted from 1; n + 1 is the tip.
-    pub(super) fn of(robot: &Robot, joint: usize) -> Self {
-        let tip = robot.joints.len() + 1;
-        // links by the number of their joint; 0 is the base
-        let parent = |joint: usize| {
-            let link = if joint == tip { robot.tip().on } else { robot.parent(joint.saturating_sub(1)) };
-            link.map_or(0, |link| link + 1)
+    /// The numbers of a joint of a robot, counted from 1, in the formulas of a function. From n + 1 on they are the
+    /// tips at which the function takes wrenches, or the payload. A chain has the tip of the lecture in every function,
+    /// free or not.
+    pub(super) fn of(robot: &Robot, joint: usize, function: Function) -> Self {
+        let last = robot.joints.len();
+        let tips: Vec<_> = if robot.is_chain() || function.takes(Argument::Payload) {
+            vec![(robot.tip().on, None)]
+        } else if function.takes(Argument::Wrench) {
+            vec![(robot.tip().on, Some(["f", "n"].map(|part| format!("{part}{last},{}", last + 1))))]
+        } else if function.takes(Argument::Wrenches) {
+            let tips = robot.wrench_frames().into_iter().zip(1..);
+            tips.map(|(tip, number)| (tip.on, Some(["ft", "nt"].map(|part| format!("{part}{number}"))))).collect()
+        } else {
+            Vec::new()
         };
-        let carried_by = |link: usize| (1..=tip).filter(move |&joint| parent(joint) == link);
+        // each joint and each tip with the link that carries it, by the number of its joint; 0 is the base
+        let joints = (0..last).map(|index| (robot.parent(index), None));
+        let carried: Vec<_> = joints
+            .chain(tips)
+            .zip(1..)
+            .map(|((link, wrench), number): (_, usize)| (link.map_or(0, |link| link + 1), number, wrench))
+            .collect();
         // the first thing that a link carries needs no number of its own
-        let lever = |link: usize, joint: usize| match carried_by(link).next() {
-            Some(first) if first != joint => format!("{link}_{joint}"),
+        let lever = |link: usize, number: usize| match carried.iter().find(|(on, ..)| *on == link) {
+            Some((_, first, _)) if *first != number => format!("{link}_{number}"),
             _ => link.to_string(),
         };
-        let carried = carried_by(joint).filter(|_| joint < tip).map(|next| [next.to_string(), lever(joint, next)]);
+        let parent = carried.iter().find(|(_, number, _)| *number == joint).map_or(0, |(link, ..)| *link);
+        let on_link = carried.iter().filter(|(link, ..)| *link == joint).map(|(link, number, wrench)| Carried {
+            number: number.to_string(),
+            lever: lever(*link, *number),
+            wrench: wrench.clone(),
+        });
         let follower = |(index, other): (usize, &rne_model::Joint)| {
             let follows = &other.coupling.as_ref()?.follows;
             let (_, ratio) = follows.iter().find(|(followed, _)| followed + 1 == joint)?;
-            Some((*ratio, other.row.kind, Self::of(robot, index + 1)))
+            Some((*ratio, other.row.kind, Self::of(robot, index + 1, function)))
         };
         Self {
             joint: joint.to_string(),
-            parent: parent(joint).to_string(),
-            lever: lever(parent(joint), joint),
-            carried: carried.collect(),
+            parent: parent.to_string(),
+            lever: lever(parent, joint),
+            carried: on_link.collect(),
             followers: robot.joints.iter().enumerate().filter_map(follower).collect(),
             is_follower: robot.joints.get(joint.wrapping_sub(1)).is_some_and(|joint| joint.coupling.is_some()),
         }
@@ -222,8 +267,7 @@ fn text(template: &str, numbers: &Numbers) -> String {
             None => term.strip_suffix(" - ").map_or((term, ""), |term| (term, " - ")),
         };
         if term.contains("{n}") {
-            let of_next = |[next, lever]: &[String; 2]| term.replace("{n}", next).replace("{rn}", lever);
-            text += &carried.iter().map(of_next).collect::<Vec<_>>().join(" + ");
+            text += &carried.iter().map(|next| next.term(term)).collect::<Vec<_>>().join(" + ");
             if carried.is_empty() {
                 // the operator before it goes with it
                 text.truncate(text.trim_end_matches([' ', '+']).len());
@@ -238,19 +282,76 @@ fn text(template: &str, numbers: &Numbers) -> String {
 
 #[cfg(test)]
 mod tests {
+    use rne_codegen::Form;
+
     use super::*;
 
     const TREE: &str = include_str!("../../docs/tree.yaml");
+    const TIPS: &str = include_str!("../../docs/dual_arm.yaml");
+
+    fn of(file: &str, function: Function, joint: usize, form: Form) -> Vec<String> {
+        let robot = rne_model::Reader::new("tree.yaml").trees().read(file).unwrap().robot;
+        let (kind, numbers) = (robot.joints[joint - 1].row.kind, Numbers::of(&robot, joint, function));
+        let formulas = match form {
+            Form::SevenSteps => formulas(Step::Wrenches, kind, &numbers, false),
+            Form::Reduced => reduced_formulas(Step::Wrenches, kind, &numbers),
+        };
+        // each wrench has its name in the code
+        let program = rne_codegen::Compiler::new(&robot).compile(function, Form::SevenSteps).unwrap();
+        let code = crate::rust_file(&robot, &[program]);
+        for formula in &formulas {
+            let words = formula.text.split_whitespace().filter(|word| word.contains('t') && !word.contains("antisym"));
+            words.for_each(|word| assert!(code.contains(&format!("{word}_")), "{word}"));
+        }
+        formulas.into_iter().map(|formula| formula.text).collect()
+    }
 
     fn texts(joint: usize, step: Step) -> Vec<String> {
         let robot = rne_model::Reader::new("tree.yaml").trees().read(TREE).unwrap().robot;
-        let kind = robot.joints[joint - 1].row.kind;
-        formulas(step, kind, &Numbers::of(&robot, joint), false).into_iter().map(|formula| formula.text).collect()
+        let (kind, numbers) = (robot.joints[joint - 1].row.kind, Numbers::of(&robot, joint, Function::InverseDynamics));
+        formulas(step, kind, &numbers, false).into_iter().map(|formula| formula.text).collect()
+    }
+
+    #[test]
+    fn tips_of_a_tree_are_in_the_formulas_of_functions_that_take_wrenches() {
+        use Form::{Reduced, SevenSteps};
+        // finger 3 has the tip, and joint 5 is the last
+        assert_eq!(
+            of(TREE, Function::InverseDynamics, 3, SevenSteps)[1..],
+            ["f2,3 = m3 (c̈3 - g3)", "n2,3 = n3 + d3 × f2,3"]
+        );
+        assert_eq!(
+            of(TREE, Function::InverseDynamics, 3, Reduced),
+            ["f3 = m a3 + U3 h", "n3 = antisym(U3 S) + h × a3"]
+        );
+        let [_, force, moment] = of(TREE, Function::InverseDynamicsWithWrench, 3, SevenSteps).try_into().unwrap();
+        assert_eq!(force, "f2,3 = m3 (c̈3 - g3) + R6 f5,6");
+        assert_eq!(moment, "n2,3 = n3 + R6 n5,6 + d3 × f2,3 + r3 × R6 f5,6");
+        assert_eq!(of(TREE, Function::InverseDynamicsWithWrench, 5, SevenSteps)[1], "f1,5 = m5 (c̈5 - g5)");
+        // the payload is a link of its own
+        assert_eq!(of(TREE, Function::InverseDynamicsWithPayload, 3, SevenSteps)[1], "f2,3 = m3 (c̈3 - g3) + f3,6");
+        // joints 3 and 5 have a hand each, in this order
+        for function in [Function::InverseDynamicsWithWrenches, Function::InverseDynamicsOfFloatingBase] {
+            assert_eq!(of(TIPS, function, 3, SevenSteps)[1], "f2,3 = m3 (c̈3 - g3) + R6 ft1");
+            assert_eq!(of(TIPS, function, 5, SevenSteps)[2], "n4,5 = n5 + R7 nt2 + d5 × f4,5 + r5 × R7 ft2");
+            let expected = ["f5 = m a5 + U5 h + R7 ft2", "n5 = antisym(U5 S) + h × a5 + R7 nt2 + p7 × R7 ft2"];
+            assert_eq!(of(TIPS, function, 5, Reduced), expected);
+        }
+        assert_eq!(of(TIPS, Function::InverseDynamics, 5, SevenSteps)[1], "f4,5 = m5 (c̈5 - g5)");
+        // a chain on a floating base is none of `format: 1`
+        let satellite = include_str!("../../docs/satellite.yaml");
+        assert_eq!(of(satellite, Function::InverseDynamics, 2, SevenSteps)[1], "f1,2 = m2 (c̈2 - g2)");
+        assert_eq!(of(satellite, Function::InverseDynamicsWithWrench, 2, Reduced)[0], "f2 = m a2 + U2 h + R3 f2,3");
+        // a tip beside a joint on one link
+        let both = TIPS.replace("on: left_elbow", "on: waist");
+        let [_, force, moment] = of(&both, Function::InverseDynamicsWithWrenches, 1, SevenSteps).try_into().unwrap();
+        assert_eq!(force, "f0,1 = m1 (c̈1 - g1) + f1,2 + f1,4 + R6 ft1");
+        assert!(moment.ends_with("r1 × f1,2 + r1_4 × f1,4 + r1_6 × R6 ft1"), "{moment}");
     }
 
     #[test]
     fn formulas_of_a_tree_name_the_parent_and_all_that_a_link_carries() {
-        // the waist carries both arms, 2 and 5; the right arm carries nothing; finger 3 has the tip, 6
+        // the waist carries both arms, 2 and 5; the right arm carries nothing
         assert_eq!(texts(5, Step::AngularVelocity), ["ω5 = R5ᵀ ω1 + q̇5 e"]);
         assert_eq!(texts(5, Step::Velocity), ["ċ5 = R5ᵀ (ċ1 + ω1 × r1_5) + ω5 × d5"]);
         assert_eq!(texts(2, Step::Velocity), ["ċ2 = R2ᵀ (ċ1 + ω1 × r1) + ω2 × d2"]);
@@ -260,6 +361,5 @@ mod tests {
         assert_eq!(about, "n0,1 = n1 + n1,2 + n1,5 + d1 × f0,1 + r1 × f1,2 + r1_5 × f1,5");
         let [_, force, about] = texts(5, Step::Wrenches).try_into().unwrap();
         assert_eq!((force, about), ("f1,5 = m5 (c̈5 - g5)".to_owned(), "n1,5 = n5 + d5 × f1,5".to_owned()));
-        assert_eq!(texts(3, Step::Wrenches)[1], "f2,3 = m3 (c̈3 - g3) + f3,6");
     }
 }

@@ -358,7 +358,7 @@ fn has_first_moment(robot: &Robot, joint: usize) -> bool {
 
 fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
-    let numbers = Numbers::of(robot, joint);
+    let numbers = Numbers::of(robot, joint, program.function);
     let formulas = match recursion(program) {
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),

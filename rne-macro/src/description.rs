@@ -33,7 +33,12 @@ pub(crate) fn method(robot: &Robot, program: &Program, of_trait: &str) -> String
     let steps = if steps.is_empty() {
         String::new()
     } else {
-        format!("Its steps, for joint i, h = i - 1, j = i + 1:\n\n{}\n\n", rne_emit::verbatim(&steps.join("\n")))
+        let numbers = if robot.is_serial() {
+            "joint i, h = i - 1, j = i + 1"
+        } else {
+            "joint i, its parent h, and each joint or loaded tip j on its link"
+        };
+        format!("Its steps, for {numbers}:\n\n{}\n\n", rne_emit::verbatim(&steps.join("\n")))
     };
     format!(
         "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} \

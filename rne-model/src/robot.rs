@@ -212,6 +212,14 @@ impl Robot {
         self.tip_on.is_none() && self.joints.iter().all(|joint| joint.branch.is_none())
     }
 
+    /// Whether a file of `format: 1` describes it: a chain on a base that is held, whose joints move by themselves,
+    /// each with a motor of its own, and which has one tip.
+    #[must_use]
+    pub fn is_chain(&self) -> bool {
+        let has_more = self.has_couplings() || self.floating_base.is_some();
+        self.is_serial() && !has_more && self.drives.is_empty() && self.tips.is_empty()
+    }
+
     /// The rows alone, base to tip.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &Row> + DoubleEndedIterator {
         self.joints.iter().map(|joint| &joint.row)

@@ -1,10 +1,11 @@
-//! Joint numbers out of a batch's columns: a list per state, or a column per joint.
+//! Numbers of states out of a batch's columns: a list per state, or a column per number.
 
 use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array};
 use datafusion::arrow::buffer::NullBuffer;
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Float64Type};
 use datafusion::common::{Result, exec_err, plan_err};
 use rne::compiled;
+use rne::model::Robot;
 
 /// An argument of a function, of all states of a batch.
 #[derive(Debug)]
@@ -13,7 +14,7 @@ pub(crate) enum Argument<'a> {
     Rows(&'a [f64]),
     /// The same, copied, for the column has gaps.
     Gathered(Vec<f64>),
-    /// A column per joint.
+    /// A column per number.
     Columns(Vec<&'a [f64]>),
 }
 
@@ -34,6 +35,18 @@ impl Argument<'_> {
             Self::Gathered(numbers) => numbers[state * joints + joint],
             Self::Columns(columns) => columns[joint][state],
         }
+    }
+}
+
+/// The numbers that an argument has for a state of a robot, and words that say why.
+fn needed(argument: &str, robot: &Robot) -> (usize, String) {
+    match argument {
+        "q" | "qd" | "qdd" | "tau" => (robot.dof(), format!("{} has {} joints", robot.name, robot.dof())),
+        "wrenches" => {
+            let tips = robot.wrench_frames().len();
+            (6 * tips, format!("`wrenches` has force and moment of each tip, and {} has {tips} tips", robot.name))
+        }
+        _ => (3, format!("`{argument}` is x, y and z")),
     }
 }
 
@@ -75,34 +88,28 @@ fn has_numbers(of: &DataType) -> bool {
     }
 }
 
-/// How many of the columns from `first` on are one argument of a robot with so many joints: one list, or a column per
-/// joint.
-pub(crate) fn width(
-    function: &str,
-    argument: &str,
-    columns: &[Column<'_>],
-    first: usize,
-    robot: &str,
-    joints: usize,
-) -> Result<usize> {
+/// How many of the columns from `first` on are one argument of a robot: one list, or a column per number. Wrenches at
+/// the tips may be left out at the end: the tips are free then.
+fn width(function: &str, argument: &str, columns: &[Column<'_>], first: usize, robot: &Robot) -> Result<usize> {
+    let (length, why) = needed(argument, robot);
     let Some(Column { name, of }) = columns.get(first) else {
-        return plan_err!("{function}: `{argument}` is missing: a list of {joints} numbers, or {joints} columns");
+        if argument == "wrenches" {
+            return Ok(0);
+        }
+        return plan_err!("{function}: `{argument}` is missing: a list of {length} numbers, or {length} columns");
     };
     match of {
-        DataType::FixedSizeList(_, length) if usize::try_from(*length) != Ok(joints) => {
-            plan_err!(
-                "{function}: column `{name}`, given as `{argument}`, has lists of {length} numbers, and {robot} has \
-                 {joints} joints"
-            )
+        DataType::FixedSizeList(_, found) if usize::try_from(*found) != Ok(length) => {
+            plan_err!("{function}: column `{name}`, given as `{argument}`, has lists of {found} numbers, and {why}")
         }
         DataType::List(_) | DataType::LargeList(_) | DataType::FixedSizeList(..) => Ok(1),
         _ => {
-            let found = columns[first..].iter().take(joints).take_while(|column| *column.of == DataType::Float64);
+            let found = columns[first..].iter().take(length).take_while(|column| *column.of == DataType::Float64);
             let found = found.count();
-            if found == joints {
-                Ok(joints)
+            if found == length {
+                Ok(length)
             } else {
-                plan_err!("{function}: `{argument}` has {found} columns, and {robot} has {joints} joints")
+                plan_err!("{function}: `{argument}` has {found} columns, and {why}")
             }
         }
     }
@@ -112,32 +119,33 @@ pub(crate) fn width(
 pub(crate) struct Place<'a> {
     pub(crate) function: &'a str,
     pub(crate) column: &'a str,
-    pub(crate) robot: &'a str,
+    /// Why a list has so many numbers.
+    pub(crate) why: &'a str,
 }
 
 /// The numbers of a list column, and the states of which some are null.
 pub(crate) fn of_list<'a>(
     array: &'a ArrayRef,
-    joints: usize,
+    size: usize,
     place: &Place<'_>,
 ) -> Result<(Argument<'a>, Option<NullBuffer>)> {
     match array.data_type() {
         DataType::FixedSizeList(..) => {
             let list = array.as_fixed_size_list();
-            let wanted = (0..list.len()).map(|state| (state * joints, joints));
-            gather(list.values(), list.nulls(), wanted, list.len(), joints, place)
+            let wanted = (0..list.len()).map(|state| (state * size, size));
+            gather(list.values(), list.nulls(), wanted, list.len(), size, place)
         }
         DataType::List(_) => {
             let list = array.as_list::<i32>();
             let at = |state: usize| usize::try_from(list.value_offsets()[state]).unwrap_or_default();
             let wanted = (0..list.len()).map(|state| (at(state), at(state + 1) - at(state)));
-            gather(list.values(), list.nulls(), wanted, list.len(), joints, place)
+            gather(list.values(), list.nulls(), wanted, list.len(), size, place)
         }
         DataType::LargeList(_) => {
             let list = array.as_list::<i64>();
             let at = |state: usize| usize::try_from(list.value_offsets()[state]).unwrap_or_default();
             let wanted = (0..list.len()).map(|state| (at(state), at(state + 1) - at(state)));
-            gather(list.values(), list.nulls(), wanted, list.len(), joints, place)
+            gather(list.values(), list.nulls(), wanted, list.len(), size, place)
         }
         other => {
             let Place { function, column, .. } = place;
@@ -152,10 +160,10 @@ fn gather<'a>(
     nulls: Option<&NullBuffer>,
     lists: impl Iterator<Item = (usize, usize)> + Clone,
     states: usize,
-    joints: usize,
+    size: usize,
     place: &Place<'_>,
 ) -> Result<(Argument<'a>, Option<NullBuffer>)> {
-    let Place { function, column, robot } = place;
+    let Place { function, column, why } = place;
     let Some(numbers) = values.as_primitive_opt::<Float64Type>() else {
         return exec_err!(
             "{function}: column `{column}` has lists of {}, but must have lists of Float64",
@@ -168,11 +176,10 @@ fn gather<'a>(
     let first = next;
     for (state, (start, length)) in lists.clone().enumerate() {
         if is_null(state) {
-            whole &= length == joints && start == next;
-        } else if length != joints {
+            whole &= length == size && start == next;
+        } else if length != size {
             return exec_err!(
-                "{function}: column `{column}`, row {} of a batch of {states}: {length} numbers, and {robot} has \
-                 {joints} joints",
+                "{function}: column `{column}`, row {} of a batch of {states}: {length} numbers, and {why}",
                 state + 1
             );
         } else {
@@ -190,14 +197,14 @@ fn gather<'a>(
     });
     let nulls = NullBuffer::union(nulls, of_numbers.as_ref());
     let argument = if whole {
-        Argument::Rows(&numbers.values()[first..first + states * joints])
+        Argument::Rows(&numbers.values()[first..first + states * size])
     } else {
-        let mut gathered = Vec::with_capacity(states * joints);
+        let mut gathered = Vec::with_capacity(states * size);
         for (state, (start, _)) in lists.enumerate() {
             if is_null(state) {
-                gathered.resize(gathered.len() + joints, 0.0);
+                gathered.resize(gathered.len() + size, 0.0);
             } else {
-                gathered.extend_from_slice(&numbers.values()[start..start + joints]);
+                gathered.extend_from_slice(&numbers.values()[start..start + size]);
             }
         }
         Argument::Gathered(gathered)
@@ -222,24 +229,28 @@ pub(crate) fn all<'a>(
     names: &[&str],
     columns: &[&str],
     arrays: &'a [ArrayRef],
-    robot: &str,
-    joints: usize,
+    robot: &Robot,
 ) -> Result<(Vec<Argument<'a>>, Option<NullBuffer>)> {
     let given = columns.iter().zip(arrays).map(|(&name, array)| Column { name, of: array.data_type() });
     let given: Vec<Column<'_>> = given.collect();
     let (mut first, mut nulls) = (0, None);
     let mut arguments = Vec::with_capacity(names.len());
     for name in names {
-        let width = width(function, name, &given, first, robot, joints)?;
+        let (length, why) = needed(name, robot);
+        let width = width(function, name, &given, first, robot)?;
+        if width == 0 {
+            arguments.push(Argument::Gathered(vec![0.0; arrays.first().map_or(0, Array::len) * length]));
+            continue;
+        }
         let (these, called) = (&arrays[first..first + width], &columns[first..first + width]);
-        let place = |column| Place { function, column, robot };
+        let place = |column| Place { function, column, why: &why };
         let is_list = !matches!(these[0].data_type(), DataType::Float64);
         if is_list {
-            let (argument, of_argument) = of_list(&these[0], joints, &place(called[0]))?;
+            let (argument, of_argument) = of_list(&these[0], length, &place(called[0]))?;
             nulls = NullBuffer::union(nulls.as_ref(), of_argument.as_ref());
             arguments.push(argument);
         } else {
-            let mut numbers = Vec::with_capacity(joints);
+            let mut numbers = Vec::with_capacity(length);
             for (array, column) in these.iter().zip(called) {
                 let column = of_column(array, &place(column))?;
                 nulls = NullBuffer::union(nulls.as_ref(), column.nulls());
@@ -251,7 +262,7 @@ pub(crate) fn all<'a>(
     }
     if first < arrays.len() {
         return plan_err!(
-            "{function}: {} columns too many after `{}`: each of {} is a list, or {joints} columns",
+            "{function}: {} columns too many after `{}`: each of {} is a list, or a column per number",
             arrays.len() - first,
             columns[first - 1],
             names.join(", ")
@@ -261,19 +272,19 @@ pub(crate) fn all<'a>(
 }
 
 /// Whether columns are the arguments of a function: what [`all`] says of a batch, before there is one.
-pub(crate) fn check(function: &str, names: &[&str], columns: &[Column<'_>], robot: &str, joints: usize) -> Result<()> {
+pub(crate) fn check(function: &str, names: &[&str], columns: &[Column<'_>], robot: &Robot) -> Result<()> {
     if let Some(Column { name, of }) = columns.iter().find(|column| !has_numbers(column.of)) {
         return plan_err!(
-            "{function}: column `{name}` is {of}, but must be lists of numbers; or give one column of numbers per joint"
+            "{function}: column `{name}` is {of}, but must be lists of numbers; or give one column per number"
         );
     }
     let mut first = 0;
     for name in names {
-        first += width(function, name, columns, first, robot, joints)?;
+        first += width(function, name, columns, first, robot)?;
     }
     if first < columns.len() {
         return plan_err!(
-            "{function}: {} columns too many: each of {} is a list, or {joints} columns",
+            "{function}: {} columns too many: each of {} is a list, or a column per number",
             columns.len() - first,
             names.join(", ")
         );

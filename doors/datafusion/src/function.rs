@@ -25,15 +25,11 @@ pub(crate) enum Computation {
 }
 
 impl Computation {
-    /// All that take joint numbers and nothing else.
+    /// All that take numbers of joints, the motion of the base, and wrenches at the tips.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
-        let of_joints = |function: &Function| {
-            let is_of_joints = |input: &Input| {
-                matches!(input, Input::Positions | Input::Rates | Input::Accelerations | Input::Torques)
-            };
-            function.arguments().iter().all(is_of_joints)
-        };
-        Function::ALL.iter().copied().filter(of_joints).map(Self::Of).chain([Self::Residual])
+        let is_left_out = |input: &Input| matches!(input, Input::Sines | Input::Cosines | Input::Payload);
+        let is_there = move |function: &Function| !function.arguments().iter().any(is_left_out);
+        Function::ALL.iter().copied().filter(is_there).map(Self::Of).chain([Self::Residual])
     }
 
     pub(crate) fn name(self) -> &'static str {
@@ -46,16 +42,9 @@ impl Computation {
     /// The names of its arguments, after the robot.
     fn arguments(self) -> Vec<&'static str> {
         match self {
-            Self::Of(function) => function
-                .arguments()
-                .iter()
-                .map(|input| match input {
-                    Input::Rates => "qd",
-                    Input::Accelerations => "qdd",
-                    Input::Torques => "tau",
-                    _ => "q",
-                })
-                .collect(),
+            Self::Of(function) => {
+                function.arguments().iter().flat_map(|input| input.parts()).map(|part| part.name).collect()
+            }
             Self::Residual => vec!["q", "qd", "qdd", "tau"],
         }
     }
@@ -159,7 +148,7 @@ impl ScalarUDFImpl for DynamicsFunction {
         let held = self.held(given.scalar_arguments.first().copied().flatten())?;
         let columns = argument::columns(given.arg_fields);
         let robot = held.arm.robot();
-        argument::check(self.name(), &self.computation.arguments(), &columns, &robot.name, robot.dof())?;
+        argument::check(self.name(), &self.computation.arguments(), &columns, robot)?;
         let of = result::data_type(&self.computation.layout(robot.dof()));
         Ok(Arc::new(Field::new(self.name(), of, true)))
     }
@@ -176,8 +165,7 @@ impl ScalarUDFImpl for DynamicsFunction {
         let arrays = columns.iter().map(|column| column.to_array(states)).collect::<Result<Vec<ArrayRef>>>()?;
         let names: Vec<&str> = arg_fields.iter().skip(1).map(|field| field.name().as_str()).collect();
         let robot = held.arm.robot();
-        let (arguments, nulls) =
-            argument::all(self.name(), &self.computation.arguments(), &names, &arrays, &robot.name, robot.dof())?;
+        let (arguments, nulls) = argument::all(self.name(), &self.computation.arguments(), &names, &arrays, robot)?;
         let numbers = self.computation.run(held, states, &arguments)?;
         let column = result::column(&self.computation.layout(robot.dof()), numbers, states, nulls)?;
         if is_constant {

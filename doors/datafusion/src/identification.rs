@@ -68,7 +68,7 @@ impl AggregateUDFImpl for IdentificationFunction {
         let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?.identified()?;
         let columns = argument::columns(given.expr_fields);
         let robot = held.arm.robot();
-        argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
+        argument::check(NAME, &ARGUMENTS, &columns, robot)?;
         let columns = columns.iter().map(|column| column.name.to_owned()).collect();
         Ok(Box::new(Gathered::new(held, columns)))
     }
@@ -81,7 +81,6 @@ impl AggregateUDFImpl for IdentificationFunction {
 /// What the rows of a group say, so far.
 #[derive(Debug)]
 struct Gathered {
-    robot: String,
     structure: Arc<Structure>,
     information: Information,
     /// The names of the columns after the robot.
@@ -92,7 +91,7 @@ impl Gathered {
     fn new(held: &Held, columns: Vec<String>) -> Self {
         let structure = held.structure();
         let information = Information::unordered(&structure);
-        Self { robot: held.arm.robot().name.clone(), structure, information, columns }
+        Self { structure, information, columns }
     }
 
     fn joints(&self) -> usize {
@@ -131,8 +130,7 @@ impl Accumulator for Gathered {
     fn update_batch(&mut self, values: &[ArrayRef]) -> Result<()> {
         let arrays = values.get(1..).unwrap_or_default();
         let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-        let (arguments, nulls) =
-            argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot, self.structure.robot().dof())?;
+        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, self.structure.robot())?;
         let rows = arrays.first().map_or(0, Array::len);
         let states: Vec<usize> =
             (0..rows).filter(|&state| nulls.as_ref().is_none_or(|nulls| nulls.is_valid(state))).collect();

@@ -73,7 +73,7 @@ impl AggregateUDFImpl for LogIdentification {
         let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?.identified()?;
         let columns = argument::columns(given.expr_fields.get(1..).unwrap_or_default());
         let robot = held.arm.robot();
-        argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
+        argument::check(NAME, &ARGUMENTS, &columns, robot)?;
         let columns = columns.iter().map(|column| column.name.to_owned()).collect();
         let is_stamped =
             given.expr_fields.get(1).is_some_and(|time| matches!(time.data_type(), DataType::Timestamp(..)));
@@ -164,8 +164,8 @@ impl Accumulator for Gathered {
     fn update_batch(&mut self, values: &[ArrayRef]) -> Result<()> {
         let [_, instants, arrays @ ..] = values else { return exec_err!("{NAME}: `time` is missing") };
         let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-        let (joints, name) = (self.robot.dof(), self.robot.name.clone());
-        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, &name, joints)?;
+        let joints = self.robot.dof();
+        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot)?;
         for state in 0..instants.len() {
             let Some(Instant { seconds, rest }) = time::at(NAME, instants, state)? else { continue };
             if nulls.as_ref().is_some_and(|nulls| nulls.is_null(state)) {

@@ -73,7 +73,7 @@ impl WindowUDFImpl for MomentumResidual {
         let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
         let columns = argument::columns(given.input_fields().get(1..).unwrap_or_default());
         let robot = held.arm.robot();
-        argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
+        argument::check(NAME, &ARGUMENTS, &columns, robot)?;
         let columns = columns.iter().map(|column| column.name.to_owned()).collect();
         Ok(Box::new(Partition { robot: robot.clone(), columns }))
     }
@@ -96,7 +96,7 @@ impl PartitionEvaluator for Partition {
         let [_, instants, arrays @ ..] = values else { return exec_err!("{NAME}: `time` is missing") };
         let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
         let joints = self.robot.dof();
-        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot.name, joints)?;
+        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot)?;
         let instants = (0..rows).map(|row| time::at(NAME, instants, row)).collect::<Result<Vec<_>>>()?;
         let is_null = |row: usize| nulls.as_ref().is_some_and(|nulls| nulls.is_null(row));
         let instants: Vec<Option<Instant>> = instants

@@ -105,6 +105,14 @@ fn numbers(column: &ArrayRef) -> Vec<f64> {
     }
 }
 
+/// The numbers of a part of a record, which may be a record itself.
+fn of_record(column: &ArrayRef) -> Vec<f64> {
+    match column.data_type() {
+        DataType::Struct(_) => column.as_struct().columns().iter().flat_map(of_record).collect(),
+        _ => numbers(column),
+    }
+}
+
 #[tokio::test]
 async fn columns_lists_and_slices_give_the_numbers_of_the_arm() -> Result<()> {
     let (context, joints, states) = (context(), 6, 1000);
@@ -154,6 +162,85 @@ async fn a_rod_weighs_what_it_weighs() -> Result<()> {
         one(&context, &format!("SELECT gravity_torques('{rod}', [0])[1] AS tau FROM (VALUES (1), (2))")).await?;
     assert_eq!(found.num_rows(), 2);
     assert!((numbers(found.column(0))[1] - 9.81).abs() < 1e-14);
+    Ok(())
+}
+
+/// A satellite with an arm. Its base takes ω, ω̇ and a - g as lists or as a column per number.
+#[tokio::test]
+async fn a_base_that_floats_has_its_functions() -> Result<()> {
+    let yaml = include_str!("../../../docs/satellite.yaml");
+    let robots = Robots::none().with_yaml(yaml)?;
+    let (context, key) = (SessionContext::new(), robots.key("satellite").expect("it is held"));
+    register(&context, &robots);
+    let states = 5;
+    let lists = [("q", 2), ("qd", 2), ("qdd", 2), ("tau", 2), ("omega", 3), ("omega_dot", 3), ("felt", 3)];
+    let mut columns: Vec<(String, ArrayRef)> = Vec::new();
+    let mut given: Vec<Vec<f64>> = Vec::new();
+    for (at, (name, length)) in lists.into_iter().enumerate() {
+        let rows = random(states * 3 * lists.len())[at * states * 3..][..states * length].to_vec();
+        let list = rows.chunks(length).map(|row| Some(row.iter().copied().map(Some)));
+        columns.push((name.to_owned(), Arc::new(ListArray::from_iter_primitive::<Float64Type, _, _>(list))));
+        for part in 0..length {
+            let column: Vec<f64> = rows.iter().copied().skip(part).step_by(length).collect();
+            columns.push((format!("{name}_{part}"), Arc::new(Float64Array::from(column))));
+        }
+        given.push(rows);
+    }
+    context.register_batch("log", RecordBatch::try_from_iter(columns)?)?;
+    let arm = CompiledArm::from_yaml(yaml).expect("it is right");
+    let zeros = vec![0.0; 6 * states];
+    let array = rne::compiled::Array::Rows;
+    let [q, qd, qdd, tau, omega, omega_dot, felt] = [0, 1, 2, 3, 4, 5, 6].map(|at| array(&given[at]));
+    let all = Arguments::new().q(q).qd(qd).qdd(qdd).tau(tau).omega(omega).wrenches(array(&zeros));
+    let all = all.base_omega(omega).base_omega_dot(omega_dot).base_acceleration(felt);
+    let all = all.base_gravity(array(&zeros[..3 * states]));
+    let mut results = Vec::new();
+    for (function, arguments, parts) in [
+        (Function::InverseDynamicsOfFloatingBase, "q, qd, qdd, omega, omega_dot, felt, [0, 0, 0]", "wrench tau"),
+        (Function::FloatingMassMatrix, "q", ""),
+        (Function::FloatingBias, "q, qd, omega", ""),
+        (Function::FloatingForwardDynamics, "q, qd, tau, omega_0, omega_1, omega_2", "base qdd"),
+        (Function::CentroidalMomentumMatrix, "q", ""),
+        (Function::CentroidalBias, "q, qd_0, qd_1, omega", ""),
+    ] {
+        let mut expected = vec![0.0; states * function.layout(2).len()];
+        arm.run(function, states, &all, Destination::Rows(&mut expected)).expect("it computes");
+        let call = format!("{function}('{key}', {arguments})");
+        let found = one(&context, &format!("SELECT {call} AS it FROM log")).await?;
+        let of_state = |state: usize| -> Vec<f64> {
+            if parts.is_empty() {
+                return numbers(&found.column(0).slice(state, 1));
+            }
+            let record = found.column(0).as_struct();
+            let part = |name: &str| record.column_by_name(name).expect("a part").slice(state, 1);
+            parts.split(' ').flat_map(|name| of_record(&part(name))).collect()
+        };
+        let found: Vec<f64> = (0..states).flat_map(of_state).collect();
+        assert_eq!(found, expected, "{call}");
+        results.push(expected);
+    }
+    // M a + bias = (0, τ)
+    let [_, mass, bias, accelerations, ..] = &results[..] else { panic!("six functions") };
+    for state in 0..states {
+        for row in 0..8 {
+            let products = (0..8).map(|column| mass[64 * state + 8 * row + column] * accelerations[8 * state + column]);
+            let force = products.sum::<f64>() + bias[8 * state + row];
+            let expected = if row < 6 { 0.0 } else { given[3][2 * state + row - 6] };
+            assert!((force - expected).abs() < 1e-11, "row {row}: {force} {expected}");
+        }
+    }
+    for (call, words) in [
+        ("floating_bias('K', q, qd)", vec!["`omega` is missing", "3 numbers"]),
+        ("floating_bias('K', q, qd, q)", vec!["row 1", "2 numbers", "`omega` is x, y and z"]),
+        ("floating_bias('K', q, qd, omega_0, omega_1)", vec!["`omega` has 2 columns"]),
+        ("floating_bias('K', q, qd, omega, omega)", vec!["3 numbers", "satellite has 1 tips"]),
+        ("floating_mass_matrix('K', omega)", vec!["satellite has 2 joints"]),
+    ] {
+        let said = refused(&context, &format!("SELECT {} FROM log", call.replace('K', &key))).await;
+        for word in words {
+            assert!(said.contains(word), "{call}: {said}");
+        }
+    }
     Ok(())
 }
 

@@ -36,8 +36,9 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
 /// whole : bool
 ///     Of a URDF: take all links after the base, a tree, and not one arm. `tip` is then the link that carries the tip.
-/// floating : bool
-///     Of a URDF, with `whole`: nothing holds the root link, which becomes the floating base.
+/// floating : bool, optional
+///     Of a URDF, with `whole`: True makes the root link, or the link that floats in the file, the floating base. False
+///     fixes it. The default is what the file says: the base floats if a floating joint or a free joint moves it there.
 /// lock : dict of str to float, optional
 ///     Of a URDF: movable joints that are held still, rad or m.
 /// lock_others : bool
@@ -71,7 +72,7 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
 ///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`.
 #[pyfunction]
-#[pyo3(signature = (source, *, tip=None, base=None, whole=false, floating=false, lock=None, lock_others=false,
+#[pyo3(signature = (source, *, tip=None, base=None, whole=false, floating=None, lock=None, lock_others=false,
     convention=None, snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced",
     rotors=false))]
 #[allow(clippy::fn_params_excessive_bools)] // keywords of Python
@@ -81,7 +82,7 @@ pub(crate) fn load(
     tip: Option<String>,
     base: Option<String>,
     whole: bool,
-    floating: bool,
+    floating: Option<bool>,
     lock: Option<BTreeMap<String, f64>>,
     lock_others: bool,
     convention: Option<&str>,
@@ -135,7 +136,12 @@ pub(crate) fn load(
     let imported = imported.map_err(|report| of_report(py, &report))?;
     let held = imported.account.held.iter().cloned().collect();
     let snapping = imported.account.snapping().map(|told| format!("{told}; `snap=False` keeps the angles of the file"));
-    let notes = snapping.into_iter().chain(imported.account.remarks.iter().cloned()).collect();
+    let floats = imported.account.floats.map(|floats| match (floats, whole) {
+        (true, _) => "`floating=False` fixes the base where the file has it".to_owned(),
+        (false, true) => "without `floating=False`, the link that floats is the floating base".to_owned(),
+        (false, false) => "with `whole=True`, the link that floats is the floating base of the whole robot".to_owned(),
+    });
+    let notes = snapping.into_iter().chain(floats).chain(imported.account.remarks.iter().cloned()).collect();
     let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, ..origin })?;
     // nobody has written the lines of this robot file, and `snap` has decided on its angles
     let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");

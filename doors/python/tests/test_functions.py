@@ -1,5 +1,7 @@
 """Laws that tie the functions together, and the shapes of their results."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -268,3 +270,103 @@ def test_limits_of_the_file():
     assert np.array_equal(arm.limits, [[-1, 2], [-np.inf, np.inf]])
     assert np.array_equal(arm.velocity_limits, [3, np.inf])
     assert np.array_equal(arm.effort_limits, [40, np.inf])
+
+
+# Of a base that floats: the arguments, and the parts of the result, whose numbers are those of the base, then the joints.
+FLOATING = {
+    "inverse_dynamics_of_floating_base": ("q qd qdd", lambda n: [(6,), (n,)]),
+    "floating_mass_matrix": ("q", lambda n: [(6 + n, 6 + n)]),
+    "floating_bias": ("q qd omega", lambda n: [(6 + n,)]),
+    "floating_forward_dynamics": ("q qd tau omega", lambda n: [(6,), (n,)]),
+    "centroidal_momentum_matrix": ("q", lambda n: [(6, 6 + n)]),
+    "centroidal_bias": ("q qd omega", lambda n: [(6,)]),
+}
+
+
+def cross(vector):
+    """The matrix of vector ×."""
+    x, y, z = vector
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def floating(arm):
+    """The parts of each function of FLOATING at N states, and the states."""
+    given = states(arm.dof) | {"omega": random.normal(size=(N, 3))}
+    motion = {f"base_{name}": random.normal(size=(N, 3)) for name in ("omega_dot", "acceleration", "gravity")}
+    motion["base_omega"] = given["omega"]
+    results = {}
+    for function, (arguments, shapes) in FLOATING.items():
+        more = motion if function == "inverse_dynamics_of_floating_base" else {}
+        call = lambda at: getattr(arm, function)(*(given[name][at] for name in arguments.split()),
+                                                 **{name: vector[at] for name, vector in more.items()})
+        parts = call(slice(None))
+        parts = parts if isinstance(parts, tuple) else (parts,)
+        assert [part.shape for part in parts] == [(N, *shape) for shape in shapes(arm.dof)], function
+        # a state alone is the same among many
+        alone = call(17)
+        alone = alone if isinstance(alone, tuple) else (alone,)
+        assert all(np.array_equal(one, part[17]) for one, part in zip(alone, parts)), function
+        results[function] = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
+    return results, given, motion
+
+
+def test_a_body_in_free_flight_obeys_newton_and_euler():
+    """One body, whose arm weighs nothing: each function in closed form, about the origin of frame 0."""
+    mass, com = 3.0, np.array([0.1, -0.2, 0.3])
+    inertia = np.array([[0.5, 0.02, -0.03], [0.02, 0.6, 0.04], [-0.03, 0.04, 0.7]])
+    arm = rne.load(f"""
+format: 2
+name: body
+source: own
+convention: modified
+gravity: [0, 0, 0]
+floating_base:
+  name: bus
+  link: {{mass: {mass}, com: {com.tolist()}, inertia: {{xx: 0.5, yy: 0.6, zz: 0.7, xy: 0.02, xz: -0.03, yz: 0.04}}}}
+joints: [{{type: revolute, dh: {{theta: 0, d: 0.2, a: 0.1, alpha: 0.3}}, link: {{mass: 0}}}}]
+""")
+    results, given, motion = floating(arm)
+    about_origin = inertia - mass * cross(com) @ cross(com)
+    block = np.block([[mass * np.eye(3), -mass * cross(com)], [mass * cross(com), about_origin]])
+    matrix = np.zeros((7, 7))
+    matrix[:6, :6] = block
+    close(results["floating_mass_matrix"], np.tile(matrix, (N, 1, 1)))
+    centroidal = np.zeros((6, 7))
+    centroidal[:3, :6], centroidal[3:, 3:6] = block[:3], inertia
+    close(results["centroidal_momentum_matrix"], np.tile(centroidal, (N, 1, 1)))
+    omega, felt = given["omega"], motion["base_acceleration"] - motion["base_gravity"]
+    turning = np.cross(omega, np.cross(omega, com))
+    gyroscopic = np.cross(omega, omega @ inertia)
+    zero = np.zeros((N, 1))
+    force = mass * (felt + np.cross(motion["base_omega_dot"], com) + turning)
+    moment = motion["base_omega_dot"] @ inertia + gyroscopic + np.cross(com, force)
+    close(results["inverse_dynamics_of_floating_base"], np.hstack([force, moment, zero]))
+    close(results["centroidal_bias"], np.hstack([mass * turning, gyroscopic]))
+    close(results["floating_bias"], np.hstack([mass * turning, gyroscopic + np.cross(com, mass * turning), zero]))
+
+
+def test_laws_of_a_base_that_floats():
+    arm = rne.load(Path(__file__).parents[3] / "docs/satellite.yaml")
+    results, given, motion = floating(arm)
+    mass, bias = results["floating_mass_matrix"], results["floating_bias"]
+    times = lambda matrices, vectors: np.einsum("nij,nj->ni", matrices, vectors)
+    felt = motion["base_acceleration"] - motion["base_gravity"]
+    accelerations = np.hstack([felt, motion["base_omega_dot"], given["qdd"]])
+    forces = results["inverse_dynamics_of_floating_base"]
+    close(times(mass, accelerations) + bias, forces)
+    # in free flight nothing acts on the base
+    free = np.hstack([np.zeros((N, 6)), given["tau"]])
+    solved = np.linalg.solve(mass, (free - bias)[..., None])[..., 0]
+    error = np.abs(results["floating_forward_dynamics"] - solved).max(axis=1)
+    assert (error <= 1e-13 * np.linalg.cond(mass) * np.abs(solved).max(axis=1)).all()
+    # the base that stands still is that of the arm
+    close(mass[:, 6:, 6:], arm.mass_matrix(given["q"]))
+    # the rate of the momentum about the centre of mass is the force, and its moment about that
+    com, force, moment = arm.centre_of_mass(given["q"]), forces[:, :3], forces[:, 3:6]
+    rate = times(results["centroidal_momentum_matrix"], accelerations) + results["centroidal_bias"]
+    close(rate, np.hstack([force, moment - np.cross(com, force)]))
+    # the momentum itself is M v of the base, about the centre of mass
+    velocities = np.hstack([random.normal(size=(N, 3)), given["omega"], given["qd"]])
+    momentum = times(mass, velocities)[:, :6]
+    found = times(results["centroidal_momentum_matrix"], velocities)
+    close(found, np.hstack([momentum[:, :3], momentum[:, 3:] - np.cross(com, momentum[:, :3])]))

@@ -47,13 +47,44 @@ def test_mujoco(name):
 
 def test_mujoco_is_refused():
     mujoco = pytest.importorskip("mujoco")
-    model = mujoco.MjModel.from_xml_path(str(MODELS / "gripper.xml"))
-    with pytest.raises(ValueError, match="the body 'arm' floats"):
-        rne.from_mujoco(model)
     text = (MODELS / "geoms.xml").read_text().replace(
         "</mujoco>", "<equality><weld body1='a' body2='d'/></equality></mujoco>")
     with pytest.raises(rne.RobotFileError, match="closes a loop"):
         rne.from_mujoco(mujoco.MjModel.from_xml_string(text))
+
+
+def of_base(arm, state, base):
+    """Force, moment and torques, in one vector."""
+    wrench, tau = arm.inverse_dynamics_of_floating_base(*state, **base)
+    return np.concatenate([wrench, tau])
+
+
+def of_turned(quaternion, force):
+    """A force in world axes, in those of the base with this orientation (w, x, y, z)."""
+    w, v = quaternion[0], -np.asarray(quaternion[1:])
+    return force + 2 * np.cross(v, np.cross(v, force) + w * force)
+
+
+def test_mujoco_floats():
+    """A free joint gives a floating base, and `floating=False` fixes it."""
+    mujoco = pytest.importorskip("mujoco")
+    text = (MODELS / "geoms.xml").read_text().replace('<joint name="j1" axis="0 1 0"/>', "<freejoint/>")
+    text = text.replace('<body name="a">', '<body name="a" pos="1 2 3" euler="0.7 -0.4 0.3">')
+    model = mujoco.MjModel.from_xml_string(text)
+    arm = rne.from_mujoco(model)
+    qpos, qvel, qacc = np.random.default_rng(4).uniform(-1, 1, (3, model.nv + 1))
+    qpos[3:7] /= np.linalg.norm(qpos[3:7])
+    qvel, qacc = qvel[:-1], qacc[:-1]
+    tau = mujoco_torques(mujoco, model, qpos, qvel, qacc)
+    tau[:3] = of_turned(qpos[3:7], tau[:3])
+    base = rne.base_from_mujoco(qpos, qvel, qacc, gravity=model.opt.gravity)
+    close(of_base(arm, (qpos[7:], qvel[6:], qacc[6:]), base), tau)
+    assert any("floats in the file, so the robot has a floating base" in note for note in arm.notes)
+    fixed = rne.from_mujoco(model, floating=False)
+    assert "floating_base" in arm.yaml and "floating_base" not in fixed.yaml
+    # where it stands in the file, it has the same torques
+    qpos, qvel, qacc = np.concatenate([model.qpos0[:7], qpos[7:]]), qvel * 0, qacc * 0
+    close(fixed.inverse_dynamics(qpos[7:], qvel[6:], qacc[6:]), mujoco_torques(mujoco, model, qpos, qvel, qacc)[6:])
 
 
 def test_mujoco_couples():
@@ -127,7 +158,20 @@ def test_pinocchio(mimic):
 def test_pinocchio_is_refused():
     pin = pytest.importorskip("pinocchio")
     text = URDF.format(links="".join(LINK.format(i) for i in range(1, 6)))
-    with pytest.raises(ValueError, match="'root_joint' is a free-flyer"):
-        rne.from_pinocchio(pin.buildModelFromXML(text, pin.JointModelFreeFlyer()))
     with pytest.raises(ValueError, match="'root_joint' is a JointModelPlanar"):
         rne.from_pinocchio(pin.buildModelFromXML(text, pin.JointModelPlanar()))
+
+
+def test_pinocchio_floats():
+    """A free-flyer gives a floating base, and `floating=False` fixes it."""
+    pin = pytest.importorskip("pinocchio")
+    text = URDF.format(links="".join(LINK.format(i) for i in range(1, 6)))
+    text = text.replace('<link name="base"/>', LINK.format(6).replace("l6", "base"))
+    model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+    arm = rne.from_pinocchio(model, tip="hand")
+    state = q, qd, qdd = states(arm)
+    full = pin.integrate(model, pin.neutral(model), np.concatenate([[0.4, 0.5, 0.6, 0.7, 0.8, 0.9], q]))
+    v, a = np.concatenate([[0.1, -0.2, 0.3, -0.4, 0.5, 0.6], qd]), np.concatenate([[1, 2, -3, 4, -5, 6], qdd])
+    base = rne.base_from_pinocchio(full, v, a, gravity=model.gravity.linear)
+    close(of_base(arm, state, base), pin.rnea(model, model.createData(), full, v, a))
+    assert "floating_base" not in rne.from_pinocchio(model, tip="hand", floating=False).yaml

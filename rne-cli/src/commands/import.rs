@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     /// URDF file, or MJCF file, whose root element is mujoco; - is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Fixed link at the base of the arm [default: the root link, or the body that floats]
+    /// Link at the base of the arm [default: the root link, or the link that floats]
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
     /// Last link of the arm [default: the last link, if the file has only one end]; with --whole, several give `tips`
@@ -48,9 +48,12 @@ pub(crate) struct Arguments {
     /// Convert the whole robot after the base, a tree, and not one arm; --tip then says where the tip is
     #[arg(long)]
     whole: bool,
-    /// With --whole: nothing holds the root link, which becomes the floating base
-    #[arg(long, requires = "whole", conflicts_with = "base")]
+    /// With --whole: nothing holds the root link, which becomes the floating base [default: as in the file]
+    #[arg(long, requires = "whole")]
     floating: bool,
+    /// With --whole: fix a base that floats in the file
+    #[arg(long, requires = "whole", conflicts_with = "floating")]
+    fixed: bool,
     /// Denavit-Hartenberg convention of the new table: standard or modified [default: standard; modified for a tree]
     #[arg(long, value_name = "C", value_parser = convention(), hide_possible_values = true)]
     convention: Option<Convention>,
@@ -63,7 +66,7 @@ pub(crate) struct Arguments {
     /// Keep angles that are nearly exact: 1.5708 stays 1.5708 and does not become pi/2
     #[arg(long)]
     no_snap: bool,
-    /// Keep the links of the arm, and the links fixed to them, as named frames in the list `frames` of the robot file
+    /// Keep the links, and links fixed to them, as named frames: the list `frames` of the robot file
     #[arg(long)]
     frames: bool,
     /// Accept inertias that no physical body can have
@@ -98,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         lock: arguments.lock.clone(),
         lock_others: arguments.lock_others,
         whole: arguments.whole,
-        floating: arguments.floating,
+        floating: (arguments.floating || arguments.fixed).then_some(arguments.floating),
     };
     let usual = if arguments.whole { Convention::Modified } else { Convention::Standard };
     urdf.check_names(&selection).map_err(|report| Failure::unknown_name(&report))?;
@@ -116,8 +119,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ..Options::default()
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
-    let remark =
-        format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account, arguments.frames));
+    let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account, arguments));
     arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 
@@ -153,8 +155,18 @@ fn frames(account: &Account, keeps_frames: bool) -> String {
     text
 }
 
+/// The option that changes whether the link that floats in the file is a floating base.
+fn other_base(account: &Account, whole: bool) -> Option<String> {
+    let text = match (account.floats?, whole) {
+        (true, _) => format!("{TYPED}--fixed{TYPED:#} fixes the base where the file has it"),
+        (false, true) => format!("without {TYPED}--fixed{TYPED:#}, it is the floating base"),
+        (false, false) => format!("with {TYPED}--whole{TYPED:#}, it is the floating base of the whole robot"),
+    };
+    Some(text)
+}
+
 /// The account of an import, line by line.
-fn told(account: &Account, keeps_frames: bool) -> String {
+fn told(account: &Account, arguments: &Arguments) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "from {} to {}", account.base, account.tip);
     for (joint, links) in &account.lumped {
@@ -169,7 +181,7 @@ fn told(account: &Account, keeps_frames: bool) -> String {
     if !account.aside.is_empty() {
         let _ = writeln!(text, "  on the base, left out: {}", account.aside.join(", "));
     }
-    text += &frames(account, keeps_frames);
+    text += &frames(account, arguments.frames);
     if let Some(change) = &account.change {
         let _ = writeln!(text, "{TITLE}snapped{TITLE:#} to multiples of pi/12, {TYPED}--no-snap{TYPED:#} keeps them:");
         for snapped in account.snapped.iter().take(SHOWN) {
@@ -187,6 +199,7 @@ fn told(account: &Account, keeps_frames: bool) -> String {
     for remark in &account.remarks {
         let _ = writeln!(text, "{TITLE}note{TITLE:#}: {remark}");
     }
+    text.extend(other_base(account, arguments.whole).map(|option| format!("{TITLE}note{TITLE:#}: {option}\n")));
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", rounding(&account.rounding));
     let lints = account.lints.warnings().count();
     if lints > 0 {

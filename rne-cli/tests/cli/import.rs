@@ -110,6 +110,39 @@ fn several_tips_are_of_a_whole_robot() {
     fails(2, &unknown, &["no link `tipp` that could be the tip", "did you mean `tip`?"]);
 }
 
+/// A link that a floating joint moves is the floating base of a whole robot, unless an option fixes it.
+#[test]
+fn a_base_that_floats_in_the_file_floats() {
+    let urdf = folder("import_floating").join("arm.urdf");
+    let joint = "<link name=\"world\"/><joint name=\"free\" type=\"floating\"><parent link=\"world\"/>\
+                 <child link=\"base\"/></joint></robot>";
+    fs::write(&urdf, URDF.replace("</robot>", joint)).expect("written");
+    let urdf = urdf.to_str().expect("UTF-8");
+    let whole = |more: &[&str]| {
+        let called = rne(&[&["import", urdf, "--whole", "--tip", "tip"], more].concat());
+        assert_eq!(called.status, 0, "{called:?}");
+        (called.out, called.err.split_whitespace().collect::<Vec<_>>().join(" "))
+    };
+    let (floats, told) = whole(&[]);
+    assert!(floats.contains("floating_base:\n  name: base\n"), "{floats}");
+    let note = "the link `base` floats in the file, so the robot has a floating base";
+    assert!(floats.contains(note) && told.contains(note), "{floats}{told}");
+    assert!(told.contains("note: --fixed fixes the base where the file has it"), "{told}");
+    assert_eq!(whole(&["--floating"]).0, floats);
+    let (fixed, told) = whole(&["--fixed"]);
+    assert!(!fixed.contains("floating_base"), "{fixed}");
+    assert!(
+        told.contains("rne fixes it where the file has it note: without --fixed, it is the floating base"),
+        "{told}"
+    );
+    let arm = rne(&["import", urdf, "--tip", "tip", "--lock-others"]);
+    assert!(!arm.out.contains("floating_base") && arm.err.contains("with --whole"), "{arm:?}");
+    fails(2, &["import", urdf, "--whole", "--fixed", "--floating"], &["cannot be used with"]);
+    fails(2, &["import", urdf, "--tip", "tip", "--fixed"], &["--whole"]);
+    let elsewhere = ["import", urdf, "--whole", "--floating", "--base", "upper", "--lock-others"];
+    fails(1, &elsewhere, &["a floating base is the root link of a whole robot", "name no other base"]);
+}
+
 #[test]
 fn a_robot_file_that_is_there_stays() {
     let folder = folder("import_kept");

@@ -157,6 +157,14 @@ impl<'a> Bodies<'a> {
                     let help = "MuJoCo takes a free joint as the only joint of a body in `worldbody`".to_owned();
                     return Err(joint.refused(message, help));
                 }
+                for attribute in ["armature", "damping", "frictionloss", "stiffness"] {
+                    if joint
+                        .numbers(attribute, 1, 3)?
+                        .is_some_and(|numbers| numbers.iter().any(|&number| number != 0.0))
+                    {
+                        self.left_out.add("armature, friction and springs of free joints are left out", name);
+                    }
+                }
                 let link = self.link(name.to_owned(), body)?;
                 self.fixed(on, link, before);
                 self.floating.push(link);
@@ -336,26 +344,14 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// The base is the body that floats, where it alone carries joints; else the world.
+    /// Makes the body that floats and carries all joints the base of the robot.
     fn find_base(&mut self) {
-        let carries = |&link: &usize| {
-            let mut joints = 0;
-            let mut open = vec![link];
-            while let Some(link) = open.pop() {
-                let below = self.urdf.links[link].children.iter().map(|&joint| &self.urdf.joints[joint]);
-                joints += below.clone().filter(|joint| joint.kind.has_one_freedom()).count();
-                open.extend(below.map(|joint| joint.child));
-            }
-            joints
-        };
-        let all = carries(&0);
-        let base = self.floating.iter().copied().find(|link| all > 0 && carries(link) == all);
-        self.urdf.base = base.unwrap_or(0);
-        for &link in &self.floating {
+        self.urdf.find_floating(&self.floating);
+        for &link in self.floating.iter().filter(|&&link| self.urdf.floats != Some(link)) {
             let name = quoted(&self.urdf.links[link].name);
             self.urdf.remarks.push(format!(
-                "the body {name} floats, because it has a free joint; rne fixes it where the file has it, because the \
-                 base of a robot file does not move"
+                "the body {name} has a free joint, and rne fixes it where the file has it: only a body that carries \
+                 all other joints can be a floating base"
             ));
         }
     }

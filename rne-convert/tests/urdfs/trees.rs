@@ -7,7 +7,7 @@ fn again(robot: &Robot) -> Robot {
     let exported = rne_convert::export(robot).unwrap_or_else(|error| panic!("{}: {error}", robot.name));
     let selection = Selection {
         whole: true,
-        floating: robot.floating_base.is_some(),
+        floating: Some(robot.floating_base.is_some()),
         tip: Some("tip".to_owned()),
         ..Selection::default()
     };
@@ -150,4 +150,58 @@ fn a_floating_base_is_the_root_of_a_urdf() {
             assert!(f64::abs(a - b) < 1e-11, "{a} {b}");
         }
     }
+}
+
+/// A floating joint on a root without mass makes the base float: the same robot as without this root and joint.
+#[test]
+fn a_floating_joint_makes_the_base_float() {
+    let inertial = "<inertial><origin xyz='0.1 0 0.2'/><mass value='2'/>
+<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0.1' iyz='0'/></inertial>";
+    let hinge = |name: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='continuous'><origin xyz='0.3 0 0' rpy='0.1 0.2 0.3'/><parent link='trunk'/>
+<child link='{child}'/><axis xyz='0 1 0'/></joint><link name='{child}'>{inertial}</link>"
+        )
+    };
+    let trunk = format!("<link name='trunk'>{inertial}</link>{}{}", hinge("a", "left"), hinge("b", "right"));
+    let world = |root: &str, kind: &str| {
+        format!(
+            "<robot name='r'>{root}
+<joint name='f' type='{kind}'><origin xyz='0 0 1' rpy='0 0 0.5'/><parent link='world'/><child link='trunk'/></joint>
+{trunk}</robot>"
+        )
+    };
+    let alone = format!("<robot name='r'>{trunk}</robot>");
+    let import = |text: &str, floating| {
+        let selection = Selection { floating, whole: true, tip: Some("left".to_owned()), ..Selection::default() };
+        let options = Options { selection, convention: Convention::Modified, ..Options::default() };
+        Urdf::read("r.urdf", text).and_then(|urdf| urdf.import(&options))
+    };
+    let floats = world("<link name='world'/>", "floating");
+    let expected = import(&alone, Some(true)).unwrap();
+    assert_eq!(expected.account.floats, None, "the file does not say so");
+    for floating in [None, Some(true)] {
+        let imported = import(&floats, floating).unwrap();
+        assert_eq!(imported.account.floats, Some(true));
+        let robot = Robot { notes: expected.robot.notes.clone(), ..imported.robot };
+        assert_eq!(robot, expected.robot);
+    }
+    // fixed, and as one arm, it is the robot of a fixed joint
+    for whole in [true, false] {
+        let [one, other] = ["floating", "fixed"].map(|kind| {
+            let base = Selection { base: Some("trunk".to_owned()), ..Selection::default() };
+            let selection = Selection { floating: Some(false), whole, lock_others: true, ..base };
+            let selection = Selection { tip: Some("left".to_owned()), ..selection };
+            let options = Options { selection, convention: Convention::Modified, ..Options::default() };
+            let urdf = Urdf::read("r.urdf", &world("<link name='world'/>", kind)).unwrap();
+            urdf.import(&options).unwrap()
+        });
+        assert_eq!([one.account.floats, other.account.floats], [Some(false), None]);
+        assert_eq!(Robot { notes: None, ..one.robot }, Robot { notes: None, ..other.robot });
+    }
+    // a root with mass is a second body, and no world
+    let heavy = world(&format!("<link name='world'>{inertial}</link>"), "floating");
+    let said = import(&heavy, None).unwrap_err().to_string();
+    assert!(said.contains("joints with more than one freedom") && said.contains("`f`"), "{said}");
+    assert!(import(&alone, None).unwrap().robot.floating_base.is_none());
 }

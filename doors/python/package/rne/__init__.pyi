@@ -342,7 +342,7 @@ def load(
     tip: str | None = ...,
     base: str | None = ...,
     whole: bool = ...,
-    floating: bool = ...,
+    floating: bool | None = ...,
     lock: Mapping[str, float] | None = ...,
     lock_others: bool = ...,
     convention: Convention | None = ...,

@@ -16,11 +16,13 @@ def from_mujoco(model, **options):
     is `arm.joints`. `armature` is the rotor of a joint's motor: `rotors=True` has it in the torques. A joint that
     follows another one by an equality has its torque at that one, and no place in q.
 
-    model: the compiled model, without joints that float or turn as balls.
+    A body with a free joint that carries all other joints is the floating base, whose motion `rne.base_from_mujoco`
+    makes of `qpos`, `qvel` and `qacc`; `floating=False` fixes it.
+
+    model: the compiled model, without joints that turn as balls.
     options: those of `rne.load`; here `whole` is true and `snap` is false by default.
 
-    Raises ValueError where a body floats, and `RobotFileError` where a robot file cannot describe the model, such as a
-    closed loop.
+    Raises `RobotFileError` where a robot file cannot describe the model, such as a closed loop.
     """
     import mujoco
 
@@ -34,15 +36,12 @@ def from_mujoco(model, **options):
         body.attributes["gravcomp"] = model.body_gravcomp[i]
     for i in range(model.njnt):
         name, kind, dof = model.joint(i).name or f"joint_{i}", _KINDS[int(model.jnt_type[i])], model.jnt_dofadr[i]
+        values = {"armature": model.dof_armature[dof], "damping": model.dof_damping[dof]}
+        values |= {"frictionloss": model.dof_frictionloss[dof], "stiffness": model.jnt_stiffness[i]}
         if kind == "free":
-            floats = bodies[model.jnt_bodyid[i]].attributes["name"]
-            raise ValueError(
-                f"the body {floats!r} floats, by the joint {name!r}, but the base of a robot file does not move: "
-                "compile the model without this joint"
-            )
-        values = {"pos": model.jnt_pos[i], "axis": model.jnt_axis[i], "armature": model.dof_armature[dof]}
-        values |= {"damping": model.dof_damping[dof], "frictionloss": model.dof_frictionloss[dof]}
-        values |= {"ref": model.qpos0[model.jnt_qposadr[i]], "stiffness": model.jnt_stiffness[i]}
+            bodies[model.jnt_bodyid[i]].add("joint", name=name, type=kind, **values)
+            continue
+        values |= {"pos": model.jnt_pos[i], "axis": model.jnt_axis[i], "ref": model.qpos0[model.jnt_qposadr[i]]}
         if model.jnt_limited[i]:
             values |= {"range": model.jnt_range[i], "limited": "true"}
         if model.jnt_actfrclimited[i]:
@@ -93,10 +92,13 @@ def from_pinocchio(model, **options):
     square of `rotorGearRatio`, is the rotor of a joint's motor: `rotors=True` has it in the torques, as Pinocchio has
     `armature` in them. A joint that follows another one has its torque at that one, and no place in q.
 
-    model: joints that turn or slide about one axis; a model that was built without a free-flyer.
+    A free-flyer that carries all other joints is the floating base, whose motion `rne.base_from_pinocchio` makes of
+    Pinocchio's vectors; `floating=False` fixes it.
+
+    model: joints that turn about one axis or slide along it, after a free-flyer or not.
     options: those of `rne.load`; here `whole` is true and `snap` is false by default.
 
-    Raises ValueError where a joint has more than one freedom.
+    Raises ValueError where another joint has more than one freedom.
     """
     bodies = [_Body("universe", np.zeros(3), _IDENTITY)]
     equalities = []
@@ -109,14 +111,12 @@ def from_pinocchio(model, **options):
         inertia = model.inertias[i]
         moments = inertia.inertia[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)]
         body.add("inertial", pos=inertia.lever, mass=inertia.mass, fullinertia=moments)
+        kind = joint.shortname()
+        if "FreeFlyer" in kind and model.parents[i] == 0:
+            body.add("freejoint", name=name)
+            continue
         motion = np.asarray(joint.createData().S, dtype=float).reshape(6, -1)
         if motion.shape[1] != 1:
-            kind = joint.shortname()
-            if "FreeFlyer" in kind:
-                raise ValueError(
-                    f"the joint {name!r} is a free-flyer, but the base of a robot file does not move: build the model "
-                    "without it"
-                )
             raise ValueError(f"the joint {name!r} is a {kind}: a robot file has joints of one freedom")
         values = {}
         motion = motion[:, 0]
