@@ -258,6 +258,9 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::FloatingMassMatrix => arm.floating_mass_matrix(q)?.concat(),
         Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q)?.concat(),
         Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega)?.to_vec(),
+        Function::FloatingRegressor => {
+            arm.floating_regressor(q, qd, qdd, base)?.into_iter().flatten().flatten().collect()
+        }
         Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &[*wrench])?,
         Function::FloatingForwardDynamics => {
             let (base, qdd) = arm.floating_forward_dynamics(q, qd, tau, &base.omega, &[*wrench])?;

@@ -93,6 +93,10 @@ impl Target<'_> {
         match capability {
             Capability::FloatingBase => quote!(#dof, #velocities, #tips),
             Capability::CentroidalMomentum => quote!(#dof, #velocities),
+            Capability::FloatingRegressor => {
+                let bodies = bodies(dof);
+                quote!(#dof, #velocities, #bodies)
+            }
             _ if capability.has_tips() => quote!(#dof, #tips),
             _ => quote!(#dof),
         }
@@ -111,8 +115,11 @@ impl Target<'_> {
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
-        if matches!(capability, Capability::FloatingBase | Capability::CentroidalMomentum) {
+        if capability.has_velocities() {
             generics.params.push(syn::parse_quote!(const __VELOCITIES: ::core::primitive::usize));
+        }
+        if capability == Capability::FloatingRegressor {
+            generics.params.push(syn::parse_quote!(const __BODIES: ::core::primitive::usize));
         }
         if capability.has_tips() {
             generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
@@ -313,6 +320,10 @@ impl Target<'_> {
                         let velocities = velocities(dof);
                         quote!([#of; #velocities])
                     }
+                    Length::Bodies => {
+                        let bodies = bodies(dof);
+                        quote!([#of; #bodies])
+                    }
                     Length::Fixed(length) => {
                         let length = Literal::usize_unsuffixed(*length);
                         quote!([#of; #length])
@@ -483,8 +494,18 @@ impl Constants {
 /// The number of velocities of a robot whose base nothing holds: six of the base, and those of its joints. Of a robot
 /// that is not known, a parameter.
 fn velocities(dof: &TokenStream) -> TokenStream {
+    length(Length::Velocities, dof, quote!(__VELOCITIES))
+}
+
+/// The number of bodies of such a robot, as [`velocities`].
+fn bodies(dof: &TokenStream) -> TokenStream {
+    length(Length::Bodies, dof, quote!(__BODIES))
+}
+
+/// A length for a number of joints; `unknown` if that is a parameter.
+fn length(length: Length, dof: &TokenStream, unknown: TokenStream) -> TokenStream {
     let dof = dof.to_string().parse::<usize>();
-    dof.map_or_else(|_| quote!(__VELOCITIES), |dof| Literal::usize_unsuffixed(6 + dof).into_token_stream())
+    dof.map_or(unknown, |dof| Literal::usize_unsuffixed(length.of(dof)).into_token_stream())
 }
 
 /// A number that reads back as the same bits, or infinity.

@@ -243,6 +243,19 @@ pub fn derive_centroidal_momentum(input: TokenStream) -> TokenStream {
     expand::capability(Capability::CentroidalMomentum, input.into()).into()
 }
 
+/// Implements the trait `FloatingRegressor` for a struct: the wrench on a base that nothing holds and the torques per
+/// inertial parameter of the base and of each link.
+///
+/// The base is frame 0, whether or not the robot file has a `floating_base`: no inertial parameter enters.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `FLOATING_REGRESSOR_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(FloatingRegressor, attributes(robot))]
+pub fn derive_floating_regressor(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingRegressor, input.into()).into()
+}
+
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.
 ///
 /// The robot file needs a `motor` at one joint at least.

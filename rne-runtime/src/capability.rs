@@ -465,6 +465,25 @@ pub trait CentroidalMomentum<const DOF: usize, const NV: usize> {
     fn centroidal_bias<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], omega: &[T; 3]) -> [T; 6];
 }
 
+/// The wrench on a base that nothing holds and the torques as a linear function of the inertial parameters, for their
+/// identification from the motion of the robot. `NV` = `DOF` + 6 rows are those of [`FloatingBase`], `BODIES` = `DOF` +
+/// 1.
+pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usize> {
+    /// Y: row i of [force, moment, torques](FloatingBase::inverse_dynamics_of_floating_base), with free tips, is Σ_j
+    /// Σ_k Y\[i\]\[j\]\[k\] π_jk. The base is the first body, then come the links, each with the ten parameters of
+    /// [`regressor`](Regressor::regressor); those of the base refer to frame 0.
+    ///
+    /// `base` is that of [`inverse_dynamics_of_floating_base`](FloatingBase::inverse_dynamics_of_floating_base).
+    #[must_use]
+    fn floating_regressor<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+    ) -> [[[T; 10]; BODIES]; NV];
+}
+
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has
 /// the payload too. [`inverse_dynamics_with_payload`](InverseDynamics::inverse_dynamics_with_payload) belongs to
 /// [`InverseDynamics`]. A payload of zero gives the numbers of the function without a payload.

@@ -159,7 +159,9 @@ impl Driver<'_> {
                 | Function::JacobianRateTimesVelocity
                 | Function::KineticEnergy => "q, qd",
                 Function::ForwardDynamics | Function::MomentumAndRate => "q, qd, tau",
-                Function::InverseDynamicsOnMovingBase => "q, qd, qdd, omega, omega_dot, acceleration, gravity",
+                Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
+                    "q, qd, qdd, omega, omega_dot, acceleration, gravity"
+                }
                 Function::InverseDynamicsOfFloatingBase => {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
@@ -195,6 +197,7 @@ impl Driver<'_> {
                 Function::InverseDynamicsOfFloatingBase => (format!("{prefix}_floating_torques x"), "&x"),
                 Function::FloatingMassMatrix => (format!("{real} x[{0}][{0}]", 6 + n), "x"),
                 Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
+                Function::FloatingRegressor => (format!("{real} x[{}][{}][10]", 6 + n, 1 + n), "x"),
                 Function::CentroidalMomentumMatrix => (format!("{real} x[6][{}]", 6 + n), "x"),
                 Function::FloatingForwardDynamics => (format!("{prefix}_floating_accelerations x"), "&x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),

@@ -397,6 +397,9 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
             .map(|(base, qdd)| [base.linear.to_vec(), base.angular.to_vec(), qdd].concat()),
         Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q).map(flat),
         Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega).map(|rate| rate.to_vec()),
+        Function::FloatingRegressor => {
+            arm.floating_regressor(q, qd, qdd, base).map(|rows| rows.into_iter().flatten().flatten().collect())
+        }
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),

@@ -54,6 +54,10 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
                     assert!(error <= TOLERANCE, "{maker}, {name}, {function}: {error:e}");
                     worst.see(name, error);
                 }
+                let parameters = array("parameters");
+                let rows = arm.numbers(Function::FloatingRegressor, &given);
+                let found = product(&rows.chunks(parameters.len()).collect::<Vec<_>>(), &parameters);
+                worst.see(name, error_on_scale(&found, &array("floating_regressor_times_parameters"), 0.0));
             }
         }
         worst.at_most(TOLERANCE, &format!("floating bases, {maker}"));
@@ -89,6 +93,25 @@ fn inverse_and_forward_dynamics_are_one_equation() {
                 [0.0; 6].into_iter().chain(state.tau.iter().copied()).zip(&bias).map(|(tau, bias)| tau - bias);
             let error = error_on_scale(&given, &expected.collect::<Vec<_>>(), 0.0);
             assert!(error / conditioning.number < 1e-15, "{maker}, {name}: {error:e}");
+        }
+    }
+}
+
+/// The regressor of the base and the links, times their parameters, is the wrench on the base and the torques with free
+/// tips.
+#[test]
+fn the_regressor_times_the_parameters_is_inverse_dynamics() {
+    for maker in Maker::ALL {
+        for (index, name) in ROBOTS.into_iter().enumerate() {
+            let robot = read(name);
+            let (arm, dof) = (Arm::by_no_choice(&robot, maker), robot.dof());
+            let state =
+                State { wrench: Wrench::zero(), ..State::random(10 + u64::try_from(index).expect("small"), dof) };
+            let parameters = arm.runtime.floating_inertial_parameters().concat();
+            let rows = arm.numbers(Function::FloatingRegressor, &state.given());
+            let found = product(&rows.chunks(parameters.len()).collect::<Vec<_>>(), &parameters);
+            let error = error_on_scale(&found, &arm.numbers(FUNCTION, &state.given()), 0.0);
+            assert!(error < 1e-13, "{maker}, {name}: {error:e}");
         }
     }
 }

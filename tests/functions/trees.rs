@@ -210,6 +210,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             [transposed((0..dof).map(column).collect()), by_rates(qdd)].concat()
         }
         Function::Regressor => oracle::regressor(robot, &Motion { joints: [q, qd, qdd], base: fixed }),
+        Function::FloatingRegressor => oracle::floating_regressor(robot, &Motion { joints: [q, qd, qdd], base: *base }),
         Function::ActuatorTorques => oracle::actuator_torques(robot, qd, qdd),
         Function::ForwardKinematics => pose(in_world(oracle::parts(&oracle::frame(robot, &tip, &still)[0]))),
         Function::LinkPoses => {

@@ -65,6 +65,10 @@ macro_rules! returned {
         "the matrix whose product with the `inertial_parameters`, link by link, are the torques: shape (n, 10 n) or \
          (N, n, 10 n)."
     };
+    (FloatingRegressor) => {
+        "the matrix whose product with the `floating_inertial_parameters`, body by body, are force, moment and \
+         torques: shape (6 + n, 10 (n + 1)) or (N, 6 + n, 10 (n + 1))."
+    };
     (TorqueDerivatives) => {
         "dq and dqd, two arrays of shape (n, n) or (N, n, n); `out` is one array of shape (2, n, n) or (N, 2, n, n)."
     };

@@ -24,7 +24,7 @@ pub(crate) use spin::Spin;
 
 use std::array::from_fn;
 
-use rne_model::Robot;
+use rne_model::{PER_LINK, Robot};
 
 use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
@@ -84,6 +84,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             centroid::momentum_matrix(builder, &derivation.system(), &derivation.of_base().0)
         }
         Function::CentroidalBias => derivation.centroidal_bias(),
+        Function::FloatingRegressor => derivation.floating_regressor(),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -108,8 +109,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let joints = robot.joints.len();
         let turn_of = |quantity, joint| builder.argument(Name::scalar(quantity, joint + 1));
         let of_joint = |quantity, joint| arm.coordinates.of_joint(builder, quantity, joint);
-        let vector =
-            |quantity, joint| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))));
+        let vector = |quantity, joint| vector(builder, quantity, joint);
         let given = |argument, quantity, joint, otherwise| {
             if function.takes(argument) { of_joint(quantity, joint) } else { builder.constant(0.0, otherwise) }
         };
@@ -301,6 +301,22 @@ impl<'s, 'r> Derivation<'s, 'r> {
         outputs
     }
 
+    /// Of a robot without couplings: what has numbers of every link is compiled for no other.
+    fn floating_regressor(&self) -> Outputs<'s> {
+        let acceleration = vector(self.builder, Quantity::Acceleration, 0) - vector(self.builder, Quantity::Gravity, 0);
+        let acceleration = self.builder.name_vector(Quantity::OriginAcceleration, 0, acceleration);
+        let base = (&self.base, acceleration);
+        let rows = regressor::floating_regressor(&self.arm, &self.states, &self.motions(), base);
+        let of_body = |row, body, elements: [Symbol<'s>; PER_LINK]| {
+            let elements = elements.into_iter().enumerate();
+            elements.map(move |(i, element)| (regressor::name_of_floating(row, body, i), element))
+        };
+        let of_row = |(row, bodies): (usize, Vec<_>)| {
+            bodies.into_iter().enumerate().flat_map(move |(body, elements)| of_body(row, body, elements))
+        };
+        rows.into_iter().enumerate().flat_map(of_row).collect()
+    }
+
     fn joint_wrenches(&self) -> Outputs<'s> {
         let wrenches = self.loads().into_iter().enumerate();
         let named = wrenches.filter(|(index, _)| self.coordinates().has(*index)).flat_map(
@@ -339,6 +355,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn actuator_torques(&self) -> Outputs<'s> {
         self.gathered(Quantity::ActuatorTorque, &actuation::torques(self.builder, self.robot, &self.states))
     }
+}
+
+/// An argument that is a vector.
+fn vector(builder: &Builder, quantity: Quantity, joint: usize) -> Vector<'_> {
+    Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))))
 }
 
 /// The force and the moment on a base that nothing holds.

@@ -119,6 +119,7 @@ impl Length {
         match self {
             Self::Joints => dof,
             Self::Velocities => 6 + dof,
+            Self::Bodies => 1 + dof,
             Self::Fixed(length) => length,
         }
     }

@@ -139,7 +139,10 @@ impl Function {
     /// Whether it is a function of a robot whose base nothing holds.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
-        matches!(self.capability(), Capability::FloatingBase | Capability::CentroidalMomentum)
+        matches!(
+            self.capability(),
+            Capability::FloatingBase | Capability::CentroidalMomentum | Capability::FloatingRegressor
+        )
     }
 
     /// Whether rotors that belong to the arm change what it returns.
@@ -181,7 +184,7 @@ impl Function {
     /// Whether it returns numbers of every link, also of those whose joints follow others.
     #[must_use]
     pub const fn is_of_every_link(self) -> bool {
-        matches!(self, Self::Regressor)
+        matches!(self, Self::Regressor | Self::FloatingRegressor)
     }
 
     /// Whether it has a reduced form, whose graph can be rewritten.

@@ -198,6 +198,14 @@ macro_rules! functions {
                 "omega: angular velocity of the base (rad/s), in axes of frame 0. rate: force (N), then moment about \
                  the centre of mass (N m), in axes of frame 0. A times the accelerations, as in \
                  floating_mass_matrix, plus this rate is what acts on the robot beside gravity.";
+            FloatingRegressor = floating_regressor(
+                q: Positions, qd: Rates, qdd: Accelerations, base: Base
+            ) -> FloatingRegressor:
+                "Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link.",
+                "base: as in inverse_dynamics_of_floating_base; the tips are free. regressor[i][j][k]: rows are the \
+                 force (N) on the base, the moment (N m) about the origin of frame 0 and the torques; j is 0 for the \
+                 base and counts the links from 1; k is the parameter, as in regressor. Those of the base refer to \
+                 frame 0.";
         }
     };
 }
@@ -611,6 +619,18 @@ pub(crate) const TABLE: &[Entry] = &[
         )]),
         divides: Some(WITHOUT_MASS),
         ..Entry::of(Function::CentroidalBias, Capability::CentroidalMomentum)
+    },
+    Entry {
+        output: "regressor",
+        listed: "returned: force, moment and torque; base and link; parameter \
+                 (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
+        own: &[
+            Own::of(Quantity::BaseForce, |_| "force on the base per parameter".to_owned()),
+            Own::of(Quantity::BaseMoment, |_| "moment on the base per parameter".to_owned()),
+            Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter")),
+        ],
+        answer: Answer::PerParameter,
+        ..Entry::of(Function::FloatingRegressor, Capability::FloatingRegressor)
     },
 ];
 

@@ -106,7 +106,8 @@ impl Algorithm {
             | Function::Regressor
             | Function::JointWrenches
             | Function::InverseDynamicsOnMovingBase
-            | Function::ActuatorTorques => &[],
+            | Function::ActuatorTorques
+            | Function::FloatingRegressor => &[],
         }
     }
 

@@ -285,6 +285,13 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The rate of the momentum about the centre of mass when all accelerations are zero."""
+    def floating_regressor(
+        self, q: Joints, qd: Joints, qdd: Joints, *,
+        base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link."""
     # <!-- end -->
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,
@@ -309,6 +316,7 @@ class Arm:
     ) -> Floats:
         """The dynamically consistent inverse M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ of the Jacobian at the tip or at a frame (Khatib, 1987)."""
     def inertial_parameters(self) -> Floats: ...
+    def floating_inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
     def operations(self, function: str = ..., form: Form | None = ...) -> dict[str, int]: ...
     def show(self, function: str = ..., *, joint: int | None = ..., form: Form = ...) -> str: ...
