@@ -171,6 +171,7 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::FloatingBase
                         | Capability::CentroidalMomentum
                         | Capability::FloatingRegressor
+                        | Capability::FloatingEnergy
                 )
         };
         let functions = Function::ALL.into_iter().filter(|&function| !is_left_out(function));

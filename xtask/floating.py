@@ -3,7 +3,7 @@
 Usage: python floating.py RNE FOLDER [--write]     where RNE is the binary and FOLDER has the URDFs that ROBOTS names.
 
 `rne import --whole --floating --no-snap` makes the robot file. States are random: any orientation of the base, and
-linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a quaternion and as
+a position, linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a quaternion and as
 spatial vectors in axes of the base. Its mass matrix is by crba, its bias by nle, its accelerations by aba. Its
 regressor refers to frames of joints: the parameters of units about our link frames are carried there. With --write the
 robot files and the values go to tests/functions/floating; of the regressor, its product with random parameters.
@@ -22,7 +22,8 @@ import pinocchio as pin
 TOLERANCE = 1e-12
 STATES = 3
 FUNCTIONS = ["inverse_dynamics_of_floating_base", "floating_mass_matrix", "floating_bias", "floating_forward_dynamics",
-             "centroidal_momentum_matrix", "centroidal_bias", "floating_regressor"]
+             "centroidal_momentum_matrix", "centroidal_bias", "floating_regressor", "floating_kinetic_energy",
+             "floating_potential_energy", "centroidal_momentum"]
 
 # Name of the URDF, and the licence, if its numbers stand in this repository.
 ROBOTS = [
@@ -47,7 +48,9 @@ def state(random, names):
     velocity, omega, acceleration, omega_dot = random.normal(size=(4, 3))
     gravity = turn.T @ [0, 0, -9.81]
     told = {"omega": omega, "omega_dot": omega_dot, "acceleration": acceleration, "gravity": gravity}
-    return {**joints, "tau": tau}, told, (turn, velocity)
+    position = np.random.default_rng(dof + 1).normal(size=3)
+    told |= {"velocity": velocity, "pose": np.array([*turn.flatten(), *position])}
+    return {**joints, "tau": tau}, told
 
 
 # Row and column of the elements of an inertia: ours, and Pinocchio's.
@@ -86,10 +89,11 @@ def regressor(model, names, q, v, a, order, links):
     return np.hstack([of_frames[:, 10 * (joint - 1):10 * joint] @ carried(pose) for joint, pose in bodies])
 
 
-def expected(model, names, joints, told, placed, links):
+def expected(model, names, joints, told, links):
     """The numbers of each of FUNCTIONS. Those of the base stand first; its accelerations are classical, less gravity."""
-    turn, velocity = placed
+    turn, velocity = told["pose"][:9].reshape(3, 3), told["velocity"]
     q, v, a = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nv)
+    q[:3] = told["pose"][9:]
     q[3:7] = pin.Quaternion(turn).coeffs()
     v[:3], v[3:6] = velocity, told["omega"]
     # spatial: the acceleration of the point of the base less ω × v
@@ -123,7 +127,11 @@ def expected(model, names, joints, told, placed, links):
     in_base = np.kron(np.eye(2), turn.T)
     centroidal = [(in_base @ map_)[:, order].flatten(), in_base @ rate]
     columns = regressor(model, names, q, v, a, order, links).flatten()
-    return dict(zip(FUNCTIONS, [torques, mass.flatten(), bias, accelerations, *centroidal, columns]))
+    energies = [np.array([pin.computeKineticEnergy(model, model.createData(), q, v)]),
+                np.array([pin.computePotentialEnergy(model, model.createData(), q)])]
+    pin.ccrba(model, data, q, v)
+    momentum = in_base @ data.hg.vector
+    return dict(zip(FUNCTIONS, [torques, mass.flatten(), bias, accelerations, *centroidal, columns, *energies, momentum]))
 
 
 def numbers(result):
@@ -144,11 +152,15 @@ def link_poses(rne, file, q):
 def found(rne, file, function, joints, told):
     """The same of the runtime library."""
     options = {**joints, "base-omega": told["omega"], "base-omega-dot": told["omega_dot"],
-               "base-acceleration": told["acceleration"], "gravity": told["gravity"]}
+               "base-acceleration": told["acceleration"], "gravity": told["gravity"], "base-velocity": told["velocity"],
+               "base-pose": told["pose"]}
     takes = {
         "inverse_dynamics_of_floating_base": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
         "floating_regressor": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
         "floating_mass_matrix": ["q"],
+        "floating_kinetic_energy": ["q", "qd", "base-velocity", "base-omega"],
+        "floating_potential_energy": ["q", "base-pose"],
+        "centroidal_momentum": ["q", "qd", "base-velocity", "base-omega"],
         "centroidal_momentum_matrix": ["q"],
         "centroidal_bias": ["q", "qd", "base-omega"],
         "floating_bias": ["q", "qd", "base-omega"],
@@ -179,8 +191,8 @@ def main():
             model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
             random, worst, states = np.random.default_rng(1), 0.0, []
             for _ in range(STATES):
-                joints, told, placed = state(random, names)
-                values = expected(model, names, joints, told, placed, link_poses(rne, file, joints["q"]))
+                joints, told = state(random, names)
+                values = expected(model, names, joints, told, link_poses(rne, file, joints["q"]))
                 for function, wanted in values.items():
                     # accelerations are as uncertain as the mass matrix is badly conditioned
                     size = 6 + len(names)

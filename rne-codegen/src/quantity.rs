@@ -416,6 +416,8 @@ impl Quantity {
             Self::TurnedForce => Self::TurnedLinearMomentum,
             Self::TurnedMoment => Self::TurnedAngularMomentum,
             Self::Torque => Self::Momentum,
+            Self::BaseForce => Self::LinearMomentum,
+            Self::BaseMoment => Self::AngularMomentumBehind,
             other => other,
         })
     }

@@ -188,6 +188,20 @@ impl Target<'_> {
                 } = base;
             }
         });
+        // named as their arrays, too
+        let triple = |of: &TokenStream| {
+            let axes = [0, 1, 2].map(Literal::usize_unsuffixed).map(|axis| quote!(#of[#axis]));
+            quote!(#(#axes),*)
+        };
+        let twist = function.takes(Argument::BaseTwist).then(|| {
+            let [linear, angular] = [quote!(twist.linear), quote!(twist.angular)].map(|part| triple(&part));
+            quote!(let twist = &[#linear, #angular];)
+        });
+        let pose = function.takes(Argument::BasePose).then(|| {
+            let rows = [0, 1, 2].map(Literal::usize_unsuffixed).map(|row| triple(&quote!(pose.rotation[#row])));
+            let origin = triple(&quote!(pose.translation));
+            quote!(let pose = &[#(#rows,)* #origin];)
+        });
         let (count, parameters) = (parameters.names().len(), parameters.read(krate));
         let dof = Literal::usize_unsuffixed(program.dof);
         let of_trait = match program.frame {
@@ -197,7 +211,7 @@ impl Target<'_> {
         let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
         let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
         let dof = quote!(#dof);
-        let body = quote!(#wrench #payload #wrenches #base #body);
+        let body = quote!(#wrench #payload #wrenches #base #twist #pose #body);
         let body =
             if is_asked { self.call(function, &dof, count, &parameters, &body) } else { quote!(#parameters #body) };
         let method = match program.frame {
@@ -279,6 +293,8 @@ impl Target<'_> {
                 Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
                 Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
                 Argument::BaseVelocity => ("omega", quote!([T; 3])),
+                Argument::BaseTwist => ("twist", quote!(#krate::BaseTwist<T>)),
+                Argument::BasePose => ("pose", quote!(#krate::Pose<T>)),
                 Argument::Wrenches => ("wrenches", quote!([#krate::Wrench<T>; #tips])),
             };
             (format_ident!("{name}"), quote!(&#lifetime #kind))

@@ -40,7 +40,8 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         Capability::TipWrenches
         | Capability::FloatingBase
         | Capability::CentroidalMomentum
-        | Capability::FloatingRegressor => &[],
+        | Capability::FloatingRegressor
+        | Capability::FloatingEnergy => &[],
     }
 }
 

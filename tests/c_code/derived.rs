@@ -1,9 +1,10 @@
 //! Shipped robots with everything derived, and their functions by their names.
 
 use rne::{
-    Actuation, BaseMotion, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase, FloatingRegressor,
-    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix,
-    MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
+    Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase,
+    FloatingEnergy, FloatingRegressor, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches,
+    Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -39,6 +40,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + FloatingBase<DOF, NV, 1>
     + CentroidalMomentum<DOF, NV>
     + FloatingRegressor<DOF, NV, BODIES>
+    + FloatingEnergy<DOF>
 {
 }
 
@@ -60,6 +62,9 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
     let [ref q, ref qd, ref qdd, ref tau] = [q, qd, qdd, tau];
     let [force, moment, omega, omega_dot, acceleration, gravity, ref payload @ ..] = given.vectors;
     let base = BaseMotion { omega, omega_dot, velocity: [T::zero(); 3], acceleration, gravity };
+    // numbers that stand one after the other, as C reads them
+    let twist = BaseTwist { linear: moment, angular: omega };
+    let pose_of_base = Pose { rotation: [omega, omega_dot, acceleration], translation: gravity };
     match function {
         Function::InverseDynamics => robot.inverse_dynamics(q, qd, qdd).to_vec(),
         Function::InverseDynamicsWithWrench => {
@@ -118,6 +123,9 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
             [found.base.linear.to_vec(), found.base.angular.to_vec(), found.qdd.to_vec()].concat()
         }
         Function::FloatingRegressor => robot.floating_regressor(q, qd, qdd, &base).into_iter().flat_map(flat).collect(),
+        Function::FloatingKineticEnergy => vec![robot.floating_kinetic_energy(q, qd, &twist)],
+        Function::FloatingPotentialEnergy => vec![robot.floating_potential_energy(q, &pose_of_base)],
+        Function::CentroidalMomentum => robot.centroidal_momentum(q, qd, &twist).to_vec(),
         Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
         Function::ActuatorTorques => robot.actuator_torques(qd, qdd).to_vec(),
         Function::GravityTorquesWithPayload => {
@@ -164,6 +172,7 @@ macro_rules! robot {
                 rne::FloatingBase,
                 rne::CentroidalMomentum,
                 rne::FloatingRegressor,
+                rne::FloatingEnergy,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

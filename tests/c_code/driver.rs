@@ -166,12 +166,19 @@ impl Driver<'_> {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
                 Function::CentroidalBias => "q, qd, omega",
+                // omega stands behind the moment
+                Function::FloatingKineticEnergy | Function::CentroidalMomentum => "q, qd, moment",
+                // omega, omega_dot, acceleration and gravity
+                Function::FloatingPotentialEnergy => "q, omega",
                 Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
                 Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
                 Function::ActuatorTorques => "qd, qdd",
             };
             let (result, address) = match function {
-                Function::KineticEnergy | Function::PotentialEnergy => {
+                Function::KineticEnergy
+                | Function::PotentialEnergy
+                | Function::FloatingKineticEnergy
+                | Function::FloatingPotentialEnergy => {
                     let _ =
                         writeln!(text, "    {{ {real} x = {prefix}_{function}({arguments}); print_{real}(&x, 1u); }}");
                     continue;
@@ -185,7 +192,9 @@ impl Driver<'_> {
                 Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
                 Function::CentreOfMass => (format!("{real} x[3]"), "x"),
                 Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
-                Function::JacobianRateTimesVelocity | Function::CentroidalBias => (format!("{real} x[6]"), "x"),
+                Function::JacobianRateTimesVelocity | Function::CentroidalBias | Function::CentroidalMomentum => {
+                    (format!("{real} x[6]"), "x")
+                }
                 Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
                 Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
                     (format!("{prefix}_torque_derivatives x"), "&x")

@@ -42,6 +42,8 @@ named! {
         CentroidalMomentum = "CentroidalMomentum",
         /// Wrench on the base and torques per inertial parameter, where nothing holds the base.
         FloatingRegressor = "FloatingRegressor",
+        /// Kinetic and potential, where nothing holds the base.
+        FloatingEnergy = "FloatingEnergy",
     }
 }
 

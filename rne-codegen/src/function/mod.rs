@@ -139,10 +139,7 @@ impl Function {
     /// Whether it is a function of a robot whose base nothing holds.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
-        matches!(
-            self.capability(),
-            Capability::FloatingBase | Capability::CentroidalMomentum | Capability::FloatingRegressor
-        )
+        self.capability().has_velocities() || matches!(self.capability(), Capability::FloatingEnergy)
     }
 
     /// Whether rotors that belong to the arm change what it returns.

@@ -292,6 +292,21 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link."""
+    def floating_kinetic_energy(
+        self, q: Joints, qd: Joints, twist: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats | float:
+        """Kinetic energy of a robot whose base nothing holds, J."""
+    def floating_potential_energy(
+        self, q: Joints, pose: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats | float:
+        """Potential energy of such a robot in gravity, J; zero where a mass is at the origin of the world."""
+    def centroidal_momentum(
+        self, q: Joints, qd: Joints, twist: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass."""
     # <!-- end -->
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,
