@@ -131,7 +131,8 @@ def expected(model, names, joints, told, links):
                 np.array([pin.computePotentialEnergy(model, model.createData(), q)])]
     pin.ccrba(model, data, q, v)
     momentum = in_base @ data.hg.vector
-    return dict(zip(FUNCTIONS, [torques, mass.flatten(), bias, accelerations, *centroidal, columns, *energies, momentum]))
+    results = [torques, mass.flatten(), bias, accelerations, *centroidal, columns, *energies, momentum]
+    return dict(zip(FUNCTIONS, results))
 
 
 def numbers(result):

@@ -15,7 +15,8 @@ q, qd, qdd, tau = random.normal(size=(4, N, ARM.dof))
 velocity, omega, omega_dot, acceleration = random.normal(size=(4, N, 3))
 TWIST = np.concatenate([velocity, omega], axis=1)
 V = np.concatenate([TWIST, qd], axis=1)
-BASE = {"base_omega": omega, "base_omega_dot": omega_dot, "base_acceleration": acceleration, "base_gravity": np.zeros(3)}
+MOTION = {"base_omega": omega, "base_omega_dot": omega_dot, "base_acceleration": acceleration}
+BASE = {**MOTION, "base_gravity": np.zeros(3)}
 
 
 def close(a, b):

@@ -209,7 +209,7 @@ fn fixed(function: Function) -> String {
         let [velocity, omega] = [accuracy::VELOCITY, accuracy::BASE[0]].map(|triple| list(&triple));
         let _ = write!(
             words,
-            " At each state the base moves with {velocity} (m/s) at the origin of frame 0 and turns with {omega} (rad/s)."
+            " At each state the origin of frame 0 moves with {velocity} (m/s), and the base turns with {omega} (rad/s)."
         );
     }
     if function.takes(Argument::Wrench) || function.takes(Argument::Wrenches) {

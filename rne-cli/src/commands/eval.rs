@@ -88,10 +88,11 @@ pub(crate) struct Arguments {
         "base_acceleration", "base_velocity", "base_pose", "gravity", "trace", "json", "csv", "compare", "frame",
     ])]
     golden: Option<u16>,
-    /// Compute it at every state of a file, CSV or npy
+    /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
-        "base_acceleration", "base_velocity", "base_pose", "gravity", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
+        "base_acceleration", "base_velocity", "base_pose", "gravity", "golden", "trace", "axes", "joint", "step",
+        "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
     /// Output file of --states: CSV, or NAME.npy

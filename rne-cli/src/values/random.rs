@@ -28,7 +28,7 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     let [q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect());
     let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
     let base = random.base();
-    // a formula is right for any numbers, no rotation must they be
+    // no rotation, but the energy is linear in these numbers
     let pose = Pose { rotation: [base.omega, base.omega_dot, base.acceleration], translation: base.velocity };
     // without named tips, the wrench at the tip
     let wrenches = match robot.tips.len() {

@@ -108,15 +108,12 @@ impl State {
         };
         let axes = "three numbers x,y,z, in the axes of frame 0";
         let of_base = |name, list| {
-            let kinds = match name {
-                "--base-omega" => &[Argument::BaseVelocity, Argument::BaseTwist][..],
-                "--base-velocity" => &[Argument::BaseTwist],
-                _ => &[],
-            };
-            let kind = kinds.iter().copied().find(|kind| function.takes(*kind)).unwrap_or(match name {
+            let kind = match name {
                 "--base-velocity" => Argument::BaseTwist,
+                "--base-omega" if function.takes(Argument::BaseVelocity) => Argument::BaseVelocity,
+                "--base-omega" if function.takes(Argument::BaseTwist) => Argument::BaseTwist,
                 _ => Base,
-            });
+            };
             let list = argument(function, name, list, kind, 3, axes)?;
             Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
         };
@@ -276,8 +273,8 @@ pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
 }
 
 /// The numbers of a pose in words.
-const POSE: &str = "position and rotation of frame 0 in the world: x,y,z,roll,pitch,yaw; or the rows of the rotation matrix, \
-                    then x,y,z";
+const POSE: &str = "position and rotation of frame 0 in the world: x,y,z,roll,pitch,yaw; or the rows of the rotation \
+                    matrix, then x,y,z";
 
 /// A pose from its list: a position with three angles, as in the robot file, or with a rotation matrix before it.
 fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, Failure> {

@@ -1,8 +1,10 @@
 //! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
 //!
 //! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇², with those of the list `motors` + ½ Σ Jm s (s +
-//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of
-//! frame 0, or from that of the world, where the base stands at p: - Σ m_i (Rᵀ g · c_i + g · p); of a first moment h beside the mass + ċ_i · (ω_i × h_i) in T and - g · R_i h_i in V
+//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. Of a first moment h beside the mass + ċ_i · (ω_i ×
+//! h_i) in T and - g · R_i h_i in V.
+//!
+//! A base that nothing holds is link 0. Where it stands in the world at p, turned by R: V = - Σ m_i (Rᵀ g · c_i + g · p).
 
 use crate::formulate::{Arm, Frame, Frames, JointState, Motion};
 use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
