@@ -411,13 +411,11 @@ impl Quantity {
             Self::OmegaDot => Self::Omega,
             Self::OriginAcceleration => Self::OriginVelocity,
             Self::OriginAccelerationUnturned => Self::OriginVelocityUnturned,
-            Self::ReducedForce => Self::LinearMomentum,
-            Self::ReducedMoment => Self::AngularMomentumBehind,
+            Self::ReducedForce | Self::BaseForce => Self::LinearMomentum,
+            Self::ReducedMoment | Self::BaseMoment => Self::AngularMomentumBehind,
             Self::TurnedForce => Self::TurnedLinearMomentum,
             Self::TurnedMoment => Self::TurnedAngularMomentum,
             Self::Torque => Self::Momentum,
-            Self::BaseForce => Self::LinearMomentum,
-            Self::BaseMoment => Self::AngularMomentumBehind,
             other => other,
         })
     }

@@ -59,7 +59,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::Jacobian => derivation.jacobian(),
         Function::JacobianRateTimesVelocity => derivation.tip_acceleration(),
         Function::WrenchTorques => derivation.wrench_torques(),
-        Function::KineticEnergy => derivation.kinetic_energy(),
+        Function::KineticEnergy | Function::FloatingKineticEnergy => derivation.kinetic_energy(),
         Function::PotentialEnergy => derivation.potential_energy(),
         Function::CentreOfMass => derivation.centre_of_mass(),
         Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
@@ -84,7 +84,6 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             centroid::momentum_matrix(builder, &derivation.system(), &derivation.of_base().0)
         }
         Function::CentroidalBias => derivation.centroidal_bias(),
-        Function::FloatingKineticEnergy => derivation.kinetic_energy(),
         Function::FloatingPotentialEnergy => derivation.floating_potential_energy(),
         Function::CentroidalMomentum => derivation.centroidal_momentum(),
         Function::FloatingRegressor => derivation.floating_regressor(),

@@ -155,6 +155,7 @@ impl Algorithm {
 
 /// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout; `None` for
 /// what has no reduced recursion.
+#[allow(clippy::too_many_lines)] // an arm for each way
 pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outputs<'s>> {
     let builder = arm.builder;
     let coordinates = &arm.joint_frames.coordinates;
