@@ -30,7 +30,7 @@ use crate::{Arm, BaseMotion, BaseTwist, Constant, Energy, FloatingEnergy, Pose, 
 use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// Of a base that moves as told, or stands still.
+    /// The kinetic energy on a base that moves as told, or stands still.
     pub(crate) fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
         let zeros = self.zeros();
         let joints = JointMotions::new(q, qd, zeros.as_ref());

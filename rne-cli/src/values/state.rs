@@ -80,7 +80,7 @@ pub(crate) struct State {
     pub(crate) wrenches: Vec<Wrench<f64>>,
     pub(crate) payload: Option<Payload<f64>>,
     pub(crate) base: BaseMotion<f64>,
-    /// Of frame 0 in the world.
+    /// The pose of frame 0 in the world.
     pub(crate) pose: Pose<f64>,
 }
 

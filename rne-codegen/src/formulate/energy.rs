@@ -9,7 +9,7 @@
 use crate::formulate::{Arm, Frame, Frames, JointState, Motion};
 use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
 
-/// Of a `base` that moves, if nothing holds it, and of the links.
+/// The kinetic energy of the links, and that of a `base` that moves, if nothing holds it.
 pub(crate) fn kinetic<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -58,7 +58,7 @@ pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vecto
     arm.builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
 }
 
-/// Of a base that stands in the world at `pose`, with gravity in world axes; `frames` in frame 0.
+/// The potential energy of a robot whose base stands in the world at `pose`; gravity in world axes, `frames` in frame 0.
 pub(crate) fn floating_potential<'s>(
     arm: &Arm<'s>,
     pose: &Frame<'s>,

@@ -322,7 +322,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         outputs
     }
 
-    /// Of a robot without couplings: what has numbers of every link is compiled for no other.
+    /// The regressor of a robot without couplings: it has numbers of every link, so it is compiled for no other robot.
     fn floating_regressor(&self) -> Outputs<'s> {
         let acceleration = vector(self.builder, Quantity::Acceleration, 0) - vector(self.builder, Quantity::Gravity, 0);
         let acceleration = self.builder.name_vector(Quantity::OriginAcceleration, 0, acceleration);

@@ -208,7 +208,7 @@ pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     Motion { omega, omega_dot, acceleration, gradient }
 }
 
-/// The same with velocities in the place of accelerations, where the function has those of the base.
+/// The motion of such a base with velocities in the place of accelerations, where the function has them.
 fn twist_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
     let told = |quantity| {
