@@ -243,7 +243,7 @@ pub fn derive_centroidal_momentum(input: TokenStream) -> TokenStream {
     expand::capability(Capability::CentroidalMomentum, input.into()).into()
 }
 
-/// Implements the trait `FloatingEnergy` for a struct: kinetic and potential energy of a robot whose base nothing holds.
+/// Implements the trait `FloatingEnergy` for a struct: kinetic and potential energy where nothing holds the base.
 ///
 /// The base is the link `floating_base` of the robot file; without that key the base has no mass.
 ///

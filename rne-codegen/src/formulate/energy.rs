@@ -1,10 +1,11 @@
 //! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
 //!
 //! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇², with those of the list `motors` + ½ Σ Jm s (s +
-//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. Of a first moment h beside the mass + ċ_i · (ω_i ×
-//! h_i) in T and - g · R_i h_i in V.
+//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. Of a first moment h beside the mass
+//! ċ_i · (ω_i × h_i) is added to T, and - g · R_i h_i to V.
 //!
-//! A base that nothing holds is link 0. Where it stands in the world at p, turned by R: V = - Σ m_i (Rᵀ g · c_i + g · p).
+//! A base that nothing holds is link 0. Where it stands in the world at p, turned by R:
+//! V = - Σ m_i (Rᵀ g · c_i + g · p).
 
 use crate::formulate::{Arm, Frame, Frames, JointState, Motion};
 use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
@@ -58,7 +59,7 @@ pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vecto
     arm.builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
 }
 
-/// The potential energy of a robot whose base stands in the world at `pose`; gravity in world axes, `frames` in frame 0.
+/// The potential energy where the base stands in the world at `pose`; gravity in world axes, `frames` in frame 0.
 pub(crate) fn floating_potential<'s>(
     arm: &Arm<'s>,
     pose: &Frame<'s>,

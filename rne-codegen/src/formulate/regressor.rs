@@ -25,8 +25,8 @@ const OF_BASE: usize = Length::Velocities.of(0);
 /// The ten elements of each link in each row.
 type Rows<'s> = Vec<Vec<[Symbol<'s>; PER_LINK]>>;
 
-/// The values that a joint takes over from the link that carries it, at the joint's point and in the axes of that link: the
-/// acceleration less gravity, and (u, v) of the rows that move the link.
+/// The values that a joint takes over from the link that carries it, at the joint's point and in the axes of that link:
+/// the acceleration less gravity, and (u, v) of the rows that move the link.
 #[derive(Clone)]
 struct Carrier<'s> {
     acceleration: Vector<'s>,

@@ -6,8 +6,8 @@
 //! rate    = τ + ∂T/∂q - g(q)
 //! ```
 //!
-//! Where nothing holds the base, the recursion ends with the momentum and the angular momentum about the origin of frame
-//! 0.
+//! Where nothing holds the base, the recursion ends with the momentum, and the angular momentum about the origin of
+//! frame 0.
 //!
 //! With q̇ in the place of q̈ the recursion finds ω for ω̇ and the velocity v of the frame's origin for its acceleration;
 //! f_i and n_i are momenta then, of the link and all behind it. Matter that is regrouped has the torques of the arm, so
