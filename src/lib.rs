@@ -123,19 +123,20 @@
 #[doc(inline)]
 pub use rne_macro::{
     Actuation, BatchInverseDynamics, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase,
-    ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
-    MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    FloatingEnergy, FloatingRegressor, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
     Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchInverseDynamics, BatchScalar, CentreOfMass,
-    CentroidalMomentum, Constant, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingTorques,
-    ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches,
-    Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState,
-    Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives,
-    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    CentroidalMomentum, Constant, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy,
+    FloatingRegressor, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives,
+    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
+    MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar,
+    TipWrenches, TorqueDerivatives, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order,
+    operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

@@ -170,6 +170,8 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::TipWrenches
                         | Capability::FloatingBase
                         | Capability::CentroidalMomentum
+                        | Capability::FloatingRegressor
+                        | Capability::FloatingEnergy
                 )
         };
         let functions = Function::ALL.into_iter().filter(|&function| !is_left_out(function));

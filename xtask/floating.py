@@ -3,8 +3,10 @@
 Usage: python floating.py RNE FOLDER [--write]     where RNE is the binary and FOLDER has the URDFs that ROBOTS names.
 
 `rne import --whole --floating --no-snap` makes the robot file. States are random: any orientation of the base, and
-linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a quaternion and as
-spatial vectors in axes of the base. Its mass matrix is by crba, its bias by nle, its accelerations by aba. With --write the robot files and the values go to tests/functions/floating.
+a position, linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a quaternion and as
+spatial vectors in axes of the base. Its mass matrix is by crba, its bias by nle, its accelerations by aba. Its
+regressor refers to frames of joints: the parameters of units about our link frames are carried there. With --write the
+robot files and the values go to tests/functions/floating; of the regressor, its product with random parameters.
 """
 
 import json
@@ -20,7 +22,8 @@ import pinocchio as pin
 TOLERANCE = 1e-12
 STATES = 3
 FUNCTIONS = ["inverse_dynamics_of_floating_base", "floating_mass_matrix", "floating_bias", "floating_forward_dynamics",
-             "centroidal_momentum_matrix", "centroidal_bias"]
+             "centroidal_momentum_matrix", "centroidal_bias", "floating_regressor", "floating_kinetic_energy",
+             "floating_potential_energy", "centroidal_momentum"]
 
 # Name of the URDF, and the licence, if its numbers stand in this repository.
 ROBOTS = [
@@ -45,13 +48,52 @@ def state(random, names):
     velocity, omega, acceleration, omega_dot = random.normal(size=(4, 3))
     gravity = turn.T @ [0, 0, -9.81]
     told = {"omega": omega, "omega_dot": omega_dot, "acceleration": acceleration, "gravity": gravity}
-    return {**joints, "tau": tau}, told, (turn, velocity)
+    position = np.random.default_rng(dof + 1).normal(size=3)
+    told |= {"velocity": velocity, "pose": np.array([*turn.flatten(), *position])}
+    return {**joints, "tau": tau}, told
 
 
-def expected(model, names, joints, told, placed):
+# Row and column of the elements of an inertia: ours, and Pinocchio's.
+OURS = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
+PINOCCHIO = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)]
+
+
+def carried(pose):
+    """What turns parameters about a frame, in our order, into those about the frame in which it stands at `pose`, in
+    Pinocchio's order: ∫ (r, 1) (r, 1)ᵀ dm of one is that of the other between two homogeneous matrices."""
+    columns = []
+    for unit in np.eye(10):
+        inertia = np.zeros((3, 3))
+        for (row, column), value in zip(OURS, unit[4:]):
+            inertia[row, column] = inertia[column, row] = value
+        pseudo = np.zeros((4, 4))
+        pseudo[:3, :3] = np.trace(inertia) / 2 * np.eye(3) - inertia
+        pseudo[:3, 3] = pseudo[3, :3] = unit[1:4]
+        pseudo[3, 3] = unit[0]
+        pseudo = pose @ pseudo @ pose.T
+        second = pseudo[:3, :3]
+        inertia = np.trace(second) * np.eye(3) - second
+        columns.append([pseudo[3, 3], *pseudo[:3, 3], *(inertia[at] for at in PINOCCHIO)])
+    return np.array(columns).T
+
+
+def regressor(model, names, q, v, a, order, links):
+    """The regressor about our link frames, of which `links` has the pose in frame 0 for each joint."""
+    data = model.createData()
+    of_frames = pin.computeJointTorqueRegressor(model, data, q, v, a)[order]
+    pin.forwardKinematics(model, data, q)
+    bodies = [(1, np.eye(4))]
+    for name, link in zip(names, links):
+        joint = model.getJointId(name)
+        bodies.append((joint, data.oMi[joint].inverse().homogeneous @ data.oMi[1].homogeneous @ link))
+    return np.hstack([of_frames[:, 10 * (joint - 1):10 * joint] @ carried(pose) for joint, pose in bodies])
+
+
+def expected(model, names, joints, told, links):
     """The numbers of each of FUNCTIONS. Those of the base stand first; its accelerations are classical, less gravity."""
-    turn, velocity = placed
+    turn, velocity = told["pose"][:9].reshape(3, 3), told["velocity"]
     q, v, a = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nv)
+    q[:3] = told["pose"][9:]
     q[3:7] = pin.Quaternion(turn).coeffs()
     v[:3], v[3:6] = velocity, told["omega"]
     # spatial: the acceleration of the point of the base less ω × v
@@ -84,7 +126,13 @@ def expected(model, names, joints, told, placed):
     rate -= map_[:, :3] @ np.cross(told["omega"], velocity)
     in_base = np.kron(np.eye(2), turn.T)
     centroidal = [(in_base @ map_)[:, order].flatten(), in_base @ rate]
-    return dict(zip(FUNCTIONS, [torques, mass.flatten(), bias, accelerations, *centroidal]))
+    columns = regressor(model, names, q, v, a, order, links).flatten()
+    energies = [np.array([pin.computeKineticEnergy(model, model.createData(), q, v)]),
+                np.array([pin.computePotentialEnergy(model, model.createData(), q)])]
+    pin.ccrba(model, data, q, v)
+    momentum = in_base @ data.hg.vector
+    results = [torques, mass.flatten(), bias, accelerations, *centroidal, columns, *energies, momentum]
+    return dict(zip(FUNCTIONS, results))
 
 
 def numbers(result):
@@ -95,24 +143,40 @@ def numbers(result):
     return [x for part in result for x in numbers(part)] if isinstance(result, list) else [result]
 
 
+def link_poses(rne, file, q):
+    """The link frames in frame 0 as homogeneous matrices."""
+    poses = evaluated(rne, file, "link_poses", {"q": q})
+    matrix = lambda pose: np.vstack([np.column_stack([pose["rotation"], pose["translation"]]), [0, 0, 0, 1]])
+    return [matrix(pose) for pose in poses]
+
+
 def found(rne, file, function, joints, told):
     """The same of the runtime library."""
     options = {**joints, "base-omega": told["omega"], "base-omega-dot": told["omega_dot"],
-               "base-acceleration": told["acceleration"], "gravity": told["gravity"]}
+               "base-acceleration": told["acceleration"], "gravity": told["gravity"], "base-velocity": told["velocity"],
+               "base-pose": told["pose"]}
     takes = {
         "inverse_dynamics_of_floating_base": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
+        "floating_regressor": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
         "floating_mass_matrix": ["q"],
+        "floating_kinetic_energy": ["q", "qd", "base-velocity", "base-omega"],
+        "floating_potential_energy": ["q", "base-pose"],
+        "centroidal_momentum": ["q", "qd", "base-velocity", "base-omega"],
         "centroidal_momentum_matrix": ["q"],
         "centroidal_bias": ["q", "qd", "base-omega"],
         "floating_bias": ["q", "qd", "base-omega"],
         "floating_forward_dynamics": ["q", "qd", "tau", "base-omega"],
     }
-    options = {key: options[key] for key in takes[function]}
+    return np.array(numbers(evaluated(rne, file, function, {key: options[key] for key in takes[function]})))
+
+
+def evaluated(rne, file, function, options):
+    """What `rne eval` prints for these options."""
     options = [f"--{key}={','.join(repr(float(x)) for x in value)}" for key, value in options.items()]
     done = subprocess.run([rne, "eval", file, "--function", function, *options, "--json"], capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(done.stderr)
-    return np.array(numbers(json.loads(done.stdout)["result"]))
+    return json.loads(done.stdout)["result"]
 
 
 def main():
@@ -128,8 +192,8 @@ def main():
             model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
             random, worst, states = np.random.default_rng(1), 0.0, []
             for _ in range(STATES):
-                joints, told, placed = state(random, names)
-                values = expected(model, names, joints, told, placed)
+                joints, told = state(random, names)
+                values = expected(model, names, joints, told, link_poses(rne, file, joints["q"]))
                 for function, wanted in values.items():
                     # accelerations are as uncertain as the mass matrix is badly conditioned
                     size = 6 + len(names)
@@ -139,6 +203,10 @@ def main():
                 if states:
                     # one matrix is enough
                     del values["floating_mass_matrix"]
+                # of the regressor, a product is
+                parameters = np.random.default_rng(len(states)).uniform(-1, 1, 10 * (1 + len(names)))
+                rows = values.pop("floating_regressor").reshape(-1, len(parameters))
+                values |= {"parameters": parameters, "floating_regressor_times_parameters": rows @ parameters}
                 states.append({key: list(map(float, value)) for key, value in {**joints, **told, **values}.items()})
             print(f"{name}: {len(names)} joints, largest error {worst:.1e}", flush=True)
             if worst > TOLERANCE:

@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program};
 use rne_emit::Precision;
 use rne_model::Robot;
-use rne_runtime::{BaseMotion, DynArm, Payload, Pose, Scalar, Wrench, WrongLength};
+use rne_runtime::{BaseMotion, BaseTwist, DynArm, Payload, Pose, Scalar, Wrench, WrongLength};
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = compare(&mut Unstructured::new(bytes));
@@ -57,18 +57,23 @@ impl State {
         let mut triple = |scale| list(3, scale).map(|list| [list[0], list[1], list[2]]);
         let wrench = Wrench { force: triple(10.0)?, moment: triple(5.0)? };
         let (centre, inertia, products) = (triple(0.3)?, triple(0.1)?, triple(0.02)?);
-        let base = BaseMotion {
-            omega: triple(1.0)?,
-            omega_dot: triple(2.0)?,
-            velocity: [0.0; 3],
-            acceleration: triple(3.0)?,
-            gravity: triple(9.81)?,
-        };
+        let (omega, omega_dot, acceleration) = (triple(1.0)?, triple(2.0)?, triple(3.0)?);
+        let base = BaseMotion { omega, omega_dot, velocity: acceleration, acceleration, gravity: triple(9.81)? };
         let mut payload = [3.0; 10];
         payload[1..].iter_mut().zip([centre, inertia, products].concat()).for_each(|(to, from)| *to = from);
         let ([fx, fy, fz], [nx, ny, nz]) = (wrench.force, wrench.moment);
         let at_tips = [[fx, fy, fz, nx, ny, nz]];
         Ok(Self { q, qd, qdd, tau, wrench, at_tips, payload, base })
+    }
+
+    fn twist(&self) -> BaseTwist<f64> {
+        BaseTwist { linear: self.base.velocity, angular: self.base.omega }
+    }
+
+    /// No rotation: the energy is linear in its elements.
+    fn pose(&self) -> Pose<f64> {
+        let BaseMotion { omega, omega_dot, velocity, acceleration, .. } = self.base;
+        Pose { rotation: [omega, omega_dot, acceleration], translation: velocity }
     }
 
     fn arguments(&self) -> Arguments<'_, f64> {
@@ -80,6 +85,8 @@ impl State {
             moment: wrench.moment,
             payload: *payload,
             base: [base.omega, base.omega_dot, base.acceleration, base.gravity],
+            velocity: base.velocity,
+            pose: [base.omega, base.omega_dot, base.acceleration, base.velocity].as_flattened().try_into().unwrap(),
             ..Arguments::of_joints(q, qd, qdd, 0.0)
         }
     }
@@ -258,6 +265,12 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::FloatingMassMatrix => arm.floating_mass_matrix(q)?.concat(),
         Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q)?.concat(),
         Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega)?.to_vec(),
+        Function::FloatingRegressor => {
+            arm.floating_regressor(q, qd, qdd, base)?.into_iter().flatten().flatten().collect()
+        }
+        Function::FloatingKineticEnergy => vec![arm.floating_kinetic_energy(q, qd, &state.twist())?],
+        Function::FloatingPotentialEnergy => vec![arm.floating_potential_energy(q, &state.pose())?],
+        Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &state.twist())?.to_vec(),
         Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &[*wrench])?,
         Function::FloatingForwardDynamics => {
             let (base, qdd) = arm.floating_forward_dynamics(q, qd, tau, &base.omega, &[*wrench])?;

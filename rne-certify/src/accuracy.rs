@@ -59,6 +59,9 @@ pub const WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];
 /// rad/s²; acceleration, m/s²; gravity, m/s², in the axes of frame 0.
 pub const BASE: [[f32; 3]; 4] = [[0.5, -0.3, 0.7], [1.2, -0.8, 0.6], [0.4, 1.1, -0.9], [0.6, -0.4, -9.78]];
 
+/// The velocity of the origin of frame 0 in each state, m/s, for functions that take it.
+pub const VELOCITY: [f32; 3] = [0.4, 1.1, -0.9];
+
 /// The ranges of the joints: the limits of the robot file, and defaults where it has none.
 #[must_use]
 pub fn ranges(robot: &Robot) -> Vec<Range> {
@@ -142,6 +145,7 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
         payload: PAYLOAD.map(exactly),
         wrenches: &wrenches,
         base: BASE.map(|triple| triple.map(exactly)),
+        velocity: VELOCITY.map(exactly),
         ..Arguments::of_joints(&q, &qd, &last, zero)
     };
     interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
@@ -167,6 +171,7 @@ pub fn single_precision(
         payload: PAYLOAD,
         wrenches: &wrenches,
         base: BASE,
+        velocity: VELOCITY,
         ..Arguments::of_joints(q, qd, last, 0.0)
     };
     interpreter.run(&arguments, single, sin_cos)

@@ -66,6 +66,8 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
             program.coordinates.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect()
         }
         (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
+        (_, Argument::BaseTwist) => Name::of_twist().map(used).into(),
+        (_, Argument::BasePose) => Name::of_pose().map(used).into(),
         (_, Argument::Wrenches) => (1..=program.tips.len()).flat_map(Name::of_tip).map(used).collect(),
         (_, argument) => {
             let joint = if matches!(argument, Argument::Base | Argument::BaseVelocity) { 0 } else { tip };

@@ -28,6 +28,10 @@ pub struct Arguments<'a, T> {
     pub wrenches: &'a [[T; 6]],
     /// ω₀, ω̇₀, c̈₀ of the base and gravity, in frame 0.
     pub base: [[T; 3]; 4],
+    /// Velocity of the origin of frame 0; the angular one is that of `base`.
+    pub velocity: [T; 3],
+    /// Pose of frame 0 in the world: rotation by rows, origin.
+    pub pose: [T; 12],
     /// Parameters that are known at run time only.
     pub parameters: &'a [T],
 }
@@ -47,6 +51,8 @@ impl<'a, T: Copy> Arguments<'a, T> {
             tau: &[],
             wrenches: &[],
             base: [zeros; 4],
+            velocity: zeros,
+            pose: [zero; 12],
             parameters: &[],
         }
     }
@@ -170,6 +176,10 @@ impl<T: Copy> Arguments<'_, T> {
             let index = Name::of_tip(name.joint).iter().position(|known| *known == name)?;
             return Some(self.wrenches.get(name.joint.checked_sub(1)?)?[index]);
         }
+        if let Quantity::FrameRotation | Quantity::FrameOrigin = name.quantity {
+            let index = Name::of_pose().iter().position(|known| *known == name)?;
+            return Some(self.pose[index]);
+        }
         let Component::Vector(axis) = name.component else {
             let array = match name.quantity {
                 Quantity::Position => self.q,
@@ -186,6 +196,7 @@ impl<T: Copy> Arguments<'_, T> {
             Quantity::Omega => self.base[0],
             Quantity::OmegaDot => self.base[1],
             Quantity::Acceleration => self.base[2],
+            Quantity::OriginVelocity => self.velocity,
             _ => self.base[3],
         };
         Some(vector[axis as usize])

@@ -201,6 +201,8 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
         tau: &tau,
         base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
             .map(|quantity| vector(quantity, 0)),
+        velocity: vector(Quantity::OriginVelocity, 0),
+        pose: Name::of_pose().map(|name| argument(robot, point, name)),
         parameters: &parameters,
         ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Residue::ZERO))
     };
@@ -328,7 +330,19 @@ fn state<'a, T: Copy>(
     payload: [T; 10],
     parameters: &'a [T],
 ) -> Arguments<'a, T> {
-    Arguments { q, qd, qdd, force: vector, moment: vector, payload, tau: qdd, wrenches, base: [vector; 4], parameters }
+    let [x, y, z] = vector;
+    Arguments {
+        force: vector,
+        moment: vector,
+        payload,
+        tau: qdd,
+        wrenches,
+        base: [vector; 4],
+        velocity: vector,
+        pose: [x, y, z, y, z, x, z, x, y, x, y, z],
+        parameters,
+        ..Arguments::of_joints(q, qd, qdd, x)
+    }
 }
 
 /// A wrench for each tip, no two of them the same.

@@ -1,7 +1,7 @@
 //! The functions by their own names, for one state: arguments and results as those of `DynArm`.
 
 use rne_codegen::Function;
-use rne_runtime::{BaseMotion, Payload, VectorUnit, Wrench};
+use rne_runtime::{BaseMotion, BaseTwist, Payload, Pose, VectorUnit, Wrench};
 
 use crate::results::{self, Shaped};
 use crate::{Arguments, Array, CompiledArm, EvaluationError, Number};
@@ -44,6 +44,8 @@ macro_rules! taken {
     (Payload) => { &Payload<T> };
     (Base) => { &BaseMotion<T> };
     (BaseVelocity) => { &[T; 3] };
+    (BaseTwist) => { &BaseTwist<T> };
+    (BasePose) => { &Pose<T> };
     ($of_joints:ident) => { &[T] };
 }
 
@@ -54,6 +56,12 @@ macro_rules! read {
     };
     (Wrenches $wrenches:ident) => {
         $wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten().collect::<Vec<_>>()
+    };
+    (BaseTwist $twist:ident) => {
+        [$twist.linear, $twist.angular].concat()
+    };
+    (BasePose $pose:ident) => {
+        $pose.rotation.iter().chain([&$pose.translation]).flatten().copied().collect::<Vec<_>>()
     };
     ($kind:ident $argument:ident) => {
         $argument
@@ -80,6 +88,12 @@ macro_rules! with {
     };
     ($others:ident, BaseVelocity $omega:ident) => {
         $others.omega(Array::Same($omega))
+    };
+    ($others:ident, BaseTwist $twist:ident) => {
+        $others.twist(Array::Same(&$twist))
+    };
+    ($others:ident, BasePose $pose:ident) => {
+        $others.pose(Array::Same(&$pose))
     };
     ($others:ident, $of_joints:ident $argument:ident) => {
         $others.$argument(Array::Rows($argument))

@@ -26,6 +26,8 @@ pub type Poses<T> = Vec<Pose<T>>;
 pub type Wrenches<T> = Vec<Wrench<T>>;
 /// Per torque and link: m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz.
 pub type Regressor<T> = Vec<Vec<[T; 10]>>;
+/// Per force, moment and torque and per body, the base first: the same ten.
+pub type FloatingRegressor<T> = Regressor<T>;
 /// The momentum of each joint, and its rate.
 pub type MomentumAndRate<T> = [Vec<T>; 2];
 /// The wrench that must act on a base that nothing holds, and the torques.

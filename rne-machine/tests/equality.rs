@@ -12,7 +12,7 @@ use rne_search::PlanFile;
 const STATES: usize = 150;
 
 /// Arguments and their elements for any function of an arm.
-fn widths(dof: usize) -> [(&'static str, usize); 15] {
+fn widths(dof: usize) -> [(&'static str, usize); 17] {
     [
         ("q", dof),
         ("qd", dof),
@@ -30,6 +30,8 @@ fn widths(dof: usize) -> [(&'static str, usize); 15] {
         ("base_gravity", 3),
         // one tip
         ("wrenches", 6),
+        ("twist", 6),
+        ("pose", 12),
     ]
 }
 
@@ -56,6 +58,9 @@ impl States {
         rows[8].iter_mut().step_by(10).for_each(|mass| *mass = mass.abs());
         // the base has one angular velocity
         let omega = rows[9].clone();
+        for (twist, omega) in rows[15].chunks_mut(6).zip(omega.chunks(3)) {
+            twist[3..].copy_from_slice(omega);
+        }
         rows[10] = omega;
         Self { dof, rows }
     }
@@ -86,6 +91,8 @@ impl States {
             wrenches: &[of(14, 6).try_into().expect("one tip")],
             payload: of(8, 10).try_into().expect("ten"),
             base: [9, 11, 12, 13].map(triple),
+            velocity: of(15, 6)[..3].try_into().expect("three"),
+            pose: of(16, 12).try_into().expect("twelve"),
             ..Numbers::of_joints(joints(0), joints(1), joints(2), 0.0)
         };
         interpreter.run(&numbers, f64::from_f64, Scalar::sin_cos).expect("arrays of the right length")

@@ -93,6 +93,10 @@ impl Target<'_> {
         match capability {
             Capability::FloatingBase => quote!(#dof, #velocities, #tips),
             Capability::CentroidalMomentum => quote!(#dof, #velocities),
+            Capability::FloatingRegressor => {
+                let bodies = bodies(dof);
+                quote!(#dof, #velocities, #bodies)
+            }
             _ if capability.has_tips() => quote!(#dof, #tips),
             _ => quote!(#dof),
         }
@@ -111,8 +115,11 @@ impl Target<'_> {
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
-        if matches!(capability, Capability::FloatingBase | Capability::CentroidalMomentum) {
+        if capability.has_velocities() {
             generics.params.push(syn::parse_quote!(const __VELOCITIES: ::core::primitive::usize));
+        }
+        if capability == Capability::FloatingRegressor {
+            generics.params.push(syn::parse_quote!(const __BODIES: ::core::primitive::usize));
         }
         if capability.has_tips() {
             generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
@@ -181,6 +188,20 @@ impl Target<'_> {
                 } = base;
             }
         });
+        // named as their arrays, too
+        let triple = |of: &TokenStream| {
+            let axes = [0, 1, 2].map(Literal::usize_unsuffixed).map(|axis| quote!(#of[#axis]));
+            quote!(#(#axes),*)
+        };
+        let twist = function.takes(Argument::BaseTwist).then(|| {
+            let [linear, angular] = [quote!(twist.linear), quote!(twist.angular)].map(|part| triple(&part));
+            quote!(let twist = &[#linear, #angular];)
+        });
+        let pose = function.takes(Argument::BasePose).then(|| {
+            let rows = [0, 1, 2].map(Literal::usize_unsuffixed).map(|row| triple(&quote!(pose.rotation[#row])));
+            let origin = triple(&quote!(pose.translation));
+            quote!(let pose = &[#(#rows,)* #origin];)
+        });
         let (count, parameters) = (parameters.names().len(), parameters.read(krate));
         let dof = Literal::usize_unsuffixed(program.dof);
         let of_trait = match program.frame {
@@ -190,7 +211,7 @@ impl Target<'_> {
         let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
         let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
         let dof = quote!(#dof);
-        let body = quote!(#wrench #payload #wrenches #base #body);
+        let body = quote!(#wrench #payload #wrenches #base #twist #pose #body);
         let body =
             if is_asked { self.call(function, &dof, count, &parameters, &body) } else { quote!(#parameters #body) };
         let method = match program.frame {
@@ -272,6 +293,8 @@ impl Target<'_> {
                 Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
                 Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
                 Argument::BaseVelocity => ("omega", quote!([T; 3])),
+                Argument::BaseTwist => ("twist", quote!(#krate::BaseTwist<T>)),
+                Argument::BasePose => ("pose", quote!(#krate::Pose<T>)),
                 Argument::Wrenches => ("wrenches", quote!([#krate::Wrench<T>; #tips])),
             };
             (format_ident!("{name}"), quote!(&#lifetime #kind))
@@ -312,6 +335,10 @@ impl Target<'_> {
                     Length::Velocities => {
                         let velocities = velocities(dof);
                         quote!([#of; #velocities])
+                    }
+                    Length::Bodies => {
+                        let bodies = bodies(dof);
+                        quote!([#of; #bodies])
                     }
                     Length::Fixed(length) => {
                         let length = Literal::usize_unsuffixed(*length);
@@ -483,8 +510,18 @@ impl Constants {
 /// The number of velocities of a robot whose base nothing holds: six of the base, and those of its joints. Of a robot
 /// that is not known, a parameter.
 fn velocities(dof: &TokenStream) -> TokenStream {
+    length(Length::Velocities, dof, quote!(__VELOCITIES))
+}
+
+/// The number of bodies of such a robot, as [`velocities`].
+fn bodies(dof: &TokenStream) -> TokenStream {
+    length(Length::Bodies, dof, quote!(__BODIES))
+}
+
+/// A length for a number of joints; `unknown` if that is a parameter.
+fn length(length: Length, dof: &TokenStream, unknown: TokenStream) -> TokenStream {
     let dof = dof.to_string().parse::<usize>();
-    dof.map_or_else(|_| quote!(__VELOCITIES), |dof| Literal::usize_unsuffixed(6 + dof).into_token_stream())
+    dof.map_or(unknown, |dof| Literal::usize_unsuffixed(length.of(dof)).into_token_stream())
 }
 
 /// A number that reads back as the same bits, or infinity.

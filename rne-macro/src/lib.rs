@@ -236,11 +236,36 @@ pub fn derive_floating_base(input: TokenStream) -> TokenStream {
 /// The base is the link `floating_base` of the robot file; without that key the base has no mass.
 ///
 /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
-/// gets constants with the operations, `CENTROIDAL_MOMENTUM_MATRIX_OPERATIONS` and `CENTROIDAL_BIAS_OPERATIONS`; `DOF`,
-/// names and limits come with `InverseDynamics`.
+/// gets constants with the operations, `CENTROIDAL_MOMENTUM_MATRIX_OPERATIONS`, `CENTROIDAL_BIAS_OPERATIONS` and
+/// `CENTROIDAL_MOMENTUM_OPERATIONS`; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(CentroidalMomentum, attributes(robot))]
 pub fn derive_centroidal_momentum(input: TokenStream) -> TokenStream {
     expand::capability(Capability::CentroidalMomentum, input.into()).into()
+}
+
+/// Implements the trait `FloatingEnergy` for a struct: kinetic and potential energy where nothing holds the base.
+///
+/// The base is the link `floating_base` of the robot file; without that key the base has no mass.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets constants with the operations, `FLOATING_KINETIC_ENERGY_OPERATIONS` and `FLOATING_POTENTIAL_ENERGY_OPERATIONS`;
+/// `DOF`, names and limits come with `InverseDynamics`.
+#[proc_macro_derive(FloatingEnergy, attributes(robot))]
+pub fn derive_floating_energy(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingEnergy, input.into()).into()
+}
+
+/// Implements the trait `FloatingRegressor` for a struct: the wrench on a base that nothing holds and the torques per
+/// inertial parameter of the base and of each link.
+///
+/// The base is frame 0, whether or not the robot file has a `floating_base`: no inertial parameter enters.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `FLOATING_REGRESSOR_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(FloatingRegressor, attributes(robot))]
+pub fn derive_floating_regressor(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingRegressor, input.into()).into()
 }
 
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.

@@ -37,7 +37,11 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         Capability::Actuation => &["actuator_torques_are_those_of_the_runtime"],
         Capability::PayloadDynamics => &["payload_dynamics_are_those_of_the_runtime"],
         // an `Arm` does not know the tips of a file
-        Capability::TipWrenches | Capability::FloatingBase | Capability::CentroidalMomentum => &[],
+        Capability::TipWrenches
+        | Capability::FloatingBase
+        | Capability::CentroidalMomentum
+        | Capability::FloatingRegressor
+        | Capability::FloatingEnergy => &[],
     }
 }
 

@@ -70,6 +70,14 @@ impl DynArm {
         self.rows().iter().map(|row| about_the_origin(&row.link)).collect()
     }
 
+    /// The inertial parameters of the base, then of every link, as
+    /// [`floating_regressor`](Self::floating_regressor) counts them; zeros for a robot without `floating_base`.
+    #[must_use]
+    pub fn floating_inertial_parameters(&self) -> Vec<[f64; PER_LINK]> {
+        let base = self.floating_base.as_ref().map_or([0.0; PER_LINK], about_the_origin);
+        [base].into_iter().chain(self.inertial_parameters()).collect()
+    }
+
     /// Computes the combinations of link parameters that determine the torques.
     #[must_use]
     pub fn base_parameters(&self) -> BaseParameters {

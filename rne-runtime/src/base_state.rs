@@ -49,6 +49,13 @@ impl<T: Scalar> BaseTwist<T> {
     }
 }
 
+impl<T: Scalar> BaseTwist<T> {
+    /// A base that moves with this velocity and has no acceleration, without gravity.
+    pub(crate) fn motion(&self) -> BaseMotion<T> {
+        BaseMotion { omega: self.angular, velocity: self.linear, ..BaseMotion::default() }
+    }
+}
+
 impl<T: Scalar> BaseMotion<T> {
     /// The motion that an inertial measurement unit in frame 0 reads: ω (rad/s), its rate ω̇ (rad/s²), which is a
     /// difference of readings or zero, and the specific force a - g (m/s²). At rest the accelerometer reads -g:

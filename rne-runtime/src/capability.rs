@@ -6,7 +6,7 @@
 
 use crate::ldlt::inverse_of;
 use crate::smooth_sign::SmoothSign;
-use crate::{BaseMotion, Payload, Pose, Scalar, Wrench};
+use crate::{BaseMotion, BaseTwist, Payload, Pose, Scalar, Wrench};
 
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
@@ -463,6 +463,49 @@ pub trait CentroidalMomentum<const DOF: usize, const NV: usize> {
     /// `omega`: angular velocity of the base, rad/s.
     #[must_use]
     fn centroidal_bias<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], omega: &[T; 3]) -> [T; 6];
+
+    /// The momentum A v (N s), then the angular momentum about the centre of mass (N m s), without the matrix.
+    ///
+    /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s.
+    #[must_use]
+    fn centroidal_momentum<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> [T; 6];
+}
+
+/// Energy of a robot whose base nothing holds.
+pub trait FloatingEnergy<const DOF: usize> {
+    /// Kinetic energy ½ vᵀ M v, J, with the [mass matrix](FloatingBase::floating_mass_matrix) M; rotors included in an
+    /// arm with its rotors.
+    ///
+    /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in axes of frame 0.
+    #[must_use]
+    fn floating_kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> T;
+
+    /// Potential energy -Σ m g·c, J, with c from the origin of the world to each centre of mass: zero where all masses
+    /// are there.
+    ///
+    /// `pose` of frame 0 in the world, whose axes are those in which the robot file has gravity. Where `pose` is no
+    /// rotation and no translation, this is the [potential energy](Energy::potential_energy).
+    #[must_use]
+    fn floating_potential_energy<T: Scalar>(&self, q: &[T; DOF], pose: &Pose<T>) -> T;
+}
+
+/// The wrench on a base that nothing holds and the torques as a linear function of the inertial parameters, for their
+/// identification from the motion of the robot. `NV` = `DOF` + 6 rows are those of [`FloatingBase`], `BODIES` = `DOF` +
+/// 1.
+pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usize> {
+    /// Y: row i of [force, moment, torques](FloatingBase::inverse_dynamics_of_floating_base), with free tips, is Σ_j
+    /// Σ_k Y\[i\]\[j\]\[k\] π_jk. The base is the first body, then come the links, each with the ten parameters of
+    /// [`regressor`](Regressor::regressor); those of the base refer to frame 0.
+    ///
+    /// `base` is that of [`inverse_dynamics_of_floating_base`](FloatingBase::inverse_dynamics_of_floating_base).
+    #[must_use]
+    fn floating_regressor<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+    ) -> [[[T; 10]; BODIES]; NV];
 }
 
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has

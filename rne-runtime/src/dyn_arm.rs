@@ -28,7 +28,7 @@ pub struct DynArm<S = f64> {
     rows: Vec<Row<S>>,
     branches: Vec<Option<FixedFrame<S>>>,
     tip_on: Option<usize>,
-    floating_base: Option<Link<S>>,
+    pub(crate) floating_base: Option<Link<S>>,
     links: Vec<LinkFrame<S>>,
     tip: Mount<S>,
     motors: Vec<Option<Motor<S>>>,

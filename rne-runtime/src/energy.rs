@@ -11,25 +11,38 @@
 //! A link with a first moment h beside its mass has ċ_i · (ω_i × h_i) in T, and - g · R_i h̄_i in V.
 //!
 //! Sums run from the base to the tip; the half, and the sign, come last.
+//!
+//! A base that nothing holds moves and is a link, too: link 0. Where frame 0 stands in the world at p, turned by R:
+//!
+//! ```text
+//! V = - Σ m_i Rᵀ g · c_i - Σ m_i g · p             g in world axes
+//! ```
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::kinematics::Placement;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
-use crate::{Arm, BaseMotion, Constant, Energy, Scalar};
+use crate::seven_steps;
+use crate::{Arm, BaseMotion, BaseTwist, Constant, Energy, FloatingEnergy, Pose, Scalar};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    pub(crate) fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T]) -> T {
+    /// The kinetic energy on a base that moves as told, or stands still.
+    pub(crate) fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
         let zeros = self.zeros();
         let joints = JointMotions::new(q, qd, zeros.as_ref());
-        let base = BaseMotion::fixed([T::zero(); 3]);
+        let base = twist.map_or_else(BaseMotion::default, BaseTwist::motion);
         let motions = self.motions(joints, &base);
         let velocities = self.velocities(joints, &base, &motions);
-        let mut twice = T::zero();
+        let turning = twist.map(|twist| Vector3::from(twist.angular));
+        let mut twice = turning.map_or_else(T::zero, |omega| {
+            let (link, velocity) = (self.chain.base(), seven_steps::base_velocity(self.chain, &base));
+            let spin = omega.dot(&(link.inertia * omega));
+            link.mass * velocity.dot(&velocity) + spin
+        });
         for ((link, motion), velocity) in self.chain.links::<T>().zip(motions.as_ref()).zip(velocities.as_ref()) {
             let spin = motion.omega.dot(&(link.inertia * motion.omega));
             twice += link.mass * velocity.dot(velocity) + spin;
@@ -46,7 +59,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let spins = self.chain.spins;
         for spin in spins.all() {
             let speed = spins.of_joints(spin, qd);
-            let carried = spin.on.map(|link| spin.axis.map(S::to::<T>).dot(&motions.as_ref()[link].omega));
+            let carrier = spin.on.map_or(turning, |link| Some(motions.as_ref()[link].omega));
+            let carried = carrier.map(|omega| spin.axis.map(S::to::<T>).dot(&omega));
             let whole = carried.map_or(speed, |along| (speed + along) + along);
             twice += (spin.inertia.to::<T>() * speed) * whole;
         }
@@ -54,7 +68,19 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 
     pub(crate) fn potential_energy<T: Scalar>(self, q: &[T]) -> T {
+        self.potential_energy_in(q, &Vector3::from(*self.gravity).map(S::to::<T>))
+    }
+
+    /// `pose` of frame 0 in the world.
+    pub(crate) fn floating_potential_energy<T: Scalar>(self, q: &[T], pose: &Pose<T>) -> T {
         let gravity = Vector3::from(*self.gravity).map(S::to::<T>);
+        let mass = self.chain.links::<T>().fold(self.chain.base::<T>().mass, |mass, link| mass + link.mass);
+        let (back, origin) = (Matrix3::from(pose.rotation), Vector3::from(pose.translation));
+        self.potential_energy_in(q, &(back * gravity)) - mass * gravity.dot(&origin)
+    }
+
+    /// `gravity` in frame 0.
+    fn potential_energy_in<T: Scalar>(self, q: &[T], gravity: &Vector3<T>) -> T {
         let links = self.placements(Placement::identity(), q);
         let base = self.chain.base::<T>();
         let mut sum = base.mass * gravity.dot(&base.com);
@@ -70,11 +96,21 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
 impl<const DOF: usize, S: Constant> Energy<DOF> for Arm<DOF, S> {
     fn kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> T {
-        self.mechanism().kinetic_energy(q, qd)
+        self.mechanism().kinetic_energy(q, qd, None)
     }
 
     fn potential_energy<T: Scalar>(&self, q: &[T; DOF]) -> T {
         self.mechanism().potential_energy(q)
+    }
+}
+
+impl<const DOF: usize, S: Constant> FloatingEnergy<DOF> for Arm<DOF, S> {
+    fn floating_kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> T {
+        self.mechanism().kinetic_energy(q, qd, Some(twist))
+    }
+
+    fn floating_potential_energy<T: Scalar>(&self, q: &[T; DOF], pose: &Pose<T>) -> T {
+        self.mechanism().floating_potential_energy(q, pose)
     }
 }
 
@@ -87,7 +123,31 @@ impl<S: Constant> DynArm<S> {
     pub fn kinetic_energy<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<T, WrongLength> {
         let q = &*self.of_joints("q", q)?;
         let qd = &*self.of_joints("qd", qd)?;
-        Ok(self.mechanism().kinetic_energy(q, qd))
+        Ok(self.mechanism().kinetic_energy(q, qd, None))
+    }
+
+    /// As [`FloatingEnergy::floating_kinetic_energy`].
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn floating_kinetic_energy<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        twist: &BaseTwist<T>,
+    ) -> Result<T, WrongLength> {
+        let q = &*self.of_joints("q", q)?;
+        let qd = &*self.of_joints("qd", qd)?;
+        Ok(self.mechanism().kinetic_energy(q, qd, Some(twist)))
+    }
+
+    /// As [`FloatingEnergy::floating_potential_energy`].
+    ///
+    /// # Errors
+    /// When `q` does not have one element per joint.
+    pub fn floating_potential_energy<T: Scalar>(&self, q: &[T], pose: &Pose<T>) -> Result<T, WrongLength> {
+        let q = &*self.of_joints("q", q)?;
+        Ok(self.mechanism().floating_potential_energy(q, pose))
     }
 
     /// As [`Energy::potential_energy`].

@@ -26,7 +26,7 @@ use crate::{Arm, BaseAcceleration, BaseMotion, Constant, FloatingAccelerations, 
 use crate::{DynArm, WrongLength};
 
 /// Rows of the base: x, y, z, then about x, y, z.
-const BASE: usize = 6;
+pub(crate) const BASE: usize = 6;
 
 /// The parts of the mass matrix on and above its diagonal.
 struct FloatingMass<J: PerJoint, T: Scalar> {

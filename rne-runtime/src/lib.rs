@@ -105,9 +105,10 @@ pub use base_state::BaseTwist;
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy,
-    FloatingAccelerations, FloatingBase, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
+    FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingRegressor, FloatingTorques, ForwardDynamics,
+    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix,
+    MomentumAndRate, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives,
+    frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

@@ -14,6 +14,9 @@
 //! -∂V/∂q_i              e · (s_i × g_i)                   M_i e · g_i
 //! ```
 //!
+//! A base that nothing holds is link 0, about the origin of frame 0. Its P_0 is the momentum of the robot, and the
+//! angular momentum about the centre of mass c = s_0 / M_0 is L_0 - c × P_0.
+//!
 //! k runs over the joints that link i carries, and over the payload at the tip; j̇_i = R_iᵀ (ċ_p + ω_p × r_i). A first
 //! moment h beside the mass adds h_i
 //! to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. A rotor of the list `motors` adds Jm s a to L of its carrier c, and n
@@ -28,7 +31,8 @@ use crate::link_state::{JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::PerJoint;
-use crate::{Arm, BaseMotion, Constant, MomentumAndRate, MomentumObserver, Payload, Scalar};
+use crate::seven_steps;
+use crate::{Arm, BaseMotion, BaseTwist, Constant, MomentumAndRate, MomentumObserver, Payload, Scalar};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
@@ -173,6 +177,40 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    /// The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.
+    fn centroidal_momentum<T: Scalar>(self, q: &[T], qd: &[T], twist: &BaseTwist<T>) -> [T; 6] {
+        let (zeros, base, chain) = (self.zeros(), twist.motion(), self.chain);
+        let joints = JointMotions::new(q, qd, zeros.as_ref());
+        let motions = self.motions(joints, &base);
+        let velocities = self.velocities(joints, &base, &motions);
+        let (motions, velocities) = (motions.as_ref(), velocities.as_ref());
+        let of_spins = |link| chain.spins.on(link).map(|spin| chain.spins.momentum(spin, qd));
+        let (mut carried, mut on_base) = (self.per_joint.all(&None), None);
+        for (i, link) in chain.links::<T>().enumerate().rev() {
+            let own = carried.as_ref()[i];
+            let body = Body::of(&link, &motions[i], &velocities[i], of_spins(Some(i)), own.as_ref());
+            let place = link.parent.map_or(&mut on_base, |parent| &mut carried.as_mut()[parent]);
+            *place = Some(carry(*place, body.turned(&motions[i].rotation), &link.mount.r));
+        }
+        let link = LinkFrame::of_base(chain.base());
+        let (motion, velocity) = (seven_steps::base_motion(chain, &base), seven_steps::base_velocity(chain, &base));
+        let whole = Body::of(&link, &motion, &velocity, of_spins(None), on_base.as_ref());
+        let centre = whole.first_moment * (T::one() / whole.mass);
+        let about = whole.angular - centre.cross(&whole.linear);
+        let [[x, y, z], [about_x, about_y, about_z]] = [whole.linear.into(), about.into()];
+        [x, y, z, about_x, about_y, about_z]
+    }
+}
+
+impl<const DOF: usize, S: Constant> Arm<DOF, S> {
+    /// As [`CentroidalMomentum::centroidal_momentum`](crate::CentroidalMomentum::centroidal_momentum).
+    #[must_use]
+    pub fn centroidal_momentum<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> [T; 6] {
+        self.mechanism().centroidal_momentum(q, qd, twist)
+    }
+}
+
 impl<const DOF: usize, S: Constant> MomentumObserver<DOF> for Arm<DOF, S> {
     fn momentum_and_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> MomentumAndRate<DOF, T> {
         let [momentum, rate] = self.mechanism().momentum_and_rate(q, qd, tau, None);
@@ -191,5 +229,20 @@ impl<S: Constant> DynArm<S> {
         let qd = &*self.of_joints("qd", qd)?;
         let tau = &*self.applied(tau)?;
         Ok(self.couplings.rows(self.mechanism().momentum_and_rate(q, qd, tau, None)))
+    }
+
+    /// As [`CentroidalMomentum::centroidal_momentum`](crate::CentroidalMomentum::centroidal_momentum).
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn centroidal_momentum<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        twist: &BaseTwist<T>,
+    ) -> Result<[T; 6], WrongLength> {
+        let q = &*self.of_joints("q", q)?;
+        let qd = &*self.of_joints("qd", qd)?;
+        Ok(self.mechanism().centroidal_momentum(q, qd, twist))
     }
 }

@@ -14,34 +14,55 @@
 //! mass put at its link frame's origin: no inertial parameter of the robot enters Y.
 
 use core::array;
+#[cfg(feature = "std")]
+use core::iter;
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, Link, PER_LINK, Row};
 
+use crate::floating_base::BASE;
 use crate::joint::JointLaws;
 use crate::link_frame::{Chain, LinkFrame, Table, rotation_x};
 use crate::link_state::{ForceMoment, JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, Constant, Regressor, Scalar};
+use crate::{Arm, BaseMotion, Constant, Regressor, Scalar};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
 /// Row and column of Jxx, Jxy, Jxz, Jyy, Jyz, Jzz.
 const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
+/// The numbers of a link in one row of Y.
+type Elements<T> = [T; PER_LINK];
+
+/// The rows of a base that nothing holds, force above moment: of the base's own parameters, and of the links.
+struct OfBase<J: PerJoint, T: Scalar> {
+    own: [Elements<T>; BASE],
+    links: [J::Of<Elements<T>>; BASE],
+}
+
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    pub(crate) fn regressor<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> Square<J, [T; PER_LINK]> {
+    fn regressor<T: Scalar>(
+        self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+    ) -> (OfBase<J, T>, Square<J, Elements<T>>) {
         let rows = self.per_joint.of(|i| empty(&self.table.rows[i]));
-        let table = Table { rows: rows.as_ref(), ..self.table };
+        // from the origin of frame 0, wherever the mass of the base is
+        let table = Table { rows: rows.as_ref(), floating_base: None, ..self.table };
         let links = self.per_joint.of(|i| LinkFrame::new(table, i));
-        let chain = Chain { links: links.as_ref(), tip: &Mount::of_tip(table), ..self.chain };
+        let chain = Chain { links: links.as_ref(), tip: &Mount::of_tip(table), floating_base: None, ..self.chain };
         let bare = Mechanism { chain, table, ..self };
-        let motions = bare.motions(JointMotions::new(q, qd, qdd), &self.fixed_base());
+        let motions = bare.motions(joints, base);
         let motions = motions.as_ref();
 
-        let mut matrix = self.per_joint.all(&self.per_joint.all(&[T::zero(); PER_LINK]));
+        let zeros = self.per_joint.all(&[T::zero(); PER_LINK]);
+        let own = unit_wrenches(&LinkMotion::of_base(base, None), &Matrix3::identity());
+        let own = array::from_fn(|row| own.map(|wrench| row_of(&wrench, row)));
+        let mut of_base: OfBase<J, T> = OfBase { own, links: array::from_fn(|_| zeros.clone()) };
+        let mut matrix = self.per_joint.all(&zeros);
         for (j, motion) in motions.iter().enumerate() {
             let mut wrenches = unit_wrenches(motion, &self.link_axes(j));
             // The link itself: from its link frame's origin to its joint.
@@ -58,12 +79,23 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
                 // That link carries the wrench from there to its own joint.
                 let link = &chain.links[i];
                 joint = link.parent;
+                lever = link.mount.r.map(S::to);
                 if let Some(parent) = joint {
-                    lever = motions[parent].d + link.mount.r.map(S::to);
+                    lever = motions[parent].d + lever;
+                }
+            }
+            for (parameter, wrench) in wrenches.iter_mut().enumerate() {
+                wrench.moment += lever.cross(&wrench.force);
+                for row in 0..BASE {
+                    of_base.links[row].as_mut()[j][parameter] = row_of(wrench, row);
                 }
             }
         }
-        matrix
+        (of_base, matrix)
+    }
+
+    fn regressor_of_fixed_base<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> Square<J, Elements<T>> {
+        self.regressor(JointMotions::new(q, qd, qdd), &self.fixed_base()).1
     }
 
     /// Turns components in the axes of link frame `index` into those of form P.
@@ -73,6 +105,11 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             Convention::Modified => Matrix3::identity(),
         }
     }
+}
+
+/// A component of the force, then of the moment.
+fn row_of<T: Scalar>(wrench: &ForceMoment<T>, row: usize) -> T {
+    if row < 3 { wrench.force[row] } else { wrench.moment[row - 3] }
 }
 
 /// The row of a link without mass.
@@ -109,7 +146,32 @@ fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [Force
 
 impl<const DOF: usize, S: Constant> Regressor<DOF> for Arm<DOF, S> {
     fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; PER_LINK]; DOF]; DOF] {
-        self.mechanism().regressor(q, qd, qdd)
+        self.mechanism().regressor_of_fixed_base(q, qd, qdd)
+    }
+}
+
+impl<const DOF: usize, S: Constant> Arm<DOF, S> {
+    /// As [`FloatingRegressor::floating_regressor`](crate::FloatingRegressor::floating_regressor); `NV` is `DOF` + 6
+    /// and `BODIES` is `DOF` + 1.
+    #[must_use]
+    pub fn floating_regressor<T: Scalar, const NV: usize, const BODIES: usize>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+    ) -> [[Elements<T>; BODIES]; NV] {
+        const { assert!(NV == DOF + BASE, "the regressor has a row for each joint and six for the base") };
+        const { assert!(BODIES == DOF + 1, "the regressor has ten columns for the base and for each link") };
+        let (of_base, of_joints) = self.mechanism().regressor(JointMotions::new(q, qd, qdd), base);
+        let element = |row: usize, body: usize| match (row.checked_sub(BASE), body.checked_sub(1)) {
+            (None, None) => of_base.own[row],
+            (None, Some(link)) => of_base.links[row][link],
+            // no joint moves the base
+            (Some(_), None) => [T::zero(); PER_LINK],
+            (Some(joint), Some(link)) => of_joints[joint][link],
+        };
+        array::from_fn(|row| array::from_fn(|body| element(row, body)))
     }
 }
 
@@ -119,12 +181,38 @@ impl<S: Constant> DynArm<S> {
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
-    pub fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Vec<[T; PER_LINK]>>, WrongLength> {
+    pub fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Vec<Elements<T>>>, WrongLength> {
         let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let rows = self.mechanism().regressor(&q, &qd, &qdd);
-        Ok(self.couplings.gathered(rows, |sum: Vec<[T; PER_LINK]>, row, ratio| {
+        let rows = self.mechanism().regressor_of_fixed_base(&q, &qd, &qdd);
+        Ok(self.gathered(rows))
+    }
+
+    /// As [`FloatingRegressor::floating_regressor`](crate::FloatingRegressor::floating_regressor): 6 + n rows, the base
+    /// and the links, parameter.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn floating_regressor<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        base: &BaseMotion<T>,
+    ) -> Result<Vec<Vec<Elements<T>>>, WrongLength> {
+        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
+        let (of_base, of_joints) = self.mechanism().regressor(JointMotions::new(&q, &qd, &qdd), base);
+        let of_joints = self.gathered(of_joints);
+        let rows = of_base.own.into_iter().zip(of_base.links);
+        // no joint moves the base
+        let rows = rows.chain(of_joints.into_iter().map(|row| ([T::zero(); PER_LINK], row)));
+        Ok(rows.map(|(base, links)| iter::once(base).chain(links).collect()).collect())
+    }
+
+    /// Gᵀ Y
+    fn gathered<T: Scalar>(&self, rows: Vec<Vec<Elements<T>>>) -> Vec<Vec<Elements<T>>> {
+        self.couplings.gathered(rows, |sum: Vec<Elements<T>>, row, ratio| {
             let links = sum.into_iter().zip(row);
             links.map(|(a, b)| array::from_fn(|i| a[i] + b[i] * ratio.to())).collect()
-        }))
+        })
     }
 }

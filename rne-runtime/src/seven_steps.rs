@@ -143,6 +143,12 @@ pub(crate) fn base_motion<S: Constant, T: Scalar>(chain: Chain<'_, S>, motion: &
     LinkMotion::of_base(motion, chain.floating_base.map(|_| chain.base().com))
 }
 
+/// Step 3 of the base: the velocity of its centre of mass, or of the origin of frame 0 where the world holds it.
+pub(crate) fn base_velocity<S: Constant, T: Scalar>(chain: Chain<'_, S>, motion: &BaseMotion<T>) -> Vector3<T> {
+    let (origin, base) = (Vector3::from(motion.velocity), base_motion(chain, motion));
+    if chain.floating_base.is_some() { origin + base.omega.cross(&base.d) } else { origin }
+}
+
 /// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. Links beyond the
 /// shortest argument stay as they are.
 pub(crate) fn forward<S: Constant, T: Scalar>(
@@ -171,9 +177,7 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
     motions: &[LinkMotion<T>],
     velocities: &mut [Vector3<T>],
 ) {
-    let origin = Vector3::from(base.velocity);
-    let base = base_motion(chain, base);
-    let base_velocity = if chain.floating_base.is_some() { origin + base.omega.cross(&base.d) } else { origin };
+    let (base_velocity, base) = (self::base_velocity(chain, base), base_motion(chain, base));
     for (index, (joint, this)) in chain.joints(joints).zip(motions).enumerate() {
         let parent = joint.link.parent.map_or((&base, base_velocity), |parent| (&motions[parent], velocities[parent]));
         velocities[index] = velocity(&joint, parent.0, &parent.1, this);

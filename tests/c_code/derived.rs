@@ -1,9 +1,10 @@
 //! Shipped robots with everything derived, and their functions by their names.
 
 use rne::{
-    Actuation, BaseMotion, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase, ForwardDynamics,
-    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
-    PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
+    Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase,
+    FloatingEnergy, FloatingRegressor, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches,
+    Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -20,7 +21,7 @@ pub(crate) trait Derived: Send + Sync {
     fn double(&self, function: Function, given: &Numbers<f64>) -> Vec<f64>;
 }
 
-pub(crate) trait Everything<const DOF: usize, const NV: usize>:
+pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usize>:
     InverseDynamics<DOF>
     + MassMatrix<DOF>
     + CoriolisMatrix<DOF>
@@ -38,6 +39,8 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize>:
     + TipWrenches<DOF, 1>
     + FloatingBase<DOF, NV, 1>
     + CentroidalMomentum<DOF, NV>
+    + FloatingRegressor<DOF, NV, BODIES>
+    + FloatingEnergy<DOF>
 {
 }
 
@@ -49,8 +52,8 @@ fn pose<T: Scalar>(pose: &Pose<T>) -> Vec<T> {
     [flat(pose.rotation), pose.translation.to_vec()].concat()
 }
 
-pub(crate) fn numbers<const DOF: usize, const NV: usize, T: Scalar>(
-    robot: &impl Everything<DOF, NV>,
+pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T: Scalar>(
+    robot: &impl Everything<DOF, NV, BODIES>,
     function: Function,
     given: &Numbers<T>,
 ) -> Vec<T> {
@@ -59,6 +62,9 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, T: Scalar>(
     let [ref q, ref qd, ref qdd, ref tau] = [q, qd, qdd, tau];
     let [force, moment, omega, omega_dot, acceleration, gravity, ref payload @ ..] = given.vectors;
     let base = BaseMotion { omega, omega_dot, velocity: [T::zero(); 3], acceleration, gravity };
+    // numbers that stand one after the other, as C reads them
+    let twist = BaseTwist { linear: moment, angular: omega };
+    let pose_of_base = Pose { rotation: [omega, omega_dot, acceleration], translation: gravity };
     match function {
         Function::InverseDynamics => robot.inverse_dynamics(q, qd, qdd).to_vec(),
         Function::InverseDynamicsWithWrench => {
@@ -116,6 +122,10 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, T: Scalar>(
             let found = robot.floating_forward_dynamics(q, qd, tau, &omega, &[Wrench { force, moment }]);
             [found.base.linear.to_vec(), found.base.angular.to_vec(), found.qdd.to_vec()].concat()
         }
+        Function::FloatingRegressor => robot.floating_regressor(q, qd, qdd, &base).into_iter().flat_map(flat).collect(),
+        Function::FloatingKineticEnergy => vec![robot.floating_kinetic_energy(q, qd, &twist)],
+        Function::FloatingPotentialEnergy => vec![robot.floating_potential_energy(q, &pose_of_base)],
+        Function::CentroidalMomentum => robot.centroidal_momentum(q, qd, &twist).to_vec(),
         Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
         Function::ActuatorTorques => robot.actuator_torques(qd, qdd).to_vec(),
         Function::GravityTorquesWithPayload => {
@@ -161,11 +171,13 @@ macro_rules! robot {
                 rne::TipWrenches,
                 rne::FloatingBase,
                 rne::CentroidalMomentum,
+                rne::FloatingRegressor,
+                rne::FloatingEnergy,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;
 
-            impl Everything<{ Robot::DOF }, { Robot::DOF + 6 }> for Robot {}
+            impl Everything<{ Robot::DOF }, { Robot::DOF + 6 }, { Robot::DOF + 1 }> for Robot {}
 
             impl Derived for Robot {
                 fn single(&self, function: Function, given: &Numbers<f32>) -> Vec<f32> {

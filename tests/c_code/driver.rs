@@ -159,17 +159,26 @@ impl Driver<'_> {
                 | Function::JacobianRateTimesVelocity
                 | Function::KineticEnergy => "q, qd",
                 Function::ForwardDynamics | Function::MomentumAndRate => "q, qd, tau",
-                Function::InverseDynamicsOnMovingBase => "q, qd, qdd, omega, omega_dot, acceleration, gravity",
+                Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
+                    "q, qd, qdd, omega, omega_dot, acceleration, gravity"
+                }
                 Function::InverseDynamicsOfFloatingBase => {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
                 Function::CentroidalBias => "q, qd, omega",
+                // omega stands behind the moment
+                Function::FloatingKineticEnergy | Function::CentroidalMomentum => "q, qd, moment",
+                // omega, omega_dot, acceleration and gravity
+                Function::FloatingPotentialEnergy => "q, omega",
                 Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
                 Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
                 Function::ActuatorTorques => "qd, qdd",
             };
             let (result, address) = match function {
-                Function::KineticEnergy | Function::PotentialEnergy => {
+                Function::KineticEnergy
+                | Function::PotentialEnergy
+                | Function::FloatingKineticEnergy
+                | Function::FloatingPotentialEnergy => {
                     let _ =
                         writeln!(text, "    {{ {real} x = {prefix}_{function}({arguments}); print_{real}(&x, 1u); }}");
                     continue;
@@ -183,7 +192,9 @@ impl Driver<'_> {
                 Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
                 Function::CentreOfMass => (format!("{real} x[3]"), "x"),
                 Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
-                Function::JacobianRateTimesVelocity | Function::CentroidalBias => (format!("{real} x[6]"), "x"),
+                Function::JacobianRateTimesVelocity | Function::CentroidalBias | Function::CentroidalMomentum => {
+                    (format!("{real} x[6]"), "x")
+                }
                 Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
                 Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
                     (format!("{prefix}_torque_derivatives x"), "&x")
@@ -195,6 +206,7 @@ impl Driver<'_> {
                 Function::InverseDynamicsOfFloatingBase => (format!("{prefix}_floating_torques x"), "&x"),
                 Function::FloatingMassMatrix => (format!("{real} x[{0}][{0}]", 6 + n), "x"),
                 Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
+                Function::FloatingRegressor => (format!("{real} x[{}][{}][10]", 6 + n, 1 + n), "x"),
                 Function::CentroidalMomentumMatrix => (format!("{real} x[6][{}]", 6 + n), "x"),
                 Function::FloatingForwardDynamics => (format!("{prefix}_floating_accelerations x"), "&x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),

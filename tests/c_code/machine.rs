@@ -69,6 +69,8 @@ impl States {
             ("base_omega_dot", vector(3)),
             ("base_acceleration", vector(4)),
             ("base_gravity", vector(5)),
+            ("twist", rows(&|state| state.vectors[1..3].concat())),
+            ("pose", rows(&|state| state.vectors[2..6].concat())),
         ];
         Self { each, rows }
     }
@@ -90,7 +92,17 @@ fn interpreted(interpreter: &Interpreter, state: &State) -> Vec<f64> {
     let [force, moment, base @ .., _, _, _, _] = state.vectors;
     let wrenches = [std::array::from_fn(|at| if at < 3 { force[at] } else { moment[at - 3] })];
     let of_joints = Numbers::of_joints(q, qd, qdd, 0.0);
-    let numbers = Numbers { tau, force, moment, wrenches: &wrenches, payload: payload(state), base, ..of_joints };
+    let numbers = Numbers {
+        tau,
+        force,
+        moment,
+        wrenches: &wrenches,
+        payload: payload(state),
+        base,
+        velocity: moment,
+        pose: state.vectors[2..6].as_flattened().try_into().expect("twelve"),
+        ..of_joints
+    };
     interpreter.run(&numbers, f64::from_f64, Scalar::sin_cos).expect("arrays of the right length")
 }
 

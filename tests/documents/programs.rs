@@ -80,7 +80,11 @@ pub(crate) fn stubs() -> String {
         let joints = arguments.iter().filter(|(_, kind)| *kind != Argument::Base);
         let joints: Vec<String> = joints
             .map(|(name, kind)| match kind {
-                Argument::Wrench | Argument::Payload | Argument::BaseVelocity => format!("{name}: ArrayLike, "),
+                Argument::Wrench
+                | Argument::Payload
+                | Argument::BaseVelocity
+                | Argument::BaseTwist
+                | Argument::BasePose => format!("{name}: ArrayLike, "),
                 Argument::Wrenches if function.is_of_floating_base() => {
                     format!("{name}: ArrayLike | dict[str, ArrayLike] | None = ..., ")
                 }

@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Mutex, OnceLock};
 
-use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Scalar, Wrench};
+use rne::{BaseMotion, BaseTwist, DynArm, DynTorqueDerivatives, Payload, Pose, Scalar, Wrench};
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program, Real};
 use rne_model::{Reader, Robot};
@@ -53,6 +53,23 @@ impl<'a, T: Scalar> Given<'a, T> {
         let zero = [T::zero(); 3];
         let (wrench, payload) = (Wrench::zero(), Payload::none());
         Self { q, qd, qdd, tau: &[], wrench, payload, base: BaseMotion::fixed(zero) }
+    }
+
+    /// The velocity of a base that nothing holds.
+    pub(crate) fn twist(&self) -> BaseTwist<T> {
+        BaseTwist { linear: self.base.velocity, angular: self.base.omega }
+    }
+
+    /// Where this base stands: no function takes a pose and a motion of the base, so that they share their numbers.
+    pub(crate) fn pose(&self) -> Pose<T> {
+        let BaseMotion { omega, omega_dot, acceleration, gravity, .. } = self.base;
+        Pose { rotation: [omega, omega_dot, acceleration], translation: gravity }
+    }
+
+    /// At a pose of the base.
+    pub(crate) fn at(self, pose: &Pose<T>) -> Self {
+        let ([omega, omega_dot, acceleration], gravity) = (pose.rotation, pose.translation);
+        Self { base: BaseMotion { omega, omega_dot, acceleration, gravity, ..self.base }, ..self }
     }
 }
 
@@ -171,7 +188,8 @@ impl Arm {
         let Some(code) = &self.code else { return of_runtime(&self.runtime, function, given) };
         let [q, qd, qdd, tau] = [given.q, given.qd, given.qdd, given.tau]
             .map(|array| array.iter().copied().map(Number).collect::<Vec<_>>());
-        let BaseMotion { omega, omega_dot, acceleration, gravity, .. } = given.base;
+        let BaseMotion { omega, omega_dot, velocity, acceleration, gravity } = given.base;
+        let pose = flat(given.pose().rotation).into_iter().chain(given.pose().translation).map(Number);
         let wrenches: Vec<[Number<T>; 6]> = at_tips(self.robot.tip_count(), &given.wrench)
             .iter()
             .map(|&Wrench { force: [fx, fy, fz], moment: [nx, ny, nz] }| [fx, fy, fz, nx, ny, nz].map(Number))
@@ -183,6 +201,8 @@ impl Arm {
             payload: given.payload.to_array().map(Number),
             tau: &tau,
             base: [omega, omega_dot, acceleration, gravity].map(|vector| vector.map(Number)),
+            velocity: velocity.map(Number),
+            pose: pose.collect::<Vec<_>>().try_into().unwrap_or_else(|_| unreachable!("twelve")),
             ..Arguments::of_joints(&q, &qd, &qdd, Number(T::zero()))
         };
         let sin_cos = |Number(angle): Number<T>| {
@@ -397,6 +417,14 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
             .map(|(base, qdd)| [base.linear.to_vec(), base.angular.to_vec(), qdd].concat()),
         Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q).map(flat),
         Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega).map(|rate| rate.to_vec()),
+        Function::FloatingRegressor => {
+            arm.floating_regressor(q, qd, qdd, base).map(|rows| rows.into_iter().flatten().flatten().collect())
+        }
+        Function::FloatingKineticEnergy => {
+            arm.floating_kinetic_energy(q, qd, &given.twist()).map(|energy| vec![energy])
+        }
+        Function::FloatingPotentialEnergy => arm.floating_potential_energy(q, &given.pose()).map(|energy| vec![energy]),
+        Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &given.twist()).map(Vec::from),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),

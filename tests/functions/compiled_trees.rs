@@ -37,6 +37,8 @@ fn of_state(robot: &Robot, state: &State) -> Vec<(&'static str, Vec<f64>)> {
         ("base_omega_dot", base.omega_dot.to_vec()),
         ("base_acceleration", base.acceleration.to_vec()),
         ("base_gravity", base.gravity.to_vec()),
+        ("twist", [base.velocity, base.omega].concat()),
+        ("pose", [base.omega, base.omega_dot, base.acceleration, base.gravity].concat()),
     ]
 }
 

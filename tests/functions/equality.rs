@@ -14,7 +14,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 30] = [
+const SAME_BITS: [Function; 32] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -45,6 +45,8 @@ const SAME_BITS: [Function; 30] = [
     Function::FloatingForwardDynamics,
     Function::CentroidalMomentumMatrix,
     Function::CentroidalBias,
+    Function::FloatingKineticEnergy,
+    Function::CentroidalMomentum,
 ];
 
 /// Of the largest number of the result.
@@ -85,7 +87,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         // differences of torques at unit rates, and torques of unit accelerations
         Function::CoriolisMatrix | Function::FloatingMassMatrix => of(Function::MassMatrix),
         // a sum of products of masses and heights
-        Function::PotentialEnergy => {
+        Function::PotentialEnergy | Function::FloatingPotentialEnergy => {
             let mass = arm.robot.rows().map(|row| row.link.mass).sum::<f64>();
             LEAST * mass * largest(&arm.robot.gravity) * reach(arm, given)
         }
@@ -140,7 +142,7 @@ pub(crate) fn error(
             return 0.0;
         }
         // moments about its centre of mass
-        Function::CentroidalMomentumMatrix | Function::CentroidalBias if !is_finite => {
+        Function::CentroidalMomentumMatrix | Function::CentroidalBias | Function::CentroidalMomentum if !is_finite => {
             let same = found.iter().zip(&expected).all(|(found, expected)| found.is_finite() == expected.is_finite());
             assert!(same, "{}, {function}: {found:?}", arm.robot.name);
             return 0.0;

@@ -4,8 +4,8 @@
 //! Pinocchio, whose states have a quaternion and spatial vectors.
 
 use nalgebra::Vector3;
-use rne::{BaseMotion, Quaternion, Wrench};
-use rne_codegen::{Compiler, Factorization, Form, Function, Output, Value};
+use rne::{BaseMotion, Pose, Quaternion, Wrench};
+use rne_codegen::{Argument, Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::{Reader, Robot};
 
 use crate::arm::{Arm, Given, Maker};
@@ -37,12 +37,16 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
                 let base = BaseMotion {
                     omega: triple("omega"),
                     omega_dot: triple("omega_dot"),
-                    velocity: [0.0; 3],
+                    velocity: triple("velocity"),
                     acceleration: triple("acceleration"),
                     gravity: triple("gravity"),
                 };
                 let given = Given { base, tau: &tau, wrench: Wrench::zero(), ..Given::of_joints(&q, &qd, &qdd) };
+                let pose: [f64; 12] = array("pose").try_into().expect("twelve numbers");
+                let row = |row: usize| [0, 1, 2].map(|column| pose[3 * row + column]);
+                let pose = Pose { rotation: [0, 1, 2].map(row), translation: row(3) };
                 for function in Function::ALL.into_iter().filter(|it| state.get(it.name()).is_some()) {
+                    let given = if function.takes(Argument::BasePose) { given.at(&pose) } else { given };
                     let error = error_on_scale(&arm.numbers(function, &given), &array(function.name()), 0.0);
                     let error = match function {
                         Function::FloatingForwardDynamics => {
@@ -54,6 +58,10 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
                     assert!(error <= TOLERANCE, "{maker}, {name}, {function}: {error:e}");
                     worst.see(name, error);
                 }
+                let parameters = array("parameters");
+                let rows = arm.numbers(Function::FloatingRegressor, &given);
+                let found = product(&rows.chunks(parameters.len()).collect::<Vec<_>>(), &parameters);
+                worst.see(name, error_on_scale(&found, &array("floating_regressor_times_parameters"), 0.0));
             }
         }
         worst.at_most(TOLERANCE, &format!("floating bases, {maker}"));
@@ -89,6 +97,67 @@ fn inverse_and_forward_dynamics_are_one_equation() {
                 [0.0; 6].into_iter().chain(state.tau.iter().copied()).zip(&bias).map(|(tau, bias)| tau - bias);
             let error = error_on_scale(&given, &expected.collect::<Vec<_>>(), 0.0);
             assert!(error / conditioning.number < 1e-15, "{maker}, {name}: {error:e}");
+        }
+    }
+}
+
+/// ½ vᵀ M v, and the centroidal momentum matrix times v; the potential energy where frame 0 is the world, and what it
+/// is more where the robot is lifted: its weight times the height.
+#[test]
+fn energies_and_momentum_are_those_of_the_matrices() {
+    for maker in Maker::ALL {
+        for (index, name) in ROBOTS.into_iter().enumerate() {
+            let robot = read(name);
+            let (arm, dof) = (Arm::by_no_choice(&robot, maker), robot.dof());
+            let state = State::random(20 + u64::try_from(index).expect("small"), dof);
+            let given = state.given();
+            let of = |function| arm.numbers(function, &given);
+            let velocities = [&given.twist().to_pinocchio()[..], &state.qd].concat();
+            let times = |matrix: Vec<f64>| product(&matrix.chunks(6 + dof).collect::<Vec<_>>(), &velocities);
+            let energy = dot(&velocities, &times(of(Function::FloatingMassMatrix))) / 2.0;
+            assert!(error_on_scale(&of(Function::FloatingKineticEnergy), &[energy], 0.0) < 1e-14, "{maker}, {name}");
+            let momentum = times(of(Function::CentroidalMomentumMatrix));
+            assert!(error_on_scale(&of(Function::CentroidalMomentum), &momentum, 0.0) < 1e-13, "{maker}, {name}");
+            let at = |pose: &Pose<f64>| arm.numbers(Function::FloatingPotentialEnergy, &given.at(pose));
+            let (world, held) = (at(&Pose::identity()), of(Function::PotentialEnergy));
+            assert!(error_on_scale(&world, &held, 1.0) < 1e-14, "{maker}, {name}");
+            let [mass, ..] = of(Function::FloatingMassMatrix)[..] else { unreachable!("a matrix") };
+            let lifted = at(&Pose { translation: [0.3, -2.0, 1.5], ..Pose::identity() });
+            assert!(error_on_scale(&lifted, &[world[0] + mass * 9.81 * 1.5], 0.0) < 1e-14, "{maker}, {name}");
+        }
+    }
+}
+
+/// The momentum by recursion takes fewer operations than the matrix, which has to be multiplied by the velocities yet.
+#[test]
+fn the_momentum_takes_fewer_operations_than_its_matrix() {
+    for name in ["grid_hyq", "grid_atlas"] {
+        let robot = read(name);
+        for form in [Form::SevenSteps, Form::Reduced] {
+            let program = |function| Compiler::new(&robot).compile(function, form).expect("a program");
+            let count = |function| program(function).operations().total();
+            let [momentum, matrix] = [Function::CentroidalMomentum, Function::CentroidalMomentumMatrix].map(count);
+            println!("{name}, {form}: {momentum} and {matrix}");
+            assert!(momentum < matrix, "{name}, {form}: {momentum} and {matrix}");
+        }
+    }
+}
+
+/// The regressor of the base and the links, times their parameters, is the wrench on the base and the torques with free
+/// tips.
+#[test]
+fn the_regressor_times_the_parameters_is_inverse_dynamics() {
+    for maker in Maker::ALL {
+        for (index, name) in ROBOTS.into_iter().enumerate() {
+            let robot = read(name);
+            let (arm, dof) = (Arm::by_no_choice(&robot, maker), robot.dof());
+            let state =
+                State { wrench: Wrench::zero(), ..State::random(10 + u64::try_from(index).expect("small"), dof) };
+            let parameters = arm.runtime.floating_inertial_parameters().concat();
+            let rows = arm.numbers(Function::FloatingRegressor, &state.given());
+            let found = product(&rows.chunks(parameters.len()).collect::<Vec<_>>(), &parameters);
+            let error = error_on_scale(&found, &arm.numbers(FUNCTION, &state.given()), 0.0);
+            assert!(error < 1e-13, "{maker}, {name}: {error:e}");
         }
     }
 }
@@ -212,7 +281,8 @@ fn free_flight_conserves_energy_and_momentum() {
     for maker in Maker::ALL {
         let arm = Arm::by_no_choice(&robot, maker);
         let of = |function, state: &State| {
-            let base = BaseMotion { omega: [state[7], state[8], state[9]], ..BaseMotion::fixed([0.0; 3]) };
+            let [velocity, omega] = [4, 7].map(|at| [state[at], state[at + 1], state[at + 2]]);
+            let base = BaseMotion { omega, velocity, ..BaseMotion::fixed([0.0; 3]) };
             let given = Given { base, ..Given::of_joints(&state[..2], &state[2..4], &[0.0; 2]) };
             arm.numbers(function, &Given { tau: &[0.0; 2], ..given })
         };
@@ -231,12 +301,10 @@ fn free_flight_conserves_energy_and_momentum() {
             |state: &State, by: &State, step: f64| -> State { std::array::from_fn(|i| state[i] + by[i] * step) };
         // in the world, to which the base is turned
         let conserved = |state: &State| -> Vec<f64> {
-            let velocities = [&state[4..10], &state[2..4]].concat();
-            let times = |matrix: Vec<f64>| product(&matrix.chunks(8).collect::<Vec<_>>(), &velocities);
-            let energy = dot(&velocities, &times(of(Function::FloatingMassMatrix, state))) / 2.0;
-            let momentum = times(of(Function::CentroidalMomentumMatrix, state));
+            let energy = of(Function::FloatingKineticEnergy, state);
+            let momentum = of(Function::CentroidalMomentum, state);
             let turned = |part: &[f64]| product(&turn(state).rotation(), part);
-            [vec![energy], turned(&momentum[..3]), turned(&momentum[3..])].concat()
+            [energy, turned(&momentum[..3]), turned(&momentum[3..])].concat()
         };
         let mut state: State = [0.4, -1.1, 1.5, -2.0, 0.3, -0.2, 0.5, 0.2, 0.7, -0.4, 0.5, -0.5, 0.5, 0.5];
         let before = conserved(&state);

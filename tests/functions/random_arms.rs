@@ -105,7 +105,8 @@ fn at<R>(state: &State, ask: impl FnOnce(&Given<'_, f64>) -> R) -> R {
     let Numbers { joints: [q, qd, qdd, tau], vectors, .. } = state.double();
     let [force, moment, omega, omega_dot, acceleration, gravity, ref payload @ ..] = vectors;
     let payload = states::payload(payload);
-    let base = BaseMotion { omega, omega_dot, velocity: [0.0; 3], acceleration, gravity };
+    // as C has the numbers of a twist
+    let base = BaseMotion { omega, omega_dot, velocity: moment, acceleration, gravity };
     ask(&Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench: Wrench { force, moment }, payload, base })
 }
 

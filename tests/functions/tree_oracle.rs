@@ -266,11 +266,11 @@ fn torque_parts(robot: &Robot, motion: &Motion<'_>, bodies: &[Body]) -> Vec<Vec<
     parts.collect()
 }
 
-/// The torques of a unit of each inertial parameter of each link, about the origin of the link frame: by torque, then
-/// by link.
-pub(crate) fn regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
-    let body = |index: usize, mass: f64, first_moment: Vector3<f64>, inertia: Matrix3<f64>| Body {
-        frame: FixedFrame { on: Some(index), placement: Transform::IDENTITY },
+/// Bodies of a unit of each inertial parameter of a link, about the origin of the link frame; of the base without a
+/// link.
+fn units(on: Option<usize>) -> Vec<Body> {
+    let body = |mass: f64, first_moment: Vector3<f64>, inertia: Matrix3<f64>| Body {
+        frame: FixedFrame { on, placement: Transform::IDENTITY },
         com: Vector3::zeros(),
         mass,
         first_moment,
@@ -281,16 +281,31 @@ pub(crate) fn regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
         (tensor[(row, column)], tensor[(column, row)]) = (1.0, 1.0);
         tensor
     };
-    let of_link = |index: usize| {
-        let of_moment = |axis: usize| body(index, 0.0, Vector3::ith(axis, 1.0), Matrix3::zeros());
-        let elements = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
-        let of_tensor = elements.map(|(row, column)| body(index, 0.0, Vector3::zeros(), element(row, column)));
-        let point = body(index, 1.0, Vector3::zeros(), Matrix3::zeros());
-        [point].into_iter().chain((0..3).map(of_moment)).chain(of_tensor).collect::<Vec<_>>()
-    };
-    let units: Vec<Body> = (0..robot.dof()).flat_map(of_link).collect();
+    let of_moment = |axis: usize| body(0.0, Vector3::ith(axis, 1.0), Matrix3::zeros());
+    let elements = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+    let of_tensor = elements.map(|(row, column)| body(0.0, Vector3::zeros(), element(row, column)));
+    let point = body(1.0, Vector3::zeros(), Matrix3::zeros());
+    [point].into_iter().chain((0..3).map(of_moment)).chain(of_tensor).collect()
+}
+
+/// The torques of a unit of each inertial parameter of each link: by torque, then by link.
+pub(crate) fn regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
+    let units: Vec<Body> = (0..robot.dof()).flat_map(|index| units(Some(index))).collect();
     let parts = torque_parts(robot, motion, &units);
     (0..robot.dof()).flat_map(|joint| parts.iter().map(move |part| part[joint]).collect::<Vec<_>>()).collect()
+}
+
+/// Force and moment on the base, and the torques, of a unit of each inertial parameter of the base and of each link.
+pub(crate) fn floating_regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
+    let bodies = [None].into_iter().chain((0..robot.dof()).map(Some));
+    let units: Vec<Body> = bodies.flat_map(units).collect();
+    let parts = needed_by(robot, motion, &units).into_iter().zip(torque_parts(robot, motion, &units));
+    let column = |(needed, torques): (Needed, Vec<f64>)| {
+        let about = needed.moment + needed.centre.cross(&needed.force);
+        [needed.force.as_slice(), about.as_slice(), &torques].concat()
+    };
+    let columns: Vec<Vec<f64>> = parts.map(column).collect();
+    (0..6 + robot.dof()).flat_map(|row| columns.iter().map(move |column| column[row]).collect::<Vec<_>>()).collect()
 }
 
 /// G² Jm of each joint, where rotors belong to the robot.

@@ -210,6 +210,23 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             [transposed((0..dof).map(column).collect()), by_rates(qdd)].concat()
         }
         Function::Regressor => oracle::regressor(robot, &Motion { joints: [q, qd, qdd], base: fixed }),
+        Function::FloatingKineticEnergy => {
+            let velocities = [&base.velocity[..], &base.omega, qd].concat();
+            let momenta = times(&floating_mass_matrix(robot, q), &velocities);
+            vec![momenta.iter().zip(&velocities).map(|(p, v)| p * v).sum::<f64>() / 2.0]
+        }
+        Function::FloatingPotentialEnergy => {
+            let (mass, moment) = oracle::first_moment(robot, q);
+            let pose = state.given().pose();
+            let rotation = Matrix3::from(pose.rotation).transpose();
+            let in_world = rotation * moment + Vector3::from(pose.translation) * mass;
+            vec![-Vector3::from(robot.gravity).dot(&in_world)]
+        }
+        Function::CentroidalMomentum => {
+            let velocities = [&base.velocity[..], &base.omega, qd].concat();
+            about_centre(&times(&floating_mass_matrix(robot, q), &velocities))
+        }
+        Function::FloatingRegressor => oracle::floating_regressor(robot, &Motion { joints: [q, qd, qdd], base: *base }),
         Function::ActuatorTorques => oracle::actuator_torques(robot, qd, qdd),
         Function::ForwardKinematics => pose(in_world(oracle::parts(&oracle::frame(robot, &tip, &still)[0]))),
         Function::LinkPoses => {
@@ -289,6 +306,7 @@ pub(crate) fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
         needed.iter().map(|it| it.force.norm() * (1.0 + it.centre.norm()) + it.moment.norm()).fold(0.0, f64::max);
     match function {
         Function::PotentialEnergy
+        | Function::FloatingPotentialEnergy
         | Function::CoriolisMatrix
         | Function::InverseDynamicsDerivatives
         | Function::InverseDynamicsDerivativesWithPayload => largest,

@@ -142,6 +142,13 @@ impl Arm {
         Ok(Given { name, parts: &[], elements, value })
     }
 
+    /// The pose of a base: homogeneous matrices as the twelve numbers of the functions.
+    pub(crate) fn of_pose<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        let elements = Argument::BasePose.elements(self.arm.dof(), self.robot().tip_count());
+        let value = value.py().import("rne.names")?.call_method1("of_pose", (value, name))?;
+        Ok(Given { name, parts: &[], elements, value })
+    }
+
     /// A function of joint arrays and whatever else it takes; of a pair of results a tuple.
     pub(crate) fn compute<'py>(
         &self,

@@ -20,6 +20,12 @@ macro_rules! about {
     (BaseVelocity) => {
         "`omega`: shape (3,) or (N, 3).\n\n"
     };
+    (BaseTwist) => {
+        "`twist`: linear, then angular; shape (6,) or (N, 6).\n\n"
+    };
+    (BasePose) => {
+        "`pose`: a homogeneous matrix; shape (4, 4) or (N, 4, 4).\n\n"
+    };
     (Payload) => {
         "`payload`: shape (10,) or (N, 10); `rne.payload` makes one. A point mass has the first four numbers alone: \
          shape (4,) or (N, 4).\n\n"
@@ -64,6 +70,10 @@ macro_rules! returned {
     (Regressor) => {
         "the matrix whose product with the `inertial_parameters`, link by link, are the torques: shape (n, 10 n) or \
          (N, n, 10 n)."
+    };
+    (FloatingRegressor) => {
+        "the matrix whose product with the `floating_inertial_parameters`, body by body, are force, moment and \
+         torques: shape (6 + n, 10 (n + 1)) or (N, 6 + n, 10 (n + 1))."
     };
     (TorqueDerivatives) => {
         "dq and dqd, two arrays of shape (n, n) or (N, n, n); `out` is one array of shape (2, n, n) or (N, 2, n, n)."
@@ -352,6 +362,12 @@ macro_rules! given {
     };
     ($arm:ident, $argument:ident: BaseVelocity) => {
         given!($arm, $argument: BaseVelocity, &[])
+    };
+    ($arm:ident, $argument:ident: BaseTwist) => {
+        given!($arm, $argument: BaseTwist, &[])
+    };
+    ($arm:ident, $argument:ident: BasePose) => {
+        $arm.of_pose(stringify!($argument), $argument)?
     };
     ($arm:ident, $argument:ident: Payload) => {
         given!($arm, $argument: Payload, &[])

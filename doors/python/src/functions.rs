@@ -44,9 +44,11 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
         return vec![layout.len()];
     }
     of(&layout, &mut found);
-    if function == Function::Regressor {
+    if let [rows, bodies, parameters] = found[..]
+        && function.is_of_every_link()
+    {
         // a column per parameter: Y @ parameters are torques
-        found = vec![dof, 10 * dof];
+        found = vec![rows, bodies * parameters];
     }
     found
 }

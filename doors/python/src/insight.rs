@@ -16,13 +16,23 @@ use crate::arrays::refuse_masked;
 use crate::errors::of_evaluation;
 use crate::notebook;
 
+/// An array of ten numbers in each row.
+fn rows(py: Python<'_>, parameters: Vec<[f64; 10]>) -> PyResult<Bound<'_, PyAny>> {
+    let parameters: Vec<Vec<f64>> = parameters.into_iter().map(Vec::from).collect();
+    py.import("numpy")?.call_method1("array", (parameters,))
+}
+
 #[pymethods]
 impl Arm {
     /// The inertial parameters of the links, as `regressor` counts them: shape (n, 10).
     fn inertial_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let parameters: Vec<Vec<f64>> =
-            DynArm::from_robot(self.robot()).inertial_parameters().into_iter().map(Vec::from).collect();
-        py.import("numpy")?.call_method1("array", (parameters,))
+        rows(py, DynArm::from_robot(self.robot()).inertial_parameters())
+    }
+
+    /// The inertial parameters of the base, then of the links, as `floating_regressor` counts them: shape (n + 1, 10).
+    /// Those of the base are zeros where the robot file has no `floating_base`.
+    fn floating_inertial_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        rows(py, DynArm::from_robot(self.robot()).floating_inertial_parameters())
     }
 
     /// What the torques can see of the links: a list of dicts with `name`, `value`, `combination`, a dict of

@@ -194,6 +194,8 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Wrench => "force, moment",
         Argument::Payload => "payload",
         Argument::BaseVelocity => "base_omega",
+        Argument::BaseTwist => "(const float[6]){0.0f, 0.0f, 0.0f, base_omega[0], base_omega[1], base_omega[2]}",
+        Argument::BasePose => "(const float[12]){1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f}",
         Argument::Base => "base_omega, base_zero, base_zero, base_gravity",
         Argument::Wrenches => "(const float[1][6]){{force[0], force[1], force[2], moment[0], moment[1], moment[2]}}",
     });

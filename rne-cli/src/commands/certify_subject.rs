@@ -205,6 +205,13 @@ fn fixed(function: Function) -> String {
              (rad/s²) and the acceleration {acceleration} (m/s²), and gravity is {gravity} (m/s²)."
         );
     }
+    if function.takes(Argument::BaseTwist) {
+        let [velocity, omega] = [accuracy::VELOCITY, accuracy::BASE[0]].map(|triple| list(&triple));
+        let _ = write!(
+            words,
+            " At each state the origin of frame 0 moves with {velocity} (m/s), and the base turns with {omega} (rad/s)."
+        );
+    }
     if function.takes(Argument::Wrench) || function.takes(Argument::Wrenches) {
         let _ = write!(words, " At each state each wrench is {}: force (N), moment (N m).", list(&accuracy::WRENCH));
     }
@@ -215,7 +222,9 @@ fn fixed(function: Function) -> String {
 fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>, &'static str) {
     let joint = name.joint.checked_sub(1);
     let unit = match (name.quantity, joint) {
-        (Quantity::BaseMoment, _) => "N m",
+        (Quantity::LinearMomentum, _) => "N s",
+        (Quantity::CentroidalMoment, _) if program.function.takes(Argument::BaseTwist) => "N m s",
+        (Quantity::BaseMoment | Quantity::CentroidalMoment, _) => "N m",
         (Quantity::BaseForce, _) | (_, None) => "N",
         (_, Some(joint)) if program.function.returns_accelerations() => match robot.joints[joint].row.kind {
             JointKind::Revolute => "rad/s²",
@@ -285,6 +294,13 @@ fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
                 }
                 continue;
             }
+            Argument::BaseTwist => {
+                let twist = [accuracy::VELOCITY, accuracy::BASE[0]].concat();
+                call.before.push(format!("const float twist[6] = {{{}}};", numbers(&twist)));
+                ("const float *", "twist")
+            }
+            // only an energy takes it, which is no array
+            Argument::BasePose => return Err(not_called(program)),
             Argument::BaseVelocity => {
                 call.before.push(format!("const float omega[3] = {{{}}};", numbers(&accuracy::BASE[0])));
                 ("const float *", "omega")

@@ -73,19 +73,26 @@ pub(crate) struct Arguments {
     /// Its acceleration, m/s² [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
+    /// Velocity of its origin, m/s [default: 0]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    base_velocity: Option<List>,
+    /// Frame 0 in the world, x,y,z,roll,pitch,yaw
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    base_pose: Option<List>,
     /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
-    /// Print torques at N random states, as a file of expected values for tests (NAME.golden.csv)
+    /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
-        "base_acceleration", "gravity", "trace", "json", "csv", "compare", "frame",
+        "base_acceleration", "base_velocity", "base_pose", "gravity", "trace", "json", "csv", "compare", "frame",
     ])]
     golden: Option<u16>,
-    /// Compute the function at every state in this file: CSV or npy; - is standard input
+    /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
-        "base_acceleration", "gravity", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
+        "base_acceleration", "base_velocity", "base_pose", "gravity", "golden", "trace", "axes", "joint", "step",
+        "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
     /// Output file of --states: CSV, or NAME.npy
@@ -100,7 +107,7 @@ pub(crate) struct Arguments {
     /// Axes of --trace: link (default), joint, base
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
-    /// Print only this joint of --trace, a number or name
+    /// Print only a joint of --trace, number or name
     #[arg(long, value_name = "JOINT", requires = "trace", conflicts_with = "compare")]
     joint: Option<String>,
     /// Print only step S of --trace, 1 to 7
@@ -177,7 +184,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let (function, robot) = arguments.loaded(function, robot)?;
     arguments.check(function, &robot)?;
-    let zeros = [robot.dof(), 3].map(|count| List(vec![0.0; count]));
+    let zeros = [robot.dof(), 3, 6].map(|count| List(vec![0.0; count]));
     let (sheet, of_sheet) = arguments.sheet(function, &robot)?;
     let (given, assumed) = arguments.given(function).or_state(&of_sheet).at_rest(function, zeros.each_ref());
     let state = State::new(function, given, &robot)?;
@@ -298,6 +305,8 @@ impl Arguments {
             base_omega: self.base_omega.as_ref(),
             base_omega_dot: self.base_omega_dot.as_ref(),
             base_acceleration: self.base_acceleration.as_ref(),
+            base_velocity: self.base_velocity.as_ref(),
+            base_pose: self.base_pose.as_ref(),
             gravity: self.gravity.as_ref(),
         }
     }

@@ -101,6 +101,8 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("base_omega_dot", omega_dot.to_vec()),
         ("base_acceleration", acceleration.to_vec()),
         ("base_gravity", gravity.to_vec()),
+        ("twist", [state.twist().linear, omega].concat()),
+        ("pose", [state.pose.rotation.concat(), state.pose.translation.to_vec()].concat()),
         ("parameters", parameters),
     ]
 }

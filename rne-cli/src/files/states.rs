@@ -35,6 +35,15 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
         match name {
             "payload" => payload.map(str::to_owned).into(),
             "parameters" => arm.robot().run_time.names.clone(),
+            // as the options of `rne eval`
+            "twist" => ["base_velocity", "base_omega"]
+                .iter()
+                .flat_map(|part| axes.map(|axis| format!("{part}_{axis}")))
+                .collect(),
+            "pose" => {
+                let rotation = axes.iter().flat_map(|row| axes.map(|column| format!("pose_{row}{column}")));
+                rotation.chain(axes.map(|axis| format!("pose_{axis}"))).collect()
+            }
             "wrenches" => {
                 let parts = ["fx", "fy", "fz", "nx", "ny", "nz"];
                 let tips = arm.robot().tip_names().into_iter();

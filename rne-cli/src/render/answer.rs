@@ -19,6 +19,9 @@ const DIGITS: usize = 6;
 /// Digits after the decimal point in a row of ten parameters.
 const FEW_DIGITS: usize = 4;
 
+/// Velocities of a base that nothing holds.
+const OF_BASE: [&str; 6] = ["x", "y", "z", "about x", "about y", "about z"];
+
 /// The numbers of a function as text.
 pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
     let frame = state.function.frame(robot).map(|frame| robot.frame_name(frame));
@@ -39,11 +42,7 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
                 }
                 let labels = |labels: &Labels| match labels {
                     Labels::Joints => joints.clone(),
-                    Labels::BaseAndJoints => ["x", "y", "z", "about x", "about y", "about z"]
-                        .map(str::to_owned)
-                        .into_iter()
-                        .chain(joints.clone())
-                        .collect(),
+                    Labels::BaseAndJoints => OF_BASE.map(str::to_owned).into_iter().chain(joints.clone()).collect(),
                     Labels::Names(names) => names.iter().map(|&name| name.to_owned()).collect(),
                 };
                 let (rows, columns) = (labels(&table.rows), labels(&table.columns));
@@ -64,7 +63,7 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
             Shape::Array(..) => poses(&mut text, &joints, numbers),
             _ => poses(&mut text, &[frame.unwrap_or("tip").to_owned()], numbers),
         },
-        Answer::PerParameter => regressor(&mut text, &joints, numbers),
+        Answer::PerParameter => regressor(&mut text, state.function, &joints, numbers),
     }
     text
 }
@@ -157,18 +156,29 @@ fn poses(text: &mut String, frames: &[String], numbers: &[f64]) {
     Table { about, rows: &rows, columns: &columns, numbers: &elements, digits: DIGITS }.write(text);
 }
 
-/// A table per torque, a line per link that enters it.
-fn regressor(text: &mut String, joints: &[String], numbers: &[f64]) {
+/// A table per torque, a line per link that enters it; force and moment on a base that nothing holds stand first.
+fn regressor(text: &mut String, function: Function, joints: &[String], numbers: &[f64]) {
     let columns = INERTIAL_PARAMETERS.map(|name| name.replacen("mc", "m c", 1));
-    let per_torque = joints.len() * INERTIAL_PARAMETERS.len();
-    for (joint, torque) in joints.iter().zip(numbers.chunks_exact(per_torque.max(1))) {
+    let floats = function.is_of_floating_base();
+    let on_base = OF_BASE.iter().filter(|_| floats).enumerate();
+    let on_base = on_base.map(|(row, axis)| {
+        let (what, axis) = if row < 3 { ("force along", *axis) } else { ("moment", *axis) };
+        format!("{what} {axis} on the base")
+    });
+    let torques: Vec<String> = on_base.chain(joints.iter().map(|joint| format!("torque of {joint}"))).collect();
+    let body = |index: usize| match index.checked_sub(usize::from(floats)) {
+        Some(link) => format!("link {}", link + 1),
+        None => "base".to_owned(),
+    };
+    let per_torque = (usize::from(floats) + joints.len()) * INERTIAL_PARAMETERS.len();
+    for (row, torque) in torques.iter().zip(numbers.chunks_exact(per_torque.max(1))) {
         let links: Vec<(String, &[f64])> = torque
             .chunks_exact(INERTIAL_PARAMETERS.len())
             .enumerate()
             .filter(|(_, link)| link.iter().any(|number| *number != 0.0))
-            .map(|(index, link)| (format!("link {}", index + 1), link))
+            .map(|(index, link)| (body(index), link))
             .collect();
-        let about = format!("torque of {joint} per parameter");
+        let about = format!("{row} per parameter");
         if links.is_empty() {
             let _ = writeln!(text, "{QUIET}{about}: none{QUIET:#}");
             continue;

@@ -1,5 +1,6 @@
 //! Random numbers and states that are the same in each run.
 
+use rne::Pose;
 use rne::testing::{JOINTS, Random};
 use rne_codegen::Function;
 use rne_emit::Precision;
@@ -27,10 +28,12 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     let [q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect());
     let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
     let base = random.base();
+    // no rotation, but the energy is linear in these numbers
+    let pose = Pose { rotation: [base.omega, base.omega_dot, base.acceleration], translation: base.velocity };
     // without named tips, the wrench at the tip
     let wrenches = match robot.tips.len() {
         0 => wrench.into_iter().collect(),
         tips => (0..tips).map(|_| random.wrench()).collect(),
     };
-    State { function: Function::InverseDynamics, q, qd, qdd, tau, wrench, wrenches, payload, base }
+    State { function: Function::InverseDynamics, q, qd, qdd, tau, wrench, wrenches, payload, base, pose }
 }

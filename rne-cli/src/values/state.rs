@@ -2,7 +2,10 @@
 
 use std::str::FromStr;
 
-use rne::{BaseAcceleration, BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Wrench, WrongLength};
+use rne::{
+    BaseAcceleration, BaseMotion, BaseTwist, DynArm, DynTorqueDerivatives, Payload, Pose, Quaternion, Wrench,
+    WrongLength,
+};
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
 
@@ -22,6 +25,8 @@ pub(crate) struct Given<'a> {
     pub(crate) base_omega: Option<&'a List>,
     pub(crate) base_omega_dot: Option<&'a List>,
     pub(crate) base_acceleration: Option<&'a List>,
+    pub(crate) base_velocity: Option<&'a List>,
+    pub(crate) base_pose: Option<&'a List>,
     pub(crate) gravity: Option<&'a List>,
 }
 
@@ -37,17 +42,20 @@ impl<'a> Given<'a> {
     }
 
     /// The lists with zeros for velocities and accelerations that a function takes and that are not given, of the
-    /// joints and of a base that moves; with their options. `zeros` has a number for each joint, and three for the
-    /// base.
-    pub(crate) fn at_rest(mut self, function: Function, zeros: [&'a List; 2]) -> (Self, Vec<&'static str>) {
-        use Argument::{Accelerations, Base, Rates};
-        let (mut assumed, [of_joints, of_base]) = (Vec::new(), zeros);
+    /// joints, of a base that moves and of its pose; with their options. `zeros` has a number for each joint, three for
+    /// the base and six for its pose.
+    pub(crate) fn at_rest(mut self, function: Function, zeros: [&'a List; 3]) -> (Self, Vec<&'static str>) {
+        use Argument::{Accelerations, Base, BasePose, BaseTwist, Rates};
+        let (mut assumed, [of_joints, of_base, of_pose]) = (Vec::new(), zeros);
+        let turning = if function.takes(BaseTwist) { BaseTwist } else { Base };
         let lists = [
             ("--qd", &mut self.qd, Rates, of_joints),
             ("--qdd", &mut self.qdd, Accelerations, of_joints),
-            ("--base-omega", &mut self.base_omega, Base, of_base),
+            ("--base-velocity", &mut self.base_velocity, BaseTwist, of_base),
+            ("--base-omega", &mut self.base_omega, turning, of_base),
             ("--base-omega-dot", &mut self.base_omega_dot, Base, of_base),
             ("--base-acceleration", &mut self.base_acceleration, Base, of_base),
+            ("--base-pose", &mut self.base_pose, BasePose, of_pose),
         ];
         for (name, list, kind, zeros) in lists {
             if list.is_none() && function.takes(kind) {
@@ -72,6 +80,8 @@ pub(crate) struct State {
     pub(crate) wrenches: Vec<Wrench<f64>>,
     pub(crate) payload: Option<Payload<f64>>,
     pub(crate) base: BaseMotion<f64>,
+    /// The pose of frame 0 in the world.
+    pub(crate) pose: Pose<f64>,
 }
 
 impl State {
@@ -98,21 +108,31 @@ impl State {
         };
         let axes = "three numbers x,y,z, in the axes of frame 0";
         let of_base = |name, list| {
-            let is_alone = function.takes(Argument::BaseVelocity) && name == "--base-omega";
-            let kind = if is_alone { Argument::BaseVelocity } else { Base };
+            let kind = match name {
+                "--base-velocity" => Argument::BaseTwist,
+                "--base-omega" if function.takes(Argument::BaseVelocity) => Argument::BaseVelocity,
+                "--base-omega" if function.takes(Argument::BaseTwist) => Argument::BaseTwist,
+                _ => Base,
+            };
             let list = argument(function, name, list, kind, 3, axes)?;
             Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
         };
         let base = BaseMotion {
             omega: of_base("--base-omega", given.base_omega)?,
             omega_dot: of_base("--base-omega-dot", given.base_omega_dot)?,
-            velocity: [0.0; 3],
+            velocity: of_base("--base-velocity", given.base_velocity)?,
             acceleration: of_base("--base-acceleration", given.base_acceleration)?,
             // a base that only moves stays under the gravity of the file
             gravity: if given.gravity.is_some() { of_base("--gravity", given.gravity)? } else { robot.gravity },
         };
         let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
-        Ok(Self { function, q, qd, qdd, tau, wrench, wrenches, payload, base })
+        let pose = pose_of_base(function, given.base_pose)?;
+        Ok(Self { function, q, qd, qdd, tau, wrench, wrenches, payload, base, pose })
+    }
+
+    /// The velocity of a base that nothing holds.
+    pub(crate) const fn twist(&self) -> BaseTwist<f64> {
+        BaseTwist { linear: self.base.velocity, angular: self.base.omega }
     }
 
     /// The arguments for another function.
@@ -122,7 +142,8 @@ impl State {
 
     /// The function's result, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
-        let Self { q, qd, qdd, tau, wrenches, base, .. } = self;
+        let Self { q, qd, qdd, tau, wrenches, base, pose, .. } = self;
+        let twist = &self.twist();
         let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
         let mut numbers = Vec::new();
@@ -159,6 +180,12 @@ impl State {
             };
             (omega) => {
                 &base.omega
+            };
+            (twist) => {
+                twist
+            };
+            (pose) => {
+                pose
             };
         }
         macro_rules! calls {
@@ -243,6 +270,28 @@ pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     let payload = Payload::from_array(all);
     payload.check().map_err(|error| Failure::usage(format_args!("--payload begins with the mass: {error}")))?;
     Ok(payload)
+}
+
+/// The numbers of a pose in words.
+const POSE: &str = "position and rotation of frame 0 in the world: x,y,z,roll,pitch,yaw; or the rows of the rotation \
+                    matrix, then x,y,z";
+
+/// A pose from its list: a position with three angles, as in the robot file, or with a rotation matrix before it.
+fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, Failure> {
+    let Some(List(values)) = given else {
+        return argument(function, "--base-pose", None, Argument::BasePose, 6, POSE).map(|_| Pose::identity());
+    };
+    let expected = if values.len() == 12 { 12 } else { 6 };
+    argument(function, "--base-pose", given, Argument::BasePose, expected, POSE)?;
+    if let [rows @ .., x, y, z] = &values[..]
+        && rows.len() == 9
+    {
+        return Ok(Pose { rotation: [0, 3, 6].map(|row| triple(rows, row)), translation: [*x, *y, *z] });
+    }
+    let [roll, pitch, yaw] = triple(values, 3);
+    let turn =
+        Quaternion::identity().turned_by([0.0, 0.0, yaw]).turned_by([0.0, pitch, 0.0]).turned_by([roll, 0.0, 0.0]);
+    Ok(Pose { rotation: turn.rotation(), translation: triple(values, 0) })
 }
 
 /// The wrench at a tip: `left=0,0,-5,0,0,0`.

@@ -83,7 +83,7 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
         let is_of = |column: &&String| {
             column
                 .strip_prefix(prefix)
-                .is_some_and(|rest| rest.parse::<usize>().is_ok() || ["_x", "_y", "_z"].contains(&rest))
+                .is_some_and(|rest| rest.parse::<usize>().is_ok() || ["_x", "_y", "_z", "x", "y", "z"].contains(&rest))
         };
         let numbers: Vec<String> = columns
             .iter()
@@ -105,6 +105,9 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
     give("--base-omega", list("base_omega").or_else(|| list("omega")));
     give("--base-omega-dot", list("base_omega_dot"));
     give("--base-acceleration", list("base_acceleration"));
+    give("--base-velocity", list("base_velocity"));
+    let rows: Vec<String> = ["x", "y", "z"].iter().filter_map(|row| list(&format!("pose_{row}"))).collect();
+    give("--base-pose", list("pose").map(|origin| [rows.join(","), origin].join(",")));
     give("--gravity", list("base_gravity"));
     if function.takes(Argument::Wrenches) {
         let from = columns.iter().position(|column| column == "tip_fx").expect("a force");

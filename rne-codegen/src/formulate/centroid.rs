@@ -5,6 +5,7 @@
 //! linear    p = [ m 1   -[h]×          F         ] v
 //! angular   L = [ 0      J + [c]× [h]×  N - [c]× F ] v        c = h / m
 //! their rates at zero accelerations: f and n - c × f of the bias
+//! of velocities v: P and L - c × P of the momenta about the origin of frame 0
 //! ```
 //!
 //! D. E. Orin, A. Goswami, S.-H. Lee, "Centroidal dynamics of a humanoid robot", 2013.
@@ -22,10 +23,10 @@ struct Centre<'s> {
 }
 
 impl<'s> Centre<'s> {
-    fn of(builder: &'s Builder, of_base: &OfBase<'s>) -> Self {
+    fn of(builder: &'s Builder, (mass, h): (Symbol<'s>, Vector<'s>)) -> Self {
         let position = builder.joint(0).within(Quantity::CentroidalMoment, || {
-            let inverse = builder.quotient(builder.entry(Name::scalar(Quantity::One, 0), 1.0), of_base.mass);
-            if of_base.mass.is_zero() { Err(inverse) } else { Ok(of_base.h * inverse) }
+            let inverse = builder.quotient(builder.entry(Name::scalar(Quantity::One, 0), 1.0), mass);
+            if mass.is_zero() { Err(inverse) } else { Ok(h * inverse) }
         });
         Self { builder, position }
     }
@@ -42,7 +43,7 @@ impl<'s> Centre<'s> {
 
 /// The rows of the momentum; `of_base` has a column for each coordinate.
 pub(crate) fn momentum_matrix<'s>(builder: &'s Builder, system: &System<'_>, of_base: &OfBase<'s>) -> Outputs<'s> {
-    let centre = Centre::of(builder, of_base);
+    let centre = Centre::of(builder, (of_base.mass, of_base.h));
     let columns: Vec<[Vector<'s>; 2]> = (0..system.size())
         .map(|column| {
             let [force, moment] = of_base.column(builder, column);
@@ -61,10 +62,16 @@ pub(crate) fn momentum_matrix<'s>(builder: &'s Builder, system: &System<'_>, of_
     places.map(element).collect()
 }
 
-/// The rate of the momentum, from the wrench on the base at zero accelerations.
-pub(crate) fn bias<'s>(builder: &'s Builder, of_base: &OfBase<'s>, [force, moment]: [Vector<'s>; 2]) -> Outputs<'s> {
-    let about = Centre::of(builder, of_base).moment([force, moment]);
+/// The momentum, or its rate, about the centre of mass, from what it is about the origin of frame 0; `centre` is the
+/// mass and the first moment of the robot, `linear` the quantity of the linear part.
+pub(crate) fn about_centre<'s>(
+    builder: &'s Builder,
+    centre: (Symbol<'s>, Vector<'s>),
+    linear: Quantity,
+    [force, moment]: [Vector<'s>; 2],
+) -> Outputs<'s> {
+    let about = Centre::of(builder, centre).moment([force, moment]);
     let about = builder.name_vector(Quantity::CentroidalMoment, 0, about);
-    let parts = [(Quantity::BaseForce, force), (Quantity::CentroidalMoment, about)];
+    let parts = [(linear, force), (Quantity::CentroidalMoment, about)];
     parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)).collect()
 }

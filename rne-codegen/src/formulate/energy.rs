@@ -1,15 +1,29 @@
 //! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
 //!
 //! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇², with those of the list `motors` + ½ Σ Jm s (s +
-//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of
-//! frame 0; of a first moment h beside the mass + ċ_i · (ω_i × h_i) in T and - g · R_i h_i in V
+//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. Of a first moment h beside the mass
+//! ċ_i · (ω_i × h_i) is added to T, and - g · R_i h_i to V.
+//!
+//! A base that nothing holds is link 0. Where it stands in the world at p, turned by R:
+//! V = - Σ m_i (Rᵀ g · c_i + g · p).
 
-use crate::formulate::{Arm, Frames, JointState, Motion};
+use crate::formulate::{Arm, Frame, Frames, JointState, Motion};
 use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
 
-pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[Motion<'s>]) -> Symbol<'s> {
+/// The kinetic energy of the links, and that of a `base` that moves, if nothing holds it.
+pub(crate) fn kinetic<'s>(
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    (base, motions): (Option<&Motion<'s>>, &[Motion<'s>]),
+) -> Symbol<'s> {
     let builder = arm.builder;
-    let mut twice = builder.constant(0.0, Cause::Arithmetic);
+    let of_base = base.zip(arm.floating_base.as_ref()).map(|(motion, body)| {
+        builder.joint(0).within(Quantity::KineticEnergy, || {
+            let momentum = body.inertia * motion.turning.omega;
+            motion.c_dot.dot(motion.c_dot) * body.mass + motion.turning.omega.dot(momentum)
+        })
+    });
+    let mut twice = of_base.unwrap_or_else(|| builder.constant(0.0, Cause::Arithmetic));
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
         let omega = motion.turning.omega;
         twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || {
@@ -29,7 +43,8 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
     }
     for spin in &arm.spins {
         let rate = spin.of_joints(Quantity::Spin, states, |state| state.qd);
-        let omega = spin.on.map(|link| motions[link].turning.omega);
+        let carrier = spin.on.map_or(base, |link| Some(&motions[link]));
+        let omega = carrier.map(|motion| motion.turning.omega);
         let line = builder.joint(spin.on.map_or(1, |link| link + 1));
         twice = line.within(Quantity::KineticEnergy, || twice + spin.twice_energy(rate, omega));
     }
@@ -40,16 +55,41 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
 
 /// `frames` in frame 0, where gravity is given.
 pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
+    let lost = lost(arm, arm.gravity, frames, centres);
+    arm.builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
+}
+
+/// The potential energy where the base stands in the world at `pose`; gravity in world axes, `frames` in frame 0.
+pub(crate) fn floating_potential<'s>(
+    arm: &Arm<'s>,
+    pose: &Frame<'s>,
+    frames: &Frames<'s>,
+    centres: &[Vector<'s>],
+) -> Symbol<'s> {
+    let line = arm.builder.joint(0);
+    let gravity = line.within(Quantity::PotentialEnergy, || pose.rotation.transpose() * arm.gravity);
+    let lost = lost(arm, gravity, frames, centres);
+    let energy = line.within(Quantity::PotentialEnergy, || {
+        let of_base = arm.floating_base.as_ref().map(|base| base.mass);
+        let masses = of_base.into_iter().chain(arm.links.iter().map(|link| link.body.mass));
+        let mass = masses.reduce(|sum, mass| sum + mass).unwrap_or_else(|| arm.builder.zero());
+        -(lost + arm.gravity.dot(pose.origin) * mass)
+    });
+    arm.builder.name(Name::scalar(Quantity::PotentialEnergy, 0), energy)
+}
+
+/// Σ m g · c, in frame 0.
+fn lost<'s>(arm: &Arm<'s>, gravity: Vector<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let builder = arm.builder;
-    let of_base = arm.floating_base.as_ref().map(|base| arm.gravity.dot(base.com) * base.mass);
+    let of_base = arm.floating_base.as_ref().map(|base| gravity.dot(base.com) * base.mass);
     let mut lost = of_base.unwrap_or_else(|| builder.constant(0.0, Cause::Arithmetic));
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
         let line = builder.joint(index + 1);
         let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
         lost = line.within(Quantity::PotentialEnergy, || {
-            let lost = lost + arm.gravity.dot(centre) * link.body.mass;
-            link.body.first_moment.map_or(lost, |h| lost + arm.gravity.dot(frame.rotation * h))
+            let lost = lost + gravity.dot(centre) * link.body.mass;
+            link.body.first_moment.map_or(lost, |h| lost + gravity.dot(frame.rotation * h))
         });
     }
-    builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
+    lost
 }

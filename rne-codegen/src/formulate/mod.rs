@@ -24,13 +24,13 @@ pub(crate) use spin::Spin;
 
 use std::array::from_fn;
 
-use rne_model::Robot;
+use rne_model::{PER_LINK, Robot};
 
 use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
 use crate::function::{Argument, Function};
-use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
+use crate::ir::{Axis, Builder, Cause, Component, Matrix, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
 /// The results of a function of a robot, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.
@@ -59,7 +59,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::Jacobian => derivation.jacobian(),
         Function::JacobianRateTimesVelocity => derivation.tip_acceleration(),
         Function::WrenchTorques => derivation.wrench_torques(),
-        Function::KineticEnergy => derivation.kinetic_energy(),
+        Function::KineticEnergy | Function::FloatingKineticEnergy => derivation.kinetic_energy(),
         Function::PotentialEnergy => derivation.potential_energy(),
         Function::CentreOfMass => derivation.centre_of_mass(),
         Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
@@ -84,6 +84,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             centroid::momentum_matrix(builder, &derivation.system(), &derivation.of_base().0)
         }
         Function::CentroidalBias => derivation.centroidal_bias(),
+        Function::FloatingPotentialEnergy => derivation.floating_potential_energy(),
+        Function::CentroidalMomentum => derivation.centroidal_momentum(),
+        Function::FloatingRegressor => derivation.floating_regressor(),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -108,8 +111,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let joints = robot.joints.len();
         let turn_of = |quantity, joint| builder.argument(Name::scalar(quantity, joint + 1));
         let of_joint = |quantity, joint| arm.coordinates.of_joint(builder, quantity, joint);
-        let vector =
-            |quantity, joint| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))));
+        let vector = |quantity, joint| vector(builder, quantity, joint);
         let given = |argument, quantity, joint, otherwise| {
             if function.takes(argument) { of_joint(quantity, joint) } else { builder.constant(0.0, otherwise) }
         };
@@ -139,6 +141,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let base = if function.takes(Argument::Base) {
             let motion = [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration];
             Motion::of_base(&arm, motion.map(|quantity| vector(quantity, 0)), vector(Quantity::Gravity, 0))
+        } else if function.takes(Argument::BaseTwist) {
+            Motion::of_twist(&arm, [Quantity::OriginVelocity, Quantity::Omega].map(|quantity| vector(quantity, 0)))
         } else if function.takes(Argument::BaseVelocity) {
             let nothing = builder.zeros(Cause::NoAcceleration);
             Motion::of_base(&arm, [vector(Quantity::Omega, 0), nothing, nothing], builder.zeros(Cause::NoAcceleration))
@@ -264,14 +268,31 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn kinetic_energy(&self) -> Outputs<'s> {
-        vec![(Name::scalar(Quantity::KineticEnergy, 0), energy::kinetic(&self.arm, &self.states, &self.motions()))]
+        let base = self.builder.function.is_of_floating_base().then_some(&self.base);
+        let energy = energy::kinetic(&self.arm, &self.states, (base, &self.motions()));
+        vec![(Name::scalar(Quantity::KineticEnergy, 0), energy)]
     }
 
     fn potential_energy(&self) -> Outputs<'s> {
-        let frame_0 = Frame { rotation: arm::identity(self.builder), origin: self.builder.zeros(Cause::FirstFrame) };
-        let frames = kinematics::frames(&self.arm, &self.states, frame_0);
-        let energy = energy::potential(&self.arm, &frames, &self.centres());
+        let energy = energy::potential(&self.arm, &self.frames_in_frame_0(), &self.centres());
         vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
+    }
+
+    fn floating_potential_energy(&self) -> Outputs<'s> {
+        let [rows @ .., x, y, z] = Name::of_pose().map(|name| self.builder.argument(name));
+        let rotation = Matrix::from_rows([0, 3, 6].map(|row| [rows[row], rows[row + 1], rows[row + 2]]));
+        let pose = Frame { rotation, origin: Vector([x, y, z]) };
+        let energy = energy::floating_potential(&self.arm, &pose, &self.frames_in_frame_0(), &self.centres());
+        vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
+    }
+
+    fn frames_in_frame_0(&self) -> Frames<'s> {
+        let frame_0 = Frame { rotation: arm::identity(self.builder), origin: self.builder.zeros(Cause::FirstFrame) };
+        kinematics::frames(&self.arm, &self.states, frame_0)
+    }
+
+    fn centroidal_momentum(&self) -> Outputs<'s> {
+        momentum::centroidal_momentum(&self.arm, &self.states, &self.motions(), &self.base)
     }
 
     fn centre_of_mass(&self) -> Outputs<'s> {
@@ -301,6 +322,22 @@ impl<'s, 'r> Derivation<'s, 'r> {
         outputs
     }
 
+    /// The regressor of a robot without couplings: it has numbers of every link, so it is compiled for no other robot.
+    fn floating_regressor(&self) -> Outputs<'s> {
+        let acceleration = vector(self.builder, Quantity::Acceleration, 0) - vector(self.builder, Quantity::Gravity, 0);
+        let acceleration = self.builder.name_vector(Quantity::OriginAcceleration, 0, acceleration);
+        let base = (&self.base, acceleration);
+        let rows = regressor::floating_regressor(&self.arm, &self.states, &self.motions(), base);
+        let of_body = |row, body, elements: [Symbol<'s>; PER_LINK]| {
+            let elements = elements.into_iter().enumerate();
+            elements.map(move |(i, element)| (regressor::name_of_floating(row, body, i), element))
+        };
+        let of_row = |(row, bodies): (usize, Vec<_>)| {
+            bodies.into_iter().enumerate().flat_map(move |(body, elements)| of_body(row, body, elements))
+        };
+        rows.into_iter().enumerate().flat_map(of_row).collect()
+    }
+
     fn joint_wrenches(&self) -> Outputs<'s> {
         let wrenches = self.loads().into_iter().enumerate();
         let named = wrenches.filter(|(index, _)| self.coordinates().has(*index)).flat_map(
@@ -327,7 +364,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn centroidal_bias(&self) -> Outputs<'s> {
         let (base, _) = seven_steps::inverse_dynamics_of_floating_base(&self.arm, &self.states, &self.base, &self.tip);
         let wrench = base.map_or([self.builder.no_vector(); 2], |base| [base.force, base.moment]);
-        centroid::bias(self.builder, &self.of_base().0, wrench)
+        let of_base = self.of_base().0;
+        centroid::about_centre(self.builder, (of_base.mass, of_base.h), Quantity::BaseForce, wrench)
     }
 
     fn momentum_and_rate(&self) -> Outputs<'s> {
@@ -339,6 +377,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn actuator_torques(&self) -> Outputs<'s> {
         self.gathered(Quantity::ActuatorTorque, &actuation::torques(self.builder, self.robot, &self.states))
     }
+}
+
+/// An argument that is a vector.
+fn vector(builder: &Builder, quantity: Quantity, joint: usize) -> Vector<'_> {
+    Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))))
 }
 
 /// The force and the moment on a base that nothing holds.

@@ -18,6 +18,9 @@
 //! -∂V/∂q_i              e · (s_i × g_i)                   M_i e · g_i
 //! ```
 //!
+//! A base that nothing holds is link 0, about the origin of frame 0: P_0 is the momentum of the robot, and the angular
+//! momentum about the centre of mass c = s_0 / M_0 is L_0 - c × P_0.
+//!
 //! ∂T/∂q_i is (V_i × S_i) · h_i: of all that T depends on, q_i turns the velocity that comes from the parent, and
 //! nothing else. j̇_i = R_iᵀ (ċ_p + ω_p × r_i) is the velocity of the joint's point. A first moment h beside the mass
 //! adds h_i to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. A rotor of the list `motors` adds Jm s a to L of its carrier
@@ -26,8 +29,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::seven_steps::with;
-use crate::formulate::{Arm, AtTip, Joint, JointState, Motion, Payload};
-use crate::ir::{Quantity, Symbol, Vector};
+use crate::formulate::{Arm, AtTip, Body, Joint, JointState, Motion, Outputs, Payload, centroid};
+use crate::ir::{Cause, JointLines, Quantity, Symbol, Vector};
 
 /// A link and everything that it carries as one body, about its joint, in its axes or in the axes of its parent.
 #[derive(Clone, Copy)]
@@ -60,7 +63,7 @@ pub(crate) fn momentum_and_rate<'s>(
         let Joint { lines: line, link, .. } = joint;
         let on_link = spins.iter().filter(|(spin, _)| spin.on == Some(joint.index));
         let of_spins: Vec<_> = on_link.map(|(spin, rate)| spin.momentum(*rate)).collect();
-        let body = body(&joint, motion, &of_spins, &carried[joint.index]);
+        let body = body(line, (&link.body, link.mount.r), motion, &of_spins, &carried[joint.index]);
         let parent = link.parent.map_or(base, |parent| &motions[parent]);
 
         let momentum = line.scalar(Quantity::Momentum, || {
@@ -82,19 +85,56 @@ pub(crate) fn momentum_and_rate<'s>(
         momenta.push(momentum);
         rates.push(rate);
         if let Some(parent) = link.parent {
-            let (line, rotation) = (line.named(parent + 1).carrying(link.mount.label), motion.turning.rotation);
-            let turned = |quantity, vector| line.vector(quantity, || rotation * vector);
-            carried[parent].push(Carried {
-                first_moment: turned(Quantity::TurnedMomentBehind, body.first_moment),
-                linear: turned(Quantity::TurnedLinearMomentum, body.linear),
-                angular: turned(Quantity::TurnedAngularMomentum, body.angular),
-                ..body
-            });
+            carried[parent].push(body.turned(line.named(parent + 1).carrying(link.mount.label), motion));
         }
     }
     momenta.reverse();
     rates.reverse();
     [momenta, rates]
+}
+
+/// The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.
+pub(crate) fn centroidal_momentum<'s>(
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    motions: &[Motion<'s>],
+    base: &Motion<'s>,
+) -> Outputs<'s> {
+    let builder = arm.builder;
+    let of_spins = |carrier: Option<usize>| -> Vec<_> {
+        let spins = arm.spins.iter().filter(|spin| spin.on == carrier);
+        spins.map(|spin| spin.momentum(spin.of_joints(Quantity::Spin, states, |state| state.qd))).collect()
+    };
+    let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
+    let mut on_base = Vec::new();
+    for (joint, motion) in arm.joints(states).zip(motions).rev() {
+        let (line, link) = (joint.lines, joint.link);
+        let matter = (&link.body, link.mount.r);
+        let body = body(line, matter, motion, &of_spins(Some(joint.index)), &carried[joint.index]);
+        let (number, place) = match link.parent {
+            Some(parent) => (parent + 1, &mut carried[parent]),
+            None => (0, &mut on_base),
+        };
+        place.push(body.turned(line.named(number).carrying(link.mount.label), motion));
+    }
+    let Some(matter) = &arm.floating_base else { return Vec::new() };
+    let nowhere = builder.zeros(Cause::FirstFrame);
+    let whole = body(builder.joint(0), (matter, nowhere), base, &of_spins(None), &on_base);
+    let centre = (whole.mass, whole.first_moment);
+    centroid::about_centre(builder, centre, Quantity::LinearMomentum, [whole.linear, whole.angular])
+}
+
+impl<'s> Carried<'s> {
+    /// In the axes of the parent, whose line this is.
+    fn turned(self, line: JointLines<'s>, motion: &Motion<'s>) -> Self {
+        let turned = |quantity, vector| line.vector(quantity, || motion.turning.rotation * vector);
+        Self {
+            first_moment: turned(Quantity::TurnedMomentBehind, self.first_moment),
+            linear: turned(Quantity::TurnedLinearMomentum, self.linear),
+            angular: turned(Quantity::TurnedAngularMomentum, self.angular),
+            ..self
+        }
+    }
 }
 
 /// The payload as a body that the link of the tip carries.
@@ -113,37 +153,37 @@ fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Mo
     }
 }
 
-/// Link i with everything that it carries, as one body.
+/// Link i with everything that it carries, as one body, which the parent carries at the end of `r`.
 fn body<'s>(
-    joint: &Joint<'_, 's>,
+    line: JointLines<'s>,
+    (link, r): (&Body<'s>, Vector<'s>),
     motion: &Motion<'s>,
     of_spins: &[Vector<'s>],
     carries: &[Carried<'s>],
 ) -> Carried<'s> {
-    let Joint { lines: line, link, .. } = *joint;
     let Motion { d, c_dot, .. } = *motion;
     let omega = motion.turning.omega;
     let mass = line.within(Quantity::MomentBehind, || {
-        carries.iter().map(|k| k.mass).reduce(|sum, mass| sum + mass).map_or(link.body.mass, |sum| link.body.mass + sum)
+        carries.iter().map(|k| k.mass).reduce(|sum, mass| sum + mass).map_or(link.mass, |sum| link.mass + sum)
     });
     let sum = |of: fn(&Carried<'s>) -> Vector<'s>| carries.iter().map(of).reduce(|sum, vector| sum + vector);
     let first_moment = line.vector(Quantity::MomentBehind, || {
         let own = d * mass;
-        let own = link.body.first_moment.map_or(own, |h| own + h);
+        let own = link.first_moment.map_or(own, |h| own + h);
         with(with(own, sum(|k| k.r * k.mass)), sum(|k| k.first_moment))
     });
     let linear = line.vector(Quantity::LinearMomentum, || {
-        let own = c_dot * link.body.mass;
-        let own = link.body.first_moment.map_or(own, |h| own + omega.cross(h));
+        let own = c_dot * link.mass;
+        let own = link.first_moment.map_or(own, |h| own + omega.cross(h));
         with(own, sum(|k| k.linear))
     });
     let angular = line.vector(Quantity::AngularMomentumBehind, || {
-        let own = link.body.inertia * omega;
-        let own = link.body.first_moment.map_or(own, |h| own + h.cross(c_dot));
+        let own = link.inertia * omega;
+        let own = link.first_moment.map_or(own, |h| own + h.cross(c_dot));
         let own = of_spins.iter().fold(own, |own, momentum| own + *momentum);
         with(with(own, sum(|k| k.angular)) + d.cross(linear), sum(|k| k.r.cross(k.linear)))
     });
-    Carried { mass, first_moment, linear, angular, r: link.mount.r }
+    Carried { mass, first_moment, linear, angular, r }
 }
 
 /// ∂T/∂q_i

@@ -6,26 +6,94 @@
 //! u, v  angular velocity of link k and velocity of O per rate of joint i:   τ_i = v · F + u · N
 //!   m:  v · a          h:  Uᵀ v + a × u          J:  u · J ω̇ + (u × ω) · J ω
 //! ```
+//!
+//! A base that nothing holds is a link, too: its link frame is frame 0, and u or v is an axis of it in each of its six
+//! rows.
+
+use std::array::from_fn;
 
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::PER_LINK;
 
-use crate::formulate::{Arm, JointState, Motion, Turning};
+use crate::formulate::{Arm, JointState, Link, Motion, Turning};
+use crate::function::Length;
 use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
 
+/// Rows of the base.
+const OF_BASE: usize = Length::Velocities.of(0);
+
+/// The ten elements of each link in each row.
+type Rows<'s> = Vec<Vec<[Symbol<'s>; PER_LINK]>>;
+
+/// The values that a joint takes over from the link that carries it, at the joint's point and in the axes of that link:
+/// the acceleration less gravity, and (u, v) of the rows that move the link.
+#[derive(Clone)]
+struct Carrier<'s> {
+    acceleration: Vector<'s>,
+    twists: Vec<(usize, [Vector<'s>; 2])>,
+}
+
 /// Y by torque, link and parameter; zero where the joint does not move the link.
-pub(crate) fn regressor<'s>(
+pub(crate) fn regressor<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[Motion<'s>]) -> Rows<'s> {
+    let still = Carrier { acceleration: -arm.gravity, twists: Vec::new() };
+    of_links(arm, states, motions, vec![still; states.len()])
+}
+
+/// Y of a base that nothing holds: force, moment and torques; the base first, then the links. `acceleration` of the
+/// origin of frame 0, less gravity.
+pub(crate) fn floating_regressor<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     motions: &[Motion<'s>],
-) -> Vec<Vec<[Symbol<'s>; PER_LINK]>> {
+    (base, acceleration): (&Motion<'s>, Vector<'s>),
+) -> Rows<'s> {
+    let (builder, line) = (arm.builder, arm.builder.joint(0));
+    let [zero, one] = [0.0, 1.0].map(|x| builder.constant(x, Cause::JointAxis));
+    let zeros = Vector([zero; 3]);
+    let Turning { omega, omega_dot, .. } = base.turning;
+    let gradient = line.within(Quantity::Gradient, || gradient(omega, omega_dot));
+    let unit = |axis: usize| Vector([0, 1, 2].map(|other| if other == axis { one } else { zero }));
+    let twist = |row: usize| if row < 3 { [zeros, unit(row)] } else { [unit(row - 3), zeros] };
+    let twists: Vec<_> = (0..OF_BASE).map(|row| (row, twist(row))).collect();
+    let carrier = |link: &Link<'s>| {
+        if link.parent.is_some() {
+            return Carrier { acceleration: zeros, twists: Vec::new() };
+        }
+        let lever = link.mount.lever;
+        let acceleration = line.within(Quantity::JointPointAcceleration, || acceleration + gradient * lever);
+        let at_joint = |[u, v]: [Vector<'s>; 2]| line.within(Quantity::Partial, || [u, v + u.cross(lever)]);
+        Carrier { acceleration, twists: twists.iter().map(|(row, twist)| (*row, at_joint(*twist))).collect() }
+    };
+    let mut rows = of_links(arm, states, motions, arm.links.iter().map(carrier).collect());
+    for (row, elements) in rows.iter_mut().enumerate() {
+        let own = match twists.get(row) {
+            Some((_, twist)) => {
+                line.within(Quantity::Partial, || columns([omega, omega_dot, acceleration], gradient, *twist))
+            }
+            // no joint moves the base
+            None => [zero; PER_LINK],
+        };
+        let named = |parameter: usize| builder.name(name_of_floating(row, 0, parameter), own[parameter]);
+        elements.insert(0, from_fn(named));
+    }
+    rows
+}
+
+/// The elements of the links; where the base has rows, they stand before those of the joints. `carriers` of every
+/// joint: those of joints on the base are told.
+fn of_links<'s>(
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    motions: &[Motion<'s>],
+    mut carriers: Vec<Carrier<'s>>,
+) -> Rows<'s> {
     let (builder, dof) = (arm.builder, states.len());
-    let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PER_LINK]; dof]; dof];
+    let floats = builder.function.is_of_floating_base();
+    let of_base = if floats { OF_BASE } else { 0 };
+    let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PER_LINK]; dof]; of_base + dof];
     let zeros = builder.zeros(Cause::JointAxis);
-    // of every joint, in the axes of its parent, at the joint's point: its acceleration less gravity, and (u, v) of the
-    // joints that move the parent; behind them those of what stands at an end, which nothing takes
-    let mut points = vec![-arm.gravity; dof + 1];
-    let mut carriers: Vec<Vec<(usize, [Vector<'s>; 2])>> = vec![Vec::new(); dof + 1];
+    // behind them that of what stands at an end, which nothing takes
+    carriers.push(Carrier { acceleration: zeros, twists: Vec::new() });
     for (joint, motion) in arm.joints(states).zip(motions) {
         let (line, link) = (joint.lines, joint.link);
         let Turning { rotation, omega, omega_dot } = motion.turning;
@@ -33,7 +101,7 @@ pub(crate) fn regressor<'s>(
         let reach = line.within(Quantity::Partial, || joint.offset(link.offset));
         let gradient = line.within(Quantity::Gradient, || gradient(omega, omega_dot));
         let origin = line.within(Quantity::OriginAcceleration, || {
-            joint.acceleration(back * points[joint.index], omega) + gradient * reach
+            joint.acceleration(back * carriers[joint.index].acceleration, omega) + gradient * reach
         });
         let mut mounted: Vec<(usize, Vector<'s>)> =
             arm.carried_joints(joint.index).map(|(index, link)| (index, link.mount.lever)).collect();
@@ -41,15 +109,16 @@ pub(crate) fn regressor<'s>(
             mounted.push((dof, arm.tip.lever));
         }
         for (index, lever) in &mounted {
-            points[*index] = line.within(Quantity::JointPointAcceleration, || origin + gradient * *lever);
+            carriers[*index].acceleration =
+                line.within(Quantity::JointPointAcceleration, || origin + gradient * *lever);
         }
-        let mut twists = std::mem::take(&mut carriers[joint.index]);
+        let mut twists = std::mem::take(&mut carriers[joint.index].twists);
         for (_, twist) in &mut twists {
             *twist = line.within(Quantity::Partial, || twist.map(|part| back * part));
         }
         twists.push(match link.kind {
-            Revolute => (joint.index, [joint.e, zeros]),
-            Prismatic => (joint.index, [zeros, joint.e]),
+            Revolute => (of_base + joint.index, [joint.e, zeros]),
+            Prismatic => (of_base + joint.index, [zeros, joint.e]),
         });
         // in the axes of the link frame
         let into = link.table_axes.transpose();
@@ -60,12 +129,16 @@ pub(crate) fn regressor<'s>(
             let in_axes = line.within(Quantity::Partial, || [u, at_origin].map(|v| into * v));
             let elements = line.within(Quantity::Partial, || columns(in_frame, gradient_in_frame, in_axes));
             for (parameter, element) in elements.into_iter().enumerate() {
-                let name = element_name(row, joint.index, parameter);
+                let name = if floats {
+                    name_of_floating(row, joint.index + 1, parameter)
+                } else {
+                    element_name(row, joint.index, parameter)
+                };
                 rows[row][joint.index][parameter] = builder.name(name, element);
             }
             for (index, lever) in &mounted {
                 let at_joint = line.within(Quantity::Partial, || at_origin + u.cross(*lever));
-                carriers[*index].push((row, [u, at_joint]));
+                carriers[*index].twists.push((row, [u, at_joint]));
             }
         }
     }
@@ -75,6 +148,17 @@ pub(crate) fn regressor<'s>(
 /// The name of an element of Y; joint, link and parameter are counted from 0.
 pub(crate) fn element_name(joint: usize, link: usize, parameter: usize) -> Name {
     Name { indices: [link + 1, parameter + 1], ..Name::scalar(Quantity::RegressorElement, joint + 1) }
+}
+
+/// The name of an element of Y where nothing holds the base, which is body 0 and has the first six rows.
+pub(crate) fn name_of_floating(row: usize, body: usize, parameter: usize) -> Name {
+    let name = match row.checked_sub(OF_BASE) {
+        Some(joint) => Name::scalar(Quantity::RegressorElement, joint + 1),
+        None => Name::of_base(Quantity::BaseForce, Quantity::BaseMoment, row),
+    };
+    // that of the base has no number
+    let indices = if body == 0 { [parameter + 1, 0] } else { [body, parameter + 1] };
+    Name { indices, ..name }
 }
 
 /// U = [ω̇]× + [ω]×[ω]×

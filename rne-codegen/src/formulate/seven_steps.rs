@@ -64,6 +64,16 @@ impl<'s> Motion<'s> {
         Self { turning, d, c_dot: at_rest, c_ddot, gravity }
     }
 
+    /// A base that nothing holds and that moves with this velocity of the origin of frame 0 and this angular velocity,
+    /// without accelerations.
+    pub(crate) fn of_twist(arm: &Arm<'s>, [origin, omega]: [Vector<'s>; 2]) -> Self {
+        let nothing = arm.builder.zeros(Cause::NoAcceleration);
+        let turning = Self::of_base(arm, [omega, nothing, nothing], nothing);
+        let velocity = || origin + omega.cross(turning.d);
+        let c_dot = arm.builder.joint(0).vector(Quantity::Velocity, velocity);
+        Self { c_dot, ..turning }
+    }
+
     /// A base that does not move.
     pub(crate) fn of_fixed_base(builder: &'s Builder, gravity: Vector<'s>) -> Self {
         let at_rest = builder.zeros(Cause::FixedBase);

@@ -28,6 +28,10 @@ pub enum Argument {
     Wrenches,
     /// Angular velocity of a base whose accelerations are no argument.
     BaseVelocity,
+    /// Linear and angular velocity of a base that nothing holds.
+    BaseTwist,
+    /// Where such a base stands in the world.
+    BasePose,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -73,6 +77,11 @@ macro_rules! argument_parts {
              tip.";
         omega: BaseVelocity, Fixed(3), Omega,
             "Angular velocity of a base that nothing holds, rad/s, in the axes of frame 0: three elements.";
+        twist: BaseTwist, Fixed(6), OriginVelocity,
+            "Velocity of the origin of frame 0, m/s, and angular velocity of a base that nothing holds, rad/s, in the \
+             axes of frame 0: six elements.";
+        pose: BasePose, Fixed(12), FrameOrigin,
+            "Pose of frame 0 in the world: rows of the rotation, then the origin, m: twelve elements.";
     } };
 }
 
@@ -119,6 +128,7 @@ impl Length {
         match self {
             Self::Joints => dof,
             Self::Velocities => 6 + dof,
+            Self::Bodies => 1 + dof,
             Self::Fixed(length) => length,
         }
     }

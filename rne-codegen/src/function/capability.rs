@@ -40,6 +40,10 @@ named! {
         FloatingBase = "FloatingBase",
         /// Its momentum about its centre of mass.
         CentroidalMomentum = "CentroidalMomentum",
+        /// Wrench on the base and torques per inertial parameter, where nothing holds the base.
+        FloatingRegressor = "FloatingRegressor",
+        /// Kinetic and potential, where nothing holds the base.
+        FloatingEnergy = "FloatingEnergy",
     }
 }
 
@@ -47,6 +51,12 @@ impl Capability {
     /// The methods of its trait.
     pub fn functions(self) -> impl Iterator<Item = Function> {
         Function::ALL.into_iter().filter(move |function| function.capability() == self)
+    }
+
+    /// Whether its trait has the number of velocities of a robot whose base nothing holds.
+    #[must_use]
+    pub const fn has_velocities(self) -> bool {
+        matches!(self, Self::FloatingBase | Self::CentroidalMomentum | Self::FloatingRegressor)
     }
 
     /// Whether its methods take a wrench at each tip.

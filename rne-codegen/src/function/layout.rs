@@ -16,6 +16,7 @@ const MATRIX: Shape = Shape::Array(Length::Joints, &VECTOR);
 const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
 const WRENCH: Shape = Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE]);
 const VELOCITIES: Shape = Shape::Array(Length::Velocities, &Shape::Number);
+const PARAMETERS: Shape = Shape::Array(Length::Fixed(10), &Shape::Number);
 const BASE_ACCELERATION: Shape = Shape::Record(Record::BaseAcceleration, &[TRIPLE, TRIPLE]);
 const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
 
@@ -58,6 +59,8 @@ pub enum Returned {
     FloatingRows,
     /// A linear and an angular acceleration, and a number per joint.
     FloatingAccelerations,
+    /// Six rows of the base and one per joint, with ten numbers of the base and of each link.
+    FloatingRegressor,
 }
 
 impl Returned {
@@ -75,10 +78,7 @@ impl Returned {
             Self::Pose => &POSE,
             Self::Poses => &Shape::Array(Length::Joints, &POSE),
             Self::Wrenches => &Shape::Array(Length::Joints, &WRENCH),
-            Self::Regressor => &Shape::Array(
-                Length::Joints,
-                &Shape::Array(Length::Joints, &Shape::Array(Length::Fixed(10), &Shape::Number)),
-            ),
+            Self::Regressor => &Shape::Array(Length::Joints, &Shape::Array(Length::Joints, &PARAMETERS)),
             Self::TorqueDerivatives => &Shape::Record(Record::TorqueDerivatives, &[MATRIX, MATRIX]),
             Self::MomentumAndRate => &Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
             Self::FloatingTorques => &Shape::Record(Record::FloatingTorques, &[WRENCH, VECTOR]),
@@ -86,6 +86,7 @@ impl Returned {
             Self::FloatingMatrix => &Shape::Array(Length::Velocities, &VELOCITIES),
             Self::FloatingRows => &Shape::Array(Length::Fixed(6), &VELOCITIES),
             Self::FloatingAccelerations => &Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]),
+            Self::FloatingRegressor => &Shape::Array(Length::Velocities, &Shape::Array(Length::Bodies, &PARAMETERS)),
         }
     }
 }
@@ -97,6 +98,8 @@ pub enum Length {
     Joints,
     /// Six elements of a base that nothing holds, and one per joint.
     Velocities,
+    /// One element of a base that nothing holds, and one per link of a robot whose joints all move freely.
+    Bodies,
     /// As many for every robot.
     Fixed(usize),
 }

@@ -139,7 +139,7 @@ impl Function {
     /// Whether it is a function of a robot whose base nothing holds.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
-        matches!(self.capability(), Capability::FloatingBase | Capability::CentroidalMomentum)
+        self.capability().has_velocities() || matches!(self.capability(), Capability::FloatingEnergy)
     }
 
     /// Whether rotors that belong to the arm change what it returns.
@@ -181,7 +181,7 @@ impl Function {
     /// Whether it returns numbers of every link, also of those whose joints follow others.
     #[must_use]
     pub const fn is_of_every_link(self) -> bool {
-        matches!(self, Self::Regressor)
+        matches!(self, Self::Regressor | Self::FloatingRegressor)
     }
 
     /// Whether it has a reduced form, whose graph can be rewritten.

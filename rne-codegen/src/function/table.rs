@@ -198,6 +198,26 @@ macro_rules! functions {
                 "omega: angular velocity of the base (rad/s), in axes of frame 0. rate: force (N), then moment about \
                  the centre of mass (N m), in axes of frame 0. A times the accelerations, as in \
                  floating_mass_matrix, plus this rate is what acts on the robot beside gravity.";
+            FloatingRegressor = floating_regressor(
+                q: Positions, qd: Rates, qdd: Accelerations, base: Base
+            ) -> FloatingRegressor:
+                "Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link.",
+                "base: as in inverse_dynamics_of_floating_base; the tips are free. regressor[i][j][k]: rows are the \
+                 force (N) on the base, the moment (N m) about the origin of frame 0 and the torques; j is 0 for the \
+                 base and counts the links from 1; k is the parameter, as in regressor. Those of the base refer to \
+                 frame 0.";
+            FloatingKineticEnergy = floating_kinetic_energy(q: Positions, qd: Rates, twist: BaseTwist) -> Number:
+                "Kinetic energy of a robot whose base nothing holds, J.",
+                "twist: velocity of the origin of frame 0 (m/s), then angular velocity of the base (rad/s), in axes of \
+                 frame 0. ½ vᵀ M v of these and of the joints, M as in floating_mass_matrix.";
+            FloatingPotentialEnergy = floating_potential_energy(q: Positions, pose: BasePose) -> Number:
+                "Potential energy of such a robot in gravity, J; zero where a mass is at the origin of the world.",
+                "pose: of frame 0 in the world, in whose axes the robot file has gravity; rotation and origin (m). -Σ \
+                 m g·c, with c from the origin of the world to each centre of mass.";
+            CentroidalMomentum = centroidal_momentum(q: Positions, qd: Rates, twist: BaseTwist) -> Spatial:
+                "The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.",
+                "twist: as in floating_kinetic_energy. momentum: linear (N s), then angular about the centre of mass \
+                 (N m s), in axes of frame 0: centroidal_momentum_matrix times the velocities, in fewer operations.";
         }
     };
 }
@@ -273,6 +293,10 @@ const CENTROIDAL: [Own; 2] = [
     Own::of(Quantity::BaseForce, |_| "rate of the momentum".to_owned()),
     Own::of(Quantity::CentroidalMoment, |_| "rate of the angular momentum about the centre of mass".to_owned()),
 ];
+
+/// The velocity of a base that nothing holds.
+const ORIGIN_VELOCITY: Own =
+    Own::names(Quantity::OriginVelocity, "velocity of the frame's origin; of frame 0 for i = 0, in its axes");
 
 const MASS_MATRIX: Entry = Entry {
     output: "mass",
@@ -611,6 +635,63 @@ pub(crate) const TABLE: &[Entry] = &[
         )]),
         divides: Some(WITHOUT_MASS),
         ..Entry::of(Function::CentroidalBias, Capability::CentroidalMomentum)
+    },
+    Entry {
+        output: "regressor",
+        listed: "returned: force, moment and torque; base and link; parameter \
+                 (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
+        own: &[
+            Own::of(Quantity::BaseForce, |_| "force on the base per parameter".to_owned()),
+            Own::of(Quantity::BaseMoment, |_| "moment on the base per parameter".to_owned()),
+            Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter")),
+        ],
+        answer: Answer::PerParameter,
+        ..Entry::of(Function::FloatingRegressor, Capability::FloatingRegressor)
+    },
+    Entry {
+        output: "energy",
+        own: &[
+            Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned()),
+            ORIGIN_VELOCITY,
+        ],
+        answer: Answer::Number("J"),
+        feels_rotors: true,
+        ..Entry::of(Function::FloatingKineticEnergy, Capability::FloatingEnergy)
+    },
+    Entry {
+        output: "energy",
+        own: &[
+            Own::meaning(Quantity::FrameRotation, "rotation of the base in the world, for i = 0", |_| String::new()),
+            Own::meaning(Quantity::FrameOrigin, "its origin in the world, for i = 0", |_| String::new()),
+            Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
+            Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
+        ],
+        answer: Answer::Number("J"),
+        ..Entry::of(Function::FloatingPotentialEnergy, Capability::FloatingEnergy)
+    },
+    Entry {
+        output: "momentum",
+        listed: "returned: momentum, then angular momentum about the centre of mass",
+        own: &[
+            ORIGIN_VELOCITY,
+            Own::meaning(
+                Quantity::LinearMomentum,
+                "linear momentum of link i and all behind it; of the robot, in axes of frame 0, for i = 0",
+                |_| "momentum".to_owned(),
+            ),
+            Own::meaning(
+                Quantity::CentroidalMoment,
+                "angular momentum about the centre of mass of the robot, in axes of frame 0",
+                |_| "angular momentum about the centre of mass".to_owned(),
+            ),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "momentum (N s), then angular momentum about the centre of mass (N m s), axes of frame 0",
+            Labels::Names(&["momentum"]),
+            Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]),
+        )]),
+        divides: Some(WITHOUT_MASS),
+        ..Entry::of(Function::CentroidalMomentum, Capability::CentroidalMomentum)
     },
 ];
 

@@ -1,6 +1,6 @@
 //! The full name of a number in the code: quantity, joint, component, and of what it is the derivative.
 
-use std::fmt;
+use std::{array, fmt};
 
 use super::{Axis, Component, Indices, Quantity};
 
@@ -83,6 +83,19 @@ impl Name {
             [Quantity::TipForce, Quantity::TipMoment].map(|part| Axis::ALL.map(|axis| Self::vector(part, tip, axis)));
         let ([fx, fy, fz], [nx, ny, nz]) = (force, moment);
         [fx, fy, fz, nx, ny, nz]
+    }
+
+    /// The names of the velocity of a base that nothing holds: linear x, y, z, angular x, y, z.
+    pub(crate) fn of_twist() -> [Self; 6] {
+        array::from_fn(|index| Self::of_base(Quantity::OriginVelocity, Quantity::Omega, index))
+    }
+
+    /// The names of the pose of such a base in the world: the rotation by rows, then the origin.
+    pub(crate) fn of_pose() -> [Self; 12] {
+        array::from_fn(|index| match index {
+            0..9 => Self::matrix(Quantity::FrameRotation, 0, Axis::ALL[index / 3], Axis::ALL[index % 3]),
+            _ => Self::vector(Quantity::FrameOrigin, 0, Axis::ALL[index - 9]),
+        })
     }
 
     /// The name of one of six numbers of the base, counted from 0: x, y, z of `linear`, then of `angular`.

@@ -47,6 +47,10 @@ impl SamplePoint {
             Quantity::Inertia => self.random(15, input.element()),
             Quantity::TipForce => self.random(18, 3 * index + axis),
             Quantity::TipMoment => self.random(19, 3 * index + axis),
+            Quantity::OriginVelocity => self.random(20, axis),
+            // of the pose of a base
+            Quantity::FrameRotation => self.random(21, input.element()),
+            Quantity::FrameOrigin => self.random(22, axis),
             // nothing else is given
             other => self.random(64 + other as u64, index),
         }

@@ -3,6 +3,7 @@
 use rne_model::Robot;
 
 use crate::formulate::ldlt::System;
+use crate::formulate::mass_matrix::OfBase;
 use crate::formulate::{self, Outputs, centroid, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
@@ -80,7 +81,8 @@ impl Algorithm {
             | Function::ForwardDynamicsWithWrenches
             | Function::FloatingMassMatrix
             | Function::CentroidalMomentumMatrix
-            | Function::CentroidalBias => &[BY_GROUPS, BY_JOINTS],
+            | Function::CentroidalBias
+            | Function::CentroidalMomentum => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -106,7 +108,10 @@ impl Algorithm {
             | Function::Regressor
             | Function::JointWrenches
             | Function::InverseDynamicsOnMovingBase
-            | Function::ActuatorTorques => &[],
+            | Function::ActuatorTorques
+            | Function::FloatingRegressor
+            | Function::FloatingKineticEnergy
+            | Function::FloatingPotentialEnergy => &[],
         }
     }
 
@@ -150,6 +155,7 @@ impl Algorithm {
 
 /// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout; `None` for
 /// what has no reduced recursion.
+#[allow(clippy::too_many_lines)] // an arm for each way
 pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outputs<'s>> {
     let builder = arm.builder;
     let coordinates = &arm.joint_frames.coordinates;
@@ -246,7 +252,13 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
         (Function::CentroidalMomentumMatrix, _) => centroid::momentum_matrix(builder, &system(), &of_base()?),
         (Function::CentroidalBias, _) => {
             let (Wrench { force, moment }, _) = torques_of_floating_base(arm);
-            centroid::bias(builder, &of_base()?, [force, moment])
+            let OfBase { mass, h, .. } = of_base()?;
+            centroid::about_centre(builder, (mass, h), Quantity::BaseForce, [force, moment])
+        }
+        (Function::CentroidalMomentum, _) => {
+            let Wrench { force, moment } = momentum::of_floating_base(arm);
+            let OfBase { mass, h, .. } = of_base()?;
+            centroid::about_centre(builder, (mass, h), Quantity::LinearMomentum, [force, moment])
         }
         // `Algorithm::of` matches them all
         _ => return None,

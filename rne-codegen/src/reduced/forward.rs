@@ -11,7 +11,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::function::Argument;
-use crate::ir::{Axis, Builder, ExactAngle, Matrix, Name, Number, Quantity, Symbol, Vector};
+use crate::ir::{Axis, Builder, ExactAngle, Matrix, Moving, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
 use crate::reduced::siblings::point_acceleration;
@@ -185,6 +185,9 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
 /// The motion of a base that nothing holds, in frame 0, from the arguments of the function.
 pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
+    if builder.moving.get() == Moving::RatesForAccelerations {
+        return twist_of_base(arm);
+    }
     // accelerations, gravity included, are zero where they are no arguments
     let is_told = |quantity| quantity == Quantity::Omega || builder.function.takes(Argument::Base);
     let told = |quantity| {
@@ -203,6 +206,23 @@ pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let gradient = Gradient::new(omega, omega_dot);
     builder.name_matrix(Quantity::Gradient, 0, Matrix::from_rows(gradient.u));
     Motion { omega, omega_dot, acceleration, gradient }
+}
+
+/// The motion of such a base with velocities in the place of accelerations, where the function has them.
+fn twist_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
+    let builder = arm.builder;
+    let told = |quantity| {
+        if builder.function.takes(Argument::BaseTwist) {
+            Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))))
+        } else {
+            builder.no_vector()
+        }
+    };
+    let (at_rest, omega) = (builder.no_vector(), told(Quantity::Omega));
+    builder.at(Quantity::OriginAcceleration, 0);
+    let lambda = arm.parameters.lambda.first().copied().unwrap_or(Number::ONE);
+    let velocity = told(Quantity::OriginVelocity).times(lambda);
+    Motion { omega: at_rest, omega_dot: omega, acceleration: velocity, gradient: Gradient::new(at_rest, omega) }
 }
 
 /// The motion of all links.

@@ -6,6 +6,9 @@
 //! rate    = τ + ∂T/∂q - g(q)
 //! ```
 //!
+//! Where nothing holds the base, the recursion ends with the momentum, and the angular momentum about the origin of
+//! frame 0.
+//!
 //! With q̇ in the place of q̈ the recursion finds ω for ω̇ and the velocity v of the frame's origin for its acceleration;
 //! f_i and n_i are momenta then, of the link and all behind it. Matter that is regrouped has the torques of the arm, so
 //! its mass matrix and its kinetic energy too.
@@ -13,7 +16,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Moving, Name, Number, Quantity, Symbol, Vector};
-use crate::reduced::backward::{Carried, inward};
+use crate::reduced::backward::{Carried, inward, torques_of_floating_base};
 use crate::reduced::forward::motions;
 use crate::reduced::{Arm, Motion, Moved, Wrench, crba};
 
@@ -36,6 +39,13 @@ pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
     });
     let rates = rates.collect();
     [carried.iter().map(|carried| carried.torque).collect(), rates]
+}
+
+/// The momentum of a robot whose base nothing holds, and its angular momentum about the origin of frame 0.
+pub(crate) fn of_floating_base<'s>(arm: &Arm<'_, 's>) -> Wrench<'s> {
+    let joint_frames = arm.joint_frames.without_gravity();
+    let weightless = Arm { joint_frames: &joint_frames, ..*arm };
+    arm.builder.moving(Moving::RatesForAccelerations, || torques_of_floating_base(&weightless)).0
 }
 
 /// ∂T/∂q_i

@@ -285,6 +285,28 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The rate of the momentum about the centre of mass when all accelerations are zero."""
+    def floating_regressor(
+        self, q: Joints, qd: Joints, qdd: Joints, *,
+        base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link."""
+    def floating_kinetic_energy(
+        self, q: Joints, qd: Joints, twist: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats | float:
+        """Kinetic energy of a robot whose base nothing holds, J."""
+    def floating_potential_energy(
+        self, q: Joints, pose: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats | float:
+        """Potential energy of such a robot in gravity, J; zero where a mass is at the origin of the world."""
+    def centroidal_momentum(
+        self, q: Joints, qd: Joints, twist: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass."""
     # <!-- end -->
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,
@@ -309,6 +331,7 @@ class Arm:
     ) -> Floats:
         """The dynamically consistent inverse M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ of the Jacobian at the tip or at a frame (Khatib, 1987)."""
     def inertial_parameters(self) -> Floats: ...
+    def floating_inertial_parameters(self) -> Floats: ...
     def base_parameters(self) -> list[BaseParameter]: ...
     def operations(self, function: str = ..., form: Form | None = ...) -> dict[str, int]: ...
     def show(self, function: str = ..., *, joint: int | None = ..., form: Form = ...) -> str: ...

@@ -38,6 +38,16 @@ def in_order(values, names, argument, kind):
     return numpy.stack(numpy.broadcast_arrays(*values), axis=-1).astype(dtype)
 
 
+def of_pose(pose, argument):
+    """Homogeneous matrices, (4, 4) or (N, 4, 4), as arrays of twelve numbers: rows of the rotation, then the origin."""
+    array = numpy.ma.asanyarray(pose)
+    if array.ndim not in (2, 3) or array.shape[-2:] != (4, 4):
+        raise ValueError(f"`{argument}`: a pose has the shape (4, 4) or (N, 4, 4), not {array.shape}")
+    numbers = (array[..., :3, :3].reshape(*array.shape[:-2], 9), array[..., :3, 3])
+    numbers = numpy.ma.concatenate(numbers, axis=-1)
+    return numbers if numpy.ma.is_masked(array) else numpy.asarray(numbers)
+
+
 def of_tips(wrenches, tips, argument):
     """Wrenches by tip, a dict or an array (tips, 6) or (N, tips, 6), as an array of 6 numbers per tip, one after the other."""
     known = ", ".join(tips)

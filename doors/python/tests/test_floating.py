@@ -1,0 +1,97 @@
+"""Laws that tie the functions of a robot on a floating base together, of one state and of many."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rne
+
+N = 20
+SATELLITE = (Path(__file__).parents[3] / "docs/satellite.yaml").read_text()
+ARM = rne.load(SATELLITE.replace("gravity: [0, 0, 0]", "gravity: [1, -2, -9]"))
+random = np.random.default_rng(8)
+q, qd, qdd, tau = random.normal(size=(4, N, ARM.dof))
+velocity, omega, omega_dot, acceleration = random.normal(size=(4, N, 3))
+TWIST = np.concatenate([velocity, omega], axis=1)
+V = np.concatenate([TWIST, qd], axis=1)
+MOTION = {"base_omega": omega, "base_omega_dot": omega_dot, "base_acceleration": acceleration}
+BASE = {**MOTION, "base_gravity": np.zeros(3)}
+
+
+def close(a, b):
+    assert np.abs(a - b).max() <= 1e-12 * np.abs(b).max()
+
+
+def times(matrices, vectors):
+    return np.einsum("nij,nj->ni", matrices, vectors)
+
+
+def poses():
+    pose = np.tile(np.eye(4), (N, 1, 1))
+    pose[:, :3, :3] = np.linalg.qr(random.normal(size=(N, 3, 3)))[0]
+    pose[:, :3, 3] = random.normal(size=(N, 3))
+    return pose
+
+
+def test_dynamics_are_one_equation():
+    mass, bias = ARM.floating_mass_matrix(q), ARM.floating_bias(q, qd, omega)
+    forces = np.concatenate(ARM.inverse_dynamics_of_floating_base(q, qd, qdd, **BASE), axis=1)
+    close(forces, times(mass, np.concatenate([acceleration, omega_dot, qdd], axis=1)) + bias)
+    found = np.concatenate(ARM.floating_forward_dynamics(q, qd, tau, omega), axis=1)
+    close(times(mass, found) + bias, np.concatenate([np.zeros((N, 6)), tau], axis=1))
+
+
+def test_the_regressor_gives_the_forces():
+    columns = ARM.floating_regressor(q, qd, qdd, **BASE)
+    parameters = ARM.floating_inertial_parameters()
+    assert columns.shape == (N, 6 + ARM.dof, 10 * (ARM.dof + 1)) and parameters.shape == (ARM.dof + 1, 10)
+    assert np.array_equal(parameters[1:], ARM.inertial_parameters())
+    forces = np.concatenate(ARM.inverse_dynamics_of_floating_base(q, qd, qdd, **BASE), axis=1)
+    close(columns @ parameters.ravel(), forces)
+
+
+def test_energies_and_momentum_are_those_of_the_matrices():
+    close(ARM.floating_kinetic_energy(q, qd, TWIST), (V * times(ARM.floating_mass_matrix(q), V)).sum(axis=1) / 2)
+    close(ARM.centroidal_momentum(q, qd, TWIST), times(ARM.centroidal_momentum_matrix(q), V))
+    # its rate, where only velocities count: a base that does not accelerate, less gravity
+    step = 1e-6
+    turned = [ARM.centroidal_momentum(q + h * qd, qd, np.concatenate([velocity, omega], axis=1)) for h in (step, -step)]
+    rate = (turned[0] - turned[1]) / (2 * step)
+    momentum = ARM.centroidal_momentum(q, qd, TWIST)
+    rate += np.concatenate([np.cross(omega, momentum[:, :3]), np.cross(omega, momentum[:, 3:])], axis=1)
+    # the velocity of a base that turns is constant in its axes, so that its origin accelerates by ω × v
+    mass = ARM.floating_mass_matrix(q)[:, 0, 0]
+    rate[:, :3] -= mass[:, None] * np.cross(omega, velocity)
+    expected = ARM.centroidal_bias(q, qd, omega)
+    assert np.abs(rate - expected).max() <= 1e-7 * np.abs(expected).max()
+
+
+def test_potential_energy_is_that_of_the_pose():
+    close(ARM.floating_potential_energy(q, np.eye(4)), ARM.potential_energy(q))
+    pose = poses()
+    found = ARM.floating_potential_energy(q, pose)
+    centre = np.einsum("nij,nj->ni", pose[:, :3, :3], ARM.centre_of_mass(q)) + pose[:, :3, 3]
+    weight = ARM.floating_mass_matrix(q)[:, 0, 0, None] * ARM.gravity
+    assert np.abs(found + (weight * centre).sum(axis=1)).max() <= 1e-12 * max(np.abs(found).max(), 1)
+    with pytest.raises(ValueError, match=r"`pose`: a pose has the shape \(4, 4\) or \(N, 4, 4\), not \(3, 4\)"):
+        ARM.floating_potential_energy(q, np.eye(4)[:3])
+
+
+def test_a_state_alone_is_the_same_among_many():
+    pose = poses()
+    for function, arguments, shape in [
+        ("floating_mass_matrix", (q,), (6 + ARM.dof, 6 + ARM.dof)),
+        ("floating_bias", (q, qd, omega), (6 + ARM.dof,)),
+        ("centroidal_momentum_matrix", (q,), (6, 6 + ARM.dof)),
+        ("centroidal_bias", (q, qd, omega), (6,)),
+        ("centroidal_momentum", (q, qd, TWIST), (6,)),
+        ("floating_regressor", (q, qd, qdd), (6 + ARM.dof, 10 * (ARM.dof + 1))),
+        ("floating_kinetic_energy", (q, qd, TWIST), ()),
+        ("floating_potential_energy", (q, pose), ()),
+    ]:
+        many = getattr(ARM, function)(*arguments)
+        assert many.shape == (N, *shape), function
+        for state in (0, N - 1):
+            one = getattr(ARM, function)(*(argument[state] for argument in arguments))
+            assert np.shape(one) == shape and np.array_equal(one, many[state]), function
