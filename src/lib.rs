@@ -122,21 +122,22 @@
 
 #[doc(inline)]
 pub use rne_macro::{
-    Actuation, BatchInverseDynamics, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase,
-    FloatingEnergy, FloatingRegressor, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    Actuation, BatchInverseDynamics, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
+    FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, ForwardDynamics, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
+    PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchInverseDynamics, BatchScalar, CentreOfMass,
-    CentroidalMomentum, Constant, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy,
-    FloatingRegressor, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives,
-    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
-    MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar,
-    TipWrenches, TorqueDerivatives, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order,
-    operational_space_inertia,
+    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchInverseDynamics,
+    BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual, Energy,
+    FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
+    ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches,
+    Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState,
+    Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives,
+    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

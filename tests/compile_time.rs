@@ -172,6 +172,8 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::CentroidalMomentum
                         | Capability::FloatingRegressor
                         | Capability::FloatingEnergy
+                        | Capability::FloatingKinematics
+                        | Capability::ContactDynamics
                 )
         };
         let functions = Function::ALL.into_iter().filter(|&function| !is_left_out(function));

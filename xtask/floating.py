@@ -3,10 +3,11 @@
 Usage: python floating.py RNE FOLDER [--write]     where RNE is the binary and FOLDER has the URDFs that ROBOTS names.
 
 `rne import --whole --floating --no-snap` makes the robot file. States are random: any orientation of the base, and
-a position, linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a quaternion and as
-spatial vectors in axes of the base. Its mass matrix is by crba, its bias by nle, its accelerations by aba. Its
-regressor refers to frames of joints: the parameters of units about our link frames are carried there. With --write the
-robot files and the values go to tests/functions/floating; of the regressor, its product with random parameters.
+a position, linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a
+quaternion and as spatial vectors in axes of the base. Its mass matrix is by crba, its bias by nle, its accelerations by
+aba, Jacobians and accelerations of tips are those of its frames, in world axes. Its regressor refers to frames of
+joints: the parameters of units about our link frames are carried there. With --write the robot files and the values go
+to tests/functions/floating; of the regressor, its product with random parameters.
 """
 
 import json
@@ -20,21 +21,24 @@ import numpy as np
 import pinocchio as pin
 
 TOLERANCE = 1e-12
+DAMPING = 1e-8
 STATES = 3
 FUNCTIONS = ["inverse_dynamics_of_floating_base", "floating_mass_matrix", "floating_bias", "floating_forward_dynamics",
              "centroidal_momentum_matrix", "centroidal_bias", "floating_regressor", "floating_kinetic_energy",
-             "floating_potential_energy", "centroidal_momentum"]
+             "floating_potential_energy", "centroidal_momentum", "tip_jacobians", "tip_accelerations",
+             "forward_dynamics_in_contact"]
 
-# Name of the URDF, and the licence, if its numbers stand in this repository.
+# Name of the URDF, the licence, if its numbers stand in this repository, links that are tips, and the
+# contacts: points hold all tips, the feet of a quadruped; welds hold the first two, the feet of a humanoid.
 ROBOTS = [
-    ("grid_hyq", "MIT"),
-    ("erd_anymal_c", "BSD-3-Clause"),
-    ("grid_atlas", "MIT"),
-    ("h1", "BSD-3-Clause"),
-    ("erd_solo12", None),
-    ("go2_unitree", None),
-    ("g1_29dof", None),
-    ("erd_simple_humanoid", None),
+    ("grid_hyq", "MIT", ["lf_lowerleg", "lh_lowerleg", "rf_lowerleg", "rh_lowerleg"], "point"),
+    ("erd_anymal_c", "BSD-3-Clause", ["LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"], "point"),
+    ("grid_atlas", "MIT", ["l_foot", "r_foot", "l_hand", "r_hand"], "weld"),
+    ("h1", "BSD-3-Clause", ["left_ankle_link", "right_ankle_link"], "weld"),
+    ("erd_solo12", None, ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"], "point"),
+    ("go2_unitree", None, ["FL_foot", "FR_foot", "RL_foot", "RR_foot"], "point"),
+    ("g1_29dof", None, ["left_ankle_roll_link", "right_ankle_roll_link", "left_rubber_hand", "head_link"], "weld"),
+    ("erd_simple_humanoid", None, ["l_ankle", "r_ankle"], "weld"),
 ]
 
 
@@ -49,7 +53,7 @@ def state(random, names):
     gravity = turn.T @ [0, 0, -9.81]
     told = {"omega": omega, "omega_dot": omega_dot, "acceleration": acceleration, "gravity": gravity}
     position = np.random.default_rng(dof + 1).normal(size=3)
-    told |= {"velocity": velocity, "pose": np.array([*turn.flatten(), *position])}
+    told |= {"velocity": velocity, "pose": np.array([*turn.flatten(), *position]), "base_rotation": turn.flatten()}
     return {**joints, "tau": tau}, told
 
 
@@ -89,7 +93,7 @@ def regressor(model, names, q, v, a, order, links):
     return np.hstack([of_frames[:, 10 * (joint - 1):10 * joint] @ carried(pose) for joint, pose in bodies])
 
 
-def expected(model, names, joints, told, links):
+def expected(model, names, tips, kind, joints, told, links):
     """The numbers of each of FUNCTIONS. Those of the base stand first; its accelerations are classical, less gravity."""
     turn, velocity = told["pose"][:9].reshape(3, 3), told["velocity"]
     q, v, a = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nv)
@@ -131,14 +135,49 @@ def expected(model, names, joints, told, links):
                 np.array([pin.computePotentialEnergy(model, model.createData(), q)])]
     pin.ccrba(model, data, q, v)
     momentum = in_base @ data.hg.vector
-    results = [torques, mass.flatten(), bias, accelerations, *centroidal, columns, *energies, momentum]
+    # tips in world axes; those of a base whose acceleration is zero
+    at_rest = np.zeros(model.nv)
+    at_rest[:3] = -np.cross(told["omega"], velocity)
+    data = model.createData()
+    pin.forwardKinematics(model, data, q, v, at_rest)
+    jacobians, lacking = [], []
+    for tip in tips:
+        frame = model.getFrameId(tip)
+        axes = pin.LOCAL_WORLD_ALIGNED
+        jacobians.append(pin.computeFrameJacobian(model, model.createData(), q, frame, axes)[:, order].flatten())
+        lacking.append(pin.getFrameClassicalAcceleration(model, data, frame, axes).vector)
+    of_tips = [np.concatenate(jacobians), np.concatenate(lacking)]
+    # contacts in world axes, under Pinocchio's gravity
+    rows = held(tips, kind)
+    pin.forwardKinematics(model, data, q, v, np.zeros(model.nv))
+    drift = [pin.getFrameClassicalAcceleration(model, data, model.getFrameId(tip), axes).vector for tip in tips]
+    jacobian = np.concatenate(jacobians).reshape(-1, 6 + len(names))[rows][:, np.argsort(order)]
+    data = model.createData()
+    accelerating = pin.forwardDynamics(model, data, q, v, tau, jacobian, np.concatenate(drift)[rows], DAMPING)[order]
+    accelerating[:3] += classical
+    wrenches = np.zeros(6 * len(tips))
+    wrenches[rows] = data.lambda_c
+    of_tips.append(np.concatenate([accelerating, wrenches]))
+    results = [torques, mass.flatten(), bias, accelerations, *centroidal, columns, *energies, momentum, *of_tips]
     return dict(zip(FUNCTIONS, results))
+
+
+def held(tips, kind):
+    """The accelerations that contacts keep zero, by their places among six for each tip."""
+    points = [6 * tip + row for tip in range(len(tips)) for row in range(3)]
+    return points if kind == "point" else list(range(12))
+
+
+def contacts(tips, kind):
+    """The list `contacts` of the robot file."""
+    contact = "{{tip: {}, kind: {}}}"
+    return ", ".join(contact.format(tip, kind) for tip in (tips if kind == "point" else tips[:2]))
 
 
 def numbers(result):
     """All numbers of a result, in order."""
     if isinstance(result, dict):
-        names = ["wrench", "force", "moment", "tau", "base", "linear", "angular", "qdd"]
+        names = ["accelerations", "wrench", "force", "moment", "tau", "base", "linear", "angular", "qdd", "wrenches_on_robot"]
         result = [result[name] for name in names if name in result]
     return [x for part in result for x in numbers(part)] if isinstance(result, list) else [result]
 
@@ -152,9 +191,9 @@ def link_poses(rne, file, q):
 
 def found(rne, file, function, joints, told):
     """The same of the runtime library."""
-    options = {**joints, "base-omega": told["omega"], "base-omega-dot": told["omega_dot"],
-               "base-acceleration": told["acceleration"], "gravity": told["gravity"], "base-velocity": told["velocity"],
-               "base-pose": told["pose"]}
+    options = {**joints, "base-rotation": told["base_rotation"], "base-omega": told["omega"],
+               "base-omega-dot": told["omega_dot"], "base-acceleration": told["acceleration"],
+               "gravity": told["gravity"], "base-velocity": told["velocity"], "base-pose": told["pose"]}
     takes = {
         "inverse_dynamics_of_floating_base": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
         "floating_regressor": ["q", "qd", "qdd", "base-omega", "base-omega-dot", "base-acceleration", "gravity"],
@@ -164,6 +203,9 @@ def found(rne, file, function, joints, told):
         "centroidal_momentum": ["q", "qd", "base-velocity", "base-omega"],
         "centroidal_momentum_matrix": ["q"],
         "centroidal_bias": ["q", "qd", "base-omega"],
+        "tip_jacobians": ["q", "base-rotation"],
+        "forward_dynamics_in_contact": ["q", "qd", "tau", "base-omega", "base-rotation"],
+        "tip_accelerations": ["q", "qd", "base-omega", "base-rotation"],
         "floating_bias": ["q", "qd", "base-omega"],
         "floating_forward_dynamics": ["q", "qd", "tau", "base-omega"],
     }
@@ -184,16 +226,19 @@ def main():
     write = pathlib.Path(__file__).parent.parent / "tests/functions/floating" if "--write" in sys.argv else None
     failed = []
     with tempfile.TemporaryDirectory() as temporary:
-        for name, licence in ROBOTS:
+        for name, licence, tips, kind in ROBOTS:
             urdf, file = folder / f"{name}.urdf", pathlib.Path(temporary) / f"{name}.yaml"
-            subprocess.run([rne, "import", urdf, "--whole", "--floating", "--no-snap", "--keep-unphysical", "-o", file],
-                           check=True, capture_output=True)
+            subprocess.run([rne, "import", urdf, "--whole", "--floating", "--no-snap", "--keep-unphysical", "-o", file,
+                            *(f"--tip={tip}" for tip in tips)], check=True, capture_output=True)
+            text = file.read_text()
+            listed = re.search(r"^tips: \[(.*)\]", text, re.M)[1].split(", ")
+            file.write_text(text.replace("joints:\n", f"contacts: [{contacts(listed, kind)}]\njoints:\n", 1))
             names = re.findall(r"- name: (\S+)\n", file.read_text())
             model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
             random, worst, states = np.random.default_rng(1), 0.0, []
             for _ in range(STATES):
                 joints, told = state(random, names)
-                values = expected(model, names, joints, told, link_poses(rne, file, joints["q"]))
+                values = expected(model, names, tips, kind, joints, told, link_poses(rne, file, joints["q"]))
                 for function, wanted in values.items():
                     # accelerations are as uncertain as the mass matrix is badly conditioned
                     size = 6 + len(names)

@@ -87,6 +87,7 @@ impl State {
             base: [base.omega, base.omega_dot, base.acceleration, base.gravity],
             velocity: base.velocity,
             pose: [base.omega, base.omega_dot, base.acceleration, base.velocity].as_flattened().try_into().unwrap(),
+            base_rotation: std::array::from_fn(|at| base_rotation(base)[at / 3][at % 3]),
             ..Arguments::of_joints(q, qd, qdd, 0.0)
         }
     }
@@ -217,6 +218,11 @@ fn operators_of_c(robot: &Robot, program: &Program) {
     assert_eq!((count(&["*"]), count(&["+", "-"]), count(&["/"])), (counted.mul, counted.add, counted.div), "{}", body);
 }
 
+/// Numbers in the place of a rotation, of vectors that no function takes beside it.
+const fn base_rotation(base: &BaseMotion<f64>) -> [[f64; 3]; 3] {
+    [base.omega_dot, base.acceleration, base.gravity]
+}
+
 /// What the runtime says, in the order of a program's outputs.
 fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Result<Vec<f64>, WrongLength> {
     let State { q, qd, qdd, tau, wrench, payload, base, .. } = state;
@@ -271,6 +277,15 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::FloatingKineticEnergy => vec![arm.floating_kinetic_energy(q, qd, &state.twist())?],
         Function::FloatingPotentialEnergy => vec![arm.floating_potential_energy(q, &state.pose())?],
         Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &state.twist())?.to_vec(),
+        Function::ForwardDynamicsInContact => {
+            let (base, qdd, wrenches) = arm.forward_dynamics_in_contact(q, qd, tau, &base.omega, &base_rotation(base))?;
+            let wrenches = wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten();
+            base.linear.into_iter().chain(base.angular).chain(qdd).chain(wrenches).collect()
+        }
+        Function::TipJacobians => arm.tip_jacobians(q, &base_rotation(base))?.into_iter().flatten().flatten().collect(),
+        Function::TipAccelerations => {
+            arm.tip_accelerations(q, qd, &base.omega, &base_rotation(base))?.into_iter().flatten().collect()
+        }
         Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &[*wrench])?,
         Function::FloatingForwardDynamics => {
             let (base, qdd) = arm.floating_forward_dynamics(q, qd, tau, &base.omega, &[*wrench])?;

@@ -58,6 +58,8 @@ pub const WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];
 /// The motion of the base in each state, for functions that take it: angular velocity, rad/s; angular acceleration,
 /// rad/s²; acceleration, m/s²; gravity, m/s², in the axes of frame 0.
 pub const BASE: [[f32; 3]; 4] = [[0.5, -0.3, 0.7], [1.2, -0.8, 0.6], [0.4, 1.1, -0.9], [0.6, -0.4, -9.78]];
+/// The rotation of the base in each state, for functions that take it, by rows.
+pub const BASE_ROTATION: [[f32; 3]; 3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
 
 /// The velocity of the origin of frame 0 in each state, m/s, for functions that take it.
 pub const VELOCITY: [f32; 3] = [0.4, 1.1, -0.9];
@@ -146,6 +148,7 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
         wrenches: &wrenches,
         base: BASE.map(|triple| triple.map(exactly)),
         velocity: VELOCITY.map(exactly),
+        base_rotation: std::array::from_fn(|at| exactly(BASE_ROTATION[at / 3][at % 3])),
         ..Arguments::of_joints(&q, &qd, &last, zero)
     };
     interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
@@ -172,6 +175,7 @@ pub fn single_precision(
         wrenches: &wrenches,
         base: BASE,
         velocity: VELOCITY,
+        base_rotation: std::array::from_fn(|at| BASE_ROTATION[at / 3][at % 3]),
         ..Arguments::of_joints(q, qd, last, 0.0)
     };
     interpreter.run(&arguments, single, sin_cos)

@@ -69,17 +69,16 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
         (_, Argument::BaseTwist) => Name::of_twist().map(used).into(),
         (_, Argument::BasePose) => Name::of_pose().map(used).into(),
         (_, Argument::Wrenches) => (1..=program.tips.len()).flat_map(Name::of_tip).map(used).collect(),
+        (_, Argument::BaseRotation) => Name::of_base_rotation().map(used).into(),
         (_, argument) => {
             let joint = if matches!(argument, Argument::Base | Argument::BaseVelocity) { 0 } else { tip };
             Axis::ALL.map(|axis| used(Name::vector(part.quantity, joint, axis))).into()
         }
     };
     let parts = program.function.arguments().iter().flat_map(|argument| argument.parts());
-    let row = |part: &ArgumentPart| match part.length {
-        Length::Fixed(length) if part.argument.is_of_each_tip() => Some(length),
-        _ => None,
-    };
-    parts.map(|part| ArgumentArray { name: part.name, elements: elements(part), row: row(part) }).collect()
+    let array =
+        |part: &ArgumentPart| ArgumentArray { name: part.name, elements: elements(part), row: part.argument.row() };
+    parts.map(array).collect()
 }
 
 /// The array of the run-time parameters, where the robot has some.

@@ -32,6 +32,8 @@ pub struct Arguments<'a, T> {
     pub velocity: [T; 3],
     /// Pose of frame 0 in the world: rotation by rows, origin.
     pub pose: [T; 12],
+    /// The rotation of the base, by rows: its columns are the axes of frame 0 in the world.
+    pub base_rotation: [T; 9],
     /// Parameters that are known at run time only.
     pub parameters: &'a [T],
 }
@@ -53,6 +55,7 @@ impl<'a, T: Copy> Arguments<'a, T> {
             base: [zeros; 4],
             velocity: zeros,
             pose: [zero; 12],
+            base_rotation: [zero; 9],
             parameters: &[],
         }
     }
@@ -179,6 +182,10 @@ impl<T: Copy> Arguments<'_, T> {
         if let Quantity::FrameRotation | Quantity::FrameOrigin = name.quantity {
             let index = Name::of_pose().iter().position(|known| *known == name)?;
             return Some(self.pose[index]);
+        }
+        if name.quantity == Quantity::BaseRotation {
+            let index = Name::of_base_rotation().iter().position(|known| *known == name)?;
+            return Some(self.base_rotation[index]);
         }
         let Component::Vector(axis) = name.component else {
             let array = match name.quantity {

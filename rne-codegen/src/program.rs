@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::CompileError;
 use crate::equation::Equation;
 use crate::expression::Expression;
-use crate::function::{Form, Function};
+use crate::function::{Form, Function, Layout};
 use crate::ir::{Causes, FoldReport, Name, Operator, Place, Sign};
 use crate::reduced::{Algorithm, JointFrame, Parameters};
 use crate::refusal::Refusal;
@@ -210,6 +210,12 @@ impl Operations {
 }
 
 impl Program {
+    /// The shape of what it returns.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        self.function.layout(self.dof, self.tips.len())
+    }
+
     /// Refuses two variables of one name. Names are compared as the text that a language sees, with the variables that
     /// renderers add: the second of two would shadow the first.
     ///

@@ -203,6 +203,7 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
             .map(|quantity| vector(quantity, 0)),
         velocity: vector(Quantity::OriginVelocity, 0),
         pose: Name::of_pose().map(|name| argument(robot, point, name)),
+        base_rotation: Name::of_base_rotation().map(|name| argument(robot, point, name)),
         parameters: &parameters,
         ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Residue::ZERO))
     };
@@ -340,6 +341,7 @@ fn state<'a, T: Copy>(
         base: [vector; 4],
         velocity: vector,
         pose: [x, y, z, y, z, x, z, x, y, x, y, z],
+        base_rotation: [x, y, z, z, x, y, y, z, x],
         parameters,
         ..Arguments::of_joints(q, qd, qdd, x)
     }

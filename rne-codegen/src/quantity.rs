@@ -382,6 +382,14 @@ quantities! {
         "moment that must act on the base, about the origin of frame 0";
     CentroidalMoment:           "nm",        Vector,    6, true,  "n", "N m",
         "moment about the centre of mass of the robot, in axes of frame 0";
+    BaseRotation:               "rb",        Matrix,    0, false, "R", "",
+        "rotation of the base: its columns are the axes of frame 0 in the world";
+    ContactDamping:             "mu",        Alone,     0, false, "μ", "1/kg",
+        "what is added to the diagonal of J M⁻¹ Jᵀ";
+    ContactForce:               "fk",        Vector,    8, true,  "", "",
+        "force of the contact at tip i on the robot, in world axes";
+    ContactMoment:              "nk",        Vector,    8, true,  "", "",
+        "its moment about the origin of the tip";
 }
 
 impl Quantity {

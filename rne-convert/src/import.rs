@@ -336,6 +336,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         drives: Vec::new(),
         frames: Vec::new(),
         tips: Vec::new(),
+        contacts: Vec::new(),
         bodies: Bodies::default(),
         at: None,
         run_time: RunTime::default(),

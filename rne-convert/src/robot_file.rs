@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_model::{
-    Body, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Inertia, InertiaReference, Joint, JointKind,
-    Limits, Link, Motor, Robot, Rotor, Transform, exact_digits,
+    Body, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Inertia, InertiaReference, Joint,
+    JointKind, Limits, Link, Motor, Robot, Rotor, Transform, exact_digits,
 };
 
 use crate::snap::angle_text;
@@ -79,6 +79,12 @@ pub fn write(robot: &Robot) -> String {
     }
     if !robot.tips.is_empty() {
         let _ = writeln!(text, "tips: [{}]", robot.tip_names().join(", "));
+    }
+    if !robot.contacts.is_empty() {
+        let names = robot.tip_names();
+        let contact = |it: &Contact| format!("{{tip: {}, kind: {}}}", names[it.tip], it.kind.name());
+        let contacts = robot.contacts.iter().map(contact).collect::<Vec<_>>();
+        let _ = writeln!(text, "contacts: [{}]", contacts.join(", "));
     }
     for Body { name, .. } in &robot.bodies.list {
         let _ = writeln!(text, "# the body {name} is a part of its link");

@@ -269,7 +269,7 @@ fn function(robot: &Robot, program: &Program) -> String {
         parameters.push("parameters: &Parameters<T>".to_owned());
     }
     let start = format!("pub fn {}<T: Scalar>(", program.name);
-    let end = format!(") -> {} {{", returned_type(&program.function.layout(program.dof)));
+    let end = format!(") -> {} {{", returned_type(&program.layout()));
     let line = format!("{start}{}{end}\n", parameters.join(", "));
     if line.len() <= WIDTH + 1 {
         text.push_str(&line);
@@ -342,7 +342,7 @@ pub(super) fn returned(program: &Program) -> Option<Annotated> {
         program.outputs.iter().map(|output| Piece::Number(line(Syntax::Rust, program.values.used(output.value))));
     let array = |elements| Piece::List('[', ']', elements);
     let record = |_, parts| Piece::List('(', ')', parts);
-    let layout = program.function.layout(program.dof);
+    let layout = program.layout();
     Some(layout.fold(&mut outputs, &array, &record)?.broken(4))
 }
 

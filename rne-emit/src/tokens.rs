@@ -169,7 +169,7 @@ impl<'a> Body<'a> {
     /// The results in their layout; with additional kept values, they are a list.
     fn returned(&self) -> TokenStream {
         let outputs = || self.program.outputs.iter().map(|output| self.used(output.value));
-        let layout = self.program.function.layout(self.program.dof);
+        let layout = self.program.layout();
         let array = |elements: Vec<TokenStream>| quote!([#(#elements),*]);
         let record = |record: Record, parts: Vec<TokenStream>| {
             let Some(library) = self.library else { return quote!((#(#parts),*)) };

@@ -33,7 +33,7 @@ impl CompiledArm {
         let compiled = self.function(function)?;
         let mut numbers = vec![T::zero(); compiled.outputs()];
         compiled.run_one(VectorUnit::widest(), arguments, &mut numbers)?;
-        Ok(R::take(&function.layout(self.dof()), &mut numbers.into_iter()))
+        Ok(R::take(&self.layout(function), &mut numbers.into_iter()))
     }
 }
 
@@ -46,6 +46,7 @@ macro_rules! taken {
     (BaseVelocity) => { &[T; 3] };
     (BaseTwist) => { &BaseTwist<T> };
     (BasePose) => { &Pose<T> };
+    (BaseRotation) => { &[[T; 3]; 3] };
     ($of_joints:ident) => { &[T] };
 }
 
@@ -94,6 +95,9 @@ macro_rules! with {
     };
     ($others:ident, BasePose $pose:ident) => {
         $others.pose(Array::Same(&$pose))
+    };
+    ($others:ident, BaseRotation $rotation:ident) => {
+        $others.base_rotation(Array::Same($rotation.as_flattened()))
     };
     ($others:ident, $of_joints:ident $argument:ident) => {
         $others.$argument(Array::Rows($argument))

@@ -45,6 +45,10 @@ pub type FloatingVector<T> = Vec<T>;
 pub type FloatingMatrix<T> = Matrix<T>;
 /// Six rows with six numbers of a base that nothing holds, and one per joint.
 pub type FloatingRows<T> = Matrix<T>;
+/// For each tip six rows with six numbers of a base that nothing holds, and one per joint.
+pub type TipRows<T> = Vec<Matrix<T>>;
+/// Three linear coordinates, then three angular ones, for each tip.
+pub type TipVectors<T> = Vec<[T; 6]>;
 /// The acceleration of a base that nothing holds, and those of the joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatingAccelerations<T> {
@@ -52,6 +56,15 @@ pub struct FloatingAccelerations<T> {
     pub base: BaseAcceleration<T>,
     /// Accelerations of the joints.
     pub qdd: Vec<T>,
+}
+
+/// The accelerations of a base that nothing holds and of the joints, and the wrenches of contacts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AccelerationsAndWrenches<T> {
+    /// Accelerations of the base and of the joints.
+    pub accelerations: FloatingAccelerations<T>,
+    /// Exerted on the robot at each tip, in world axes.
+    pub wrenches_on_robot: Vec<Wrench<T>>,
 }
 
 /// ∂τ/∂q and ∂τ/∂q̇.
@@ -114,4 +127,5 @@ macro_rules! records {
 records! {
     Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau }
     BaseAcceleration { linear, angular } FloatingAccelerations { base, qdd }
+    AccelerationsAndWrenches { accelerations, wrenches_on_robot }
 }

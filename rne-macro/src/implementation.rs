@@ -91,7 +91,9 @@ impl Target<'_> {
     fn sizes(&self, capability: Capability, dof: &TokenStream) -> TokenStream {
         let (tips, velocities) = (&self.tips, velocities(dof));
         match capability {
-            Capability::FloatingBase => quote!(#dof, #velocities, #tips),
+            Capability::FloatingBase | Capability::FloatingKinematics | Capability::ContactDynamics => {
+                quote!(#dof, #velocities, #tips)
+            }
             Capability::CentroidalMomentum => quote!(#dof, #velocities),
             Capability::FloatingRegressor => {
                 let bodies = bodies(dof);
@@ -202,6 +204,14 @@ impl Target<'_> {
             let origin = triple(&quote!(pose.translation));
             quote!(let pose = &[#(#rows,)* #origin];)
         });
+        let rotation = function.takes(Argument::BaseRotation).then(|| {
+            let element = |at: usize| {
+                let [row, column] = [at / 3, at % 3].map(Literal::usize_unsuffixed);
+                quote!(base_rotation[#row][#column])
+            };
+            let elements = (0..9).map(element);
+            quote!(let base_rotation = &[#(#elements),*];)
+        });
         let (count, parameters) = (parameters.names().len(), parameters.read(krate));
         let dof = Literal::usize_unsuffixed(program.dof);
         let of_trait = match program.frame {
@@ -211,7 +221,7 @@ impl Target<'_> {
         let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
         let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
         let dof = quote!(#dof);
-        let body = quote!(#wrench #payload #wrenches #base #twist #pose #body);
+        let body = quote!(#wrench #payload #wrenches #base #twist #pose #rotation #body);
         let body =
             if is_asked { self.call(function, &dof, count, &parameters, &body) } else { quote!(#parameters #body) };
         let method = match program.frame {
@@ -295,6 +305,7 @@ impl Target<'_> {
                 Argument::BaseVelocity => ("omega", quote!([T; 3])),
                 Argument::BaseTwist => ("twist", quote!(#krate::BaseTwist<T>)),
                 Argument::BasePose => ("pose", quote!(#krate::Pose<T>)),
+                Argument::BaseRotation => ("base_rotation", quote!([[T; 3]; 3])),
                 Argument::Wrenches => ("wrenches", quote!([#krate::Wrench<T>; #tips])),
             };
             (format_ident!("{name}"), quote!(&#lifetime #kind))
@@ -340,6 +351,10 @@ impl Target<'_> {
                         let bodies = bodies(dof);
                         quote!([#of; #bodies])
                     }
+                    Length::Tips => {
+                        let tips = &self.tips;
+                        quote!([#of; #tips])
+                    }
                     Length::Fixed(length) => {
                         let length = Literal::usize_unsuffixed(*length);
                         quote!([#of; #length])
@@ -349,6 +364,10 @@ impl Target<'_> {
             Shape::Record(record, _) => {
                 let name = format_ident!("{}", record.name());
                 match record {
+                    Record::AccelerationsAndWrenches => {
+                        let tips = &self.tips;
+                        quote!(#krate::#name<#dof, #tips, T>)
+                    }
                     Record::TorqueDerivatives
                     | Record::MomentumAndRate
                     | Record::FloatingTorques
@@ -518,10 +537,10 @@ fn bodies(dof: &TokenStream) -> TokenStream {
     length(Length::Bodies, dof, quote!(__BODIES))
 }
 
-/// A length for a number of joints; `unknown` if that is a parameter.
+/// A length for a number of joints, which does not depend on the tips; `unknown` if that is a parameter.
 fn length(length: Length, dof: &TokenStream, unknown: TokenStream) -> TokenStream {
     let dof = dof.to_string().parse::<usize>();
-    dof.map_or(unknown, |dof| Literal::usize_unsuffixed(length.of(dof)).into_token_stream())
+    dof.map_or(unknown, |dof| Literal::usize_unsuffixed(length.of(dof, 0)).into_token_stream())
 }
 
 /// A number that reads back as the same bits, or infinity.

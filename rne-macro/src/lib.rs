@@ -268,6 +268,33 @@ pub fn derive_floating_regressor(input: TokenStream) -> TokenStream {
     expand::capability(Capability::FloatingRegressor, input.into()).into()
 }
 
+/// Implements the trait `FloatingKinematics` for a struct: Jacobians and accelerations of the tips of a robot whose
+/// base nothing holds.
+///
+/// The tips are those of [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets constants with the operations, `TIP_JACOBIANS_OPERATIONS` and `TIP_ACCELERATIONS_OPERATIONS`; `DOF`, names and
+/// limits come with `InverseDynamics`.
+#[proc_macro_derive(FloatingKinematics, attributes(robot))]
+pub fn derive_floating_kinematics(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingKinematics, input.into()).into()
+}
+
+/// Implements the trait `ContactDynamics` for a struct: the motion of a robot whose base nothing holds while contacts
+/// hold some of its tips.
+///
+/// The contacts are those of the list `contacts` of the robot file. The tips are those of
+/// [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `FORWARD_DYNAMICS_IN_CONTACT_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(ContactDynamics, attributes(robot))]
+pub fn derive_contact_dynamics(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::ContactDynamics, input.into()).into()
+}
+
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.
 ///
 /// The robot file needs a `motor` at one joint at least.

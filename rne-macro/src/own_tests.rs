@@ -41,7 +41,9 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         | Capability::FloatingBase
         | Capability::CentroidalMomentum
         | Capability::FloatingRegressor
-        | Capability::FloatingEnergy => &[],
+        | Capability::FloatingEnergy
+        | Capability::FloatingKinematics
+        | Capability::ContactDynamics => &[],
     }
 }
 

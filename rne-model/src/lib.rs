@@ -50,6 +50,8 @@ mod body;
 #[cfg(feature = "std")]
 mod check;
 #[cfg(feature = "std")]
+mod contact;
+#[cfg(feature = "std")]
 mod coupling;
 #[cfg(feature = "std")]
 mod data_file;
@@ -122,6 +124,8 @@ mod varying;
 pub use body::{Bodies, Body, UnknownBody};
 #[cfg(feature = "std")]
 pub use check::{Checked, Reader};
+#[cfg(feature = "std")]
+pub use contact::{Contact, ContactKind};
 #[cfg(feature = "std")]
 pub use coupling::Coupling;
 #[cfg(feature = "std")]

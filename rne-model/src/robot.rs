@@ -1,8 +1,8 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
 use crate::{
-    Angle, Bodies, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, FrameId, Friction, Inertia, JointKind,
-    Link, Model, Motor, Row, RunTime, Transform, inertia,
+    Angle, Bodies, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, FrameId, Friction, Inertia,
+    JointKind, Link, Model, Motor, Row, RunTime, Transform, inertia,
 };
 
 /// A validated robot, as its file describes it.
@@ -38,6 +38,8 @@ pub struct Robot {
     pub frames: Vec<Frame>,
     /// The frames that carry wrenches, by their places in `frames`; empty where the tip frame alone does.
     pub tips: Vec<usize>,
+    /// The tips that something outside the robot holds, in the order of the file.
+    pub contacts: Vec<Contact>,
     /// The bodies that are fixed to links. They are parts of these links already.
     pub bodies: Bodies,
     /// The frame that the kinematic functions of the tip are taken at instead of the tip (pose, Jacobian, J̇q̇, torques

@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::collections::HashMap;
 
 use crate::body::bodies;
+use crate::contact::contacts;
 use crate::coupling::{self, couplings};
 use crate::decode::{Context, Parameter, choice, list, not_negative, quantity, read_mapping, text};
 use crate::diagnostic::Diagnostic;
@@ -61,6 +62,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         _motors: optional "motors" |_, _| Some(()),
         _bodies: optional "bodies" |_, _| Some(()),
         _tips: optional "tips" |_, _| Some(()),
+        _contacts: optional "contacts" |_, _| Some(()),
     });
     let (mut joints, mut tool) = (joints, tool);
     let mut tip_on = tree::branches(cx, node, (format, convention), &mut joints)?;
@@ -70,6 +72,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     {
         (tip_on, tool) = first;
     }
+    let contacts = contacts(cx, node, format, (&frames, &tips))?;
     couplings(cx, node, format, &mut joints)?;
     loops(cx, node, (format, convention), &mut joints)?;
     let drives = drives(cx, node, format, &joints)?;
@@ -117,6 +120,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         drives,
         frames,
         tips,
+        contacts,
         bodies,
         at: None,
         run_time,

@@ -242,7 +242,7 @@ fn bodies_that_overflow_are_refused_at_their_line() {
 #[test]
 fn empty_lists_are_as_no_list() {
     let without = read("");
-    for key in ["frames", "couplings", "loops", "motors", "bodies", "tips"] {
+    for key in ["frames", "couplings", "loops", "motors", "bodies", "tips", "contacts"] {
         let text = format!("{FILE}tool: {{on: b}}\n{key}: []\n");
         let read = Reader::new("torso.yaml").trees().couplings().read(&text);
         assert_eq!(read.unwrap_or_else(|report| panic!("{key}: {report}")).robot, without, "{key}");

@@ -8,7 +8,7 @@ use insta::assert_snapshot;
 #[test]
 fn an_unknown_key() {
     assert_snapshot!(found(&with("source: test", "sorce: test")), @r"
-    error: unknown key `sorce`; a robot file has the keys format, name, title, source, notes, parameters, convention, gravity, base, floating_base, tool, frames, joints, couplings, loops, motors, bodies, tips
+    error: unknown key `sorce`; a robot file has the keys format, name, title, source, notes, parameters, convention, gravity, base, floating_base, tool, frames, joints, couplings, loops, motors, bodies, tips, contacts
      --> robots/x.yaml:3:1
       |
     3 | sorce: test

@@ -508,6 +508,77 @@ pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usi
     ) -> [[[T; 10]; BODIES]; NV];
 }
 
+/// Jacobians and accelerations of the tips of a robot whose base nothing holds, for controllers of its whole body.
+///
+/// The tips are those of [`TipWrenches`]; the base and its `NV` = `DOF` + 6 velocities are those of [`FloatingBase`]:
+/// the velocity of the origin of frame 0 and the angular velocity of the base, both in axes of frame 0, then the
+/// velocities of the joints.
+///
+/// `base_rotation` gives the axes in which the tips are seen. Its rows and columns are those of a rotation matrix whose
+/// columns are the axes of frame 0 in the world: the results are in world axes then, as `LOCAL_WORLD_ALIGNED` of other
+/// libraries. The identity gives axes of the base. The transpose of the rotation of a tip in frame 0 gives axes of this
+/// tip. A matrix that is no rotation gives numbers without a meaning.
+pub trait FloatingKinematics<const DOF: usize, const NV: usize, const TIPS: usize> {
+    /// The Jacobian of each tip: times the velocities, it is the velocity of the origin of the tip, m/s, in three rows,
+    /// then the angular velocity of its link, rad/s.
+    ///
+    /// Elements that no state makes differ from zero are zero: those of joints that do not move the tip.
+    #[must_use]
+    fn tip_jacobians<T: Scalar>(&self, q: &[T; DOF], base_rotation: &[[T; 3]; 3]) -> [[[T; NV]; 6]; TIPS];
+
+    /// J̇ v of each tip: the classical acceleration of its origin, m/s², then its angular acceleration, rad/s², where
+    /// the acceleration of the origin of frame 0, the angular acceleration of the base and those of the joints are
+    /// zero. At other accelerations, those of the tip are its Jacobian times them, plus this.
+    ///
+    /// `omega`: angular velocity of the base, rad/s, in axes of frame 0. The linear velocity of the base has no part.
+    #[must_use]
+    fn tip_accelerations<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        omega: &[T; 3],
+        base_rotation: &[[T; 3]; 3],
+    ) -> [[T; 6]; TIPS];
+}
+
+/// The accelerations of a robot on a floating base, and the wrenches of its contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AccelerationsAndWrenches<const DOF: usize, const TIPS: usize, T> {
+    /// Accelerations of the base and of the joints.
+    pub accelerations: FloatingAccelerations<DOF, T>,
+    /// At each tip: force, N, and moment, N m, about its origin, which its contact exerts ON the robot, in world axes.
+    pub wrenches_on_robot: [Wrench<T>; TIPS],
+}
+
+/// Motion of a robot whose base nothing holds while contacts hold some of its tips: a robot that stands or walks.
+///
+/// The contacts are those of the list `contacts` of the robot file; without it nothing is held. A `point` holds the
+/// origin of its tip, a `weld` its orientation, too. The base, `NV` and the tips are those of [`FloatingBase`].
+pub trait ContactDynamics<const DOF: usize, const NV: usize, const TIPS: usize> {
+    /// The accelerations that follow from torques while the tips of the contacts do not accelerate in the world, and
+    /// what the contacts exert ON the robot, in world axes. The moment of a point, and all of a tip without a contact,
+    /// is zero.
+    ///
+    /// Contacts pull as well as push, and have no limit of friction: a caller looks at the forces. `omega` as in
+    /// [`floating_bias`](FloatingBase::floating_bias), `base_rotation` as in [`FloatingKinematics`]. Gravity is that of
+    /// the robot file, in the world.
+    ///
+    /// Solves M x = (0, τ) - bias + Jᵀ f and J x + J̇ v + g = 0 by M = Lᵀ D L and a factorisation of J M⁻¹ Jᵀ + μ 1,
+    /// with μ = 1e-8 in 1/kg and 1/(kg m²). So contacts that hold more than the robot can move, such as four points of
+    /// a foot, have finite forces in `f64`; in `f32`, μ is lost beside the other numbers, and such contacts need `f64`.
+    ///
+    /// Source of the equations: R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, section 11.
+    #[must_use]
+    fn forward_dynamics_in_contact<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        omega: &[T; 3],
+        base_rotation: &[[T; 3]; 3],
+    ) -> AccelerationsAndWrenches<DOF, TIPS, T>;
+}
+
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has
 /// the payload too. [`inverse_dynamics_with_payload`](InverseDynamics::inverse_dynamics_with_payload) belongs to
 /// [`InverseDynamics`]. A payload of zero gives the numbers of the function without a payload.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use rne_model::{Convention, FixedFrame, Joint, Link, Model, Motor, Robot, Row, Transform};
+use rne_model::{Contact, Convention, FixedFrame, Joint, Link, Model, Motor, Robot, Row, Transform};
 
 use crate::at_tip::AtTip;
 use crate::couplings::Couplings;
@@ -38,6 +38,8 @@ pub struct DynArm<S = f64> {
     pub(crate) at: Option<FixedFrame<S>>,
     /// The frames that carry wrenches.
     pub(crate) tips: Vec<FixedFrame<S>>,
+    /// The tips that are held.
+    pub(crate) contacts: Vec<Contact>,
 }
 
 /// The seven steps of one state of a [`DynArm`], in the axes of form P.
@@ -61,7 +63,16 @@ impl DynArm {
         let (couplings, drives) = (Couplings::of(robot), Motors::of(robot));
         let rotors = robot.rotors;
         let parts = Self::of_table(table, robot.gravity, robot.base);
-        Self { motors, rotors, couplings, drives, at, tips: robot.wrench_frames(), ..parts }
+        Self {
+            motors,
+            rotors,
+            couplings,
+            drives,
+            at,
+            tips: robot.wrench_frames(),
+            contacts: robot.contacts.clone(),
+            ..parts
+        }
     }
 }
 
@@ -94,6 +105,7 @@ impl<S: Constant> DynArm<S> {
             drives: Motors::NONE,
             at: None,
             tips: vec![table.tip()],
+            contacts: Vec::new(),
         }
     }
 
@@ -386,6 +398,7 @@ impl DynArm<f64> {
             drives: self.drives.to_f32(),
             at,
             tips: self.tips.iter().map(|tip| tip.to_f32()).collect(),
+            contacts: self.contacts.clone(),
             ..DynArm::of_table(table, self.gravity.map(|x| x as f32), self.base.to_f32())
         }
     }

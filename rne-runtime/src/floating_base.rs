@@ -37,7 +37,7 @@ struct FloatingMass<J: PerJoint, T: Scalar> {
 }
 
 /// The base turns with ω, and all its accelerations, gravity included, are zero.
-fn turning<T: Scalar>(omega: &[T; 3]) -> BaseMotion<T> {
+pub(crate) fn turning<T: Scalar>(omega: &[T; 3]) -> BaseMotion<T> {
     BaseMotion { omega: *omega, ..BaseMotion::fixed([T::zero(); 3]) }
 }
 

@@ -126,10 +126,10 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.at.copied().unwrap_or_else(|| self.table.tip())
     }
 
-    /// Returns the observed frame, after one of `links`.
-    fn tip<T: Scalar>(self, links: &[Placement<T>]) -> Placement<T> {
+    /// Returns the observed frame, after one of `links`, when frame 0 is at `start`.
+    fn tip<T: Scalar>(self, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
         let FixedFrame { on, placement } = self.observed();
-        let link = on.map_or_else(|| Placement::constant(self.base), |link| links[link]);
+        let link = on.map_or(start, |link| links[link]);
         link.then(&Placement::constant(&placement))
     }
 
@@ -146,8 +146,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 
     pub(crate) fn forward_kinematics<T: Scalar>(self, q: &[T]) -> Pose<T> {
-        let links = self.placements(Placement::constant(self.base), q);
-        self.tip(links.as_ref()).pose()
+        let base = Placement::constant(self.base);
+        self.tip(base, self.placements(base, q).as_ref()).pose()
     }
 
     pub(crate) fn link_poses<T: Scalar>(self, q: &[T]) -> J::Of<Pose<T>> {
@@ -155,29 +155,39 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.per_joint.of(|i| links.as_ref()[i].pose())
     }
 
-    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0; of a joint that does not
-    /// move the frame: 0, 0.
     pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
         let base = Placement::constant(self.base);
-        let links = self.placements(base, q);
-        let tip = self.tip(links.as_ref());
+        self.jacobian_from(base, self.placements(base, q).as_ref()).0
+    }
+
+    /// The Jacobian when frame 0 is at `base`, and the origin of the frame.
+    ///
+    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0; of a joint that does not
+    /// move the frame: 0, 0.
+    pub(crate) fn jacobian_from<T: Scalar>(
+        self,
+        base: Placement<T>,
+        links: &[Placement<T>],
+    ) -> ([J::Of<T>; 6], Vector3<T>) {
+        let tip = self.tip(base, links);
         let columns = self.per_joint.of(|i| {
             if !self.moves_tip(i) {
                 return (Vector3::zeros(), Vector3::zeros());
             }
-            let frame = self.joint_frame(i, base, links.as_ref());
+            let frame = self.joint_frame(i, base, links);
             let axis = frame.rotation.column(2).into_owned();
             match self.table.rows[i].kind {
                 JointKind::Revolute => (axis.cross(&(tip.translation - frame.translation)), axis),
                 JointKind::Prismatic => (axis, Vector3::zeros()),
             }
         });
-        core::array::from_fn(|row| {
+        let rows = core::array::from_fn(|row| {
             self.per_joint.of(|i| {
                 let (linear, angular) = &columns.as_ref()[i];
                 if row < 3 { linear[row] } else { angular[row - 3] }
             })
-        })
+        });
+        (rows, tip.translation)
     }
 
     /// The tip's acceleration at q̈ = 0: steps 1 and 2, and step 4 from joint to joint instead of by centres of mass,
@@ -226,7 +236,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn wrench_torques<T: Scalar>(self, q: &[T], wrench: &Wrench<T>) -> J::Of<T> {
         let base = Placement::constant(self.base);
         let links = self.placements(base, q);
-        let tip = self.tip(links.as_ref());
+        let tip = self.tip(base, links.as_ref());
         let (force, moment) = wrench.vectors();
         let (force, moment) = (tip.rotation * force, tip.rotation * moment);
         self.per_joint.of(|i| {

@@ -19,6 +19,8 @@ pub mod batch;
 mod capability;
 #[cfg(feature = "arm")]
 mod centre_of_mass;
+#[cfg(all(feature = "arm", feature = "std"))]
+mod contact_dynamics;
 #[cfg(feature = "arm")]
 mod coriolis_matrix;
 #[cfg(all(feature = "arm", feature = "std"))]
@@ -34,6 +36,8 @@ mod energy;
 mod error;
 #[cfg(feature = "arm")]
 mod floating_base;
+#[cfg(feature = "arm")]
+mod floating_kinematics;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
 #[cfg(feature = "arm")]
@@ -104,11 +108,11 @@ pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use base_state::BaseTwist;
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
-    Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy,
-    FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingRegressor, FloatingTorques, ForwardDynamics,
-    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix,
-    MomentumAndRate, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives,
-    frame_index,
+    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, ContactDynamics,
+    CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor,
+    FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    TorqueDerivatives, frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

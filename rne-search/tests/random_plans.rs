@@ -225,11 +225,12 @@ fn random_plans_with_rotors_are_the_seven_steps() {
 fn random_plans_of_floating_bases_are_the_seven_steps() {
     const FUNCTION: Function = Function::InverseDynamicsOfFloatingBase;
     // the bias is a part of the others
-    const SOLVED: [Function; 4] = [
+    const SOLVED: [Function; 5] = [
         Function::FloatingMassMatrix,
         Function::FloatingForwardDynamics,
         Function::CentroidalBias,
         Function::CentroidalMomentum,
+        Function::ForwardDynamicsInContact,
     ];
     let (mut robots, mut tried, mut solved) = (0, 0, 0);
     for index in 0..rounds(60) {

@@ -1,10 +1,10 @@
 //! Shipped robots with everything derived, and their functions by their names.
 
 use rne::{
-    Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, CoriolisMatrix, Energy, FloatingBase,
-    FloatingEnergy, FloatingRegressor, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches,
-    Wrench,
+    Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
+    FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
+    Pose, Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -41,6 +41,8 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + CentroidalMomentum<DOF, NV>
     + FloatingRegressor<DOF, NV, BODIES>
     + FloatingEnergy<DOF>
+    + FloatingKinematics<DOF, NV, 1>
+    + ContactDynamics<DOF, NV, 1>
 {
 }
 
@@ -117,6 +119,15 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::FloatingMassMatrix => flat(robot.floating_mass_matrix(q)),
         Function::CentroidalMomentumMatrix => flat(robot.centroidal_momentum_matrix(q)),
         Function::CentroidalBias => robot.centroidal_bias(q, qd, &omega).to_vec(),
+        Function::ForwardDynamicsInContact => {
+            let rotation = [omega, omega_dot, acceleration];
+            let found = robot.forward_dynamics_in_contact(q, qd, tau, &omega, &rotation);
+            let ([wrench], accelerations) = (found.wrenches_on_robot, found.accelerations);
+            let base = [accelerations.base.linear, accelerations.base.angular].concat();
+            [base, accelerations.qdd.to_vec(), [wrench.force, wrench.moment].concat()].concat()
+        }
+        Function::TipJacobians => flat(robot.tip_jacobians(q, &[omega, omega_dot, acceleration])[0]),
+        Function::TipAccelerations => flat(robot.tip_accelerations(q, qd, &omega, &[omega, omega_dot, acceleration])),
         Function::FloatingBias => robot.floating_bias(q, qd, &omega, &[Wrench { force, moment }]).to_vec(),
         Function::FloatingForwardDynamics => {
             let found = robot.floating_forward_dynamics(q, qd, tau, &omega, &[Wrench { force, moment }]);
@@ -173,6 +184,8 @@ macro_rules! robot {
                 rne::CentroidalMomentum,
                 rne::FloatingRegressor,
                 rne::FloatingEnergy,
+                rne::FloatingKinematics,
+                rne::ContactDynamics,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

@@ -108,6 +108,7 @@ impl Driver<'_> {
     }
 
     /// A function that calls all functions of a unit and prints what they return.
+    #[allow(clippy::too_many_lines)] // a line for each function
     fn calls(&self, unit: &Unit) -> String {
         let (Unit { prefix, precision, functions, .. }, n) = (unit, self.dof);
         let real = precision.c_type();
@@ -170,6 +171,10 @@ impl Driver<'_> {
                 Function::FloatingKineticEnergy | Function::CentroidalMomentum => "q, qd, moment",
                 // omega, omega_dot, acceleration and gravity
                 Function::FloatingPotentialEnergy => "q, omega",
+                // rows of the motion of the base, beside each other
+                Function::ForwardDynamicsInContact => &format!("q, qd, tau, omega, (const {real} (*)[3])omega"),
+                Function::TipJacobians => &format!("q, (const {real} (*)[3])omega"),
+                Function::TipAccelerations => &format!("q, qd, omega, (const {real} (*)[3])omega"),
                 Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
                 Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
                 Function::ActuatorTorques => "qd, qdd",
@@ -208,6 +213,9 @@ impl Driver<'_> {
                 Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
                 Function::FloatingRegressor => (format!("{real} x[{}][{}][10]", 6 + n, 1 + n), "x"),
                 Function::CentroidalMomentumMatrix => (format!("{real} x[6][{}]", 6 + n), "x"),
+                Function::ForwardDynamicsInContact => (format!("{prefix}_accelerations_and_wrenches x"), "&x"),
+                Function::TipJacobians => (format!("{real} x[1][6][{}]", 6 + n), "x"),
+                Function::TipAccelerations => (format!("{real} x[1][6]"), "x"),
                 Function::FloatingForwardDynamics => (format!("{prefix}_floating_accelerations x"), "&x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
             };

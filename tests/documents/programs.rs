@@ -84,7 +84,8 @@ pub(crate) fn stubs() -> String {
                 | Argument::Payload
                 | Argument::BaseVelocity
                 | Argument::BaseTwist
-                | Argument::BasePose => format!("{name}: ArrayLike, "),
+                | Argument::BasePose
+                | Argument::BaseRotation => format!("{name}: ArrayLike, "),
                 Argument::Wrenches if function.is_of_floating_base() => {
                     format!("{name}: ArrayLike | dict[str, ArrayLike] | None = ..., ")
                 }
@@ -100,6 +101,7 @@ pub(crate) fn stubs() -> String {
             | Returned::MomentumAndRate
             | Returned::FloatingTorques
             | Returned::FloatingAccelerations => "tuple[Floats, Floats]",
+            Returned::AccelerationsAndWrenches => "tuple[Floats, Floats, Floats]",
             _ => "Floats",
         };
         // a pose of the tip has the name that it has at a frame, too

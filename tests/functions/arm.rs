@@ -46,13 +46,15 @@ pub(crate) struct Given<'a, T> {
     pub(crate) wrench: Wrench<T>,
     pub(crate) payload: Payload<T>,
     pub(crate) base: BaseMotion<T>,
+    pub(crate) base_rotation: [[T; 3]; 3],
 }
 
 impl<'a, T: Scalar> Given<'a, T> {
     pub(crate) fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T]) -> Self {
         let zero = [T::zero(); 3];
         let (wrench, payload) = (Wrench::zero(), Payload::none());
-        Self { q, qd, qdd, tau: &[], wrench, payload, base: BaseMotion::fixed(zero) }
+        let base = BaseMotion::fixed(zero);
+        Self { q, qd, qdd, tau: &[], wrench, payload, base, base_rotation: base_rotation() }
     }
 
     /// The velocity of a base that nothing holds.
@@ -71,6 +73,11 @@ impl<'a, T: Scalar> Given<'a, T> {
         let ([omega, omega_dot, acceleration], gravity) = (pose.rotation, pose.translation);
         Self { base: BaseMotion { omega, omega_dot, acceleration, gravity, ..self.base }, ..self }
     }
+}
+
+/// A rotation none of whose angles is a right one.
+pub(crate) fn base_rotation<T: Scalar>() -> [[T; 3]; 3] {
+    [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]].map(|row| row.map(T::from_f64))
 }
 
 /// A scalar of the runtime as a number of the interpreter.
@@ -203,6 +210,7 @@ impl Arm {
             base: [omega, omega_dot, acceleration, gravity].map(|vector| vector.map(Number)),
             velocity: velocity.map(Number),
             pose: pose.collect::<Vec<_>>().try_into().unwrap_or_else(|_| unreachable!("twelve")),
+            base_rotation: std::array::from_fn(|at| Number(given.base_rotation[at / 3][at % 3])),
             ..Arguments::of_joints(&q, &qd, &qdd, Number(T::zero()))
         };
         let sin_cos = |Number(angle): Number<T>| {
@@ -212,7 +220,7 @@ impl Arm {
         let (_, interpreter) = self.compiled(code, function);
         let numbers = interpreter.run(&arguments, |constant| Number(T::from_f64(constant)), sin_cos);
         let numbers: Vec<T> = numbers.expect("one per joint").into_iter().map(|Number(x)| x).collect();
-        assert_eq!(numbers.len(), function.layout(self.robot.dof()).len());
+        assert_eq!(numbers.len(), function.layout(self.robot.dof(), self.robot.tip_count()).len());
         numbers
     }
 
@@ -367,7 +375,7 @@ pub(crate) fn at_tips<T: Copy>(tips: usize, wrench: &Wrench<T>) -> Vec<Wrench<T>
 
 /// What the runtime returns, as a row of numbers.
 pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
-    let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base } = *given;
+    let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base, ref base_rotation } = *given;
     let poses = |poses: Vec<Pose<T>>| -> Vec<T> {
         poses.iter().flat_map(|pose| [flat(pose.rotation), pose.translation.to_vec()].concat()).collect()
     };
@@ -425,6 +433,14 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         }
         Function::FloatingPotentialEnergy => arm.floating_potential_energy(q, &given.pose()).map(|energy| vec![energy]),
         Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &given.twist()).map(Vec::from),
+        Function::TipJacobians => arm.tip_jacobians(q, base_rotation).map(|tips| flat(tips.concat())),
+        Function::TipAccelerations => arm.tip_accelerations(q, qd, &base.omega, base_rotation).map(flat),
+        Function::ForwardDynamicsInContact => {
+            arm.forward_dynamics_in_contact(q, qd, tau, &base.omega, base_rotation).map(|(base, qdd, wrenches)| {
+                let wrenches = wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten();
+                base.linear.into_iter().chain(base.angular).chain(qdd).chain(wrenches).collect()
+            })
+        }
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),

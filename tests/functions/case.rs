@@ -8,7 +8,7 @@ use rne::{BaseMotion, Dual, Payload, Wrench};
 use rne_codegen::Form;
 use rne_model::{Inertia, Motor, Robot};
 
-use crate::arm::{Arm, Given, Maker};
+use crate::arm::{Arm, Given, Maker, base_rotation};
 use crate::check::Worst;
 use crate::robots;
 
@@ -95,7 +95,16 @@ impl Case {
     /// All that a function can be asked with.
     pub(crate) fn given(&self) -> Given<'_, f64> {
         let Self { q, qd, qdd, applied, wrench, payload, base, .. } = self;
-        Given { q, qd, qdd, tau: applied, wrench: *wrench, payload: *payload, base: *base }
+        Given {
+            q,
+            qd,
+            qdd,
+            tau: applied,
+            wrench: *wrench,
+            payload: *payload,
+            base: *base,
+            base_rotation: base_rotation(),
+        }
     }
 
     pub(crate) fn tau(&self) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use rne::compiled::{Arguments, Array, CompiledArm, Destination, Form, Function};
 use rne_model::Robot;
 
-use crate::arm::{Arm, Maker, at_tips};
+use crate::arm::{Arm, Maker, at_tips, base_rotation};
 use crate::check::Worst;
 use crate::equality::error;
 use crate::trees::{State, robot};
@@ -39,6 +39,7 @@ fn of_state(robot: &Robot, state: &State) -> Vec<(&'static str, Vec<f64>)> {
         ("base_gravity", base.gravity.to_vec()),
         ("twist", [base.velocity, base.omega].concat()),
         ("pose", [base.omega, base.omega_dot, base.acceleration, base.gravity].concat()),
+        ("base_rotation", base_rotation().concat()),
     ]
 }
 
@@ -56,7 +57,7 @@ fn compare(arm: &CompiledArm, robot: &Robot, seed: u64, worst: &mut Worst) {
     let runtime = Arm::new(robot, Maker::Runtime);
     let takes = |function: &Function| !(robot.has_couplings() && function.is_of_every_link());
     for function in Function::ALL.into_iter().filter(takes) {
-        let width = function.layout(robot.dof()).len();
+        let width = arm.layout(function).len();
         let mut found = vec![f64::NAN; width * states.len()];
         arm.run(function, states.len(), &arguments, Destination::Rows(&mut found)).expect("a function that compiles");
         for (state, found) in states.iter().zip(found.chunks(width)) {

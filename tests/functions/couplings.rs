@@ -122,6 +122,10 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
             let rows = numbers.chunks(numbers.len() / 6);
             rows.flat_map(|row| [&row[..6], &times(&back, &row[6..])].concat()).collect()
         }
+        Function::TipJacobians => {
+            let rows = numbers.chunks(6 + dof);
+            rows.flat_map(|row| [&row[..6], &times(&back, &row[6..])].concat()).collect()
+        }
         Function::InverseDynamicsOfFloatingBase | Function::FloatingBias => {
             let (on_base, torques) = numbers.split_at(6);
             [on_base, &times(&back, torques)].concat()

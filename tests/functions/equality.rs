@@ -8,10 +8,11 @@ use rne::{BaseMotion, Payload, Wrench};
 use rne_codegen::{Argument, Form, Function};
 use rne_model::{Dh, Robot};
 
-use crate::arm::{Arm, Given, Maker, of_runtime};
+use crate::arm::{Arm, Given, Maker, base_rotation, of_runtime};
 use crate::case::{cases, largest, payload};
 use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
+use crate::trees::{condition, contact_system};
 
 /// Functions whose seven steps are the runtime's operations, in its order.
 const SAME_BITS: [Function; 32] = [
@@ -151,6 +152,19 @@ pub(crate) fn error(
             assert_eq!(found, expected, "{}, {function}", arm.robot.name);
             return 0.0;
         }
+        Function::ForwardDynamicsInContact => {
+            let runtime = |function| of_runtime(&arm.runtime, function, given);
+            let [mass, jacobians] = [Function::FloatingMassMatrix, Function::TipJacobians].map(runtime);
+            let rows: Vec<Vec<f64>> = mass.chunks(6 + arm.robot.dof()).map(<[f64]>::to_vec).collect();
+            if conditioning(&rows).is_none() {
+                return 0.0;
+            }
+            let number = condition(&contact_system(&arm.robot, &mass, &jacobians).0);
+            if number >= 1e12 {
+                return 0.0;
+            }
+            error_on_scale(found, &expected, 0.0) / number
+        }
         Function::ForwardDynamics
         | Function::InverseMassMatrix
         | Function::ForwardDynamicsWithPayload
@@ -197,7 +211,8 @@ pub(crate) fn compare_at_states(arm: &Arm, maker: Maker, worst: &mut Worst) {
         let [omega, omega_dot, velocity, acceleration, gravity] = [(); 5].map(|()| triple());
         let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
         let payload = payload(&mut rng);
-        let given = Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base };
+        let given =
+            Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base, base_rotation: base_rotation() };
         compare(arm, maker, &given, TOLERANCE, worst);
     }
 }

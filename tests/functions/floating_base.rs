@@ -6,11 +6,11 @@
 use nalgebra::Vector3;
 use rne::{BaseMotion, Pose, Quaternion, Wrench};
 use rne_codegen::{Argument, Compiler, Factorization, Form, Function, Output, Value};
-use rne_model::{Reader, Robot};
+use rne_model::{Contact, Reader, Robot};
 
-use crate::arm::{Arm, Given, Maker};
+use crate::arm::{Arm, Given, Maker, base_rotation};
 use crate::check::{ROOT, Worst, conditioning, dot, error_on_scale, json, numbers, product};
-use crate::trees::{State, robot};
+use crate::trees::{State, condition, contact_system, robot};
 
 const TOLERANCE: f64 = 1e-12;
 const FOLDER: &str = "tests/functions/floating";
@@ -41,7 +41,10 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
                     acceleration: triple("acceleration"),
                     gravity: triple("gravity"),
                 };
-                let given = Given { base, tau: &tau, wrench: Wrench::zero(), ..Given::of_joints(&q, &qd, &qdd) };
+                let turn = array("base_rotation");
+                let base_rotation = std::array::from_fn(|row| std::array::from_fn(|column| turn[3 * row + column]));
+                let given =
+                    Given { base, base_rotation, tau: &tau, wrench: Wrench::zero(), ..Given::of_joints(&q, &qd, &qdd) };
                 let pose: [f64; 12] = array("pose").try_into().expect("twelve numbers");
                 let row = |row: usize| [0, 1, 2].map(|column| pose[3 * row + column]);
                 let pose = Pose { rotation: [0, 1, 2].map(row), translation: row(3) };
@@ -52,6 +55,11 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
                         Function::FloatingForwardDynamics => {
                             let matrix = arm.runtime.floating_mass_matrix(&q).expect("one per joint");
                             error / conditioning(&matrix).expect("positive definite").number
+                        }
+                        Function::ForwardDynamicsInContact => {
+                            let of = |function| arm.numbers(function, &given);
+                            let [mass, jacobians] = [Function::FloatingMassMatrix, Function::TipJacobians].map(of);
+                            error / condition(&contact_system(&robot, &mass, &jacobians).0)
                         }
                         _ => error,
                     };
@@ -257,7 +265,7 @@ fn the_base_of_a_robot_at_rest_bears_its_weight() {
         let base = BaseMotion::fixed(robot.gravity);
         let (wrench, tau) = arm
             .runtime
-            .inverse_dynamics_of_floating_base(&q, &zeros, &zeros, &base, &[Wrench::zero()])
+            .inverse_dynamics_of_floating_base(&q, &zeros, &zeros, &base, &vec![Wrench::zero(); robot.tip_count()])
             .expect("arrays of the right length");
         let of_links: f64 = robot.rows().map(|row| row.link.mass).sum();
         let mass = of_links + robot.floating_base.as_ref().expect("a floating base").link.mass;
@@ -268,6 +276,94 @@ fn the_base_of_a_robot_at_rest_bears_its_weight() {
         assert!((moment - centre.cross(&weight)).norm() < 1e-11 * weight.norm(), "{name}: {moment}");
         let held = arm.runtime.gravity_torques(&q).expect("one per joint");
         assert!(error_on_scale(&tau, &held, weight.norm()) < 1e-14, "{name}");
+    }
+}
+
+/// The forces of contacts are what moves the centre of mass, and turns the robot about it: momentum by the
+/// accelerations that they cause, of robots at random states. The tips do not accelerate, but for the damping.
+#[test]
+fn contacts_exert_the_rate_of_the_momentum() {
+    for maker in Maker::ALL {
+        for (index, name) in ROBOTS.into_iter().enumerate() {
+            let robot = read(name);
+            let (arm, dof) = (Arm::by_no_choice(&robot, maker), robot.dof());
+            let state = State::random(20 + u64::try_from(index).expect("small"), dof);
+            let of = |function| arm.numbers(function, &state.given());
+            let found = of(Function::ForwardDynamicsInContact);
+            let (x, wrenches) = found.split_at(6 + dof);
+            let times = |matrix: &[f64]| product(&matrix.chunks(6 + dof).collect::<Vec<_>>(), x);
+            let (map, rate) = (of(Function::CentroidalMomentumMatrix), of(Function::CentroidalBias));
+            let rate: Vec<f64> = times(&map).iter().zip(&rate).map(|(a, b)| a + b).collect();
+            // the linear half, in world axes
+            let force = product(&base_rotation::<f64>(), &rate[..3]);
+            let sum: Vec<f64> = (0..3).map(|axis| wrenches.chunks(6).map(|wrench| wrench[axis]).sum()).collect();
+            let scale = wrenches.iter().fold(0.0_f64, |scale, x| scale.max(x.abs()));
+            let error = error_on_scale(&sum, &force, scale);
+            assert!(error < 1e-10, "{maker}, {name}: {error:e}");
+            let (jacobians, lacking) = (times(&of(Function::TipJacobians)), of(Function::TipAccelerations));
+            for contact in &robot.contacts {
+                for row in 0..contact.rows() {
+                    let place = 6 * contact.tip + row;
+                    let gravity = if row < 3 { robot.gravity[row] } else { 0.0 };
+                    let acceleration = jacobians[place] + lacking[place] + gravity;
+                    let least = 1e-10 * scale.max(jacobians[place].abs());
+                    let damped = -Contact::DAMPING * wrenches[place];
+                    assert!((acceleration - damped).abs() < least, "{maker}, {name}: {acceleration:e}, {damped:e}");
+                }
+            }
+        }
+    }
+}
+
+/// HyQ stands still under the torques that its feet ask when they carry it, and the forces under them are its weight.
+#[test]
+fn a_quadruped_stands_on_its_feet() {
+    let text = std::fs::read_to_string(format!("{ROOT}/docs/standing_hyq.yaml")).expect("HyQ");
+    let q = [0.0, 0.75, -1.5, 0.0, -0.75, 1.5].repeat(2);
+    let (robot, zeros) = (robot(&text), vec![0.0; 12]);
+    // twice as many contacts, two at each foot: nothing tells how these share its force
+    let twice = (text.replace("tips: [", "tips: [lf_toe, lh_toe, rf_toe, rh_toe, "))
+        .replace("contacts:\n", "contacts:\n  - {tip: lf_toe, kind: point}\n  - {tip: rh_toe, kind: weld}\n")
+        .replace("joints:\n", "TOES joints:\n");
+    let toes = ["lf", "lh", "rf", "rh"]
+        .map(|leg| format!("  - {{name: {leg}_toe, on: {leg}_kfe_joint, xyz: [0.33, 0, 0]}}\n"));
+    let twice = crate::trees::robot(&twice.replace("TOES ", &toes.concat()));
+    for maker in Maker::ALL {
+        for robot in [&robot, &twice] {
+            let arm = Arm::by_no_choice(robot, maker);
+            let level = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            let base = BaseMotion::fixed(robot.gravity);
+            let given = Given { base, base_rotation: level, ..Given::of_joints(&q, &zeros, &zeros) };
+            let given = Given { wrench: Wrench::zero(), ..given };
+            let weight = arm.numbers(FUNCTION, &given);
+            let (of_base, hanging) = weight.split_at(6);
+            let jacobians = arm.numbers(Function::TipJacobians, &given);
+            let row = |tip: usize, row: usize| &jacobians[(6 * tip + row) * 18..][..18];
+            // forces up at the last four tips, by the lever rule: their moments about x and y are those of the weight
+            let feet = robot.tip_count() - 4;
+            let [lever_y, minus_x] =
+                [3, 4].map(|column| -> [f64; 4] { std::array::from_fn(|k| row(feet + k, 2)[column]) });
+            let along = (of_base[4] / of_base[2] - minus_x[1]) / (minus_x[0] - minus_x[1]);
+            let across = (of_base[3] / of_base[2] - lever_y[2]) / (lever_y[0] - lever_y[2]);
+            let share =
+                [along * across, (1.0 - along) * across, along * (1.0 - across), (1.0 - along) * (1.0 - across)];
+            let carried =
+                |joint: usize| (0..4).map(|k| row(feet + k, 2)[6 + joint] * share[k] * of_base[2]).sum::<f64>();
+            let tau: Vec<f64> = hanging.iter().enumerate().map(|(joint, tau)| tau - carried(joint)).collect();
+            let found = arm.numbers(Function::ForwardDynamicsInContact, &Given { tau: &tau, ..given });
+            let (accelerations, wrenches) = found.split_at(18);
+            let force = |axis: usize| wrenches.chunks(6).map(|wrench| wrench[axis]).sum::<f64>();
+            let weight = of_base[2];
+            assert!((force(2) - weight).abs() < 1e-5 * weight, "{maker}: {} is not {weight}", force(2));
+            assert!([0, 1].iter().all(|&axis| force(axis).abs() < 1e-5 * weight), "{maker}: {wrenches:?}");
+            let still = accelerations.iter().enumerate().map(|(row, x)| if row == 2 { x - 9.81 } else { *x });
+            assert!(still.into_iter().all(|x| x.abs() < 1e-3), "{maker}: {accelerations:?}");
+            if feet == 0 {
+                for (wrench, share) in wrenches.chunks(6).zip(share) {
+                    assert!((wrench[2] - share * weight).abs() < 1e-3, "{maker}: {wrenches:?}");
+                }
+            }
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use rne::{BaseMotion, Payload, Wrench};
 use rne_codegen::{Compiler, Form, Function};
 use rne_model::{Angle, FixedFrame, Frame, FrameId, Robot, Transform};
 
-use crate::arm::{Arm, Given, Maker};
+use crate::arm::{Arm, Given, Maker, base_rotation};
 use crate::arms;
 use crate::check::{json, numbers, wrench};
 use crate::equality;
@@ -45,7 +45,8 @@ fn of_random_arms(form: Form, arms: u64, tolerance: f64) {
         let (q, qd, zeros) = (array(&mut rng), array(&mut rng), vec![0.0; robot.dof()]);
         let wrench = Wrench { force: triple(&mut rng), moment: triple(&mut rng) };
         let (payload, base) = (Payload::none(), BaseMotion::fixed([0.0; 3]));
-        let given = Given { q: &q, qd: &qd, qdd: &zeros, tau: &zeros, wrench, payload, base };
+        let given =
+            Given { q: &q, qd: &qd, qdd: &zeros, tau: &zeros, wrench, payload, base, base_rotation: base_rotation() };
         // those of the list, and a link frame
         for frame in robot.frame_ids().take(4) {
             let at = robot.clone().at_frame(frame);

@@ -14,7 +14,7 @@ use rne_model::{
 use crate::arm::{Arm, Maker};
 use crate::check::{Worst, conditioning, error_on_scale};
 use crate::equality::compare_at_states;
-use crate::trees::{State, expected, scale};
+use crate::trees::{State, condition, contact_system, expected, scale};
 use crate::{random_motors, random_trees};
 
 const TOLERANCE: f64 = 1e-12;
@@ -179,7 +179,14 @@ fn rotors_are_bodies_of_their_own() {
             let state = State::random(seed, robot.dof());
             for function in Function::ALL.into_iter().filter(|function| !function.is_of_every_link()) {
                 let expected = bodies.numbers(function, &state.given());
-                let magnification = if function.inverts_mass() {
+                let magnification = if function == Function::ForwardDynamicsInContact {
+                    let numbers = |function| bodies.numbers(function, &state.given());
+                    let [mass, jacobians] = [Function::FloatingMassMatrix, Function::TipJacobians].map(numbers);
+                    match condition(&contact_system(&robot, &mass, &jacobians).0) {
+                        number if number < 1e10 => number,
+                        _ => continue,
+                    }
+                } else if function.inverts_mass() {
                     let mass = bodies.runtime.mass_matrix(&state.q).expect("one per joint");
                     match conditioning(&mass) {
                         Some(it) if it.number < 1e10 => it.number,

@@ -14,7 +14,7 @@ use rne_codegen::{Form, Function, Program};
 use rne_emit::Precision;
 use rne_model::Robot;
 
-use crate::arm::{Arm, Given, Maker};
+use crate::arm::{Arm, Given, Maker, base_rotation};
 use crate::arms;
 use crate::check::Worst;
 use crate::compiler::Compiler;
@@ -107,7 +107,16 @@ fn at<R>(state: &State, ask: impl FnOnce(&Given<'_, f64>) -> R) -> R {
     let payload = states::payload(payload);
     // as C has the numbers of a twist
     let base = BaseMotion { omega, omega_dot, velocity: moment, acceleration, gravity };
-    ask(&Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench: Wrench { force, moment }, payload, base })
+    ask(&Given {
+        q: &q,
+        qd: &qd,
+        qdd: &qdd,
+        tau: &tau,
+        wrench: Wrench { force, moment },
+        payload,
+        base,
+        base_rotation: base_rotation(),
+    })
 }
 
 /// One in how many arms is tried at least, if `RNE_EXHAUSTIVE` says so.
@@ -165,7 +174,7 @@ fn c_code_is_the_runtime(name: &str, arms: &[(Form, &Arm)], compiler: &Compiler)
     let mut found = words.into_iter().map(f64::from_bits);
     for (state, (form, arm)) in states.iter().flat_map(|state| arms.iter().map(move |arm| (state, arm))) {
         for function in Function::ALL {
-            let found: Vec<f64> = found.by_ref().take(function.layout(dof).len()).collect();
+            let found: Vec<f64> = found.by_ref().take(function.layout(dof, 1).len()).collect();
             let maker = Maker::Code(*form);
             at(state, |given| equality::error(arm, maker, function, given, &found, tolerance(*form)));
         }

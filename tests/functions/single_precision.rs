@@ -7,7 +7,7 @@ use rne::{BaseMotion, Scalar, Wrench};
 use rne_codegen::Function;
 use rne_model::Robot;
 
-use crate::arm::{Arm, Given, Maker};
+use crate::arm::{Arm, Given, Maker, base_rotation};
 use crate::case::largest;
 use crate::check::ROOT;
 use crate::golden::ROBOTS;
@@ -48,7 +48,10 @@ impl State {
             self.vectors.map(|vector| vector.map(&read));
         let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
         let (wrench, payload) = (Wrench { force, moment }, states::payload(payload));
-        arm.numbers(function, &Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base })
+        arm.numbers(
+            function,
+            &Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base, base_rotation: base_rotation() },
+        )
     }
 }
 
@@ -79,7 +82,8 @@ struct Row {
 impl Row {
     fn measured() -> impl Iterator<Item = Self> {
         // the base of these robots has no mass, so it has no forward dynamics
-        let solvable = Function::ALL.into_iter().filter(|function| *function != Function::FloatingForwardDynamics);
+        let solvable =
+            Function::ALL.into_iter().filter(|function| !(function.is_of_floating_base() && function.inverts_mass()));
         let rows = solvable.flat_map(|function| Maker::CODE.map(|maker| (function, maker)));
         rows.map(|(function, maker)| {
             let of = |name: &String| worst(Arm::from_file(&format!("robots/{name}.yaml"), maker), function);

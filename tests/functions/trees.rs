@@ -10,9 +10,9 @@ use fastrand::Rng;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use rne::{BaseMotion, DynObserverState, Payload, Wrench};
 use rne_codegen::{Algorithm, Argument, Compiler, Form, Function, Reason, Refusal};
-use rne_model::{Convention, FixedFrame, FrameId, Reader, Robot};
+use rne_model::{Contact, Convention, FixedFrame, FrameId, Reader, Robot};
 
-use crate::arm::{Arm, Given, Maker, at_tips};
+use crate::arm::{Arm, Given, Maker, at_tips, base_rotation};
 use crate::case::payload;
 use crate::check::{Worst, conditioning, error_on_scale, flat};
 use crate::equality::compare_at_states;
@@ -61,7 +61,7 @@ impl State {
 
     pub(crate) fn given(&self) -> Given<'_, f64> {
         let Self { q, qd, qdd, tau, wrench, payload, base } = self;
-        Given { q, qd, qdd, tau, wrench: *wrench, payload: *payload, base: *base }
+        Given { q, qd, qdd, tau, wrench: *wrench, payload: *payload, base: *base, base_rotation: base_rotation() }
     }
 }
 
@@ -75,6 +75,11 @@ fn times(matrix: &[Vec<f64>], x: &[f64]) -> Vec<f64> {
 
 fn rows(columns: &[[Vector3<f64>; 2]]) -> Vec<f64> {
     (0..6).flat_map(|row| columns.iter().map(move |parts| parts[row / 3][row % 3])).collect()
+}
+
+/// The rotation of the base.
+fn rotation() -> Matrix3<f64> {
+    Matrix3::from(base_rotation()).transpose()
 }
 
 fn pose((rotation, translation): (Matrix3<f64>, Vector3<f64>)) -> Vec<f64> {
@@ -108,6 +113,51 @@ pub(crate) fn floating_mass_matrix(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
         of_floating_base(robot, &Motion { joints: [q, &zeros, &qdd], base })
     };
     (0..6 + q.len()).map(column).collect()
+}
+
+/// The equations of a robot in contact as one dense system, without gravity: M and -Jᵀ above J and what is added to the
+/// diagonal. `jacobians` has the rows of all tips, one after the other.
+pub(crate) fn contact_system(robot: &Robot, mass: &[f64], jacobians: &[f64]) -> (DMatrix<f64>, Vec<usize>) {
+    let held: Vec<usize> = robot.contacts.iter().flat_map(|it| (0..it.rows()).map(|row| 6 * it.tip + row)).collect();
+    let size = 6 + robot.dof();
+    let jacobian = |row: usize, column: usize| jacobians[held[row] * size + column];
+    let matrix = DMatrix::from_fn(size + held.len(), size + held.len(), |row, column| {
+        match (row.checked_sub(size), column.checked_sub(size)) {
+            (None, None) => mass[row * size + column],
+            (None, Some(force)) => -jacobian(force, row),
+            (Some(row), None) => jacobian(row, column),
+            (Some(row), Some(force)) if row == force => Contact::DAMPING,
+            _ => 0.0,
+        }
+    });
+    (matrix, held)
+}
+
+/// The condition number of such a system.
+pub(crate) fn condition(matrix: &DMatrix<f64>) -> f64 {
+    let values = matrix.singular_values();
+    values.max() / values.min()
+}
+
+/// The accelerations and forces of a robot in contact.
+fn in_contact(robot: &Robot, state: &State) -> Vec<f64> {
+    let size = 6 + state.q.len();
+    let [jacobians, lacking] =
+        [Function::TipJacobians, Function::TipAccelerations].map(|function| expected(robot, function, state));
+    let zeros = vec![0.0; state.q.len()];
+    let base = BaseMotion { omega: state.base.omega, ..BaseMotion::fixed([0.0; 3]) };
+    let bias = of_floating_base(robot, &Motion { joints: [&state.q, &state.qd, &zeros], base });
+    let (matrix, held) = contact_system(robot, &flat(floating_mass_matrix(robot, &state.q)), &jacobians);
+    let right = DMatrix::from_fn(size + held.len(), 1, |row, _| match row.checked_sub(size) {
+        None if row < 6 => -bias[row],
+        None => state.tau[row - 6] - bias[row],
+        Some(row) if held[row] % 6 < 3 => -lacking[held[row]] - robot.gravity[held[row] % 6],
+        Some(row) => -lacking[held[row]],
+    });
+    let mut wrenches = vec![0.0; 6 * robot.tip_count()];
+    let Some(solution) = matrix.lu().solve(&right) else { return vec![f64::NAN; size + wrenches.len()] };
+    held.iter().zip(&solution.as_slice()[size..]).for_each(|(&place, &force)| wrenches[place] = force);
+    [&solution.as_slice()[..size], &wrenches].concat()
 }
 
 /// What a function returns, without a recursion. Of the functions that solve with the mass matrix, the solution of
@@ -188,6 +238,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let right = DMatrix::from_fn(6 + dof, 1, |row, _| applied(row) - bias[row]);
             matrix.lu().solve(&right).map_or_else(|| vec![f64::NAN; 6 + dof], |x| x.as_slice().to_vec())
         }
+        Function::ForwardDynamicsInContact => in_contact(robot, state),
         Function::CentroidalMomentumMatrix => {
             let columns = floating_mass_matrix(robot, q);
             transposed(columns.iter().map(|column| about_centre(column)).collect())
@@ -195,6 +246,31 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         Function::CentroidalBias => {
             let base = BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) };
             about_centre(&of_floating_base(robot, &Motion { joints: [q, qd, &zeros], base }))
+        }
+        Function::TipJacobians => {
+            let turn = rotation();
+            let of_tip = |tip: &FixedFrame| {
+                let (_, origin) = oracle::parts(&oracle::frame(robot, tip, &still)[0]);
+                let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+                let linear = [x, y, z].map(|axis| [axis, Vector3::zeros()]);
+                let angular = [x, y, z].map(|axis| [axis.cross(&origin), axis]);
+                let columns = [&linear[..], &angular, &oracle::jacobian(robot, tip, q, &Vector3::zeros())].concat();
+                rows(&columns.iter().map(|parts| parts.map(|part| turn * part)).collect::<Vec<_>>())
+            };
+            robot.wrench_frames().iter().flat_map(of_tip).collect()
+        }
+        Function::TipAccelerations => {
+            // of the base by hand: the oracle has frames in frame 0
+            let omega = Vector3::from(base.omega);
+            let motion = Motion { joints: [q, qd, &zeros], ..still };
+            let of_tip = |tip: &FixedFrame| {
+                let jet = oracle::frame(robot, tip, &motion);
+                let (_, origin) = oracle::parts(&jet[0]);
+                let [[velocity, turning], [acceleration, rate]] = oracle::rates(&jet, &Vector3::zeros());
+                let linear = acceleration + 2.0 * omega.cross(&velocity) + omega.cross(&omega.cross(&origin));
+                [linear, rate + omega.cross(&turning)].map(|part| rotation() * part)
+            };
+            robot.wrench_frames().iter().flat_map(of_tip).flat_map(|part| part.as_slice().to_vec()).collect()
         }
         Function::GravityTorques | Function::GravityTorquesWithPayload => torques(q, &zeros, &zeros, fixed),
         Function::BiasTorques | Function::BiasTorquesWithPayload => torques(q, qd, &zeros, fixed),
@@ -289,6 +365,13 @@ fn magnification(robot: &Robot, function: Function, state: &State, expected: &[f
     let loaded = function.takes(Argument::Payload).then_some(&state.payload);
     let matrix = match function {
         Function::FloatingForwardDynamics => floating_mass_matrix(robot, &state.q),
+        Function::ForwardDynamicsInContact => {
+            let mass = floating_mass_matrix(robot, &state.q);
+            conditioning(&mass)?;
+            let jacobians = self::expected(robot, Function::TipJacobians, state);
+            let number = condition(&contact_system(robot, &flat(mass), &jacobians).0);
+            return (number < 1e12).then_some(number);
+        }
         _ => oracle::mass_matrix(robot, &state.q, loaded),
     };
     let of = conditioning(&matrix)?;
@@ -312,6 +395,7 @@ pub(crate) fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
         | Function::InverseDynamicsDerivativesWithPayload => largest,
         // centripetal, one metre from an axis
         Function::JacobianRateTimesVelocity => state.qd.iter().map(|qd| qd * qd).fold(0.0, f64::max),
+        Function::TipAccelerations => state.qd.iter().chain(&state.base.omega).map(|qd| qd * qd).fold(0.0, f64::max),
         _ if function.returns_torques() => largest,
         _ => 0.0,
     }

@@ -1,5 +1,5 @@
 //! Random trees: links that carry none, one or many joints, rows that begin at placements, links without mass, motors,
-//! named frames, a tip on any link, and bases that nothing holds.
+//! named frames, a tip on any link, bases that nothing holds, and contacts at their tips.
 
 use std::fmt::Write;
 
@@ -39,7 +39,15 @@ pub(crate) fn yaml(seed: u64, dof: usize) -> String {
     let mut own = Rng::with_seed(seed ^ 0x71);
     let _ = writeln!(text, "  - {{name: other, on: j{}, {}}}", own.usize(0..dof), placement(&mut own));
     if own.f64() < 0.8 {
-        let _ = writeln!(text, "tips: [{}]", ["other", "on_link, other", "other, on_link"][own.usize(0..3)]);
+        let tips = ["other", "on_link, other", "other, on_link"][own.usize(0..3)];
+        let _ = writeln!(text, "tips: [{tips}]");
+        if text.contains("floating_base") {
+            let mut held = Rng::with_seed(seed ^ 0xc0);
+            let mut contact =
+                |tip: &str| format!("{{tip: {tip}, kind: {}}}", if held.bool() { "point" } else { "weld" });
+            let contacts: Vec<String> = tips.split(", ").map(&mut contact).collect();
+            let _ = writeln!(text, "contacts: [{}]", contacts[held.usize(0..contacts.len())..].join(", "));
+        }
     }
     text.push_str("joints:\n");
     for joint in 0..dof {

@@ -51,8 +51,8 @@ impl Computation {
 
     fn layout(self, dof: usize) -> Layout {
         match self {
-            Self::Of(function) => function.layout(dof),
-            Self::Residual => Function::InverseDynamics.layout(dof),
+            Self::Of(function) => function.layout(dof, 1),
+            Self::Residual => Function::InverseDynamics.layout(dof, 1),
         }
     }
 
@@ -74,7 +74,7 @@ impl Computation {
             };
         }
         let run = |function: Function| {
-            let mut numbers = vec![0.0; states * function.layout(arm.dof()).len()];
+            let mut numbers = vec![0.0; states * function.layout(arm.dof(), 1).len()];
             arm.run(function, states, &given, Destination::Rows(&mut numbers)).map_err(external)?;
             Ok(numbers)
         };

@@ -131,7 +131,7 @@ async fn columns_lists_and_slices_give_the_numbers_of_the_arm() -> Result<()> {
     ] {
         let array = rne::compiled::Array::Rows;
         let given = Arguments::new().q(array(&q)).qd(array(&qd)).qdd(array(&qdd));
-        let mut expected = vec![0.0; states * function.layout(joints).len()];
+        let mut expected = vec![0.0; states * function.layout(joints, 1).len()];
         arm.run(function, states, &given, Destination::Rows(&mut expected)).expect("it computes");
         let columns: Vec<String> = arguments.iter().map(|name| of(name)).collect();
         for arguments in [arguments.join(", "), columns.join(", ")] {

@@ -149,6 +149,13 @@ impl Arm {
         Ok(Given { name, parts: &[], elements, value })
     }
 
+    /// A rotation matrix: an array of shape (3, 3) or (N, 3, 3).
+    pub(crate) fn of_rotation<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        let elements = Argument::BaseRotation.elements(self.arm.dof(), self.robot().tip_count());
+        let value = value.py().import("rne.names")?.call_method1("of_rotation", (value, name))?;
+        Ok(Given { name, parts: &[], elements, value })
+    }
+
     /// A function of joint arrays and whatever else it takes; of a pair of results a tuple.
     pub(crate) fn compute<'py>(
         &self,

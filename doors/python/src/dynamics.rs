@@ -26,6 +26,9 @@ macro_rules! about {
     (BasePose) => {
         "`pose`: a homogeneous matrix; shape (4, 4) or (N, 4, 4).\n\n"
     };
+    (BaseRotation) => {
+        "`base_rotation`: shape (3, 3) or (N, 3, 3).\n\n"
+    };
     (Payload) => {
         "`payload`: shape (10,) or (N, 10); `rne.payload` makes one. A point mass has the first four numbers alone: \
          shape (4,) or (N, 4).\n\n"
@@ -91,9 +94,20 @@ macro_rules! returned {
     (FloatingRows) => {
         "shape (6, 6 + n) or (N, 6, 6 + n)."
     };
+    (TipRows) => {
+        "shape (tips, 6, 6 + n) or (N, tips, 6, 6 + n)."
+    };
+    (TipVectors) => {
+        "shape (tips, 6) or (N, tips, 6)."
+    };
     (FloatingAccelerations) => {
         "the acceleration of the base, linear then angular, of shape (6,) or (N, 6), and those of the joints, of shape \
          (n,) or (N, n); `out` is one array of shape (6 + n,) or (N, 6 + n)."
+    };
+    (AccelerationsAndWrenches) => {
+        "the acceleration of the base, linear then angular, of shape (6,) or (N, 6), those of the joints, of shape \
+         (n,) or (N, n), and the wrenches on the robot, of shape (tips, 6) or (N, tips, 6); `out` is one array of \
+         shape (6 + n + 6 tips,) or (N, 6 + n + 6 tips)."
     };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
@@ -374,6 +388,9 @@ macro_rules! given {
     };
     ($arm:ident, $argument:ident: Wrenches) => {
         $arm.of_tips(stringify!($argument), $argument)?
+    };
+    ($arm:ident, $argument:ident: BaseRotation) => {
+        $arm.of_rotation(stringify!($argument), $argument)?
     };
     ($arm:ident, $argument:ident: $of_joints:ident) => {
         $arm.of_joints(stringify!($argument), $argument)?

@@ -11,7 +11,7 @@ use crate::arrays::{Given, Held, are_single, memory, room, states, writable};
 use crate::errors::of_evaluation;
 
 /// The shape of a result for one state: what numpy users expect of it.
-fn shape(function: Function, dof: usize) -> Vec<usize> {
+fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
     fn of(layout: &Layout, shape: &mut Vec<usize>) {
         match layout {
             Layout::Number => {}
@@ -27,7 +27,8 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
                 Record::TorqueDerivatives
                 | Record::MomentumAndRate
                 | Record::FloatingTorques
-                | Record::FloatingAccelerations,
+                | Record::FloatingAccelerations
+                | Record::AccelerationsAndWrenches,
                 parts,
             ) => {
                 shape.push(2);
@@ -38,8 +39,12 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
         }
     }
     let mut found = Vec::new();
-    let layout = function.layout(dof);
-    if let Layout::Record(Record::FloatingTorques | Record::FloatingAccelerations, _) = layout {
+    let layout = arm.layout(function);
+    if let Layout::Record(
+        Record::FloatingTorques | Record::FloatingAccelerations | Record::AccelerationsAndWrenches,
+        _,
+    ) = layout
+    {
         // six numbers of the base, then one for each joint
         return vec![layout.len()];
     }
@@ -83,7 +88,7 @@ fn evaluate_in<'py, T: Element + Number>(
     let count = many.unwrap_or(1);
     let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
     let arguments = arguments(given, &held, &columns, count)?;
-    let of_state = shape(function, arm.dof());
+    let of_state = shape(function, arm);
     let whole: Vec<usize> = many.into_iter().chain(of_state.iter().copied()).collect();
     let result = room::<T>(py, out, &whole, dtype)?;
     {
@@ -112,7 +117,7 @@ fn evaluate_in<'py, T: Element + Number>(
         });
         computed.map_err(|error: rne::compiled::EvaluationError| of_evaluation(&error))?;
     }
-    match function.layout(arm.dof()) {
+    match arm.layout(function) {
         Layout::Record(Record::TorqueDerivatives | Record::MomentumAndRate, _) => {
             let all = vec![PySlice::full(py).into_any(); of_state.len() - 1];
             let of = |index: usize| {
@@ -128,6 +133,16 @@ fn evaluate_in<'py, T: Element + Number>(
                 result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
             };
             Ok(PyTuple::new(py, [of(0, 6)?, of(6, isize::MAX)?])?.into_any())
+        }
+        Layout::Record(Record::AccelerationsAndWrenches, _) => {
+            let of = |from: usize, to: usize| {
+                let part = PySlice::new(py, isize::try_from(from)?, isize::try_from(to)?, 1).into_any();
+                result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
+            };
+            let (joints, tips) = (6 + arm.dof(), arm.robot().tip_count());
+            let rows: Vec<usize> = many.into_iter().chain([tips, 6]).collect();
+            let wrenches = of(joints, joints + 6 * tips)?.call_method1("reshape", (rows,))?;
+            Ok(PyTuple::new(py, [of(0, 6)?, of(6, joints)?, wrenches])?.into_any())
         }
         _ => finished(result, whole.is_empty()),
     }

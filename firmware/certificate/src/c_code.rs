@@ -154,6 +154,7 @@ const ARGUMENTS: [&str; 4] = [
     "const float force[3] = {1.0f, -2.0f, 3.0f}, moment[3] = {0.5f, 0.25f, -0.125f};",
     "const float payload[10] = {0.5f, 0.01f, -0.02f, 0.1f, 0.002f, 0.003f, 0.001f, 0.0001f, -0.0002f, 0.0003f};",
     "const float base_omega[3] = {0.1f, -0.2f, 0.3f}, base_zero[3] = {0.0f, 0.0f, 0.0f};",
+    "const float base_rotation[3][3] = {{0.36f, 0.48f, -0.8f}, {-0.8f, 0.6f, 0.0f}, {0.48f, 0.64f, 0.6f}};",
     "const float base_gravity[3] = {0.0f, 0.0f, -9.81f};",
 ];
 
@@ -196,11 +197,12 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::BaseVelocity => "base_omega",
         Argument::BaseTwist => "(const float[6]){0.0f, 0.0f, 0.0f, base_omega[0], base_omega[1], base_omega[2]}",
         Argument::BasePose => "(const float[12]){1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f}",
+        Argument::BaseRotation => "base_rotation",
         Argument::Base => "base_omega, base_zero, base_zero, base_gravity",
         Argument::Wrenches => "(const float[1][6]){{force[0], force[1], force[2], moment[0], moment[1], moment[2]}}",
     });
     let arguments = arguments.collect::<Vec<_>>().join(", ");
-    let layout = function.layout(dof);
+    let layout = function.layout(dof, 1);
     let count = layout.len();
     Ok(match &layout {
         Layout::Number => format!(

@@ -212,6 +212,10 @@ fn fixed(function: Function) -> String {
             " At each state the origin of frame 0 moves with {velocity} (m/s), and the base turns with {omega} (rad/s)."
         );
     }
+    if function.takes(Argument::BaseRotation) {
+        let rows = accuracy::BASE_ROTATION.map(|row| format!("({})", list(&row))).join(", ");
+        let _ = write!(words, " At each state the rotation of the base has the rows {rows}.");
+    }
     if function.takes(Argument::Wrench) || function.takes(Argument::Wrenches) {
         let _ = write!(words, " At each state each wrench is {}: force (N), moment (N m).", list(&accuracy::WRENCH));
     }
@@ -305,10 +309,15 @@ fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
                 call.before.push(format!("const float omega[3] = {{{}}};", numbers(&accuracy::BASE[0])));
                 ("const float *", "omega")
             }
+            Argument::BaseRotation => {
+                let rows = accuracy::BASE_ROTATION.map(|row| format!("{{{}}}", numbers(&row))).join(", ");
+                call.before.push(format!("const float base_rotation[3][3] = {{{rows}}};"));
+                ("const float (*)[3]", "base_rotation")
+            }
         };
         call.arguments.push((kind.to_owned(), name.to_owned()));
     }
-    match function.layout(program.dof) {
+    match program.layout() {
         Layout::Array(_, of) if matches!(*of, Layout::Number) => Ok(call),
         Layout::Record(record @ Record::FloatingTorques, _) => {
             Ok(Call { record: Some(rne_emit::record_name(prefix, record)), ..call })

@@ -82,17 +82,21 @@ pub(crate) struct Arguments {
     /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
+    /// Rotation of the base, 9 numbers [default: 1]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    base_rotation: Option<List>,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
-        "base_acceleration", "base_velocity", "base_pose", "gravity", "trace", "json", "csv", "compare", "frame",
+        "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "trace", "json", "csv",
+        "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
-        "base_acceleration", "base_velocity", "base_pose", "gravity", "golden", "trace", "axes", "joint", "step",
-        "json", "csv", "compare", "digits",
+        "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "golden", "trace", "axes",
+        "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
     /// Output file of --states: CSV, or NAME.npy
@@ -205,7 +209,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         };
         let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
-    let result = || grouped(&function.layout(robot.dof()), &numbers);
+    let result = || grouped(&function.layout(robot.dof(), robot.tip_count()), &numbers);
     if !arguments.trace {
         if arguments.json {
             return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });
@@ -308,6 +312,7 @@ impl Arguments {
             base_velocity: self.base_velocity.as_ref(),
             base_pose: self.base_pose.as_ref(),
             gravity: self.gravity.as_ref(),
+            base_rotation: self.base_rotation.as_ref(),
         }
     }
 }

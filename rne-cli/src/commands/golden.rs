@@ -103,6 +103,7 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("base_gravity", gravity.to_vec()),
         ("twist", [state.twist().linear, omega].concat()),
         ("pose", [state.pose.rotation.concat(), state.pose.translation.to_vec()].concat()),
+        ("base_rotation", state.base_rotation.concat()),
         ("parameters", parameters),
     ]
 }

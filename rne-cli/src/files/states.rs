@@ -49,6 +49,9 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
                 let tips = arm.robot().tip_names().into_iter();
                 tips.flat_map(|tip| parts.map(|part| format!("{tip}_{part}"))).collect()
             }
+            "base_rotation" => {
+                axes.into_iter().flat_map(|row| axes.map(|column| format!("{name}_{row}{column}"))).collect()
+            }
             "q" | "qd" | "qdd" | "tau" | "sin" | "cos" => {
                 (1..=elements).map(|joint| format!("{name}{joint}")).collect()
             }
@@ -78,17 +81,17 @@ fn mass(compiled: &CompiledFunction) -> Option<usize> {
 
 /// The columns of its results: torques and accelerations by their symbols, others by the function's name and their
 /// places in it, from 1, as those of a matrix by row and column.
-fn results(function: Function, dof: usize) -> Vec<String> {
+fn results(function: Function, arm: &CompiledArm) -> Vec<String> {
     let symbol = match function {
         Function::ForwardDynamics | Function::ForwardDynamicsWithWrenches => Some("qdd"),
         _ if *function.answer() == Answer::Torques => Some("tau"),
         _ => None,
     };
     if let Some(symbol) = symbol {
-        return (1..=dof).map(|joint| format!("{symbol}{joint}")).collect();
+        return (1..=arm.dof()).map(|joint| format!("{symbol}{joint}")).collect();
     }
     let mut names = Vec::new();
-    places(&function.layout(dof), function.name().to_owned(), &mut names);
+    places(&arm.layout(function), function.name().to_owned(), &mut names);
     names
 }
 
@@ -107,7 +110,7 @@ impl Job<'_> {
         let compiled = self.arm.function(self.function).map_err(Failure::input)?;
         let columns = columns(compiled, self.arm);
         let mut table = Table::open(self.states, &columns, &named_columns(compiled, self.arm), mass(compiled))?;
-        let outputs = results(self.function, self.arm.dof());
+        let outputs = results(self.function, self.arm);
         let read = [self.robot_file, self.states];
         let mut results = Results::open(self.out.filter(|out| !is_standard_output(out)), &read, self.force, &outputs)?;
         let progress = progress(self.states, table.states, results.is_terminal());

@@ -44,6 +44,10 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
                     Labels::Joints => joints.clone(),
                     Labels::BaseAndJoints => OF_BASE.map(str::to_owned).into_iter().chain(joints.clone()).collect(),
                     Labels::Names(names) => names.iter().map(|&name| name.to_owned()).collect(),
+                    Labels::OfTips(names) => {
+                        let tips = robot.tip_names().into_iter();
+                        tips.flat_map(|tip| names.iter().map(move |name| format!("{tip} {name}"))).collect()
+                    }
                 };
                 let (rows, columns) = (labels(&table.rows), labels(&table.columns));
                 let (of_table, rest) = numbers.split_at((rows.len() * columns.len()).min(numbers.len()));
@@ -111,6 +115,10 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
     if takes(Argument::BaseVelocity) {
         let omega = list(&state.base.omega);
         let _ = writeln!(text, "{QUIET}the base turns with ({omega}) rad/s, in frame 0{QUIET:#}");
+    }
+    if takes(Argument::BaseRotation) {
+        let [x, y, z] = state.base_rotation.map(|row| list(&row));
+        let _ = writeln!(text, "{QUIET}the rows of the rotation of the base are ({x}), ({y}), ({z}){QUIET:#}");
     }
     if takes(Argument::Base) {
         let base = &state.base;

@@ -2,6 +2,7 @@
 
 use rne::Pose;
 use rne::testing::{JOINTS, Random};
+use rne_certify::accuracy::BASE_ROTATION;
 use rne_codegen::Function;
 use rne_emit::Precision;
 use rne_model::Robot;
@@ -35,5 +36,7 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
         0 => wrench.into_iter().collect(),
         tips => (0..tips).map(|_| random.wrench()).collect(),
     };
-    State { function: Function::InverseDynamics, q, qd, qdd, tau, wrench, wrenches, payload, base, pose }
+    let base_rotation = BASE_ROTATION.map(|row| row.map(f64::from));
+    let function = Function::InverseDynamics;
+    State { function, q, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation }
 }

@@ -12,6 +12,8 @@ use rne_model::{Robot, nearest_name};
 use crate::outcome::Failure;
 use crate::values::numbers::List;
 
+const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
 /// The lists of the command line, where they are given.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Given<'a> {
@@ -28,6 +30,7 @@ pub(crate) struct Given<'a> {
     pub(crate) base_velocity: Option<&'a List>,
     pub(crate) base_pose: Option<&'a List>,
     pub(crate) gravity: Option<&'a List>,
+    pub(crate) base_rotation: Option<&'a List>,
 }
 
 impl<'a> Given<'a> {
@@ -82,6 +85,8 @@ pub(crate) struct State {
     pub(crate) base: BaseMotion<f64>,
     /// The pose of frame 0 in the world.
     pub(crate) pose: Pose<f64>,
+    /// Its columns are the axes of frame 0 in the world.
+    pub(crate) base_rotation: [[f64; 3]; 3],
 }
 
 impl State {
@@ -125,9 +130,16 @@ impl State {
             // a base that only moves stays under the gravity of the file
             gravity: if given.gravity.is_some() { of_base("--gravity", given.gravity)? } else { robot.gravity },
         };
+        let rows = "nine numbers, row by row; its columns are the axes of frame 0 in the world";
+        let base_rotation = match given.base_rotation {
+            // the world has the axes of frame 0
+            None => IDENTITY,
+            list => argument(function, "--base-rotation", list, Argument::BaseRotation, 9, rows)?
+                .map_or(IDENTITY, |list| [0, 3, 6].map(|row| triple(&list, row))),
+        };
         let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
         let pose = pose_of_base(function, given.base_pose)?;
-        Ok(Self { function, q, qd, qdd, tau, wrench, wrenches, payload, base, pose })
+        Ok(Self { function, q, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation })
     }
 
     /// The velocity of a base that nothing holds.
@@ -142,7 +154,7 @@ impl State {
 
     /// The function's result, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
-        let Self { q, qd, qdd, tau, wrenches, base, pose, .. } = self;
+        let Self { q, qd, qdd, tau, wrenches, base, pose, base_rotation, .. } = self;
         let twist = &self.twist();
         let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
@@ -187,6 +199,9 @@ impl State {
             (pose) => {
                 pose
             };
+            (base_rotation) => {
+                base_rotation
+            };
         }
         macro_rules! calls {
             ($(
@@ -228,6 +243,15 @@ impl<E: Told> Told for (E, Vec<f64>) {
     fn tell(&self, numbers: &mut Vec<f64>) {
         self.0.tell(numbers);
         self.1.tell(numbers);
+    }
+}
+
+/// Accelerations of a floating base and of joints, and the wrenches of contacts.
+impl<E: Told, F: Told> Told for (E, Vec<f64>, Vec<F>) {
+    fn tell(&self, numbers: &mut Vec<f64>) {
+        self.0.tell(numbers);
+        self.1.tell(numbers);
+        self.2.tell(numbers);
     }
 }
 

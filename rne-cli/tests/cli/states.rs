@@ -66,7 +66,7 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
         Value::Object(parts) => {
             let names =
                 ["rotation", "translation", "wrench", "force", "moment", "tau", "dq", "dqd", "momentum", "rate"];
-            let of_accelerations = ["base", "linear", "angular", "qdd"];
+            let of_accelerations = ["accelerations", "base", "linear", "angular", "qdd", "wrenches_on_robot"];
             names
                 .iter()
                 .chain(&of_accelerations)
@@ -81,9 +81,10 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
 fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) -> Vec<f64> {
     let list = |prefix: &str| -> Option<String> {
         let is_of = |column: &&String| {
-            column
-                .strip_prefix(prefix)
-                .is_some_and(|rest| rest.parse::<usize>().is_ok() || ["_x", "_y", "_z", "x", "y", "z"].contains(&rest))
+            column.strip_prefix(prefix).is_some_and(|rest| {
+                let is_axis = ["_x", "_y", "_z", "x", "y", "z"].contains(&rest);
+                rest.parse::<usize>().is_ok() || is_axis || prefix == "base_rotation"
+            })
         };
         let numbers: Vec<String> = columns
             .iter()
@@ -109,6 +110,7 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
     let rows: Vec<String> = ["x", "y", "z"].iter().filter_map(|row| list(&format!("pose_{row}"))).collect();
     give("--base-pose", list("pose").map(|origin| [rows.join(","), origin].join(",")));
     give("--gravity", list("base_gravity"));
+    give("--base-rotation", list("base_rotation"));
     if function.takes(Argument::Wrenches) {
         let from = columns.iter().position(|column| column == "tip_fx").expect("a force");
         let wrench: Vec<String> = state[from..from + 6].iter().map(f64::to_string).collect();
@@ -134,7 +136,7 @@ fn every_function_is_that_of_single_states() {
     let path = |name: &str| folder.join(name).display().to_string();
     for function in Function::ALL.into_iter().step_by(if shipped::is_exhaustive() { 1 } else { 3 }) {
         // a base without mass has no forward dynamics
-        let floats = function == Function::FloatingForwardDynamics;
+        let floats = function.is_of_floating_base() && function.inverts_mass();
         let robot = if floats { "docs/satellite.yaml" } else { "robots/stanford.yaml" };
         let name = function.name();
         let columns = columns(robot, name);

@@ -102,13 +102,13 @@ impl<'s> Arm<'s> {
         let frame = builder.function.frame(robot);
         let tips = match frame {
             Some(frame) => vec![robot.fixed_frame(frame)],
-            None if builder.function.takes(Argument::Wrenches) => robot.wrench_frames(),
+            None if builder.function.has_tips() => robot.wrench_frames(),
             None => vec![robot.tip()],
         };
         let placed = |(tip, FixedFrame { on, placement }): (usize, &FixedFrame)| {
             let entry = |axis| match frame {
                 Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
-                None if builder.function.takes(Argument::Wrenches) => robot.tip_entry(tip, axis),
+                None if builder.function.has_tips() => robot.tip_entry(tip, axis),
                 // the placement of a link frame is no entry, and zero
                 _ => Entry::ToolXyz(axis),
             };
@@ -205,16 +205,19 @@ impl<'s> Arm<'s> {
         of_links.get(self.tip_link?)
     }
 
-    /// Whether a joint moves the tip frame: it is the joint of its link, or of a link that carries this one.
+    /// Whether a joint moves the tip frame.
     pub(crate) fn moves_tip(&self, joint: usize) -> bool {
-        let mut link = self.tip_link;
-        while let Some(index) = link {
-            if index == joint {
-                return true;
-            }
-            link = self.links[index].parent;
-        }
-        false
+        self.moves(joint, self.tip_link)
+    }
+
+    /// Whether a joint moves one of the tips.
+    pub(crate) fn moves_a_tip(&self, joint: usize) -> bool {
+        self.tips.iter().any(|(on, _)| self.moves(joint, *on))
+    }
+
+    /// Whether a joint moves a link, `None` for the base: it is the joint of this link, or of one that carries it.
+    pub(crate) fn moves(&self, joint: usize, link: Option<usize>) -> bool {
+        std::iter::successors(link, |&index| self.links[index].parent).any(|index| index == joint)
     }
 }
 

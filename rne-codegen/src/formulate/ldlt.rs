@@ -29,7 +29,7 @@ impl<'a> System<'a> {
         coordinates: &'a Coordinates,
         parents: impl Iterator<Item = Option<usize>>,
     ) -> Self {
-        let of_base = if function.is_of_floating_base() { Length::Velocities.of(0) } else { 0 };
+        let of_base = if function.is_of_floating_base() { Length::Velocities.of(0, 0) } else { 0 };
         Self { coordinates, parents: parents.collect(), of_base }
     }
 
@@ -181,6 +181,29 @@ impl<'s> Factors<'s> {
     /// The place of a joint in the order of elimination.
     pub(crate) fn place(&self, joint: usize) -> usize {
         self.order.iter().position(|other| *other == joint).unwrap_or_default()
+    }
+
+    /// L⁻¹ b in the order of elimination, from b by joint.
+    pub(crate) fn forward(&self, b: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
+        let mut y: Vec<Symbol<'s>> = Vec::with_capacity(b.len());
+        for (row, &joint) in self.rows.iter().zip(&self.order) {
+            y.push(row.iter().zip(&y).fold(b[joint], |sum, (&(l, _), &y)| sum - l * y));
+        }
+        y
+    }
+
+    /// D⁻¹ y in the order of elimination.
+    pub(crate) fn scaled(&self, y: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
+        y.iter().zip(&self.inverses).map(|(&y, &inverse)| y * inverse).collect()
+    }
+
+    /// L⁻ᵀ z by joint, from z in the order of elimination.
+    pub(crate) fn backward(&self, z: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
+        let mut x = z.to_vec();
+        for i in (0..x.len()).rev() {
+            x[i] = (i + 1..x.len()).fold(x[i], |sum, k| sum - self.rows[k][i].0 * x[k]);
+        }
+        (0..x.len()).map(|joint| x[self.place(joint)]).collect()
     }
 
     /// The solution by joint, where `b`, by joint, is zero for all joints that are eliminated before `first`: these

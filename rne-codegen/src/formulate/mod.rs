@@ -4,7 +4,9 @@ pub(crate) mod actuation;
 pub(crate) mod arm;
 pub(crate) mod centre_of_mass;
 pub(crate) mod centroid;
+pub(crate) mod contact;
 pub(crate) mod energy;
+pub(crate) mod floating;
 pub(crate) mod joint;
 pub(crate) mod kinematics;
 pub(crate) mod ldlt;
@@ -14,13 +16,17 @@ pub(crate) mod payload;
 pub(crate) mod regressor;
 pub(crate) mod seven_steps;
 pub(crate) mod spin;
+pub(crate) mod tips;
 
 pub(crate) use arm::{Arm, Body, Link, Mount};
+pub(crate) use contact::Contacts;
+pub(crate) use floating::{base_rotation, floating_forward_dynamics, floating_mass_matrix, on_base};
 pub(crate) use joint::{Joint, JointState, Wrench};
 pub(crate) use kinematics::{Frame, Frames};
 pub(crate) use payload::{AtTip, Payload};
 pub(crate) use seven_steps::{Load, Motion, Turning};
 pub(crate) use spin::Spin;
+pub(crate) use tips::Tips;
 
 use std::array::from_fn;
 
@@ -87,6 +93,15 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::FloatingPotentialEnergy => derivation.floating_potential_energy(),
         Function::CentroidalMomentum => derivation.centroidal_momentum(),
         Function::FloatingRegressor => derivation.floating_regressor(),
+        Function::TipJacobians => derivation.tip_jacobians(),
+        Function::TipAccelerations => derivation.tip_accelerations(),
+        Function::ForwardDynamicsInContact => contact::forward_dynamics(
+            builder,
+            &derivation.system(),
+            &derivation.floating_half(),
+            derivation.floating_torques(),
+            &Contacts::of(&derivation),
+        ),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -368,6 +383,24 @@ impl<'s, 'r> Derivation<'s, 'r> {
         centroid::about_centre(self.builder, (of_base.mass, of_base.h), Quantity::BaseForce, wrench)
     }
 
+    /// The frames and tips in world axes, with their origins from that of the base.
+    fn tips_in_world(&self) -> Tips<'s> {
+        Tips::of(&self.arm, &self.states, base_rotation(self.builder))
+    }
+
+    fn tip_jacobians(&self) -> Outputs<'s> {
+        self.tips_in_world().jacobians(&self.arm, self.coordinates())
+    }
+
+    fn tip_accelerations(&self) -> Outputs<'s> {
+        let accelerations = self.tips_in_world().accelerations(&self.arm, &self.states, &self.base.turning);
+        let tips = accelerations.into_iter().flatten().enumerate().map(|(part, vector)| {
+            let tip = Name::scalar(Quantity::TipAcceleration, self.states.len() + 1 + part / 2);
+            components(Name { indices: [part % 2, 0], ..tip }, vector)
+        });
+        tips.flatten().collect()
+    }
+
     fn momentum_and_rate(&self) -> Outputs<'s> {
         let [momenta, rates] =
             momentum::momentum_and_rate(&self.arm, &self.states, &self.motions(), &self.base, &self.tip);
@@ -384,12 +417,6 @@ fn vector(builder: &Builder, quantity: Quantity, joint: usize) -> Vector<'_> {
     Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))))
 }
 
-/// The force and the moment on a base that nothing holds.
-pub(crate) fn on_base([force, moment]: [Vector<'_>; 2]) -> Outputs<'_> {
-    let parts = [(Quantity::BaseForce, force), (Quantity::BaseMoment, moment)];
-    parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)).collect()
-}
-
 /// M by its upper half: row i of `upper` holds the elements (i, i) to (i, n).
 pub(crate) fn mass_matrix<'s>(coordinates: &Coordinates, upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
     let joints = coordinates.joints();
@@ -397,38 +424,6 @@ pub(crate) fn mass_matrix<'s>(coordinates: &Coordinates, upper: &[Vec<Symbol<'s>
         let (row, column) = (row.min(column), row.max(column));
         coordinates.named(torque_by(joints[row], WithRespectTo::RateDot(joints[column] + 1)), upper[row][column - row])
     })
-}
-
-/// M with the rows of a base that nothing holds, by its upper half.
-pub(crate) fn floating_mass_matrix<'s>(
-    builder: &'s Builder,
-    system: &System<'_>,
-    upper: &[Vec<Symbol<'s>>],
-) -> Outputs<'s> {
-    square(upper.len(), |row, column| {
-        let (row, column) = (row.min(column), row.max(column));
-        let (name, element) = (system.name_of_element(row, column), upper[row][column - row]);
-        (name, if system.coordinates.is_every_joint() { element } else { builder.name(name, element) })
-    })
-}
-
-/// M⁻¹ ((0, τ) - bias): the accelerations of a base that nothing holds, and of the joints.
-pub(crate) fn floating_forward_dynamics<'s>(
-    builder: &'s Builder,
-    system: &System<'_>,
-    upper: &[Vec<Symbol<'s>>],
-    bias: Outputs<'s>,
-) -> Outputs<'s> {
-    let rest = |(row, (_, bias)): (usize, (Name, Symbol<'s>))| {
-        let name = system.name(Quantity::Reduced, row);
-        builder.joint(name.joint).within(Quantity::Reduced, || match system.of_joint(row) {
-            Some(place) => system.coordinates.applied(builder, system.coordinates.joints()[place]) - bias,
-            None => -bias,
-        })
-    };
-    let rest: Vec<_> = bias.into_iter().enumerate().map(rest).collect();
-    let x = ldlt::solved(builder, system, upper, &rest).into_iter().enumerate();
-    x.map(|(row, x)| (system.name(Quantity::RateDot, row), x)).collect()
 }
 
 /// ½ ∂(bias torques)/∂q̇

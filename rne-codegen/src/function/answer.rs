@@ -43,6 +43,8 @@ pub enum Labels {
     Joints,
     /// x, y, z of the base, then about x, y, z, then the names of the joints.
     BaseAndJoints,
+    /// Each of these for each tip, with its name.
+    OfTips(&'static [&'static str]),
     /// These.
     Names(&'static [&'static str]),
 }

@@ -32,6 +32,8 @@ pub enum Argument {
     BaseTwist,
     /// Where such a base stands in the world.
     BasePose,
+    /// Axes of the base in the world.
+    BaseRotation,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -82,6 +84,8 @@ macro_rules! argument_parts {
              axes of frame 0: six elements.";
         pose: BasePose, Fixed(12), FrameOrigin,
             "Pose of frame 0 in the world: rows of the rotation, then the origin, m: twelve elements.";
+        base_rotation: BaseRotation, Fixed(9), BaseRotation,
+            "Rotation of the base: its columns are the axes of frame 0 in the world; three rows of three elements.";
     } };
 }
 
@@ -113,22 +117,33 @@ impl Argument {
         matches!(self, Self::Wrenches)
     }
 
+    /// How many elements each row of its array has, if that is an array of rows.
+    #[must_use]
+    pub const fn row(self) -> Option<usize> {
+        match self {
+            Self::Wrenches => Some(6),
+            Self::BaseRotation => Some(3),
+            _ => None,
+        }
+    }
+
     /// Numbers that it has for a state of an arm with `dof` joints and `tips` tips.
     #[must_use]
     pub fn elements(self, dof: usize, tips: usize) -> usize {
-        let of_one: usize = self.parts().map(|part| part.length.of(dof)).sum();
+        let of_one: usize = self.parts().map(|part| part.length.of(dof, tips)).sum();
         if self.is_of_each_tip() { tips * of_one } else { of_one }
     }
 }
 
 impl Length {
-    /// The length for `dof` joints.
+    /// The length for `dof` joints and `tips` tips.
     #[must_use]
-    pub const fn of(self, dof: usize) -> usize {
+    pub const fn of(self, dof: usize, tips: usize) -> usize {
         match self {
             Self::Joints => dof,
             Self::Velocities => 6 + dof,
             Self::Bodies => 1 + dof,
+            Self::Tips => tips,
             Self::Fixed(length) => length,
         }
     }

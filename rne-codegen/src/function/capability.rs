@@ -1,6 +1,6 @@
 //! The capabilities of a robot: each is a trait that a struct derives.
 
-use super::{Argument, Function};
+use super::Function;
 use crate::named::named;
 
 named! {
@@ -44,6 +44,10 @@ named! {
         FloatingRegressor = "FloatingRegressor",
         /// Kinetic and potential, where nothing holds the base.
         FloatingEnergy = "FloatingEnergy",
+        /// Jacobians and accelerations of its tips.
+        FloatingKinematics = "FloatingKinematics",
+        /// The robot while contacts hold some of its tips.
+        ContactDynamics = "ContactDynamics",
     }
 }
 
@@ -56,12 +60,19 @@ impl Capability {
     /// Whether its trait has the number of velocities of a robot whose base nothing holds.
     #[must_use]
     pub const fn has_velocities(self) -> bool {
-        matches!(self, Self::FloatingBase | Self::CentroidalMomentum | Self::FloatingRegressor)
+        matches!(
+            self,
+            Self::FloatingBase
+                | Self::CentroidalMomentum
+                | Self::FloatingRegressor
+                | Self::FloatingKinematics
+                | Self::ContactDynamics
+        )
     }
 
-    /// Whether its methods take a wrench at each tip.
+    /// Whether its methods take or return something for each tip.
     #[must_use]
     pub fn has_tips(self) -> bool {
-        self.functions().any(|function| function.takes(Argument::Wrenches))
+        self.functions().any(Function::has_tips)
     }
 }

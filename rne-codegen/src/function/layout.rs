@@ -1,6 +1,6 @@
 //! The shape of what a function returns.
 
-/// How the numbers that a function returns are grouped, for any number of joints.
+/// How the numbers that a function returns are grouped, for any number of joints and tips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// One number.
@@ -17,7 +17,10 @@ const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
 const WRENCH: Shape = Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE]);
 const VELOCITIES: Shape = Shape::Array(Length::Velocities, &Shape::Number);
 const PARAMETERS: Shape = Shape::Array(Length::Fixed(10), &Shape::Number);
+const SIX: Shape = Shape::Array(Length::Fixed(6), &Shape::Number);
+const ROWS: Shape = Shape::Array(Length::Fixed(6), &VELOCITIES);
 const BASE_ACCELERATION: Shape = Shape::Record(Record::BaseAcceleration, &[TRIPLE, TRIPLE]);
+const ACCELERATIONS: Shape = Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]);
 const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
 
 /// The shapes of results, by the names that they have in the list of functions.
@@ -57,10 +60,16 @@ pub enum Returned {
     FloatingMatrix,
     /// Three linear rows, then three angular ones, with six columns of the base and one per joint.
     FloatingRows,
+    /// These rows for each tip.
+    TipRows,
+    /// Three linear coordinates, then three angular ones, for each tip.
+    TipVectors,
     /// A linear and an angular acceleration, and a number per joint.
     FloatingAccelerations,
     /// Six rows of the base and one per joint, with ten numbers of the base and of each link.
     FloatingRegressor,
+    /// These, and a force and a moment for each tip.
+    AccelerationsAndWrenches,
 }
 
 impl Returned {
@@ -73,7 +82,7 @@ impl Returned {
             Self::Matrix => &MATRIX,
             Self::Point => &TRIPLE,
             Self::PointRows => &Shape::Array(Length::Fixed(3), &VECTOR),
-            Self::Spatial => &Shape::Array(Length::Fixed(6), &Shape::Number),
+            Self::Spatial => &SIX,
             Self::SpatialRows => &Shape::Array(Length::Fixed(6), &VECTOR),
             Self::Pose => &POSE,
             Self::Poses => &Shape::Array(Length::Joints, &POSE),
@@ -84,9 +93,14 @@ impl Returned {
             Self::FloatingTorques => &Shape::Record(Record::FloatingTorques, &[WRENCH, VECTOR]),
             Self::FloatingVector => &VELOCITIES,
             Self::FloatingMatrix => &Shape::Array(Length::Velocities, &VELOCITIES),
-            Self::FloatingRows => &Shape::Array(Length::Fixed(6), &VELOCITIES),
-            Self::FloatingAccelerations => &Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]),
+            Self::FloatingRows => &ROWS,
+            Self::TipRows => &Shape::Array(Length::Tips, &ROWS),
+            Self::TipVectors => &Shape::Array(Length::Tips, &SIX),
+            Self::FloatingAccelerations => &ACCELERATIONS,
             Self::FloatingRegressor => &Shape::Array(Length::Velocities, &Shape::Array(Length::Bodies, &PARAMETERS)),
+            Self::AccelerationsAndWrenches => {
+                &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
+            }
         }
     }
 }
@@ -100,18 +114,32 @@ pub enum Length {
     Velocities,
     /// One element of a base that nothing holds, and one per link of a robot whose joints all move freely.
     Bodies,
+    /// One element per tip.
+    Tips,
     /// As many for every robot.
     Fixed(usize),
 }
 
 impl Shape {
-    /// The shape for `dof` joints.
+    /// Whether a part of it has an element per tip.
     #[must_use]
-    pub fn layout(&self, dof: usize) -> Layout {
+    pub(super) fn has_tips(&self) -> bool {
+        match self {
+            Self::Number => false,
+            Self::Array(length, of) => *length == Length::Tips || of.has_tips(),
+            Self::Record(_, parts) => parts.iter().any(Self::has_tips),
+        }
+    }
+
+    /// The shape for `dof` joints and `tips` tips.
+    #[must_use]
+    pub fn layout(&self, dof: usize, tips: usize) -> Layout {
         match self {
             Self::Number => Layout::Number,
-            Self::Array(length, of) => Layout::Array(length.of(dof), Box::new(of.layout(dof))),
-            Self::Record(record, parts) => Layout::Record(*record, parts.iter().map(|part| part.layout(dof)).collect()),
+            Self::Array(length, of) => Layout::Array(length.of(dof, tips), Box::new(of.layout(dof, tips))),
+            Self::Record(record, parts) => {
+                Layout::Record(*record, parts.iter().map(|part| part.layout(dof, tips)).collect())
+            }
         }
     }
 }
@@ -144,6 +172,8 @@ pub enum Record {
     BaseAcceleration,
     /// The acceleration of the base, and those of the joints.
     FloatingAccelerations,
+    /// These, and the wrench of each contact.
+    AccelerationsAndWrenches,
 }
 
 impl Record {
@@ -158,6 +188,7 @@ impl Record {
             Self::FloatingTorques => "FloatingTorques",
             Self::BaseAcceleration => "BaseAcceleration",
             Self::FloatingAccelerations => "FloatingAccelerations",
+            Self::AccelerationsAndWrenches => "AccelerationsAndWrenches",
         }
     }
 
@@ -172,6 +203,7 @@ impl Record {
             Self::FloatingTorques => ["wrench", "tau"],
             Self::BaseAcceleration => ["linear", "angular"],
             Self::FloatingAccelerations => ["base", "qdd"],
+            Self::AccelerationsAndWrenches => ["accelerations", "wrenches_on_robot"],
         }
     }
 }

@@ -67,6 +67,12 @@ impl Function {
         self.arguments().contains(&argument)
     }
 
+    /// Whether it takes or returns something for each tip.
+    #[must_use]
+    pub fn has_tips(self) -> bool {
+        self.takes(Argument::Wrenches) || self.shape().has_tips()
+    }
+
     /// The same function of the arm with a payload, where there is one.
     #[must_use]
     pub const fn with_payload(self) -> Option<Self> {
@@ -161,10 +167,10 @@ impl Function {
         SIGNATURES[self as usize].returned.shape()
     }
 
-    /// The shape of its result for `dof` joints.
+    /// The shape of its result for `dof` joints and `tips` tips.
     #[must_use]
-    pub fn layout(self, dof: usize) -> Layout {
-        self.shape().layout(dof)
+    pub fn layout(self, dof: usize, tips: usize) -> Layout {
+        self.shape().layout(dof, tips)
     }
 
     /// How its numbers are laid out for reading.

@@ -218,6 +218,33 @@ macro_rules! functions {
                 "The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.",
                 "twist: as in floating_kinetic_energy. momentum: linear (N s), then angular about the centre of mass \
                  (N m s), in axes of frame 0: centroidal_momentum_matrix times the velocities, in fewer operations.";
+            TipJacobians = tip_jacobians(q: Positions, base_rotation: BaseRotation) -> TipRows:
+                "The Jacobian of each tip of a robot whose base nothing holds, in world axes: linear rows, then angular.",
+                "base_rotation: its columns are the axes of frame 0 in the world. jacobians[k]: times the velocities, it \
+                 is the velocity of the origin of tip k (m/s) above its angular velocity (rad/s), in world axes; \
+                 columns are the velocity of the origin of frame 0 and the angular velocity of the base, both in axes \
+                 of frame 0, and the velocities of the joints. The identity as base_rotation gives base axes, the \
+                 transpose of the rotation of a tip in frame 0 gives axes of this tip. The tips are those of \
+                 inverse_dynamics_with_wrenches.";
+            TipAccelerations = tip_accelerations(
+                q: Positions, qd: Rates, omega: BaseVelocity, base_rotation: BaseRotation
+            ) -> TipVectors:
+                "Accelerations of the tips of a robot on a floating base that accelerates nowhere: J̇ v, in world axes.",
+                "omega: angular velocity of the base (rad/s), in axes of frame 0. base_rotation: as in tip_jacobians. \
+                 accelerations[k]: classical acceleration of the origin of tip k (m/s²), then its angular acceleration \
+                 (rad/s²), where the acceleration of the origin of frame 0, the angular acceleration of the base and \
+                 those of the joints are zero. At others, those of the tip are its Jacobian times them, plus these. No \
+                 linear velocity enters.";
+            ForwardDynamicsInContact = forward_dynamics_in_contact(
+                q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, base_rotation: BaseRotation
+            ) -> AccelerationsAndWrenches:
+                "Accelerations of a robot on a floating base while its contacts hold tips, and the wrenches of these.",
+                "omega: as in floating_bias. base_rotation: as in tip_jacobians. The contacts are those of the list \
+                 contacts of the robot file; their tips do not accelerate in the world, whose gravity is that of the \
+                 file. accelerations: as in floating_forward_dynamics. wrenches_on_robot[k]: force (N), then moment \
+                 (N m) about the origin of tip k, exerted ON the robot by its contact, in world axes; the moment of a \
+                 point and all of a tip without a contact are zero. 1e-8 1/kg is added to the diagonal of J M⁻¹ Jᵀ, so \
+                 that contacts that hold more than the robot can move have finite forces in double precision.";
         }
     };
 }
@@ -257,6 +284,9 @@ const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
 
 /// Rows of the base, then of the joints.
 const VELOCITIES: Labels = Labels::BaseAndJoints;
+
+/// Where the origins of frames are in the Jacobians of tips.
+const FROM_BASE: &str = "origin of that frame, from frame 0 in world axes";
 
 /// Why a centre of mass may be none.
 const WITHOUT_MASS: &str = "the centre of mass is not finite: the arm has no mass, or the state is too large";
@@ -692,6 +722,76 @@ pub(crate) const TABLE: &[Entry] = &[
         )]),
         divides: Some(WITHOUT_MASS),
         ..Entry::of(Function::CentroidalMomentum, Capability::CentroidalMomentum)
+    },
+    Entry {
+        output: "jacobians",
+        listed: "returned: for each tip the rows of its Jacobian",
+        own: &[
+            Own::meaning(Quantity::FrameOrigin, FROM_BASE, |joint| format!("origin of frame {joint}, from frame 0")),
+            Own::meaning(Quantity::JacobianLinear, "velocity of a tip per velocity, world axes", |joint| {
+                format!("columns {joint} of the Jacobians; 0: of the base")
+            }),
+            Own::meaning(Quantity::JacobianAngular, "angular velocity of a tip per velocity, world axes", |joint| {
+                format!("columns {joint} of the Jacobians; 0: of the base")
+            }),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "velocity of each tip per velocity, world axes; base in axes of frame 0; SI units",
+            Labels::OfTips(&["vx", "vy", "vz", "wx", "wy", "wz"]),
+            VELOCITIES,
+        )]),
+        ..Entry::of(Function::TipJacobians, Capability::FloatingKinematics)
+    },
+    Entry {
+        output: "accelerations",
+        listed: "returned: for each tip its acceleration, then its angular acceleration",
+        own: &[
+            Own::meaning(
+                Quantity::JointPointAcceleration,
+                "acceleration of joint i, in the axes of its parent",
+                |joint| format!("acceleration of joint {joint}, in the axes of its parent"),
+            ),
+            Own::of(Quantity::TipAcceleration, |_| {
+                "accelerations of the tips where nothing else accelerates".to_owned()
+            }),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "acceleration of each tip where those of the base and of the joints are zero, world axes",
+            Labels::OfTips(&["linear, m/s²", "angular, rad/s²"]),
+            AXES,
+        )]),
+        ..Entry::of(Function::TipAccelerations, Capability::FloatingKinematics)
+    },
+    Entry {
+        output: "result",
+        listed: "returned: accelerations of the base and of the joints, then force and moment of each tip",
+        own: &[
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+            Own::of(Quantity::ContactForce, |tip| format!("force of the contact at tip {tip}")),
+            Own::of(Quantity::ContactMoment, |tip| format!("moment of the contact at tip {tip}")),
+        ],
+        answer: Answer::Tables(&[
+            AnswerTable::of(
+                "acceleration of the origin of frame 0 less gravity (m/s²), in axes of frame 0",
+                Labels::Names(&["linear"]),
+                AXES,
+            ),
+            AnswerTable::of("angular acceleration of the base (rad/s²)", Labels::Names(&["angular"]), AXES),
+            AnswerTable::of("accelerations (rad/s², prismatic: m/s²)", Labels::Names(&["qdd"]), Labels::Joints),
+            AnswerTable::of(
+                "exerted on the robot at each tip, world axes",
+                Labels::OfTips(&["force, N", "moment, N m"]),
+                AXES,
+            ),
+        ]),
+        divides: Some(
+            "the accelerations are not finite: the mass matrix is singular \
+             (a joint or the base moves no mass), or the state is too large",
+        ),
+        inverts_mass: true,
+        feels_rotors: true,
+        ..Entry::of(Function::ForwardDynamicsInContact, Capability::ContactDynamics)
     },
 ];
 

@@ -33,6 +33,8 @@ pub(crate) struct Builder {
     by: Cell<Option<WithRespectTo>>,
     /// The motion of the joints in the formulas that are being written.
     pub(crate) moving: Cell<Moving>,
+    /// Whether what is being written gets no names: other formulas have the same quantities in other axes.
+    is_unnamed: Cell<bool>,
 }
 
 impl Builder {
@@ -56,6 +58,7 @@ impl Builder {
             function,
             by: Cell::new(None),
             moving: Cell::default(),
+            is_unnamed: Cell::default(),
         }
     }
 
@@ -318,8 +321,19 @@ impl Builder {
         }
     }
 
+    /// Writes what gets no names.
+    pub(crate) fn unnamed<R>(&self, formula: impl FnOnce() -> R) -> R {
+        let outer = self.is_unnamed.replace(true);
+        let value = formula();
+        self.is_unnamed.set(outer);
+        value
+    }
+
     /// The meaning of a quantity where rates stand for accelerations; `None` for what has no name then.
     fn meant(&self, quantity: Quantity) -> Option<Quantity> {
+        if self.is_unnamed.get() {
+            return None;
+        }
         if self.moving.get() == Moving::RatesForAccelerations { quantity.of_momentum() } else { Some(quantity) }
     }
 

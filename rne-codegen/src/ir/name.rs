@@ -98,6 +98,11 @@ impl Name {
         })
     }
 
+    /// The names of the elements of the rotation of the base, by rows.
+    pub(crate) fn of_base_rotation() -> [Self; 9] {
+        std::array::from_fn(|at| Self::matrix(Quantity::BaseRotation, 0, Axis::ALL[at / 3], Axis::ALL[at % 3]))
+    }
+
     /// The name of one of six numbers of the base, counted from 0: x, y, z of `linear`, then of `angular`.
     #[must_use]
     pub const fn of_base(linear: Quantity, angular: Quantity, index: usize) -> Self {

@@ -51,6 +51,7 @@ impl SamplePoint {
             // of the pose of a base
             Quantity::FrameRotation => self.random(21, input.element()),
             Quantity::FrameOrigin => self.random(22, axis),
+            Quantity::BaseRotation => self.random(20, input.element()),
             // nothing else is given
             other => self.random(64 + other as u64, index),
         }

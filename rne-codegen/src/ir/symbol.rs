@@ -132,6 +132,11 @@ impl<'s> Matrix<'s> {
         Self(rows.map(Vector))
     }
 
+    /// The elements by rows.
+    pub(crate) fn from_elements([a, b, c, d, e, f, g, h, i]: [Symbol<'s>; 9]) -> Self {
+        Self::from_rows([[a, b, c], [d, e, f], [g, h, i]])
+    }
+
     /// Applies `f` to each element: row, column, element.
     pub(crate) fn map(self, f: impl Fn(Axis, Axis, Symbol<'s>) -> Symbol<'s>) -> Self {
         Self(Axis::ALL.map(|row| self.0[row as usize].map(|column, element| f(row, column, element))))

@@ -19,6 +19,7 @@ const MOST_KNOWN: usize = 100_000;
 /// A table and the choices that it offers.
 #[derive(Clone, Debug)]
 pub(crate) struct FramedRobot {
+    robot: Robot,
     frames: FrameChoice,
     pub(crate) joint_frames: JointFrames,
     pub(crate) offers: Offers,
@@ -70,6 +71,7 @@ impl OpenChoices {
 
 /// Counts plans of one robot, as many as a search wants.
 pub(crate) struct Evaluator {
+    robot: Robot,
     frames: Vec<FramedRobot>,
     /// Per choice of frames, the branches of the base.
     branches: Vec<Vec<BaseBranch>>,
@@ -89,7 +91,7 @@ pub(crate) fn frames(robot: &Robot, function: Function) -> Vec<FramedRobot> {
         .filter_map(|frames| {
             let joint_frames = JointFrames::new(robot, frames)?;
             let offers = Offers::new(&joint_frames);
-            Some(FramedRobot { frames, joint_frames, offers })
+            Some(FramedRobot { robot: robot.clone(), frames, joint_frames, offers })
         })
         .collect()
 }
@@ -99,7 +101,7 @@ pub(crate) fn frame(robot: &Robot, plan: &Plan, function: Function) -> Option<Fr
     let frames = FrameChoice { floating: function.is_of_floating_base(), ..plan.frames() };
     let joint_frames = JointFrames::new(robot, frames)?;
     let offers = Offers::new(&joint_frames);
-    Some(FramedRobot { frames, joint_frames, offers })
+    Some(FramedRobot { robot: robot.clone(), frames, joint_frames, offers })
 }
 
 impl FramedRobot {
@@ -120,7 +122,7 @@ impl FramedRobot {
         }
         let parameters = self.parameters(plan)?;
         let builder = Builder::traced(Policy::Value, self.joint_frames.embedding, function);
-        let (names, outputs) = outputs(&builder, &self.joint_frames, plan, &parameters, algorithm)?
+        let (names, outputs) = outputs(&builder, &self.robot, &self.joint_frames, plan, &parameters, algorithm)?
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
@@ -135,13 +137,14 @@ impl FramedRobot {
 /// The results of the builder's function under a plan.
 fn outputs<'s>(
     builder: &'s Builder,
+    robot: &Robot,
     joint_frames: &JointFrames,
     plan: &Plan,
     parameters: &Parameters,
     algorithm: Algorithm,
 ) -> Option<Outputs<'s>> {
     let expressed_in = algorithm.expressed_in();
-    algorithm::write(&Arm { builder, expressed_in, joint_frames, plan, parameters }, algorithm)
+    algorithm::write(&Arm { builder, expressed_in, joint_frames, plan, parameters }, robot, algorithm)
 }
 
 impl Formulation {
@@ -162,6 +165,7 @@ impl Evaluator {
         let frames = frames(robot, function);
         let embedding = frames.first().map(|frame| frame.joint_frames.embedding).unwrap_or_default();
         Self {
+            robot: robot.clone(),
             branches: frames.iter().map(|frame| BaseBranch::of(&frame.joint_frames)).collect(),
             frames,
             builder: Builder::untraced(Policy::Value, embedding, function),
@@ -174,7 +178,7 @@ impl Evaluator {
     /// The choices that the robot leaves open.
     pub(crate) fn open_choices(&self) -> OpenChoices {
         let has = |test: fn(&FrameChoice) -> bool| self.frames.iter().any(|frame| test(&frame.frames));
-        let Some(FramedRobot { frames, joint_frames, offers }) = self.frames.first() else {
+        let Some(FramedRobot { frames, joint_frames, offers, .. }) = self.frames.first() else {
             return OpenChoices::default();
         };
         let rows = &joint_frames.rows;
@@ -244,9 +248,9 @@ impl Evaluator {
         parameters: &Parameters,
         algorithm: Algorithm,
     ) -> Option<Cost> {
-        let Self { builder, numbered, live, map, .. } = self;
+        let Self { robot, builder, numbered, live, map, .. } = self;
         builder.restart(joint_frames.embedding);
-        let outputs = outputs(builder, joint_frames, plan, parameters, algorithm)?;
+        let outputs = outputs(builder, robot, joint_frames, plan, parameters, algorithm)?;
         let outputs: Vec<Ref> = outputs.into_iter().map(|(_, symbol)| symbol.at).collect();
         let graph = builder.graph.get_mut();
         graph.outputs = outputs;

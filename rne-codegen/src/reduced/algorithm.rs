@@ -4,7 +4,7 @@ use rne_model::Robot;
 
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
-use crate::formulate::{self, Outputs, centroid, square, torque_by};
+use crate::formulate::{self, Contacts, Outputs, centroid, contact, square, torque_by};
 use crate::function::Function;
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::{torques, torques_of_floating_base};
@@ -82,7 +82,8 @@ impl Algorithm {
             | Function::FloatingMassMatrix
             | Function::CentroidalMomentumMatrix
             | Function::CentroidalBias
-            | Function::CentroidalMomentum => &[BY_GROUPS, BY_JOINTS],
+            | Function::CentroidalMomentum
+            | Function::ForwardDynamicsInContact => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -111,7 +112,9 @@ impl Algorithm {
             | Function::ActuatorTorques
             | Function::FloatingRegressor
             | Function::FloatingKineticEnergy
-            | Function::FloatingPotentialEnergy => &[],
+            | Function::FloatingPotentialEnergy
+            | Function::TipJacobians
+            | Function::TipAccelerations => &[],
         }
     }
 
@@ -156,7 +159,7 @@ impl Algorithm {
 /// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout; `None` for
 /// what has no reduced recursion.
 #[allow(clippy::too_many_lines)] // an arm for each way
-pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outputs<'s>> {
+pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) -> Option<Outputs<'s>> {
     let builder = arm.builder;
     let coordinates = &arm.joint_frames.coordinates;
     let joints = coordinates.joints();
@@ -248,6 +251,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, algorithm: Algorithm) -> Option<Outpu
         }
         (Function::FloatingForwardDynamics, _) => {
             formulate::floating_forward_dynamics(builder, &system(), &floating_half()?, of_floating_base())
+        }
+        (Function::ForwardDynamicsInContact, _) => {
+            let contacts = Contacts::new(builder, robot);
+            contact::forward_dynamics(builder, &system(), &floating_half()?, of_floating_base(), &contacts)
         }
         (Function::CentroidalMomentumMatrix, _) => centroid::momentum_matrix(builder, &system(), &of_base()?),
         (Function::CentroidalBias, _) => {

@@ -140,12 +140,14 @@ fn joints(file: &File, upper: &str) -> String {
     text + "};\n\n"
 }
 
-/// The index of each tip by its name, where a function takes a wrench at each.
+/// The index of each tip by its name, where a function takes or returns something for each.
 fn tips(file: &File, upper: &str) -> String {
-    if !file.programs.iter().any(|program| program.function.takes(Argument::Wrenches)) {
+    if !file.programs.iter().any(|program| program.function.has_tips()) {
         return String::new();
     }
-    let mut text = "/// Indices of the tips in arrays of wrenches, by their names.\nenum {\n".to_owned();
+    let takes_wrenches = file.programs.iter().any(|program| program.function.takes(Argument::Wrenches));
+    let arrays = if takes_wrenches { "arrays of wrenches" } else { "arrays" };
+    let mut text = format!("/// Indices of the tips in {arrays}, by their names.\nenum {{\n");
     let tips = file.robot.tip_names().into_iter().zip(file.robot.wrench_frames());
     for (index, (name, frame)) in tips.enumerate() {
         let JointIdentifier { upper_case, .. } = JointIdentifier::of(name, index);
@@ -221,6 +223,7 @@ const fn about(record: Record) -> &'static str {
         Record::BaseAcceleration => {
             "Acceleration of the origin of frame 0 less gravity, m/s², and angular acceleration, rad/s², in its axes."
         }
+        Record::AccelerationsAndWrenches => "Accelerations, and what contacts exert on the robot at each tip.",
         Record::FloatingAccelerations => "Acceleration of the base, and accelerations of the joints.",
         Record::MomentumAndRate => "Momenta of the joints, M q̇, and their rates without external torques.",
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",

@@ -35,7 +35,7 @@ pub(crate) fn array_name(name: &'static str) -> &'static str {
 /// A function's head, without what follows its parentheses.
 pub(super) fn head(file: &File, program: &Program) -> String {
     let real = file.precision.c_type();
-    let layout = program.function.layout(program.dof);
+    let layout = program.layout();
     let mut arguments: Vec<String> = inputs(program)
         .iter()
         .map(|array| format!("const {real} {}{}", array.name, subscript(&array.lengths())))
@@ -106,6 +106,7 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::FloatingTorques => "floating_torques",
         Record::BaseAcceleration => "base_acceleration",
         Record::FloatingAccelerations => "floating_accelerations",
+        Record::AccelerationsAndWrenches => "accelerations_and_wrenches",
     };
     format!("{prefix}_{name}")
 }
@@ -133,7 +134,7 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
     }
     let mut records = Vec::new();
     for program in file.programs {
-        put(&program.function.layout(program.dof), &mut records);
+        put(&program.layout(), &mut records);
     }
     records
 }
@@ -142,14 +143,14 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
 pub(super) fn places(program: &Program) -> Vec<String> {
     let mut places = Vec::new();
     // a record is written by its address
-    elements(&program.function.layout(program.dof), program.function.entry().output, "->", &mut places);
+    elements(&program.layout(), program.function.entry().output, "->", &mut places);
     places
 }
 
 /// The numbers of a result that is a variable.
 pub(crate) fn result_elements(program: &Program, variable: &str) -> Vec<String> {
     let mut places = Vec::new();
-    elements(&program.function.layout(program.dof), variable, ".", &mut places);
+    elements(&program.layout(), variable, ".", &mut places);
     places
 }
 

@@ -141,7 +141,7 @@ fn turns(file: &File, program: &Program) -> String {
 fn result(file: &File, program: &Program) -> String {
     let syntax = file.syntax();
     let values = program.outputs.iter().map(|output| program.values.used(output.value));
-    let starts = match program.function.layout(program.dof) {
+    let starts = match program.layout() {
         Layout::Number => vec!["return".to_owned()],
         _ => places(program).into_iter().map(|place| place + " =").collect(),
     };

@@ -145,7 +145,7 @@ impl Tests<'_> {
             given.push(format!("&{}[state]", array("parameters")));
         }
         let (given, function, prefix) = (given.join(", "), &program.name, self.prefix);
-        let layout = program.function.layout(program.dof);
+        let layout = program.layout();
         let elements = result_elements(program, "result");
         let count = elements.len();
         if layout == Layout::Number {
@@ -169,7 +169,7 @@ impl Tests<'_> {
 
     /// A variable for what a function writes, and how it is passed.
     fn declared(&self, program: &Program, name: &str) -> (String, String) {
-        let layout = program.function.layout(program.dof);
+        let layout = program.layout();
         let (lengths, of) = elements_of(&layout);
         let kind = element_type(self.prefix, self.precision, of);
         let address = if lengths.is_empty() { format!("&{name}") } else { name.to_owned() };

@@ -307,6 +307,21 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass."""
+    def tip_jacobians(
+        self, q: Joints, base_rotation: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The Jacobian of each tip of a robot whose base nothing holds, in world axes: linear rows, then angular."""
+    def tip_accelerations(
+        self, q: Joints, qd: Joints, omega: ArrayLike, base_rotation: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Accelerations of the tips of a robot on a floating base that accelerates nowhere: J̇ v, in world axes."""
+    def forward_dynamics_in_contact(
+        self, q: Joints, qd: Joints, tau: Joints, omega: ArrayLike, base_rotation: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats]:
+        """Accelerations of a robot on a floating base while its contacts hold tips, and the wrenches of these."""
     # <!-- end -->
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,

@@ -69,15 +69,24 @@ def of_tips(wrenches, tips, argument):
     else:
         follows = not hasattr(wrenches, "dtype")
         array = numpy.ma.asanyarray(wrenches)
+    return rows(array, (len(tips), 6), argument, f"; the tips of this arm are {known}", follows)
+
+
+def of_rotation(rotation, argument):
+    """A rotation matrix, an array (3, 3) or (N, 3, 3), as an array of its 9 numbers, row by row."""
+    return rows(numpy.ma.asanyarray(rotation), (3, 3), argument, "", not hasattr(rotation, "dtype"))
+
+
+def rows(array, shape, argument, known, follows):
+    """Rows of numbers, or those of N states, one after the other; lists follow the precision of other arguments."""
     if array.dtype.kind not in "fiub":
         raise TypeError(f"`{argument}` is not an array of real numbers")
     if numpy.ma.is_masked(array):
         raise ValueError(f"`{argument}`: there are masked elements, which are not numbers: drop or fill them before")
-    if array.ndim not in (2, 3) or array.shape[-2:] != (len(tips), 6):
-        raise ValueError(
-            f"`{argument}` has the shape {array.shape}, not ({len(tips)}, 6) or (N, {len(tips)}, 6); the tips of this arm are {known}"
-        )
-    flat = numpy.asarray(array).reshape(*array.shape[:-2], 6 * len(tips))
+    if array.ndim not in (2, 3) or array.shape[-2:] != shape:
+        wanted = ", ".join(map(str, shape))
+        raise ValueError(f"`{argument}` has the shape {array.shape}, not ({wanted}) or (N, {wanted}){known}")
+    flat = numpy.asarray(array).reshape(*array.shape[:-2], shape[0] * shape[1])
     return flat.tolist() if follows else flat
 
 

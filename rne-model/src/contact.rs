@@ -1,0 +1,120 @@
+//! Contacts: the tips of a robot on a floating base that something outside holds.
+
+use crate::Frame;
+use crate::decode::{Context, choice, read_mapping, text};
+use crate::diagnostic::Diagnostic;
+use crate::document::{Content, Node};
+use crate::source::quoted;
+use crate::tree::needs_format_2;
+
+/// A tip that something outside the robot holds: `contacts` of a robot file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// The tip, by its place in the list `tips`.
+    pub tip: usize,
+    /// The part of the tip that is held.
+    pub kind: ContactKind,
+}
+
+/// The part of a tip that is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactKind {
+    /// Its origin; the tip can turn about this point.
+    Point,
+    /// Its origin and its orientation.
+    Weld,
+}
+
+impl Contact {
+    /// The number that the equations of contacts add to each diagonal element of J M⁻¹ Jᵀ, in 1/kg for forces and 1/(kg
+    /// m²) for moments. So contacts that hold more than a robot can move have finite forces: those with the smallest
+    /// sum of squares, nearly. A tip under a force of 100 N accelerates with 1e-6 m/s² instead of 0.
+    pub const DAMPING: f64 = 1e-8;
+
+    /// How many accelerations are zero: the first of x, y, z and about x, y, z.
+    #[must_use]
+    pub const fn rows(self) -> usize {
+        match self.kind {
+            ContactKind::Point => 3,
+            ContactKind::Weld => 6,
+        }
+    }
+}
+
+impl ContactKind {
+    /// All of them, with their words in robot files.
+    pub const WORDS: [(&'static str, Self); 2] = [("point", Self::Point), ("weld", Self::Weld)];
+
+    /// Its word in robot files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Weld => "weld",
+        }
+    }
+}
+
+/// Reads `contacts` of a file whose root is `root` and that has these tips.
+pub(crate) fn contacts(
+    cx: &Context,
+    root: &Node,
+    format: u32,
+    (frames, tips): (&[Frame], &[usize]),
+) -> Option<Vec<Contact>> {
+    let Some(node) = root.get("contacts") else { return Some(Vec::new()) };
+    if format == 1 {
+        return cx.refuse(needs_format_2("contacts", node));
+    }
+    let Content::Sequence(items) = &node.content else {
+        let message = format!("found {} where a list of contacts is needed", node.described());
+        let help = "write a contact for each tip that is held, such as `contacts: [{tip: left, kind: point}]`";
+        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of contacts is needed").help(help));
+    };
+    if !items.is_empty() && root.get("floating_base").is_none() {
+        let message =
+            "`contacts` needs `floating_base`: the tips of a robot whose base is fixed are held by nothing else";
+        let help = "add `floating_base: {name: trunk, link: {mass: …}}`, or delete `contacts`";
+        return cx.refuse(Diagnostic::error(node.head(), message).label("without `floating_base`").help(help));
+    }
+    let names: Vec<&str> = tips.iter().map(|&tip| frames[tip].name.as_str()).collect();
+    let mut contacts: Vec<Contact> = Vec::new();
+    for item in items {
+        let Some(contact) = contact(cx, item, &names) else { continue };
+        if contacts.iter().any(|other| other.tip == contact.tip) {
+            let message =
+                format!("the tip {} is in `contacts` twice; each tip has one contact", quoted(names[contact.tip]));
+            let place = item.get("tip").map_or_else(|| item.head(), |tip| tip.span.clone());
+            cx.report(Diagnostic::error(place, message).label("a second time"));
+            continue;
+        }
+        contacts.push(contact);
+    }
+    (contacts.len() == items.len()).then_some(contacts)
+}
+
+fn contact(cx: &Context, node: &Node, tips: &[&str]) -> Option<Contact> {
+    read_mapping!(cx, node, "a contact", {
+        tip: required "tip" |cx, node| tip(cx, node, tips),
+        kind: required "kind" |cx, node| choice(cx, node, "kind of contact", &ContactKind::WORDS),
+    });
+    Some(Contact { tip, kind })
+}
+
+/// The place of a tip among all.
+fn tip(cx: &Context, node: &Node, tips: &[&str]) -> Option<usize> {
+    let name = text(cx, node)?;
+    if let Some(place) = tips.iter().position(|tip| *tip == name) {
+        return Some(place);
+    }
+    let known = match tips {
+        [] => "the file has no list `tips`".to_owned(),
+        _ => format!("its tips are {}", tips.iter().map(|tip| quoted(tip)).collect::<Vec<_>>().join(", ")),
+    };
+    let message = format!("`contacts` names {}, which is no tip of this file; {known}", quoted(&name));
+    let help = cx.did_you_mean(&name, tips.iter().copied()).map_or_else(
+        || format!("add the frame to `frames`, and its name to the list `tips`: `tips: [{name}]`"),
+        |meant| format!("did you mean {}?", quoted(meant)),
+    );
+    cx.refuse(Diagnostic::error(node.span.clone(), message).label("no such tip").help(help))
+}
