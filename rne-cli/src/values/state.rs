@@ -389,6 +389,9 @@ fn triple(list: &[f64], from: usize) -> [f64; 3] {
     [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
 }
 
+/// The most functions that a message names.
+const MOST_NAMED: usize = 6;
+
 /// One argument of a function; `expected` numbers, in words `what`.
 fn argument(
     function: Function,
@@ -404,12 +407,11 @@ fn argument(
         Some(_) if !function.takes(kind) => {
             // --payload chooses the others
             let is_named = |other: &Function| other.takes(kind) && other.capability() != Capability::PayloadDynamics;
-            let others: Vec<Function> = Function::ALL.into_iter().filter(is_named).collect();
+            let others: Vec<String> =
+                Function::ALL.iter().filter(|other| is_named(other)).map(ToString::to_string).collect();
             let hint = match others.as_slice() {
                 [only] => format!("; {only} does"),
-                [one, other] => format!("; {one} and {other} do"),
-                [one, other, last] => format!("; {one}, {other} and {last} do"),
-                [one, other, third, last] => format!("; {one}, {other}, {third} and {last} do"),
+                [some @ .., last] if others.len() <= MOST_NAMED => format!("; {} and {last} do", some.join(", ")),
                 _ => String::new(),
             };
             Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))

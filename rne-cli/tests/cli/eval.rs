@@ -339,7 +339,7 @@ fn a_moving_base_is_under_the_gravity_of_the_file_unless_told() {
             &[
                 "inverse_dynamics takes no",
                 name,
-                "inverse_dynamics_on_moving_base and inverse_dynamics_of_floating_base do",
+                "inverse_dynamics_on_moving_base, inverse_dynamics_of_floating_base and floating_regressor do",
             ],
         );
     }
@@ -361,8 +361,8 @@ fn functions_take_their_arguments_and_no_others() {
         2,
         "bias_torques",
         &[q, qd, ["--tau", "1,2"]].concat(),
-        &["takes no --tau; forward_dynamics, momentum_and_rate, forward_dynamics_with_wrenches and \
-             floating_forward_dynamics do"],
+        &["takes no --tau; forward_dynamics, momentum_and_rate, forward_dynamics_with_wrenches, \
+             floating_forward_dynamics and forward_dynamics_in_contact do"],
     );
     call(
         2,
