@@ -242,7 +242,7 @@ fn accelerations<const DOF: usize>(s: &State<DOF>, found: &[f64], places: &Place
     [&linear[..], &found[3..6], &places.ours(&found[6..])].concat()
 }
 
-/// A matrix of columns in our order and row by row; the rows of a momentum, which are in world axes, in those of the base.
+/// A matrix of columns in our order and row by row; rows of a momentum in axes of the base, not in world axes.
 fn matrix_in_base<const DOF: usize>(s: &State<DOF>, numbers: &[f64], rows: usize, places: &Places) -> Vec<f64> {
     let order: Vec<usize> = (0..6).chain(places.0.iter().map(|place| place + 6)).collect();
     let columns: Vec<Vec<f64>> = order

@@ -4,9 +4,9 @@
 //! floating-peers FOLDER PINOCCHIO.so ROUNDS
 //! ```
 //!
-//! FOLDER has `hyq.urdf` and `g1.urdf`, which `rne export` writes of the robot files, and the files of `prepare.py`. Each program takes a state in its
-//! own vectors, which are made before. The program prints tables in Markdown. It ends with status 1 if results differ by
-//! more than 1e-10 of the largest.
+//! FOLDER has `hyq.urdf` and `g1.urdf`, which `rne export` writes of the robot files, and files of `prepare.py`. Each
+//! program takes a state in its own vectors, which are made before. The program prints tables in Markdown. It ends with
+//! status 1 if results differ by more than 1e-10 of the largest.
 
 mod competitors;
 mod state;
