@@ -120,14 +120,13 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::CentroidalMomentumMatrix => flat(robot.centroidal_momentum_matrix(q)),
         Function::CentroidalBias => robot.centroidal_bias(q, qd, &omega).to_vec(),
         Function::ForwardDynamicsInContact => {
-            let rotation = [omega, omega_dot, acceleration];
-            let found = robot.forward_dynamics_in_contact(q, qd, tau, &omega, &rotation);
+            let found = robot.forward_dynamics_in_contact(q, qd, tau, &omega, &given.rotation);
             let ([wrench], accelerations) = (found.wrenches_on_robot, found.accelerations);
             let base = [accelerations.base.linear, accelerations.base.angular].concat();
             [base, accelerations.qdd.to_vec(), [wrench.force, wrench.moment].concat()].concat()
         }
-        Function::TipJacobians => flat(robot.tip_jacobians(q, &[omega, omega_dot, acceleration])[0]),
-        Function::TipAccelerations => flat(robot.tip_accelerations(q, qd, &omega, &[omega, omega_dot, acceleration])),
+        Function::TipJacobians => flat(robot.tip_jacobians(q, &given.rotation)[0]),
+        Function::TipAccelerations => flat(robot.tip_accelerations(q, qd, &omega, &given.rotation)),
         Function::FloatingBias => robot.floating_bias(q, qd, &omega, &[Wrench { force, moment }]).to_vec(),
         Function::FloatingForwardDynamics => {
             let found = robot.floating_forward_dynamics(q, qd, tau, &omega, &[Wrench { force, moment }]);

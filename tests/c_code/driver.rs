@@ -92,13 +92,13 @@ impl Driver<'_> {
         text.push_str("int main(void)\n{\n");
         for precision in Precision::ALL {
             let real = precision.c_type();
-            let _ = writeln!(text, "    {real} {real}s[{}];", 6 * dof + 30);
+            let _ = writeln!(text, "    {real} {real}s[{}];", 6 * dof + 39);
         }
         for precision in Precision::ALL {
             // where no file has this number type
             let _ = writeln!(text, "    (void)print_{};", precision.c_type());
         }
-        let count = 6 * dof + 30;
+        let count = 6 * dof + 39;
         let _ = writeln!(text, "    while (read_float(floats, {count}u) && read_double(doubles, {count}u)) {{");
         for Unit { prefix, precision, .. } in self.units {
             let _ = writeln!(text, "        {prefix}_all({}s);", precision.c_type());
@@ -123,7 +123,9 @@ impl Driver<'_> {
         }
         // its mass is the last element of a vector
         let _ = writeln!(text, "    const {real} *payload = &given[{}];", joints.len() * n + 3 * vectors.len() + 2);
-        for name in joints.iter().chain(&vectors).chain(&["payload"]) {
+        let rows = joints.len() * n + 30;
+        let _ = writeln!(text, "    const {real} (*base_rotation)[3] = (const {real} (*)[3])&given[{rows}];");
+        for name in joints.iter().chain(&vectors).chain(&["payload", "base_rotation"]) {
             let _ = writeln!(text, "    (void){name};");
         }
         for function in functions {
@@ -171,10 +173,9 @@ impl Driver<'_> {
                 Function::FloatingKineticEnergy | Function::CentroidalMomentum => "q, qd, moment",
                 // omega, omega_dot, acceleration and gravity
                 Function::FloatingPotentialEnergy => "q, omega",
-                // rows of the motion of the base, beside each other
-                Function::ForwardDynamicsInContact => &format!("q, qd, tau, omega, (const {real} (*)[3])omega"),
-                Function::TipJacobians => &format!("q, (const {real} (*)[3])omega"),
-                Function::TipAccelerations => &format!("q, qd, omega, (const {real} (*)[3])omega"),
+                Function::ForwardDynamicsInContact => "q, qd, tau, omega, base_rotation",
+                Function::TipJacobians => "q, base_rotation",
+                Function::TipAccelerations => "q, qd, omega, base_rotation",
                 Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
                 Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
                 Function::ActuatorTorques => "qd, qdd",
@@ -235,8 +236,10 @@ fn words_of(state: &State) -> Vec<u64> {
     let (single, double) = (state.single(), state.double());
     let mut words = Vec::new();
     let singles = single.joints.iter().chain([&single.sine, &single.cosine]).flatten();
-    words.extend(singles.chain(single.vectors.as_flattened()).map(|x| u64::from(x.to_bits())));
+    let singles = singles.chain(single.vectors.as_flattened()).chain(single.rotation.as_flattened());
+    words.extend(singles.map(|x| u64::from(x.to_bits())));
     let doubles = double.joints.iter().chain([&double.sine, &double.cosine]).flatten();
-    words.extend(doubles.chain(double.vectors.as_flattened()).map(|x| x.to_bits()));
+    let doubles = doubles.chain(double.vectors.as_flattened()).chain(double.rotation.as_flattened());
+    words.extend(doubles.map(|x| x.to_bits()));
     words
 }

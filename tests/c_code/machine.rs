@@ -19,7 +19,7 @@ use rne_search::PlanFile;
 
 use crate::comparison::{ROOT, read};
 use crate::derived::{Derived, Forms};
-use crate::states::State;
+use crate::states::{self, State};
 
 /// Of the largest number of a result over all states, and of the largest of a state where is divided by a matrix that
 /// may be nearly singular.
@@ -45,7 +45,7 @@ impl States {
             let mut vectors = [(); 10].map(|()| [(); 3].map(|()| between(10.0)));
             // a payload of negative mass is refused
             vectors[6][2] = vectors[6][2].abs();
-            State { joints, vectors }
+            State { joints, vectors, rotation: states::rotation([(); 4].map(|()| between(1.0))) }
         };
         let each: Vec<State> = (0..count).map(|_| state()).collect();
         let rows = |of: &dyn Fn(&State) -> Vec<f64>| each.iter().flat_map(of).collect();
@@ -71,7 +71,7 @@ impl States {
             ("base_gravity", vector(5)),
             ("twist", rows(&|state| state.vectors[1..3].concat())),
             ("pose", rows(&|state| state.vectors[2..6].concat())),
-            ("base_rotation", rows(&|state| state.vectors[2..5].concat())),
+            ("base_rotation", rows(&|state| state.rotation.concat())),
         ];
         Self { each, rows }
     }
@@ -92,7 +92,6 @@ fn interpreted(interpreter: &Interpreter, state: &State) -> Vec<f64> {
     let [q, qd, qdd, tau] = state.joints.each_ref().map(Vec::as_slice);
     let [force, moment, base @ .., _, _, _, _] = state.vectors;
     let wrenches = [std::array::from_fn(|at| if at < 3 { force[at] } else { moment[at - 3] })];
-    let base_rotation = std::array::from_fn(|at| base[at / 3][at % 3]);
     let of_joints = Numbers::of_joints(q, qd, qdd, 0.0);
     let numbers = Numbers {
         tau,
@@ -103,7 +102,7 @@ fn interpreted(interpreter: &Interpreter, state: &State) -> Vec<f64> {
         base,
         velocity: moment,
         pose: state.vectors[2..6].as_flattened().try_into().expect("twelve"),
-        base_rotation,
+        base_rotation: state.rotation.as_flattened().try_into().expect("nine"),
         ..of_joints
     };
     interpreter.run(&numbers, f64::from_f64, Scalar::sin_cos).expect("arrays of the right length")

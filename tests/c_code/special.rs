@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 use fastrand::Rng;
 use rne_model::Robot;
 
-use crate::states::State;
+use crate::states::{self, State};
 
 /// Positions near the end of the range of sine and cosine, and in it.
 const LARGE: [f64; 4] = [99_950.0, -99_950.37, 31_415.926, -12_345.678];
@@ -36,7 +36,8 @@ pub(crate) fn states(robot: &Robot) -> Vec<State> {
             1 => joints[1..3].iter_mut().flatten().for_each(|x| *x *= 10_f64.powf(between(&mut rng, 9.0))),
             _ => {}
         }
-        State { joints, vectors: [(); 10].map(|()| [(); 3].map(|()| between(&mut rng, 10.0))) }
+        let vectors = [(); 10].map(|()| [(); 3].map(|()| between(&mut rng, 10.0)));
+        State { joints, vectors, rotation: states::rotation([(); 4].map(|()| between(&mut rng, 1.0))) }
     };
     (0..4 * special.len()).step_by(3).map(state).collect()
 }

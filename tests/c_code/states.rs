@@ -1,7 +1,7 @@
 //! States at which C and Rust are compared.
 
 use rne::model::Inertia;
-use rne::{Payload, Scalar};
+use rne::{Payload, Quaternion, Scalar};
 
 /// All that functions are asked with; in single precision, the same numbers rounded.
 #[derive(Debug)]
@@ -10,12 +10,15 @@ pub(crate) struct State {
     pub(crate) joints: [Vec<f64>; 4],
     /// Force, moment; ω, ω̇, acceleration and gravity of the base; a payload.
     pub(crate) vectors: [[f64; 3]; 10],
+    /// Axes of the base in the world, as columns.
+    pub(crate) rotation: [[f64; 3]; 3],
 }
 
 /// The same in a number type, with the sines and cosines of the positions.
 pub(crate) struct Numbers<T> {
     pub(crate) joints: [Vec<T>; 4],
     pub(crate) vectors: [[T; 3]; 10],
+    pub(crate) rotation: [[T; 3]; 3],
     pub(crate) sine: Vec<T>,
     pub(crate) cosine: Vec<T>,
 }
@@ -33,8 +36,16 @@ impl State {
     fn numbers<T: Scalar>(&self, rounded: impl Fn(f64) -> T) -> Numbers<T> {
         let joints = self.joints.each_ref().map(|array| array.iter().map(|&x| rounded(x)).collect::<Vec<T>>());
         let (sine, cosine) = joints[0].iter().map(|&q| Scalar::sin_cos(q)).unzip();
-        Numbers { joints, vectors: self.vectors.map(|vector| vector.map(&rounded)), sine, cosine }
+        let vectors = self.vectors.map(|vector| vector.map(&rounded));
+        let rotation = self.rotation.map(|row| row.map(&rounded));
+        Numbers { joints, vectors, rotation, sine, cosine }
     }
+}
+
+/// A rotation of any axis and angle, from four numbers of any size.
+pub(crate) fn rotation(numbers: [f64; 4]) -> [[f64; 3]; 3] {
+    let length = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
+    Quaternion::from_wxyz(numbers.map(|x| x / length)).rotation()
 }
 
 /// A payload of four vectors: its mass is the last element of the first, then come centre of mass, moments and products

@@ -14,7 +14,7 @@ use rne_codegen::{Form, Function, Program};
 use rne_emit::Precision;
 use rne_model::Robot;
 
-use crate::arm::{Arm, Given, Maker, base_rotation};
+use crate::arm::{Arm, Given, Maker};
 use crate::arms;
 use crate::check::Worst;
 use crate::compiler::Compiler;
@@ -97,12 +97,13 @@ pub(crate) fn of_each(seeds: &[u64], property: impl Fn(u64, &mut Worst) + Sync) 
 fn state(rng: &mut Rng, dof: usize) -> State {
     let between = |rng: &mut Rng, range: f64| (2.0 * rng.f64() - 1.0) * range;
     let joints = [3.2, 2.0, 5.0, 50.0].map(|range| (0..dof).map(|_| between(rng, range)).collect());
-    State { joints, vectors: [(); 10].map(|()| [(); 3].map(|()| between(rng, 10.0))) }
+    let vectors = [(); 10].map(|()| [(); 3].map(|()| between(rng, 10.0)));
+    State { joints, vectors, rotation: states::rotation([(); 4].map(|()| between(rng, 1.0))) }
 }
 
 /// What the functions are asked with at a state.
 fn at<R>(state: &State, ask: impl FnOnce(&Given<'_, f64>) -> R) -> R {
-    let Numbers { joints: [q, qd, qdd, tau], vectors, .. } = state.double();
+    let Numbers { joints: [q, qd, qdd, tau], vectors, rotation, .. } = state.double();
     let [force, moment, omega, omega_dot, acceleration, gravity, ref payload @ ..] = vectors;
     let payload = states::payload(payload);
     // as C has the numbers of a twist
@@ -115,7 +116,7 @@ fn at<R>(state: &State, ask: impl FnOnce(&Given<'_, f64>) -> R) -> R {
         wrench: Wrench { force, moment },
         payload,
         base,
-        base_rotation: base_rotation(),
+        base_rotation: rotation,
     })
 }
 
