@@ -37,8 +37,15 @@ fn text_parses_back_to_the_tokens() {
             let tokens = rne_emit::Body::new(program, &quote!(Scalar)).whole();
             // the last element of a list that is broken has a comma too
             let text = quote!(#(#statements)*).to_string().replace(" ,]", "]").replace(" ,)", ")");
-            // derived code takes the wrenches of all tips as one array
-            let text = text.replace("let [[", "let [").replace("]] = * wrenches", "] = * wrenches");
+            // derived code takes the wrenches of all tips as one array, and the rows of a rotation
+            let of_rows = |statement: &str| {
+                ["wrenches", "base_rotation"].iter().any(|name| statement.ends_with(&format!("= * {name} ")))
+            };
+            let flat = |statement: &str| match of_rows(statement) {
+                true => statement.replace("[[", "[").replace("]]", "]").replace("] , [", " , "),
+                false => statement.to_owned(),
+            };
+            let text = text.split(';').map(flat).collect::<Vec<_>>().join(";");
             let tokens = tokens.to_string();
             let differs = text.split(';').zip(tokens.split(';')).find(|(text, tokens)| text != tokens);
             assert_eq!(differs, None, "{} of {}", program.function, robot.name);

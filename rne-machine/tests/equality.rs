@@ -94,7 +94,7 @@ impl States {
             base: [9, 11, 12, 13].map(triple),
             velocity: of(15, 6)[..3].try_into().expect("three"),
             pose: of(16, 12).try_into().expect("twelve"),
-            base_rotation: of(15, 9).try_into().expect("nine"),
+            base_rotation: of(17, 9).try_into().expect("nine"),
             ..Numbers::of_joints(joints(0), joints(1), joints(2), 0.0)
         };
         interpreter.run(&numbers, f64::from_f64, Scalar::sin_cos).expect("arrays of the right length")

@@ -325,8 +325,11 @@ const CENTROIDAL: [Own; 2] = [
 ];
 
 /// The velocity of a base that nothing holds.
-const ORIGIN_VELOCITY: Own =
-    Own::names(Quantity::OriginVelocity, "velocity of the frame's origin; of frame 0 for i = 0, in its axes");
+const ORIGIN_VELOCITY: Own = Own::meaning(
+    Quantity::OriginVelocity,
+    "velocity of the frame's origin; of frame 0 for i = 0, in its axes",
+    |joint| format!("velocity of the origin of frame {joint}"),
+);
 
 const MASS_MATRIX: Entry = Entry {
     output: "mass",
@@ -691,8 +694,16 @@ pub(crate) const TABLE: &[Entry] = &[
     Entry {
         output: "energy",
         own: &[
-            Own::meaning(Quantity::FrameRotation, "rotation of the base in the world, for i = 0", |_| String::new()),
-            Own::meaning(Quantity::FrameOrigin, "its origin in the world, for i = 0", |_| String::new()),
+            Own::meaning(
+                Quantity::FrameRotation,
+                "rotation from frame i to frame 0; of the base to the world for i = 0",
+                |joint| format!("frame {joint}, in frame 0"),
+            ),
+            Own::meaning(
+                Quantity::FrameOrigin,
+                "origin of that frame, in frame 0; of the base in the world for i = 0",
+                |joint| format!("frame {joint}, in frame 0"),
+            ),
             Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
             Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
         ],
@@ -707,7 +718,10 @@ pub(crate) const TABLE: &[Entry] = &[
             Own::meaning(
                 Quantity::LinearMomentum,
                 "linear momentum of link i and all behind it; of the robot, in axes of frame 0, for i = 0",
-                |_| "momentum".to_owned(),
+                |joint| match joint {
+                    0 => "momentum of the robot".to_owned(),
+                    _ => format!("momentum of link {joint} and all behind it"),
+                },
             ),
             Own::meaning(
                 Quantity::CentroidalMoment,
