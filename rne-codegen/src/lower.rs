@@ -296,9 +296,7 @@ impl<'w> Lowering<'w> {
     /// The exact value of a constant under its name.
     fn exactly(&self, constant: &Constant, at: Ref) -> (Number, Option<ExactAngle>) {
         let at = at.magnitude().signed(constant.value < 0.0);
-        let is_angle = matches!(constant.name.quantity, Quantity::Theta | Quantity::GroupTheta);
-        let turn = if is_angle { self.written.graph.turn(at) } else { None };
-        (self.written.graph.number(at).unwrap_or_default(), turn)
+        (self.written.graph.number(at).unwrap_or_default(), self.written.graph.turn(at))
     }
 
     fn is_live(&self, id: Ref) -> bool {

@@ -95,7 +95,7 @@ impl<'s> Joint<'_, 's> {
                 let angle = if right.is_some() {
                     q
                 } else {
-                    line.scalar(Quantity::Angle, || line.entry(Quantity::Theta, theta.radians) + q)
+                    line.scalar(Quantity::Angle, || line.constant_angle(&theta) + q)
                 };
                 let (s, c) = line.builder.sine_and_cosine(angle);
                 let turn = (line.name(Quantity::Sine, s), line.name(Quantity::Cosine, c));

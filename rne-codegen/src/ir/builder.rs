@@ -399,6 +399,14 @@ impl<'s> JointLines<'s> {
         self.builder.entry(Name::scalar(quantity, self.named), value)
     }
 
+    /// The constant part of a joint angle. Without a name, its sine and cosine are known by the number.
+    pub(crate) fn constant_angle(&self, theta: &Angle) -> Symbol<'s> {
+        if self.builder.is_unnamed.get() {
+            return self.builder.angle(self.builder.embedding().turn(theta));
+        }
+        self.entry(Quantity::Theta, theta.radians)
+    }
+
     /// Gives a number a name.
     pub(crate) fn name(&self, quantity: Quantity, symbol: Symbol<'s>) -> Symbol<'s> {
         self.builder.name(Name::scalar(quantity, self.named), symbol)
