@@ -151,11 +151,11 @@ pub(crate) fn extract(
         tip: Pose::identity(),
         frames: Vec::new(),
     };
-    chain.gravity = chain.base.rotation.transpose() * chain.gravity;
     if floats {
-        // it has no place in the world
+        // it has no place in the world, and gravity is that of the world
         chain.base = Pose::identity();
     }
+    chain.gravity = chain.base.rotation.transpose() * chain.gravity;
     walk.look_at_floating(floats);
     if selection.whole {
         walk.whole(base, tip, &mut chain)?;

@@ -176,7 +176,7 @@ impl Urdf {
             }
         }
         let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
-        let chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };
+        let mut chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };
         let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
         if options.frames {
             robot.frames = named_frames(&chain, &table);
@@ -189,6 +189,8 @@ impl Urdf {
             let place = |name: &String| robot.frames.iter().position(|frame| frame.name == *name);
             robot.tips = tips.iter().filter_map(place).collect();
             self.refuse_tips_on_base(&robot)?;
+            // those that the robot has are compared
+            chain.frames.retain(|frame| robot.frames.iter().any(|kept| kept.name == frame.name));
         }
         robot.source = format!(
             "{}, {}; imported by rne {}",

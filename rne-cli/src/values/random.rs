@@ -36,7 +36,8 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
         0 => wrench.into_iter().collect(),
         tips => (0..tips).map(|_| random.wrench()).collect(),
     };
-    let base_rotation = BASE_ROTATION.map(|row| row.map(f64::from));
+    // hundredths, which single precision rounds: the code and the runtime agree for a rotation
+    let base_rotation = BASE_ROTATION.map(|row| row.map(|x| (f64::from(x) * 100.0).round() / 100.0));
     let function = Function::InverseDynamics;
     State { function, q, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation }
 }

@@ -283,6 +283,7 @@ fn several_tips_are_listed() {
     let both = import(&["finger_b", "tool0"], false).unwrap_or_else(|report| panic!("{report}"));
     assert!(both.text.contains("\ntips: [finger_b, tool0]\n"), "{}", both.text);
     assert_eq!((both.robot.frames.len(), both.robot.tip().on), (2, Some(3)));
+    assert!(both.account.rounding.position < 1e-12, "each tip is compared with itself: {:?}", both.account.rounding);
     let (q, qd, qdd) = ([0.3, -0.7, 0.02, 0.01, 1.1], [1.0, -2.0, 0.5, 0.2, 0.7], [3.0, 2.0, -1.0, 0.1, 0.4]);
     let wrench = Wrench { force: [1.0, -2.0, 3.0], moment: [0.3, 0.2, -0.1] };
     let arm = DynArm::from_robot(&both.robot);
