@@ -296,7 +296,13 @@ impl<'w> Lowering<'w> {
     /// The exact value of a constant under its name.
     fn exactly(&self, constant: &Constant, at: Ref) -> (Number, Option<ExactAngle>) {
         let at = at.magnitude().signed(constant.value < 0.0);
-        (self.written.graph.number(at).unwrap_or_default(), self.written.graph.turn(at))
+        let turn = match constant.name.quantity {
+            Quantity::Theta | Quantity::GroupTheta => self.written.graph.turn(at),
+            // one without a name of its own, such as of the contacts
+            Quantity::Constant => self.written.graph.known_turn(at),
+            _ => None,
+        };
+        (self.written.graph.number(at).unwrap_or_default(), turn)
     }
 
     fn is_live(&self, id: Ref) -> bool {

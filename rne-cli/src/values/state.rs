@@ -48,9 +48,9 @@ impl<'a> Given<'a> {
     /// joints, of a base that moves and of its pose; with their options. `zeros` has a number for each joint, three for
     /// the base and six for its pose.
     pub(crate) fn at_rest(mut self, function: Function, zeros: [&'a List; 3]) -> (Self, Vec<&'static str>) {
-        use Argument::{Accelerations, Base, BasePose, BaseTwist, Rates};
+        use Argument::{Accelerations, Base, BasePose, BaseTwist, BaseVelocity, Rates};
         let (mut assumed, [of_joints, of_base, of_pose]) = (Vec::new(), zeros);
-        let turning = if function.takes(BaseTwist) { BaseTwist } else { Base };
+        let turning = [BaseTwist, BaseVelocity].into_iter().find(|kind| function.takes(*kind)).unwrap_or(Base);
         let lists = [
             ("--qd", &mut self.qd, Rates, of_joints),
             ("--qdd", &mut self.qdd, Accelerations, of_joints),
@@ -135,7 +135,7 @@ impl State {
             // the world has the axes of frame 0
             None => IDENTITY,
             list => argument(function, "--base-rotation", list, Argument::BaseRotation, 9, rows)?
-                .map_or(IDENTITY, |list| [0, 3, 6].map(|row| triple(&list, row))),
+                .map_or(Ok(IDENTITY), |list| rotation("--base-rotation", &list))?,
         };
         let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
         let pose = pose_of_base(function, given.base_pose)?;
@@ -310,12 +310,28 @@ fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, F
     if let [rows @ .., x, y, z] = &values[..]
         && rows.len() == 9
     {
-        return Ok(Pose { rotation: [0, 3, 6].map(|row| triple(rows, row)), translation: [*x, *y, *z] });
+        return Ok(Pose { rotation: rotation("--base-pose", rows)?, translation: [*x, *y, *z] });
     }
     let [roll, pitch, yaw] = triple(values, 3);
     let turn =
         Quaternion::identity().turned_by([0.0, 0.0, yaw]).turned_by([0.0, pitch, 0.0]).turned_by([roll, 0.0, 0.0]);
     Ok(Pose { rotation: turn.rotation(), translation: triple(values, 0) })
+}
+
+/// The rotation of these nine numbers, row by row.
+fn rotation(name: &str, numbers: &[f64]) -> Result<[[f64; 3]; 3], Failure> {
+    let rows = [0, 3, 6].map(|row| triple(numbers, row));
+    let [x, y, z] = rows;
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
+    let errors = [dot(x, x) - 1.0, dot(y, y) - 1.0, dot(x, y), z[0] - cross[0], z[1] - cross[1], z[2] - cross[2]];
+    if errors.iter().all(|error| error.abs() < MOST_ROUNDED) {
+        return Ok(rows);
+    }
+    Err(Failure::usage(format_args!(
+        "{name} is no rotation: its three rows must have the length 1, be at right angles to each other, and be \
+         right-handed"
+    )))
 }
 
 /// The wrench at a tip: `left=0,0,-5,0,0,0`.
@@ -388,6 +404,9 @@ fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Resul
 fn triple(list: &[f64], from: usize) -> [f64; 3] {
     [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
 }
+
+/// How far the rows of a rotation may be from unit vectors at right angles: as far as single precision can say.
+const MOST_ROUNDED: f64 = 1e-4;
 
 /// The most functions that a message names.
 const MOST_NAMED: usize = 6;

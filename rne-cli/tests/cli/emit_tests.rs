@@ -115,6 +115,13 @@ fn c_passes_its_tests() {
             assert_eq!(output.status.code(), Some(1), "{right}: {}", said(&output));
         }
     }
+    // the code and the runtime agree where the rotation of the base is one, to the last digit
+    for real in ["float", "double"] {
+        let contacts = ["emit", "docs/standing_hyq.yaml", "--lang", "c", "--tests", "--real", real, "--function"];
+        let code = fine(&[&contacts[..], &["forward_dynamics_in_contact,tip_accelerations"]].concat());
+        let Some(output) = tested_c(&folder, &code) else { return };
+        assert!(output.status.success() && said(&output).contains("2 tests, 0 wrong"), "{real}: {}", said(&output));
+    }
     let plain = fine(&["emit", "robots/planar2.yaml", "--lang", "c"]);
     assert!(fine(&["emit", "robots/planar2.yaml", "--lang", "c", "--tests"]).starts_with(&plain));
     let out = folder.join("none.c");

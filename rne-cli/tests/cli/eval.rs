@@ -124,6 +124,8 @@ fn an_arm_at_rest_needs_positions_alone() {
     );
     let call = rne(&["eval", "robots/planar2.yaml", "--function", "bias_torques", "--q", "0.6,0.2"]);
     assert_eq!(call.err, "note: --qd is not given, so these numbers are 0\n");
+    let call = rne(&["eval", "robots/planar2.yaml", "--function", "floating_bias", "--q", "0.6,0.2"]);
+    assert_eq!(call.err, "note: --qd and --base-omega are not given, so these numbers are 0\n");
 }
 
 #[test]
@@ -364,6 +366,9 @@ fn functions_take_their_arguments_and_no_others() {
         &["takes no --tau; forward_dynamics, momentum_and_rate, forward_dynamics_with_wrenches, \
              floating_forward_dynamics and forward_dynamics_in_contact do"],
     );
+    let (zeros, mirrored) = (["--base-rotation", "0,0,0,0,0,0,0,0,0"], ["--base-rotation", "1,0,0,0,1,0,0,0,-1"]);
+    call(2, "tip_jacobians", &[q, zeros].concat(), &["--base-rotation is no rotation: its three rows must"]);
+    call(2, "tip_jacobians", &[q, mirrored].concat(), &["right-handed"]);
     call(
         2,
         "jacobian",

@@ -92,11 +92,8 @@ impl<'s> Joint<'_, 's> {
             }
             (Revolute, None, right) => {
                 let q = self.state.q;
-                let angle = if right.is_some() {
-                    q
-                } else {
-                    line.scalar(Quantity::Angle, || line.constant_angle(&theta) + q)
-                };
+                let angle =
+                    if right.is_some() { q } else { line.scalar(Quantity::Angle, || line.constant_angle(&theta) + q) };
                 let (s, c) = line.builder.sine_and_cosine(angle);
                 let turn = (line.name(Quantity::Sine, s), line.name(Quantity::Cosine, c));
                 by_quarters(turn, right.unwrap_or(QuarterTurns::Zero))

@@ -54,6 +54,12 @@ impl Graph {
         places.filter(|place| !self.turns.contains_key(place)).collect()
     }
 
+    /// The turn of a constant that was made as an angle.
+    pub(crate) fn known_turn(&self, at: Ref) -> Option<ExactAngle> {
+        let Op::Constant(place) = self.op(at) else { return None };
+        self.turns.get(&place).map(|&turn| if at.is_negative() { turn.back() } else { turn })
+    }
+
     /// The turn of a constant that is an angle.
     pub(crate) fn turn(&self, at: Ref) -> Option<ExactAngle> {
         let Op::Constant(place) = self.op(at) else { return None };
