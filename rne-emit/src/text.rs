@@ -395,11 +395,11 @@ impl Piece {
         }
         let texts: Vec<Annotated> = elements.iter().map(|element| element.broken(indent + 4) + ",").collect();
         let fills = *open == '[' && texts.iter().all(|text| text.as_str().len() <= SHORT + 1);
-        let (mut text, mut column) = (start, WIDTH);
-        for element in texts {
+        let (mut text, mut column, last) = (start, WIDTH, texts.len() - 1);
+        for (index, element) in texts.into_iter().enumerate() {
             let width = element.as_str().len();
-            // rustfmt leaves the last column of a line empty here
-            if !fills || column + 1 + width >= WIDTH {
+            // rustfmt leaves the last column of a line empty here, but for the last element
+            if !fills || column + 1 + width >= WIDTH + usize::from(index == last) {
                 text = text + "\n" + " ".repeat(indent + 4);
                 column = indent + 4 + width;
             } else {

@@ -41,9 +41,12 @@ fn text_parses_back_to_the_tokens() {
             let of_rows = |statement: &str| {
                 ["wrenches", "base_rotation"].iter().any(|name| statement.ends_with(&format!("= * {name} ")))
             };
-            let flat = |statement: &str| match of_rows(statement) {
-                true => statement.replace("[[", "[").replace("]]", "]").replace("] , [", " , "),
-                false => statement.to_owned(),
+            let flat = |statement: &str| {
+                if of_rows(statement) {
+                    statement.replace("[[", "[").replace("]]", "]").replace("] , [", " , ")
+                } else {
+                    statement.to_owned()
+                }
             };
             let text = text.split(';').map(flat).collect::<Vec<_>>().join(";");
             let tokens = tokens.to_string();
