@@ -16,8 +16,9 @@ const MATURIN: &str = "maturin>=1.9,<2";
 /// Packages that the tests need beside the wheel.
 const TESTS: [&str; 1] = ["pytest>=8"];
 
-/// Packages that the tests need to compare the wheel with Pinocchio on real arms.
-const PEERS: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
+/// Packages that the tests need to compare the wheel with Pinocchio on real arms; benches/peers reads robot files with
+/// yaml.
+const PEERS: [&str; 4] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0", "pyyaml>=6"];
 
 /// Whose columns the wheel reads.
 const COLUMNS: [&str; 3] = ["pandas>=2", "polars>=1.8", "pyarrow>=17"];
