@@ -150,7 +150,7 @@ fn cases(sources: &[Source]) -> Result<String> {
 }
 
 /// As in ../robots/src/puma560.rs.
-const ARGUMENTS: [&str; 4] = [
+const ARGUMENTS: [&str; 5] = [
     "const float force[3] = {1.0f, -2.0f, 3.0f}, moment[3] = {0.5f, 0.25f, -0.125f};",
     "const float payload[10] = {0.5f, 0.01f, -0.02f, 0.1f, 0.002f, 0.003f, 0.001f, 0.0001f, -0.0002f, 0.0003f};",
     "const float base_omega[3] = {0.1f, -0.2f, 0.3f}, base_zero[3] = {0.0f, 0.0f, 0.0f};",
