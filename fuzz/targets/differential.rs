@@ -278,7 +278,8 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::FloatingPotentialEnergy => vec![arm.floating_potential_energy(q, &state.pose())?],
         Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &state.twist())?.to_vec(),
         Function::ForwardDynamicsInContact => {
-            let (base, qdd, wrenches) = arm.forward_dynamics_in_contact(q, qd, tau, &base.omega, &base_rotation(base))?;
+            let (base, qdd, wrenches) =
+                arm.forward_dynamics_in_contact(q, qd, tau, &base.omega, &base_rotation(base))?;
             let wrenches = wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten();
             base.linear.into_iter().chain(base.angular).chain(qdd).chain(wrenches).collect()
         }
