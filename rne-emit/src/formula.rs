@@ -338,7 +338,7 @@ mod tests {
             assert_eq!(of(TIPS, function, 5, Reduced), expected);
         }
         assert_eq!(of(TIPS, Function::InverseDynamics, 5, SevenSteps)[1], "f4,5 = m5 (c̈5 - g5)");
-        // a chain on a floating base is none of `format: 1`
+        // A chain on a floating base is a robot file of format 2, so its text is not frozen.
         let satellite = include_str!("../../docs/satellite.yaml");
         assert_eq!(of(satellite, Function::InverseDynamics, 2, SevenSteps)[1], "f1,2 = m2 (c̈2 - g2)");
         assert_eq!(of(satellite, Function::InverseDynamicsWithWrench, 2, Reduced)[0], "f2 = m a2 + U2 h + R3 f2,3");

@@ -119,7 +119,7 @@ fn width(function: &str, argument: &str, columns: &[Column<'_>], first: usize, r
 pub(crate) struct Place<'a> {
     pub(crate) function: &'a str,
     pub(crate) column: &'a str,
-    /// Why a list has so many numbers.
+    /// The reason, for an error message, why a list must have this number of elements.
     pub(crate) why: &'a str,
 }
 

@@ -284,6 +284,8 @@ const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
 
 /// Rows of the base, then of the joints.
 const VELOCITIES: Labels = Labels::BaseAndJoints;
+/// Three components along the axes, then three about them.
+const ALONG_AND_ABOUT: Labels = Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]);
 
 /// Where the origins of frames are in the Jacobians of tips.
 const FROM_BASE: &str = "origin of that frame, from frame 0 in world axes";
@@ -651,7 +653,7 @@ pub(crate) const TABLE: &[Entry] = &[
         own: &CENTROIDAL,
         answer: Answer::Tables(&[AnswerTable::of(
             "momentum and angular momentum about the centre of mass per velocity, axes of frame 0; SI units",
-            Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]),
+            ALONG_AND_ABOUT,
             VELOCITIES,
         )]),
         divides: Some(WITHOUT_MASS),
@@ -664,7 +666,7 @@ pub(crate) const TABLE: &[Entry] = &[
         answer: Answer::Tables(&[AnswerTable::of(
             "force (N), then moment about the centre of mass (N m), axes of frame 0",
             Labels::Names(&["rate"]),
-            Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]),
+            ALONG_AND_ABOUT,
         )]),
         divides: Some(WITHOUT_MASS),
         ..Entry::of(Function::CentroidalBias, Capability::CentroidalMomentum)
@@ -732,7 +734,7 @@ pub(crate) const TABLE: &[Entry] = &[
         answer: Answer::Tables(&[AnswerTable::of(
             "momentum (N s), then angular momentum about the centre of mass (N m s), axes of frame 0",
             Labels::Names(&["momentum"]),
-            Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]),
+            ALONG_AND_ABOUT,
         )]),
         divides: Some(WITHOUT_MASS),
         ..Entry::of(Function::CentroidalMomentum, Capability::CentroidalMomentum)

@@ -10,7 +10,7 @@ use rne_machine::{Arguments, Array, CompiledArm, Destination};
 
 use crate::state::{GRAVITY, State};
 
-/// What is computed.
+/// The quantity that a competitor computes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     InverseDynamics,

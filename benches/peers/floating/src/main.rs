@@ -38,7 +38,8 @@ const WARM_UP: usize = 3;
 /// The largest difference, over the largest number.
 const TOLERANCE: f64 = 1e-10;
 
-/// What is asked: our row, its rival, and how many times as fast ours must be.
+/// The required ratios. Each line has a quantity, whether one call computes many states, the competitor, and how many
+/// times as fast as this competitor rne must be.
 const REQUIRED: [(Quantity, bool, &str, f64); 5] = [
     (Quantity::InverseDynamics, false, "pin_rnea", 7.0),
     (Quantity::InverseDynamics, false, "dynibo_rnea", 3.5),
