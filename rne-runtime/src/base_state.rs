@@ -49,6 +49,7 @@ impl<T: Scalar> BaseTwist<T> {
     }
 }
 
+#[cfg(feature = "arm")]
 impl<T: Scalar> BaseTwist<T> {
     /// A base that moves with this velocity and has no acceleration, without gravity.
     pub(crate) fn motion(&self) -> BaseMotion<T> {
