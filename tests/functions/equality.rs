@@ -12,7 +12,7 @@ use crate::arm::{Arm, Given, Maker, base_rotation, of_runtime};
 use crate::case::{cases, largest, payload};
 use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
-use crate::trees::{condition, contact_system};
+use crate::trees::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
 const SAME_BITS: [Function; 32] = [
@@ -159,7 +159,7 @@ pub(crate) fn error(
             if conditioning(&rows).is_none() {
                 return 0.0;
             }
-            let number = condition(&contact_system(&arm.robot, &mass, &jacobians).0);
+            let number = contact_condition(&arm.robot, &mass, &jacobians);
             if number >= 1e12 {
                 return 0.0;
             }

@@ -10,7 +10,7 @@ use rne_model::{Contact, Reader, Robot};
 
 use crate::arm::{Arm, Given, Maker, base_rotation};
 use crate::check::{ROOT, Worst, conditioning, dot, error_on_scale, json, numbers, product};
-use crate::trees::{State, condition, contact_system, robot};
+use crate::trees::{State, contact_condition, robot};
 
 const TOLERANCE: f64 = 1e-12;
 const FOLDER: &str = "tests/functions/floating";
@@ -59,7 +59,7 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
                         Function::ForwardDynamicsInContact => {
                             let of = |function| arm.numbers(function, &given);
                             let [mass, jacobians] = [Function::FloatingMassMatrix, Function::TipJacobians].map(of);
-                            error / condition(&contact_system(&robot, &mass, &jacobians).0)
+                            error / contact_condition(&robot, &mass, &jacobians)
                         }
                         _ => error,
                     };

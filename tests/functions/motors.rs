@@ -14,7 +14,7 @@ use rne_model::{
 use crate::arm::{Arm, Maker};
 use crate::check::{Worst, conditioning, error_on_scale};
 use crate::equality::compare_at_states;
-use crate::trees::{State, condition, contact_system, expected, scale};
+use crate::trees::{State, contact_condition, expected, scale};
 use crate::{random_motors, random_trees};
 
 const TOLERANCE: f64 = 1e-12;
@@ -182,7 +182,7 @@ fn rotors_are_bodies_of_their_own() {
                 let magnification = if function == Function::ForwardDynamicsInContact {
                     let numbers = |function| bodies.numbers(function, &state.given());
                     let [mass, jacobians] = [Function::FloatingMassMatrix, Function::TipJacobians].map(numbers);
-                    match condition(&contact_system(&robot, &mass, &jacobians).0) {
+                    match contact_condition(&robot, &mass, &jacobians) {
                         number if number < 1e10 => number,
                         _ => continue,
                     }

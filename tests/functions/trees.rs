@@ -133,8 +133,22 @@ pub(crate) fn contact_system(robot: &Robot, mass: &[f64], jacobians: &[f64]) -> 
     (matrix, held)
 }
 
-/// The condition number of such a system.
-pub(crate) fn condition(matrix: &DMatrix<f64>) -> f64 {
+/// How much such a system magnifies errors when the forces are found first, by A = J M⁻¹ Jᵀ and what is added to its
+/// diagonal: the condition number of the whole system, and that of A, which is the larger one where many contacts share
+/// few joints.
+pub(crate) fn contact_condition(robot: &Robot, mass: &[f64], jacobians: &[f64]) -> f64 {
+    let size = 6 + robot.dof();
+    let (system, held) = contact_system(robot, mass, jacobians);
+    let (m, j) = (system.view((0, 0), (size, size)), system.view((size, 0), (held.len(), size)));
+    let Some(inverse) = m.clone_owned().try_inverse() else { return f64::INFINITY };
+    let a = j * inverse * j.transpose() + system.view((size, size), (held.len(), held.len()));
+    [system, a].map(|matrix| condition(&matrix)).into_iter().fold(1.0, f64::max)
+}
+
+fn condition(matrix: &DMatrix<f64>) -> f64 {
+    if matrix.is_empty() {
+        return 1.0;
+    }
     let values = matrix.singular_values();
     values.max() / values.min()
 }
@@ -369,7 +383,7 @@ fn magnification(robot: &Robot, function: Function, state: &State, expected: &[f
             let mass = floating_mass_matrix(robot, &state.q);
             conditioning(&mass)?;
             let jacobians = self::expected(robot, Function::TipJacobians, state);
-            let number = condition(&contact_system(robot, &flat(mass), &jacobians).0);
+            let number = contact_condition(robot, &flat(mass), &jacobians);
             return (number < 1e12).then_some(number);
         }
         _ => oracle::mass_matrix(robot, &state.q, loaded),

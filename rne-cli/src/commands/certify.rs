@@ -49,8 +49,7 @@ results of this computer, and bounds their error. It fails if the code branches,
 computes in double precision or calls a function of others.
 
 Needed: arm-none-eabi-gcc with objdump; used if installed: qemu-system-arm,
-cppcheck. docs/assurance.md says how to install them, and what each number
-means. For a file of `rne emit`, repeat its options.")]
+cppcheck. See docs/assurance.md. For a file of `rne emit`, repeat its options.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
@@ -64,6 +63,9 @@ pub(crate) struct Arguments {
     /// Compiler [default: arm-none-eabi-gcc or rustc]
     #[arg(long, value_name = "PROGRAM")]
     pub(super) cc: Option<String>,
+    /// More options for the compiler, in one argument
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(super) cc_options: String,
     /// cortex-m4 or cortex-m7, with FPU
     #[arg(long, value_name = "CORE", default_value = "cortex-m4", value_parser = core)]
     pub(super) cpu: Core,
@@ -514,6 +516,9 @@ fn command(arguments: &Arguments) -> String {
     );
     if let Some(compiler) = arguments.cc.as_ref().filter(|compiler| *compiler != arguments.lang.compiler()) {
         let _ = write!(command, " --cc {}", robot_file::shell(Path::new(compiler)));
+    }
+    if !arguments.cc_options.is_empty() {
+        let _ = write!(command, " --cc-options={}", robot_file::shell(Path::new(&arguments.cc_options)));
     }
     command.push_str(&of_emit(arguments));
     if arguments.json {

@@ -58,14 +58,15 @@ pub(super) fn build(
         toolchain::text(Command::new(gcc).current_dir(folder).args(options).args(flags).args(files))
     };
     let cpu = format!("target-cpu={}", arguments.cpu.name());
+    let more: Vec<&str> = arguments.cc_options.split_whitespace().collect();
     let (source, object, text, options, hashes);
     match arguments.lang {
         Language::C => {
             text = code.source(&header);
             write(&c_source, &text)?;
-            let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
+            let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"], &more].concat();
             compile(&own, &[&c_source])?;
-            options = [&board::OPTIONS[..], &["-ffunction-sections"], &flags].concat();
+            options = [&board::OPTIONS[..], &["-ffunction-sections"], &flags, &more].concat();
             hashes = BTreeMap::from([
                 (header.clone(), sha256(code.header().as_bytes())),
                 (c_source.clone(), sha256(text.as_bytes())),
@@ -78,7 +79,7 @@ pub(super) fn build(
             write("arm.rs", &text)?;
             write("lib.rs", &rust_library(robot.dof(), programs, calls))?;
             let target = ["--target", "thumbv7em-none-eabihf", "--edition", "2024"];
-            options = [&target[..], &["-Copt-level=3", "-Cpanic=abort", "-C", &cpu]].concat();
+            options = [&target[..], &["-Copt-level=3", "-Cpanic=abort", "-C", &cpu], &more].concat();
             let mut command = Command::new(compiler);
             command.current_dir(folder).args(&options);
             command.args(["--crate-type", "lib", "--crate-name", "arm", "--emit", "obj=arm.o", "lib.rs"]);

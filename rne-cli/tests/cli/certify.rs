@@ -98,6 +98,38 @@ fn the_figures_of_json_are_those_of_the_page() {
     }
 }
 
+/// The table of docs/firmware.md, and that more options of the compiler do not change a bit: QEMU's results are
+/// compared with those of this computer.
+#[test]
+fn options_of_the_compiler_make_a_quadruped_smaller() {
+    if !has_tools() {
+        return;
+    }
+    let document = fs::read_to_string(Path::new(ROOT).join("docs/firmware.md")).expect("it is there");
+    let rows: Vec<Vec<&str>> = document
+        .lines()
+        .filter(|line| line.starts_with("| `-O2"))
+        .map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+        .collect();
+    assert_eq!(rows.len(), 3);
+    let certify = ["certify", "docs/standing_hyq.yaml", "--function", "inverse_dynamics_of_floating_base", "--json"];
+    for row in rows {
+        let options = row[0].trim_start_matches("-O2").trim();
+        let text = fine(&[&certify[..], &["--states", "100", &format!("--cc-options={options}")]].concat());
+        let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let cost = &json["cost"];
+        let of = |figure: &str| cost[figure].as_u64().expect("a number");
+        assert!(options.is_empty() || json["command"].as_str().expect("text").contains(options), "{text}");
+        assert_eq!(json["emulation"]["instructions"], cost["instructions"]);
+        // the figures are those of one compiler
+        if text.contains("12.2.1") {
+            let figures = [of("instructions"), of("cycles"), of("code") + of("constants"), of("stack")];
+            assert_eq!(figures.map(|figure| figure.to_string()).as_slice(), &row[1..]);
+        }
+    }
+    fails(1, &[&certify[..], &["--cc-options=-fno-such-option"]].concat(), &["-fno-such-option"]);
+}
+
 /// The code of the certificate is a file that anybody can write: by its command, and of a robot file on standard input.
 #[test]
 fn the_code_of_a_certificate_is_what_its_command_writes() {
