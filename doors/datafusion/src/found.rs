@@ -118,7 +118,7 @@ fn unknowns(
         unit: structure.unit(base.kept),
         is_excited: report.is_excited(),
     });
-    let joints = structure.robot().joints.iter().zip(friction).enumerate();
+    let joints = structure.robot().independent_joints().zip(friction).enumerate();
     let friction = joints.flat_map(|(at, (joint, (friction, is_excited)))| {
         let kind = joint.row.kind;
         let viscous = if kind == JointKind::Revolute { "N m s/rad" } else { "N s/m" };

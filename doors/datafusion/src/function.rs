@@ -8,7 +8,7 @@ use datafusion::common::{Result, ScalarValue, exec_err, internal_err, plan_err};
 use datafusion::logical_expr::{
     ColumnarValue, Documentation, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature,
 };
-use rne::compiled::{Argument as Input, Arguments, Destination, Function, Layout};
+use rne::compiled::{Argument as Input, Arguments, CompiledArm, Destination, Function, Layout};
 
 use crate::argument::{self, Argument};
 use crate::call::{Call, key};
@@ -65,7 +65,6 @@ impl Computation {
 
     /// The numbers of so many states, one state after the other.
     fn run(self, held: &Held, states: usize, arguments: &[Argument<'_>]) -> Result<Vec<f64>> {
-        let arm = &held.arm;
         let mut given = Arguments::new();
         for (name, argument) in self.arguments().into_iter().zip(arguments) {
             given = match given.with(name, argument.array()) {
@@ -73,23 +72,22 @@ impl Computation {
                 None => return internal_err!("{}: `{name}` is no argument", self.name()),
             };
         }
-        let run = |function: Function| {
+        let run = |arm: &CompiledArm, function: Function| {
             let mut numbers = vec![0.0; states * function.layout(arm.dof(), 1).len()];
             arm.run(function, states, &given, Destination::Rows(&mut numbers)).map_err(external)?;
             Ok(numbers)
         };
         match self {
-            Self::Of(function) => run(function),
+            Self::Of(function) => run(&held.arm, function),
             Self::Residual => {
-                let mut torques = run(Function::InverseDynamics)?;
-                let [_, qd, qdd, measured] = arguments else { return internal_err!("residual: no torques") };
-                let joints = arm.dof();
+                let mut torques = run(held.with_rotors(), Function::InverseDynamics)?;
+                let [_, qd, _, measured] = arguments else { return internal_err!("residual: no torques") };
+                let joints: Vec<_> = held.arm.robot().independent_joints().collect();
                 for (at, torque) in torques.iter_mut().enumerate() {
-                    let (state, joint) = (at / joints, &arm.robot().joints[at % joints]);
-                    let of = |argument: &Argument<'_>| argument.at(state, at % joints, joints);
-                    let rotor = joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia);
+                    let (state, joint) = (at / joints.len(), at % joints.len());
+                    let of = |argument: &Argument<'_>| argument.at(state, joint, joints.len());
                     // rows have no order: friction is that of a speed
-                    *torque = of(measured) - (*torque + rotor * of(qdd) + joint.friction(of(qd)));
+                    *torque = of(measured) - (*torque + joints[joint].friction(of(qd)));
                 }
                 Ok(torques)
             }

@@ -65,7 +65,7 @@ impl AggregateUDFImpl for IdentificationFunction {
             return plan_err!("{NAME}: DISTINCT is not for rows of states; select the distinct rows before");
         }
         let robot = given.exprs.first().and_then(|robot| robot.downcast_ref::<Literal>());
-        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?.identified()?;
+        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
         let columns = argument::columns(given.expr_fields);
         let robot = held.arm.robot();
         argument::check(NAME, &ARGUMENTS, &columns, robot)?;

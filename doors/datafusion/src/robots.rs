@@ -28,6 +28,7 @@ pub(crate) struct Held {
     pub(crate) arm: CompiledArm,
     hash: String,
     structure: OnceLock<Arc<Structure>>,
+    with_rotors: OnceLock<CompiledArm>,
 }
 
 impl Held {
@@ -47,17 +48,9 @@ impl Held {
         Arc::clone(found)
     }
 
-    /// Refuses robots whose parameters are not identified.
-    pub(crate) fn identified(&self) -> Result<&Self> {
-        let robot = self.arm.robot();
-        match robot.joints.iter().find(|joint| joint.coupling.is_some()) {
-            Some(follower) => plan_err!(
-                "the joint {} of {} follows other joints, and parameters of such a robot are not identified yet",
-                follower.name,
-                robot.name
-            ),
-            None => Ok(self),
-        }
+    /// The arm with the rotors of its motors.
+    pub(crate) fn with_rotors(&self) -> &CompiledArm {
+        self.with_rotors.get_or_init(|| CompiledArm::from_robot(&self.arm.robot().clone().with_rotors()))
     }
 }
 
@@ -112,7 +105,8 @@ impl Robots {
             hash
         });
         hash.truncate(DIGITS);
-        Arc::make_mut(&mut self.0).insert(name.to_owned(), Held { arm, hash, structure: OnceLock::new() });
+        Arc::make_mut(&mut self.0)
+            .insert(name.to_owned(), Held { arm, hash, structure: OnceLock::new(), with_rotors: OnceLock::new() });
         self
     }
 

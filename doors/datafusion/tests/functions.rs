@@ -43,9 +43,33 @@ joints:
     motor: {inertia: 0, gear_ratio: 1, viscous: 0, coulomb: [2.0, -1.0], coulomb_width: 0.05}
 ";
 
+/// Two level jaws, of which one moves twice as far as the other.
+const JAWS: &str = "
+format: 2
+name: jaws
+source: own
+convention: modified
+gravity: [0, -9.81, 0]
+tool: {on: left}
+joints:
+  - name: left
+    type: prismatic
+    dh: {theta: 0, d: 0, a: 0, alpha: 0}
+    link: {mass: 0.3}
+    motor: {inertia: 0.001, gear_ratio: 10, viscous: 0.02, coulomb: [0.0, 0.0]}
+  - name: right
+    parent: base
+    type: prismatic
+    dh: {theta: 0, d: 0, a: 0.1, alpha: 0}
+    link: {mass: 0.2}
+couplings:
+  - {joint: right, follows: {left: 2}}
+";
+
 fn robots() -> Robots {
     let robots = Robots::shipped().and_then(|robots| robots.with_yaml(ROD));
-    robots.and_then(|robots| robots.with_yaml(WHEEL)).expect("they are shipped")
+    let robots = robots.and_then(|robots| robots.with_yaml(WHEEL));
+    robots.and_then(|robots| robots.with_yaml(JAWS)).expect("they are shipped")
 }
 
 fn context() -> SessionContext {
@@ -203,7 +227,7 @@ async fn a_base_that_floats_has_its_functions() -> Result<()> {
         (Function::CentroidalMomentumMatrix, "q", ""),
         (Function::CentroidalBias, "q, qd_0, qd_1, omega", ""),
     ] {
-        let mut expected = vec![0.0; states * function.layout(2).len()];
+        let mut expected = vec![0.0; states * function.layout(2, 1).len()];
         arm.run(function, states, &all, Destination::Rows(&mut expected)).expect("it computes");
         let call = format!("{function}('{key}', {arguments})");
         let found = one(&context, &format!("SELECT {call} AS it FROM log")).await?;
@@ -252,6 +276,19 @@ async fn a_residual_is_what_the_model_and_its_motors_do_not_explain() -> Result<
     let model =
         2.5 * 9.81 * 0.4 * angle.cos() + (2.5 * 0.4 * 0.4 + 100.0 * 0.001) * acceleration + 100.0 * 0.02 * speed;
     let call = format!("residual('{rod}', [{angle}], [{speed}], [{acceleration}], [{measured}])");
+    let found = numbers(one(&context, &format!("SELECT {call}")).await?.column(0))[0];
+    assert!((found - (measured - model)).abs() < 1e-13, "{found}, by hand {}", measured - model);
+    Ok(())
+}
+
+/// The mass of a follower counts by the square of its ratio.
+#[tokio::test]
+async fn a_residual_has_the_followers() -> Result<()> {
+    let (context, name) = (context(), key("jaws"));
+    let (speed, acceleration, measured) = (1.5, -2.0, 20.0);
+    let inertia = 0.3 + 100.0 * 0.001 + 4.0 * 0.2;
+    let model = inertia * acceleration + 100.0 * 0.02 * speed;
+    let call = format!("residual('{name}', [0.4], [{speed}], [{acceleration}], [{measured}])");
     let found = numbers(one(&context, &format!("SELECT {call}")).await?.column(0))[0];
     assert!((found - (measured - model)).abs() < 1e-13, "{found}, by hand {}", measured - model);
     Ok(())

@@ -20,9 +20,13 @@ use rne_identify::{Options, Structure};
 const ARM: &str = include_str!("../../../rne-identify/tests/two.yaml");
 const JOINTS: usize = 2;
 
+/// Three joints and a finger that follows another.
+const GRIPPER: &str = include_str!("../../../docs/gripper.yaml");
+
 /// Those that are shipped, and the arm.
 fn robots() -> Robots {
-    Robots::shipped().and_then(|robots| robots.with_yaml(ARM)).expect("they are right")
+    let robots = Robots::shipped().and_then(|robots| robots.with_yaml(ARM));
+    robots.and_then(|robots| robots.with_yaml(GRIPPER)).expect("they are right")
 }
 
 fn context(partitions: usize) -> SessionContext {
@@ -55,7 +59,8 @@ fn states(yaml: &str, count: i64, noise: f64) -> Vec<State> {
         let mut tau = vec![0.0; joints];
         arm.run(Function::InverseDynamics, 1, &given, Destination::Rows(&mut tau)).expect("it computes");
         for (joint, tau) in tau.iter_mut().enumerate() {
-            *tau += arm.robot().joints[joint].friction(qd[joint]) + white[joint];
+            let friction = arm.robot().independent_joint(joint).map_or(0.0, |of| of.friction(qd[joint]));
+            *tau += friction + white[joint];
         }
         State { number, lists: [q, qd, qdd, tau] }
     };
@@ -182,6 +187,24 @@ async fn an_arm_is_identified_from_made_up_torques() -> Result<()> {
     for (measured, identified) in states(ARM, 100, 0.0).iter().zip(states(&found.robot, 100, 0.0)) {
         let [_, _, _, measured] = &measured.lists;
         for (measured, identified) in measured.iter().zip(&identified.lists[3]) {
+            assert!((measured - identified).abs() < 1e-5, "{measured} {identified}");
+        }
+    }
+    Ok(())
+}
+
+/// A joint that follows another has no torque of its own: three noises, and torques of three joints.
+#[tokio::test]
+async fn a_gripper_is_identified() -> Result<()> {
+    let context = context(4);
+    context.register_table("log", Arc::new(table(&states(GRIPPER, 3000, 1e-6), 5)))?;
+    let call = format!("identification('{}', q, qd, qdd, tau)", key("gripper"));
+    let found = identified(&context, &format!("SELECT {call} FROM log")).await?;
+    assert_eq!((found.states, found.noise.len()), (3000, 3));
+    let of_friction = found.names.iter().filter(|name| name.starts_with("viscous") || name.starts_with("coulomb"));
+    assert_eq!(of_friction.count(), 3 * 3, "{:?}", found.names);
+    for (measured, identified) in states(GRIPPER, 100, 0.0).iter().zip(states(&found.robot, 100, 0.0)) {
+        for (measured, identified) in measured.lists[3].iter().zip(&identified.lists[3]) {
             assert!((measured - identified).abs() < 1e-5, "{measured} {identified}");
         }
     }

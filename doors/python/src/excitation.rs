@@ -6,6 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne_identify::{AskedLimits, ExcitationOptions, MotionLimits, excite};
+use rne_model::Joint;
 
 use crate::arm::Arm;
 use crate::interruption::check_signals;
@@ -127,16 +128,16 @@ pub(crate) fn exciting<'py>(py: Python<'py>, arm: PyRef<'_, Arm>, asked: Asked) 
             all.extend(numbers);
         }
     }
-    let of_joint = |(at, used): (usize, &rne_identify::JointUse)| OfJoint {
+    let of_joint = |(at, (joint, used)): (usize, (&Joint, &rne_identify::JointUse))| OfJoint {
         joint: at + 1,
-        name: robot.joints[at].name.clone(),
+        name: joint.name.clone(),
         start: used.start,
         lower: used.bounds.lower,
         upper: used.bounds.upper,
         velocity: used.bounds.velocity,
         acceleration: used.bounds.acceleration,
         effort: used.effort,
-        unit: robot.joints[at].row.kind.position_unit(),
+        unit: joint.row.kind.position_unit(),
     };
     let of_base = |base: &rne_identify::BaseExcitation| OfBase {
         name: base.name.clone(),
@@ -154,7 +155,10 @@ pub(crate) fn exciting<'py>(py: Python<'py>, arm: PyRef<'_, Arm>, asked: Asked) 
     reply.set_item("condition", found.condition)?;
     reply.set_item("first_condition", found.first_condition)?;
     reply.set_item("evaluations", found.evaluations)?;
-    reply.set_item("joints", found.joints.iter().enumerate().map(of_joint).collect::<Vec<_>>())?;
+    reply.set_item(
+        "joints",
+        robot.independent_joints().zip(&found.joints).enumerate().map(of_joint).collect::<Vec<_>>(),
+    )?;
     reply.set_item("base_parameters", found.bases.iter().map(of_base).collect::<Vec<_>>())?;
     Ok(reply)
 }

@@ -83,16 +83,8 @@ impl Reading {
     }
 }
 
-/// The robot of an arm whose torques a log may have: of one with free parameters nobody knows them, and parameters of
-/// followers are not identified.
+/// The robot of an arm whose torques a log may have: of one with free parameters nobody knows them.
 pub(crate) fn robot_of(arm: &Arm) -> PyResult<Robot> {
-    if let Some(follower) = arm.robot().joints.iter().find(|joint| joint.coupling.is_some()) {
-        return Err(PyValueError::new_err(format!(
-            "the joint `{}` follows other joints, and logs of such a robot are not read yet: functions such as \
-             `inverse_dynamics` and `momentum_and_rate` take it",
-            follower.name
-        )));
-    }
     if arm.robot().run_time.is_empty() {
         return Ok(arm.robot().clone());
     }

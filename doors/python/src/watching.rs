@@ -100,7 +100,7 @@ fn prediction_errors(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> 
 /// The joints whose torques are no better predicted than by their mean, but those of which the file says that nothing
 /// is known: a rule of `rne watch`.
 fn unexplained(robot: &Robot, errors: &[JointError]) -> String {
-    let each = robot.joints.iter().zip(errors).zip(Identification::not_excited(robot));
+    let each = robot.independent_joints().zip(errors).zip(Identification::not_excited(robot));
     let found = each.filter(|((_, error), unknown)| {
         // an effort that does not change, and is what the model says, is explained
         let is_nothing = error.deviation == 0.0 && error.residual <= NOTHING;

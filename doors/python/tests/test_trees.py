@@ -159,8 +159,19 @@ def test_a_gripper_has_the_torques_of_free_fingers():
     assert np.allclose(velocities[0], qd[0] + 1e-3 * qdd[0], atol=1e-9)
     with pytest.raises(ValueError, match="finger_b"):
         arm.regressor(q, qd, qdd)
-    with pytest.raises(ValueError, match="`finger_b` follows other joints"):
-        rne.excite(arm, seconds=1.0)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_a_log_of_a_gripper_has_its_free_joints():
+    arm = rne.load(GRIPPER)
+    found = rne.excite(arm, seconds=4.0, rate=200.0, range=2.0, velocity=1.0, acceleration=5.0, evaluations=50)
+    q, qd, qdd = found.q, found.qd, found.qdd
+    assert q.shape == (len(found.time), 3) and [joint["name"] for joint in found.joints] == arm.joints
+    tau = arm.inverse_dynamics(q, qd, qdd)
+    log = found.columns() | {f"tau{joint + 1}": tau[:, joint] for joint in range(3)}
+    identified = rne.identify(arm, log, friction=False, cutoff=10.0)
+    errors = np.abs(identified.arm.inverse_dynamics(q, qd, qdd) - tau).max(axis=0)
+    assert (errors <= 1e-2 * np.abs(tau).max(axis=0)).all(), errors
 
 
 def test_wrenches_at_tips_by_name_and_by_array():
