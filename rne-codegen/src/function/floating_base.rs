@@ -255,4 +255,15 @@ pub(super) const FLOATING_BASE: &[Entry] = &[
         feels_rotors: true,
         ..Entry::of(Function::ForwardDynamicsInContact, Capability::ContactDynamics)
     },
+    Entry {
+        output: "derivatives",
+        listed: "returned: force, moment and torques by q, then by q̇, then by the angular velocity of the base",
+        own: &ON_BASE,
+        answer: Answer::Tables(&[
+            AnswerTable::of("force and moment on the base and torques by q; SI units", VELOCITIES, Labels::Joints),
+            AnswerTable::of("by q̇; SI units", VELOCITIES, Labels::Joints),
+            AnswerTable::of("by the angular velocity of the base, in axes of frame 0; SI units", VELOCITIES, AXES),
+        ]),
+        ..Entry::of(Function::FloatingInverseDynamicsDerivatives, Capability::FloatingInverseDynamicsDerivatives)
+    },
 ];

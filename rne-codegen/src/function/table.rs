@@ -246,6 +246,16 @@ macro_rules! functions {
                  (N m) about the origin of tip k, exerted ON the robot by its contact, in world axes; the moment of a \
                  point and all of a tip without a contact are zero. 1e-8 1/kg is added to the diagonal of J M⁻¹ Jᵀ, so \
                  that contacts that hold more than the robot can move have finite forces in double precision.";
+            FloatingInverseDynamicsDerivatives = floating_inverse_dynamics_derivatives(
+                q: Positions, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
+            ) -> FloatingTorqueDerivatives:
+                "Derivatives of `inverse_dynamics_of_floating_base` by q, by q̇ and by the angular velocity of the base.",
+                "base, wrenches: as in inverse_dynamics_of_floating_base; the wrenches do not change in axes of their \
+                 tips. dq[i][j], dqd[i][j], domega[i][k]: rows are the force (N) on the base, the moment (N m) about \
+                 the origin of frame 0 and the torques; column j is joint j, column k is component k of the angular \
+                 velocity of the base. The base in axes of frame 0, in which its acceleration less gravity stays the \
+                 same; so its position and orientation do not enter. The derivative by the accelerations is \
+                 floating_mass_matrix.";
         }
     };
 }
