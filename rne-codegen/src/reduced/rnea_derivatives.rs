@@ -272,10 +272,10 @@ fn of_base<'s>(
     let own = own(Composite::of_matter(builder, &matter(arm, None)), &motion);
     let own = base.gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, &motion, factor));
     let whole = load.with_link(own);
-    let mut columns = load.columns(None);
-    for column in base.gyrostats.iter().flat_map(|gyrostat| columns_of(arm, gyrostat, &motion)) {
-        gather(&mut columns, column);
-    }
+    // rotors bring a joint's column over another branch than its own
+    let mut columns = Vec::new();
+    let of_rotors = base.gyrostats.iter().flat_map(|gyrostat| columns_of(arm, gyrostat, &motion));
+    load.columns(None).into_iter().chain(of_rotors).for_each(|column| gather(&mut columns, column));
     let wrench = [0, 1, 2].map(|axis| {
         let unit = Vector([0, 1, 2].map(|other| if other == axis { builder.one() } else { builder.zero() }));
         let by_twist = whole.body.carried(motion.omega.cross(unit), builder.no_vector());
