@@ -58,11 +58,13 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-/// Columns by the position and by the rate of each joint, and by the angular velocity of the base. Each has six rows of
-/// the base, and those of the joints.
+/// Six rows of the base, and those of the joints.
+type Column<J, T> = ([T; BASE], <J as PerJoint>::Of<T>);
+
+/// Columns by the position and by the rate of each joint, and by the angular velocity of the base.
 struct OfFloatingBase<J: PerJoint, T: Clone> {
-    joints: [J::Of<([T; BASE], J::Of<T>)>; 2],
-    omega: [([T; BASE], J::Of<T>); 3],
+    joints: [J::Of<Column<J, T>>; 2],
+    omega: [Column<J, T>; 3],
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {

@@ -95,12 +95,12 @@ impl<T: Scalar> DynFloatingTorqueDerivatives<T> {
     pub fn to_pinocchio(&self, base: &BaseMotion<T>, mass: &[Vec<T>]) -> [Vec<Vec<T>>; 2] {
         let units = Units::new(base);
         [0, 1].map(|kind| {
-            let rows = self.dq.iter().zip(&self.dqd).zip(&self.domega).zip(mass);
-            let row = |(((dq, dqd), domega), mass): (((&Vec<T>, &Vec<T>), &[T; 3]), &Vec<T>)| {
-                let columns = 0..BASE + dq.len();
+            let rows = self.dq.iter().zip(&self.dqd).zip(self.domega.iter().zip(mass));
+            rows.map(|((dq, dqd), (domega, mass))| {
+                let columns = 0..BASE + dq.len().min(dqd.len());
                 columns.map(|column| units.element(kind, column, (mass, [dq, dqd], domega))).collect()
-            };
-            rows.map(row).collect()
+            })
+            .collect()
         })
     }
 }
@@ -123,7 +123,7 @@ impl<T: Scalar> Units<T> {
 
     /// An element of ∂τ/∂q, or of ∂τ/∂v where `kind` is 1, from a row of each matrix.
     fn element(&self, kind: usize, column: usize, (mass, joints, domega): (&[T], [&[T]; 2], &[T; 3])) -> T {
-        let by = |[x, y, z]: [T; 3]| mass[0] * x + mass[1] * y + mass[2] * z;
+        let by = |change: [T; 3]| mass.iter().zip(change).fold(T::zero(), |sum, (&element, x)| sum + element * x);
         match (kind, column) {
             (0, 0..3) => T::zero(),
             (0, 3..BASE) => by(self.turned[column - 3]),

@@ -134,9 +134,8 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
             [found.base.linear.to_vec(), found.base.angular.to_vec(), found.qdd.to_vec()].concat()
         }
         Function::FloatingInverseDynamicsDerivatives => {
-            let at_tip = [Wrench { force, moment }];
-            let found = robot.floating_inverse_dynamics_derivatives(q, qd, qdd, &base, &at_tip);
-            [flat(found.dq), flat(found.dqd), flat(found.domega)].concat()
+            let by = robot.floating_inverse_dynamics_derivatives(q, qd, qdd, &base, &[Wrench { force, moment }]);
+            [flat(by.dq), flat(by.dqd), flat(by.domega)].concat()
         }
         Function::FloatingRegressor => robot.floating_regressor(q, qd, qdd, &base).into_iter().flat_map(flat).collect(),
         Function::FloatingKineticEnergy => vec![robot.floating_kinetic_energy(q, qd, &twist)],
