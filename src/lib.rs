@@ -123,9 +123,9 @@
 #[doc(inline)]
 pub use rne_macro::{
     Actuation, BatchInverseDynamics, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
-    FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, ForwardDynamics, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TipWrenches,
+    FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
+    ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
+    MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -133,11 +133,12 @@ pub use rne_model as model;
 pub use rne_runtime::{
     AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchInverseDynamics,
     BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual, Energy,
-    FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
-    ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches,
-    Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState,
-    Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives,
-    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics,
+    FloatingRegressor, FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
+    InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix,
+    MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics,
+    Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
+    dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -145,8 +146,8 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(inline)]
 pub use rne_runtime::{
-    BaseParameter, BaseParameters, DynArm, DynObserverState, DynTorqueDerivatives, DynTrace, LinkParameter, LoadError,
-    WrongJointCount, WrongLength,
+    BaseParameter, BaseParameters, DynArm, DynFloatingTorqueDerivatives, DynObserverState, DynTorqueDerivatives,
+    DynTrace, LinkParameter, LoadError, WrongJointCount, WrongLength,
 };
 // The Python package has arms of any number of joints.
 #[doc(hidden)]

@@ -175,6 +175,7 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::FloatingEnergy
                         | Capability::FloatingKinematics
                         | Capability::ContactDynamics
+                        | Capability::FloatingInverseDynamicsDerivatives
                 )
         };
         let functions = Function::ALL.into_iter().filter(|&function| !is_left_out(function));

@@ -6,7 +6,8 @@ Usage: python floating.py RNE FOLDER [--write]     where RNE is the binary and F
 a position, linear and angular velocities and accelerations of it, which Pinocchio takes as a configuration with a
 quaternion and as spatial vectors in axes of the base. Its mass matrix is by crba, its bias by nle, its accelerations by
 aba, Jacobians and accelerations of tips are those of its frames, in world axes. Its regressor refers to frames of
-joints: the parameters of units about our link frames are carried there. With --write the robot files and the values go
+joints: the parameters of units about our link frames are carried there. Its derivatives of rnea, with a wrench at
+each tip, are by the tangent of its configuration, in axes of the base. With --write the robot files and the values go
 to tests/functions/floating; of the regressor, its product with random parameters.
 """
 
@@ -23,10 +24,11 @@ import pinocchio as pin
 TOLERANCE = 1e-12
 DAMPING = 1e-8
 STATES = 3
+DERIVATIVES = "floating_inverse_dynamics_derivatives"
 FUNCTIONS = ["inverse_dynamics_of_floating_base", "floating_mass_matrix", "floating_bias", "floating_forward_dynamics",
              "centroidal_momentum_matrix", "centroidal_bias", "floating_regressor", "floating_kinetic_energy",
              "floating_potential_energy", "centroidal_momentum", "tip_jacobians", "tip_accelerations",
-             "forward_dynamics_in_contact"]
+             "forward_dynamics_in_contact", DERIVATIVES]
 
 # Name of the URDF, the licence, if its numbers stand in this repository, links that are tips, and the
 # contacts: points hold all tips, the feet of a quadruped; welds hold the first two, the feet of a humanoid.
@@ -42,7 +44,7 @@ ROBOTS = [
 ]
 
 
-def state(random, names):
+def state(random, names, tips):
     """Joints, and the base in its own axes: v of its origin, ω, the acceleration of this point, ω̇, and gravity."""
     dof = len(names)
     joints = {"q": random.uniform(-1, 1, dof), "qd": random.uniform(-2, 2, dof), "qdd": random.uniform(-5, 5, dof)}
@@ -54,6 +56,7 @@ def state(random, names):
     told = {"omega": omega, "omega_dot": omega_dot, "acceleration": acceleration, "gravity": gravity}
     position = np.random.default_rng(dof + 1).normal(size=3)
     told |= {"velocity": velocity, "pose": np.array([*turn.flatten(), *position]), "base_rotation": turn.flatten()}
+    joints["wrenches"] = np.random.default_rng(dof + 2).normal(size=6 * tips, scale=10)
     return {**joints, "tau": tau}, told
 
 
@@ -158,6 +161,16 @@ def expected(model, names, tips, kind, joints, told, links):
     wrenches = np.zeros(6 * len(tips))
     wrenches[rows] = data.lambda_c
     of_tips.append(np.concatenate([accelerating, wrenches]))
+    # what tips exert is constant in their axes, what acts on joints is the opposite of it
+    forces = pin.StdVec_Force()
+    forces.extend([pin.Force.Zero()] * model.njoints)
+    for tip, wrench in zip(tips, joints["wrenches"].reshape(-1, 6)):
+        at_tip = model.frames[model.getFrameId(tip)]
+        forces[at_tip.parentJoint] -= at_tip.placement.act(pin.Force(wrench))
+    # the matrices live in the data
+    data = model.createData()
+    by = pin.computeRNEADerivatives(model, data, q, v, a, forces)[:2]
+    of_tips.append(np.concatenate([matrix[np.ix_(order, order)].flatten() for matrix in by]))
     results = [torques, mass.flatten(), bias, accelerations, *centroidal, columns, *energies, momentum, *of_tips]
     return dict(zip(FUNCTIONS, results))
 
@@ -172,6 +185,22 @@ def contacts(tips, kind):
     """The list `contacts` of the robot file."""
     contact = "{{tip: {}, kind: {}}}"
     return ", ".join(contact.format(tip, kind) for tip in (tips if kind == "point" else tips[:2]))
+
+
+def cross(vector):
+    """The matrix of a cross product."""
+    return np.cross(vector, np.eye(3), axisb=0, axisc=0)
+
+
+def by_tangent(rne, file, options, velocity, mass):
+    """∂τ/∂q and ∂τ/∂v of Pinocchio: its spatial acceleration and gravity in world axes are constant."""
+    result = evaluated(rne, file, DERIVATIVES, options)
+    dq, dqd, domega = (np.array(result[name]) for name in ["dq", "dqd", "domega"])
+    linear, omega = mass.reshape(len(dq), -1)[:, :3], options["base-omega"]
+    by_turn, by_linear = -linear @ cross(options["gravity"]), linear @ cross(omega)
+    by_angular = domega - linear @ cross(velocity)
+    by_q = np.hstack([np.zeros_like(by_turn), by_turn, dq])
+    return np.concatenate([by_q.flatten(), np.hstack([by_linear, by_angular, dqd]).flatten()])
 
 
 def numbers(result):
@@ -189,8 +218,9 @@ def link_poses(rne, file, q):
     return [matrix(pose) for pose in poses]
 
 
-def found(rne, file, function, joints, told):
+def found(rne, file, function, joints, told, listed, mass):
     """The same of the runtime library."""
+    wrenches = joints["wrenches"].reshape(-1, 6)
     options = {**joints, "base-rotation": told["base_rotation"], "base-omega": told["omega"],
                "base-omega-dot": told["omega_dot"], "base-acceleration": told["acceleration"],
                "gravity": told["gravity"], "base-velocity": told["velocity"], "base-pose": told["pose"]}
@@ -209,6 +239,10 @@ def found(rne, file, function, joints, told):
         "floating_bias": ["q", "qd", "base-omega"],
         "floating_forward_dynamics": ["q", "qd", "tau", "base-omega"],
     }
+    if function == DERIVATIVES:
+        told = {key: options[key] for key in takes["inverse_dynamics_of_floating_base"]}
+        told |= {f"tip-wrench={tip}": wrench for tip, wrench in zip(listed, wrenches)}
+        return by_tangent(rne, file, told, options["base-velocity"], mass)
     return np.array(numbers(evaluated(rne, file, function, {key: options[key] for key in takes[function]})))
 
 
@@ -237,17 +271,21 @@ def main():
             model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
             random, worst, states = np.random.default_rng(1), 0.0, []
             for _ in range(STATES):
-                joints, told = state(random, names)
+                joints, told = state(random, names, len(tips))
                 values = expected(model, names, tips, kind, joints, told, link_poses(rne, file, joints["q"]))
                 for function, wanted in values.items():
                     # accelerations are as uncertain as the mass matrix is badly conditioned
-                    size = 6 + len(names)
-                    of = np.linalg.cond(values["floating_mass_matrix"].reshape(size, size)) if "forward" in function else 1
-                    error = np.abs(found(rne, file, function, joints, told) - wanted).max() / np.abs(wanted).max() / of
+                    size, mass = 6 + len(names), values["floating_mass_matrix"]
+                    of = np.linalg.cond(mass.reshape(size, size)) if "forward" in function else 1
+                    error = np.abs(found(rne, file, function, joints, told, listed, mass) - wanted).max() / np.abs(wanted).max() / of
                     worst = max(worst, error)
+                # ours, and the tangent of its configuration
+                derivatives = values.pop(DERIVATIVES)
                 if states:
-                    # one matrix is enough
+                    # one matrix of each is enough
                     del values["floating_mass_matrix"]
+                else:
+                    values["derivatives_of_pinocchio"] = derivatives
                 # of the regressor, a product is
                 parameters = np.random.default_rng(len(states)).uniform(-1, 1, 10 * (1 + len(names)))
                 rows = values.pop("floating_regressor").reshape(-1, len(parameters))

@@ -274,6 +274,10 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::FloatingRegressor => {
             arm.floating_regressor(q, qd, qdd, base)?.into_iter().flatten().flatten().collect()
         }
+        Function::FloatingInverseDynamicsDerivatives => {
+            let found = arm.floating_inverse_dynamics_derivatives(q, qd, qdd, base, &[*wrench])?;
+            [found.dq.concat(), found.dqd.concat(), found.domega.concat()].concat()
+        }
         Function::FloatingKineticEnergy => vec![arm.floating_kinetic_energy(q, qd, &state.twist())?],
         Function::FloatingPotentialEnergy => vec![arm.floating_potential_energy(q, &state.pose())?],
         Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &state.twist())?.to_vec(),

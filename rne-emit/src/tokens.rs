@@ -173,7 +173,7 @@ impl<'a> Body<'a> {
         let array = |elements: Vec<TokenStream>| quote!([#(#elements),*]);
         let record = |record: Record, parts: Vec<TokenStream>| {
             let Some(library) = self.library else { return quote!((#(#parts),*)) };
-            let (name, fields) = (ident(record.name()), record.fields().map(ident));
+            let (name, fields) = (ident(record.name()), record.fields().iter().copied().map(ident));
             quote!(#library::#name { #(#fields: #parts),* })
         };
         let grouped = layout.fold(&mut outputs(), &array, &record);

@@ -3,8 +3,8 @@
 use core::array;
 
 use rne_codegen::Layout;
-pub use rne_runtime::Pose;
 use rne_runtime::{BaseAcceleration, Wrench};
+pub use rne_runtime::{DynFloatingTorqueDerivatives as FloatingTorqueDerivatives, Pose};
 
 /// One number.
 pub type Number<T> = T;
@@ -114,11 +114,12 @@ impl<T, E: Shaped<T>, const N: usize> Shaped<T> for [E; N] {
 }
 
 macro_rules! records {
-    ($($record:ident { $first:ident, $second:ident })*) => {$(
+    ($($record:ident { $first:ident, $second:ident $(, $third:ident)? })*) => {$(
         impl<T: crate::Number> Shaped<T> for $record<T> {
             fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
                 let $first = Shaped::take(part(layout, 0), numbers);
-                Self { $first, $second: Shaped::take(part(layout, 1), numbers) }
+                let $second = Shaped::take(part(layout, 1), numbers);
+                Self { $first, $second $(, $third: Shaped::take(part(layout, 2), numbers))? }
             }
         }
     )*};
@@ -127,5 +128,5 @@ macro_rules! records {
 records! {
     Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau }
     BaseAcceleration { linear, angular } FloatingAccelerations { base, qdd }
-    AccelerationsAndWrenches { accelerations, wrenches_on_robot }
+    AccelerationsAndWrenches { accelerations, wrenches_on_robot } FloatingTorqueDerivatives { dq, dqd, domega }
 }

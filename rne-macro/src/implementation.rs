@@ -91,9 +91,10 @@ impl Target<'_> {
     fn sizes(&self, capability: Capability, dof: &TokenStream) -> TokenStream {
         let (tips, velocities) = (&self.tips, velocities(dof));
         match capability {
-            Capability::FloatingBase | Capability::FloatingKinematics | Capability::ContactDynamics => {
-                quote!(#dof, #velocities, #tips)
-            }
+            Capability::FloatingBase
+            | Capability::FloatingKinematics
+            | Capability::ContactDynamics
+            | Capability::FloatingInverseDynamicsDerivatives => quote!(#dof, #velocities, #tips),
             Capability::CentroidalMomentum => quote!(#dof, #velocities),
             Capability::FloatingRegressor => {
                 let bodies = bodies(dof);
@@ -367,6 +368,10 @@ impl Target<'_> {
                     Record::AccelerationsAndWrenches => {
                         let tips = &self.tips;
                         quote!(#krate::#name<#dof, #tips, T>)
+                    }
+                    Record::FloatingTorqueDerivatives => {
+                        let velocities = velocities(dof);
+                        quote!(#krate::#name<#dof, #velocities, T>)
                     }
                     Record::TorqueDerivatives
                     | Record::MomentumAndRate

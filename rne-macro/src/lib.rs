@@ -295,6 +295,19 @@ pub fn derive_contact_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ContactDynamics, input.into()).into()
 }
 
+/// Implements the trait `FloatingInverseDynamicsDerivatives` for a struct: the derivatives of the wrench on a base that
+/// nothing holds and of the torques.
+///
+/// The tips are those of [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `FLOATING_INVERSE_DYNAMICS_DERIVATIVES_OPERATIONS`; `DOF`, names and limits come
+/// with `InverseDynamics`.
+#[proc_macro_derive(FloatingInverseDynamicsDerivatives, attributes(robot))]
+pub fn derive_floating_inverse_dynamics_derivatives(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingInverseDynamicsDerivatives, input.into()).into()
+}
+
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.
 ///
 /// The robot file needs a `motor` at one joint at least.

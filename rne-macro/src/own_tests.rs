@@ -43,7 +43,8 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         | Capability::FloatingRegressor
         | Capability::FloatingEnergy
         | Capability::FloatingKinematics
-        | Capability::ContactDynamics => &[],
+        | Capability::ContactDynamics
+        | Capability::FloatingInverseDynamicsDerivatives => &[],
     }
 }
 

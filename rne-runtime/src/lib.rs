@@ -36,6 +36,7 @@ mod energy;
 mod error;
 #[cfg(feature = "arm")]
 mod floating_base;
+mod floating_derivatives;
 #[cfg(feature = "arm")]
 mod floating_kinematics;
 #[cfg(feature = "arm")]
@@ -121,6 +122,9 @@ pub use dual::Dual;
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
+#[cfg(feature = "std")]
+pub use floating_derivatives::DynFloatingTorqueDerivatives;
+pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
 pub use names::unknown_frame;

@@ -2,9 +2,9 @@
 
 use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
-    FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
-    Pose, Regressor, Scalar, TipWrenches, Wrench,
+    FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
+    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix,
+    MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -43,6 +43,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + FloatingEnergy<DOF>
     + FloatingKinematics<DOF, NV, 1>
     + ContactDynamics<DOF, NV, 1>
+    + FloatingInverseDynamicsDerivatives<DOF, NV, 1>
 {
 }
 
@@ -132,6 +133,10 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
             let found = robot.floating_forward_dynamics(q, qd, tau, &omega, &[Wrench { force, moment }]);
             [found.base.linear.to_vec(), found.base.angular.to_vec(), found.qdd.to_vec()].concat()
         }
+        Function::FloatingInverseDynamicsDerivatives => {
+            let by = robot.floating_inverse_dynamics_derivatives(q, qd, qdd, &base, &[Wrench { force, moment }]);
+            [flat(by.dq), flat(by.dqd), flat(by.domega)].concat()
+        }
         Function::FloatingRegressor => robot.floating_regressor(q, qd, qdd, &base).into_iter().flat_map(flat).collect(),
         Function::FloatingKineticEnergy => vec![robot.floating_kinetic_energy(q, qd, &twist)],
         Function::FloatingPotentialEnergy => vec![robot.floating_potential_energy(q, &pose_of_base)],
@@ -185,6 +190,7 @@ macro_rules! robot {
                 rne::FloatingEnergy,
                 rne::FloatingKinematics,
                 rne::ContactDynamics,
+                rne::FloatingInverseDynamicsDerivatives,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

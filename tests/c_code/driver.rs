@@ -165,7 +165,7 @@ impl Driver<'_> {
                 Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
                     "q, qd, qdd, omega, omega_dot, acceleration, gravity"
                 }
-                Function::InverseDynamicsOfFloatingBase => {
+                Function::InverseDynamicsOfFloatingBase | Function::FloatingInverseDynamicsDerivatives => {
                     &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
                 }
                 Function::CentroidalBias => "q, qd, omega",
@@ -210,6 +210,9 @@ impl Driver<'_> {
                 }
                 Function::JointWrenches => (format!("{prefix}_wrench x[{n}]"), "x"),
                 Function::InverseDynamicsOfFloatingBase => (format!("{prefix}_floating_torques x"), "&x"),
+                Function::FloatingInverseDynamicsDerivatives => {
+                    (format!("{prefix}_floating_torque_derivatives x"), "&x")
+                }
                 Function::FloatingMassMatrix => (format!("{real} x[{0}][{0}]", 6 + n), "x"),
                 Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
                 Function::FloatingRegressor => (format!("{real} x[{}][{}][10]", 6 + n, 1 + n), "x"),

@@ -101,7 +101,7 @@ pub(crate) fn stubs() -> String {
             | Returned::MomentumAndRate
             | Returned::FloatingTorques
             | Returned::FloatingAccelerations => "tuple[Floats, Floats]",
-            Returned::AccelerationsAndWrenches => "tuple[Floats, Floats, Floats]",
+            Returned::AccelerationsAndWrenches | Returned::FloatingTorqueDerivatives => "tuple[Floats, Floats, Floats]",
             _ => "Floats",
         };
         // a pose of the tip has the name that it has at a frame, too

@@ -441,6 +441,9 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
                 base.linear.into_iter().chain(base.angular).chain(qdd).chain(wrenches).collect()
             })
         }
+        Function::FloatingInverseDynamicsDerivatives => arm
+            .floating_inverse_dynamics_derivatives(q, qd, qdd, base, &wrenches)
+            .map(|by| [flat(by.dq), flat(by.dqd), flat(by.domega)].concat()),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
         Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
         Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),

@@ -130,6 +130,17 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
             let (on_base, torques) = numbers.split_at(6);
             [on_base, &times(&back, torques)].concat()
         }
+        Function::FloatingInverseDynamicsDerivatives => {
+            // Gᵀ A G below the six rows of the base, and below those of the three columns by its angular velocity
+            let (by_joints, by_omega) = numbers.split_at(2 * (6 + dof) * dof);
+            let by_joints = by_joints.chunks((6 + dof) * dof).flat_map(|numbers| {
+                let rows: Vec<_> = numbers.chunks(dof).map(|row| times(&back, row)).collect();
+                [rows[..6].concat(), matrix(&rows[6..])].concat()
+            });
+            let (on_base, of_joints) = by_omega.split_at(18);
+            let of_joints = matrix(&of_joints.chunks(3).map(<[f64]>::to_vec).collect::<Vec<_>>());
+            by_joints.chain(on_base.iter().copied()).chain(of_joints).collect()
+        }
         Function::LinkPoses | Function::JointWrenches => {
             // those of the joints that follow no other: no other function has numbers of links
             let per_joint = numbers.len() / dof;

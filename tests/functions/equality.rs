@@ -15,7 +15,7 @@ use crate::golden::ROBOTS;
 use crate::trees::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 32] = [
+const SAME_BITS: [Function; 33] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -48,6 +48,7 @@ const SAME_BITS: [Function; 32] = [
     Function::CentroidalBias,
     Function::FloatingKineticEnergy,
     Function::CentroidalMomentum,
+    Function::FloatingInverseDynamicsDerivatives,
 ];
 
 /// Of the largest number of the result.
@@ -78,6 +79,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::CentroidalBias
         | Function::GravityTorques
         | Function::BiasTorques
+        | Function::FloatingInverseDynamicsDerivatives
         | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),
         // the joints carry the payload, too
         Function::GravityTorquesWithPayload
@@ -127,6 +129,7 @@ pub(crate) fn error(
         && [
             Function::InverseDynamicsDerivatives,
             Function::InverseDynamicsDerivativesWithPayload,
+            Function::FloatingInverseDynamicsDerivatives,
             Function::InverseDynamicsFromSinCos,
         ]
         .contains(&function);

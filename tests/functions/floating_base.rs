@@ -77,6 +77,60 @@ fn dynamics_of_floating_robots_are_those_of_pinocchio() {
     }
 }
 
+/// The matrices of its derivatives of rnea, by the tangent of its configuration and by its velocity, with a wrench at
+/// each tip.
+#[test]
+fn derivatives_of_floating_robots_are_those_of_pinocchio() {
+    for name in ROBOTS {
+        let golden = json(&format!("{FOLDER}/{name}.golden.json"));
+        let (state, arm) = (&golden["states"][0], Arm::by_no_choice(&read(name), Maker::Runtime).runtime);
+        let array = |key: &str| numbers(&state[key]);
+        let triple = |key: &str| -> [f64; 3] { array(key).try_into().expect("three numbers") };
+        let base = BaseMotion {
+            omega: triple("omega"),
+            omega_dot: triple("omega_dot"),
+            velocity: triple("velocity"),
+            acceleration: triple("acceleration"),
+            gravity: triple("gravity"),
+        };
+        let of_tip = |w: &[f64]| Wrench { force: [w[0], w[1], w[2]], moment: [w[3], w[4], w[5]] };
+        let wrenches: Vec<_> = array("wrenches").chunks(6).map(of_tip).collect();
+        let [q, qd, qdd] = ["q", "qd", "qdd"].map(array);
+        let found = arm.floating_inverse_dynamics_derivatives(&q, &qd, &qdd, &base, &wrenches).expect("one per joint");
+        let mass = arm.floating_mass_matrix(&q).expect("one per joint");
+        let expected = array("derivatives_of_pinocchio");
+        let (by_q, by_v) = expected.split_at(expected.len() / 2);
+        for (found, expected) in found.to_pinocchio(&base, &mass).into_iter().zip([by_q, by_v]) {
+            let error = error_on_scale(&found.concat(), expected, 0.0);
+            assert!(error <= TOLERANCE, "{name}: {error:e}");
+        }
+    }
+}
+
+/// No element of joints on different branches is computed: of the 486 elements of HyQ, which has four legs of three
+/// joints, at least 216 are zero in every state.
+#[test]
+fn derivatives_of_joints_on_different_branches_are_no_operations() {
+    let robot = read("grid_hyq");
+    for form in [Form::SevenSteps, Form::Reduced] {
+        let function = Function::FloatingInverseDynamicsDerivatives;
+        let program = Compiler::new(&robot).compile(function, form).expect("a program");
+        let is_zero = |output: &Output| program.values.get(output.value) == Value::Constant(0.0);
+        let (joints, rows) = (12, 18);
+        let mut elements = 0;
+        for (index, output) in program.outputs.iter().enumerate() {
+            let by_joints = index < 2 * rows * joints;
+            let (row, column) = (index / joints % rows, index % joints);
+            if by_joints && row >= 6 && (row - 6) / 3 != column / 3 {
+                assert!(is_zero(output), "{form}: row {row}, column {column}");
+            }
+            elements += usize::from(!is_zero(output));
+        }
+        println!("{form}: {elements} elements, {} operations", program.operations().total());
+        assert!(elements <= 270, "{form}: {elements}");
+    }
+}
+
 /// Forces of accelerations are M times them and the bias, and what they make of these forces are the accelerations.
 #[test]
 fn inverse_and_forward_dynamics_are_one_equation() {

@@ -63,7 +63,11 @@ pub(crate) fn robot(seed: u64, dof: usize, shape: Shape, follows: bool) -> Robot
 /// has one: no plan is refused because of them. Where the seven steps themselves cannot be read exactly, none is made.
 #[test]
 fn rotors_of_floating_bases_have_a_reduced_form() {
-    for function in [Function::InverseDynamicsOfFloatingBase, Function::FloatingMassMatrix] {
+    for function in [
+        Function::InverseDynamicsOfFloatingBase,
+        Function::FloatingMassMatrix,
+        Function::FloatingInverseDynamicsDerivatives,
+    ] {
         let mut reduced = 0;
         for seed in 0..8 {
             let robot = robot(seed, 3, Shape::Any, seed % 2 == 0);

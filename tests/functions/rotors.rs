@@ -89,6 +89,7 @@ fn seven_steps_are_the_runtime_in_every_bit() {
             Function::InverseDynamicsOfFloatingBase,
             Function::FloatingMassMatrix,
             Function::FloatingForwardDynamics,
+            Function::FloatingInverseDynamicsDerivatives,
             Function::MassMatrix,
             Function::ForwardDynamics,
             Function::InverseMassMatrix,

@@ -197,9 +197,10 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         let parts = tips.iter().zip(at_tips(tips.len(), wrench));
         parts.fold(zeros.clone(), |all, (tip, wrench)| sum(&all, &of_wrench_at(robot, tip, q, &wrench)))
     };
-    let floating = |qdd: &[f64], base: BaseMotion<f64>| {
+    let floating_at = |q: &[f64], qd: &[f64], qdd: &[f64], base: BaseMotion<f64>| {
         let tips = robot.wrench_frames();
         let mut numbers = of_floating_base(robot, &Motion { joints: [q, qd, qdd], base });
+        let still = Motion { joints: [q, &zeros, &zeros], base: BaseMotion::fixed([0.0; 3]) };
         for (tip, wrench) in tips.iter().zip(at_tips(tips.len(), wrench)) {
             let (r, p) = oracle::parts(&oracle::frame(robot, tip, &still)[0]);
             let at_tip = r * Vector3::from(wrench.force);
@@ -209,6 +210,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         }
         numbers
     };
+    let floating = |qdd: &[f64], base: BaseMotion<f64>| floating_at(q, qd, qdd, base);
     // a wrench on the base, with its moment about the centre of mass
     let about_centre = |wrench: &[f64]| -> Vec<f64> {
         let (mass, moment) = oracle::first_moment(robot, q);
@@ -243,6 +245,14 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         }
         Function::InverseDynamicsOnMovingBase => torques(q, qd, qdd, *base),
         Function::InverseDynamicsOfFloatingBase => floating(qdd, *base),
+        Function::FloatingInverseDynamicsDerivatives => {
+            let by_q = |joint| oracle::by_position(robot, q, joint, |q| floating_at(q, qd, qdd, *base));
+            let by_qd = |joint| oracle::by_rate(qd, joint, |qd| floating_at(q, qd, qdd, *base));
+            let turning = |omega: &[f64]| BaseMotion { omega: [omega[0], omega[1], omega[2]], ..*base };
+            let by_omega = |axis| oracle::by_rate(&base.omega, axis, |omega| floating_at(q, qd, qdd, turning(omega)));
+            let by_joints = [(0..dof).map(by_q).collect(), (0..dof).map(by_qd).collect()].map(transposed);
+            [by_joints.concat(), transposed((0..3).map(by_omega).collect())].concat()
+        }
         Function::FloatingMassMatrix => flat(floating_mass_matrix(robot, q)),
         Function::FloatingBias => floating(&zeros, BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) }),
         Function::FloatingForwardDynamics => {
@@ -406,6 +416,7 @@ pub(crate) fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
         | Function::FloatingPotentialEnergy
         | Function::CoriolisMatrix
         | Function::InverseDynamicsDerivatives
+        | Function::FloatingInverseDynamicsDerivatives
         | Function::InverseDynamicsDerivativesWithPayload => largest,
         // centripetal, one metre from an axis
         Function::JacobianRateTimesVelocity => state.qd.iter().map(|qd| qd * qd).fold(0.0, f64::max),

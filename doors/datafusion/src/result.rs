@@ -15,7 +15,7 @@ pub(crate) fn data_type(layout: &Layout) -> DataType {
         Layout::Number => DataType::Float64,
         Layout::Array(length, of) => DataType::FixedSizeList(item(data_type(of)), size(*length)),
         Layout::Record(record, parts) => {
-            let parts = record.fields().into_iter().zip(parts);
+            let parts = record.fields().iter().copied().zip(parts);
             DataType::Struct(parts.map(|(name, part)| Field::new(name, data_type(part), true)).collect())
         }
     }
@@ -36,7 +36,7 @@ pub(crate) fn column(layout: &Layout, numbers: Vec<f64>, states: usize, nulls: O
         }
         Layout::Record(record, parts) => {
             let (mut start, mut fields, mut arrays) = (0, Vec::new(), Vec::new());
-            for (name, part) in record.fields().into_iter().zip(parts) {
+            for (name, part) in record.fields().iter().copied().zip(parts) {
                 fields.push(Field::new(name, data_type(part), true));
                 arrays.push(numbers.elements(part, &[start], nulls.as_ref())?);
                 start += part.len();
@@ -72,7 +72,7 @@ impl Numbers {
             }
             Layout::Record(record, parts) => {
                 let (mut before, mut fields, mut arrays) = (0, Vec::new(), Vec::new());
-                for (name, part) in record.fields().into_iter().zip(parts) {
+                for (name, part) in record.fields().iter().copied().zip(parts) {
                     fields.push(Field::new(name, data_type(part), true));
                     let starts: Vec<usize> = starts.iter().map(|start| start + before).collect();
                     arrays.push(self.elements(part, &starts, nulls)?);

@@ -226,6 +226,11 @@ async fn a_base_that_floats_has_its_functions() -> Result<()> {
         (Function::FloatingForwardDynamics, "q, qd, tau, omega_0, omega_1, omega_2", "base qdd"),
         (Function::CentroidalMomentumMatrix, "q", ""),
         (Function::CentroidalBias, "q, qd_0, qd_1, omega", ""),
+        (
+            Function::FloatingInverseDynamicsDerivatives,
+            "q, qd, qdd, omega, omega_dot, felt, [0, 0, 0]",
+            "dq dqd domega",
+        ),
     ] {
         let mut expected = vec![0.0; states * function.layout(2, 1).len()];
         arm.run(function, states, &all, Destination::Rows(&mut expected)).expect("it computes");

@@ -28,7 +28,8 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
                 | Record::MomentumAndRate
                 | Record::FloatingTorques
                 | Record::FloatingAccelerations
-                | Record::AccelerationsAndWrenches,
+                | Record::AccelerationsAndWrenches
+                | Record::FloatingTorqueDerivatives,
                 parts,
             ) => {
                 shape.push(2);
@@ -41,11 +42,14 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
     let mut found = Vec::new();
     let layout = arm.layout(function);
     if let Layout::Record(
-        Record::FloatingTorques | Record::FloatingAccelerations | Record::AccelerationsAndWrenches,
+        Record::FloatingTorques
+        | Record::FloatingAccelerations
+        | Record::AccelerationsAndWrenches
+        | Record::FloatingTorqueDerivatives,
         _,
     ) = layout
     {
-        // six numbers of the base, then one for each joint
+        // parts of different lengths stand one behind the other
         return vec![layout.len()];
     }
     of(&layout, &mut found);
@@ -143,6 +147,20 @@ fn evaluate_in<'py, T: Element + Number>(
             let rows: Vec<usize> = many.into_iter().chain([tips, 6]).collect();
             let wrenches = of(joints, joints + 6 * tips)?.call_method1("reshape", (rows,))?;
             Ok(PyTuple::new(py, [of(0, 6)?, of(6, joints)?, wrenches])?.into_any())
+        }
+        Layout::Record(Record::FloatingTorqueDerivatives, parts) => {
+            let mut from = 0;
+            let mut part = |layout: &Layout, columns: usize| {
+                let to = from + layout.len();
+                let slice = PySlice::new(py, isize::try_from(from)?, isize::try_from(to)?, 1).into_any();
+                let numbers = result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), slice])?)?;
+                from = to;
+                let rows: Vec<usize> = many.into_iter().chain([layout.len() / columns, columns]).collect();
+                numbers.call_method1("reshape", (rows,))
+            };
+            let columns = [arm.dof(), arm.dof(), 3];
+            let parts = parts.iter().zip(columns).map(|(layout, columns)| part(layout, columns));
+            Ok(PyTuple::new(py, parts.collect::<PyResult<Vec<_>>>()?)?.into_any())
         }
         _ => finished(result, whole.is_empty()),
     }

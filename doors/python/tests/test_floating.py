@@ -1,5 +1,6 @@
 """Laws that tie the functions of a robot on a floating base together, of one state and of many."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 import rne
 
 N = 20
-SATELLITE = (Path(__file__).parents[3] / "docs/satellite.yaml").read_text()
+ROOT = Path(__file__).parents[3]
+FOLDER = ROOT / "tests/functions/floating"
+SATELLITE = (ROOT / "docs/satellite.yaml").read_text()
 ARM = rne.load(SATELLITE.replace("gravity: [0, 0, 0]", "gravity: [1, -2, -9]"))
 random = np.random.default_rng(8)
 q, qd, qdd, tau = random.normal(size=(4, N, ARM.dof))
@@ -40,6 +43,39 @@ def test_dynamics_are_one_equation():
     close(forces, times(mass, np.concatenate([acceleration, omega_dot, qdd], axis=1)) + bias)
     found = np.concatenate(ARM.floating_forward_dynamics(q, qd, tau, omega), axis=1)
     close(times(mass, found) + bias, np.concatenate([np.zeros((N, 6)), tau], axis=1))
+
+
+def test_derivatives_are_differences():
+    # steps of polynomials of second degree are exact, those of positions are small
+    derivatives = ARM.floating_inverse_dynamics_derivatives(q, qd, qdd, **BASE)
+    assert [part.shape for part in derivatives] == [(N, 6 + ARM.dof, columns) for columns in (ARM.dof, ARM.dof, 3)]
+    forces = lambda q, qd, omega: np.concatenate(
+        ARM.inverse_dynamics_of_floating_base(q, qd, qdd, **{**BASE, "base_omega": omega}), axis=1)
+    for part, step, tolerance in [(0, 1e-6, 1e-8), (1, 1.0, 1e-12), (2, 1.0, 1e-12)]:
+        given = [q, qd, omega]
+        for column in range(given[part].shape[1]):
+            unit = step * np.eye(given[part].shape[1])[column]
+            after, before = (forces(*given[:part], given[part] + sign * unit, *given[part + 1:]) for sign in (1, -1))
+            expected = (after - before) / (2 * step)
+            assert np.abs(derivatives[part][:, :, column] - expected).max() <= tolerance * np.abs(after).max()
+    one = ARM.floating_inverse_dynamics_derivatives(q[0], qd[0], qdd[0], **{key: value[0] if value.ndim == 2 else value
+                                                                           for key, value in BASE.items()})
+    assert all(np.array_equal(alone, many[0]) for alone, many in zip(one, derivatives))
+
+
+def test_derivatives_are_those_of_pinocchio_by_the_tangent():
+    golden = json.loads((FOLDER / "grid_hyq.golden.json").read_text())["states"][0]
+    state = {key: np.array(value) for key, value in golden.items()}
+    arm = rne.load(FOLDER / "grid_hyq.yaml")
+    rotation = state["base_rotation"].reshape(3, 3)
+    w = np.sqrt(1 + np.trace(rotation)) / 2
+    axis = np.array([rotation[k, j] - rotation[j, k] for j, k in [(1, 2), (2, 0), (0, 1)]]) / (4 * w)
+    base = {f"base_{key}": state[key] for key in ("omega", "omega_dot", "acceleration", "gravity")}
+    derivatives = arm.floating_inverse_dynamics_derivatives(
+        state["q"], state["qd"], state["qdd"], state["wrenches"].reshape(-1, 6), **base)
+    full, v = np.array([0, 0, 0, *axis, w]), np.concatenate([state["velocity"], state["omega"]])
+    found = rne.derivatives_to_pinocchio(derivatives, arm.floating_mass_matrix(state["q"]), full, v)
+    close(np.concatenate([part.ravel() for part in found]), state["derivatives_of_pinocchio"])
 
 
 def test_the_regressor_gives_the_forces():

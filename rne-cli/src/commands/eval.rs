@@ -320,7 +320,7 @@ impl Arguments {
 /// Numbers in the shape in which a function returns them.
 fn grouped(layout: &Layout, numbers: &[f64]) -> Value {
     let record = |record: Record, parts| {
-        let fields = record.fields().into_iter().map(str::to_owned);
+        let fields = record.fields().iter().copied().map(str::to_owned);
         Value::Object(fields.zip::<Vec<Value>>(parts).collect())
     };
     layout.fold(&mut numbers.iter().map(|&number| Value::from(number)), &Value::Array, &record).unwrap_or_default()

@@ -100,7 +100,7 @@ fn places(layout: &Layout, name: String, names: &mut Vec<String>) {
         Layout::Number => names.push(name),
         Layout::Array(length, of) => (1..=*length).for_each(|index| places(of, format!("{name}_{index}"), names)),
         Layout::Record(record, parts) => {
-            record.fields().into_iter().zip(parts).for_each(|(field, of)| places(of, format!("{name}_{field}"), names));
+            record.fields().iter().zip(parts).for_each(|(field, of)| places(of, format!("{name}_{field}"), names));
         }
     }
 }

@@ -3,8 +3,8 @@
 use std::str::FromStr;
 
 use rne::{
-    BaseAcceleration, BaseMotion, BaseTwist, DynArm, DynTorqueDerivatives, Payload, Pose, Quaternion, Wrench,
-    WrongLength,
+    BaseAcceleration, BaseMotion, BaseTwist, DynArm, DynFloatingTorqueDerivatives, DynTorqueDerivatives, Payload, Pose,
+    Quaternion, Wrench, WrongLength,
 };
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
@@ -264,11 +264,10 @@ impl<E: Told, const N: usize> Told for [E; N] {
 }
 
 macro_rules! records {
-    ($($record:ident { $first:ident, $second:ident })*) => {$(
+    ($($record:ident { $($field:ident),* })*) => {$(
         impl Told for $record<f64> {
             fn tell(&self, numbers: &mut Vec<f64>) {
-                self.$first.tell(numbers);
-                self.$second.tell(numbers);
+                $(self.$field.tell(numbers);)*
             }
         }
     )*};
@@ -276,7 +275,7 @@ macro_rules! records {
 
 records! {
     Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd }
-    BaseAcceleration { linear, angular }
+    BaseAcceleration { linear, angular } DynFloatingTorqueDerivatives { dq, dqd, domega }
 }
 
 /// The numbers of a payload in words.

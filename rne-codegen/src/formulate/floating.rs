@@ -1,8 +1,9 @@
 //! Results of a robot whose base nothing holds: the rows of the base stand before those of the joints.
 
+use crate::coordinates::Coordinates;
 use crate::formulate::ldlt::{self, System};
 use crate::formulate::{Outputs, components, square};
-use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
+use crate::ir::{Axis, Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The rotation of the base: an argument.
 pub(crate) fn base_rotation(builder: &Builder) -> Matrix<'_> {
@@ -49,4 +50,43 @@ pub(crate) fn floating_rest<'s>(builder: &'s Builder, system: &System<'_>, bias:
         })
     };
     bias.into_iter().enumerate().map(rest).collect()
+}
+
+/// The variables of the derivatives of a robot whose base nothing holds: q, q̇ and the angular velocity of the base.
+fn variables(coordinates: &Coordinates) -> [Vec<WithRespectTo>; 3] {
+    let of_joints =
+        |kind: fn(usize) -> WithRespectTo| coordinates.joints().iter().map(|joint| kind(joint + 1)).collect();
+    let about = Axis::ALL.map(|axis| WithRespectTo::BaseRate(4 + axis as usize));
+    [of_joints(WithRespectTo::Position), of_joints(WithRespectTo::Rate), about.into()]
+}
+
+/// Three matrices by rows, from the columns of all variables: the names of their rows are those of forces.
+pub(crate) fn sensitivity_of_floating_base<'s>(
+    coordinates: &Coordinates,
+    forces: &[Name],
+    columns: &[Vec<Symbol<'s>>],
+) -> Outputs<'s> {
+    let mut columns = columns.iter();
+    let matrix = |variables: Vec<WithRespectTo>| {
+        let columns: Vec<_> = variables.into_iter().zip(columns.by_ref()).collect();
+        let row = |(row, &force): (usize, &Name)| {
+            let named =
+                |(by, column): &(WithRespectTo, &Vec<Symbol<'s>>)| (Name { by: Some(*by), ..force }, column[row]);
+            columns.iter().map(named).collect::<Vec<_>>()
+        };
+        forces.iter().enumerate().flat_map(row).collect::<Vec<_>>()
+    };
+    let found = variables(coordinates).map(matrix).concat();
+    found.into_iter().map(|(name, symbol)| coordinates.named(name, symbol)).collect()
+}
+
+/// These matrices by the product rule.
+pub(crate) fn floating_derivatives<'s>(
+    builder: &'s Builder,
+    coordinates: &Coordinates,
+    forces: Outputs<'s>,
+) -> Outputs<'s> {
+    let (names, forces): (Vec<_>, Vec<_>) = forces.into_iter().unzip();
+    let columns = builder.derivatives(&forces, variables(coordinates).concat().into_iter());
+    sensitivity_of_floating_base(coordinates, &names, &columns)
 }

@@ -20,7 +20,10 @@ pub(crate) mod tips;
 
 pub(crate) use arm::{Arm, Body, Link, Mount};
 pub(crate) use contact::Contacts;
-pub(crate) use floating::{base_rotation, floating_forward_dynamics, floating_mass_matrix, on_base};
+pub(crate) use floating::{
+    base_rotation, floating_derivatives, floating_forward_dynamics, floating_mass_matrix, on_base,
+    sensitivity_of_floating_base,
+};
 pub(crate) use joint::{Joint, JointState, Wrench};
 pub(crate) use kinematics::{Frame, Frames};
 pub(crate) use payload::{AtTip, Payload};
@@ -102,6 +105,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             derivation.floating_torques(),
             &Contacts::of(&derivation),
         ),
+        Function::FloatingInverseDynamicsDerivatives => {
+            floating_derivatives(builder, derivation.coordinates(), derivation.floating_torques())
+        }
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()

@@ -59,3 +59,6 @@ pub enum MatrixUnit {
     /// Torque per velocity.
     PerRate,
 }
+
+/// The names of three components.
+pub(super) const AXES: Labels = Labels::Names(&["x", "y", "z"]);

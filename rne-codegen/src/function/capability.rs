@@ -48,6 +48,8 @@ named! {
         FloatingKinematics = "FloatingKinematics",
         /// The robot while contacts hold some of its tips.
         ContactDynamics = "ContactDynamics",
+        /// Derivatives of the torques and of the wrench on a base that nothing holds.
+        FloatingInverseDynamicsDerivatives = "FloatingInverseDynamicsDerivatives",
     }
 }
 
@@ -67,6 +69,7 @@ impl Capability {
                 | Self::FloatingRegressor
                 | Self::FloatingKinematics
                 | Self::ContactDynamics
+                | Self::FloatingInverseDynamicsDerivatives
         )
     }
 

@@ -102,3 +102,7 @@ impl Own {
         Self { quantity, heading, meaning: Some(meaning) }
     }
 }
+
+/// Why a centre of mass may be none.
+pub(super) const WITHOUT_MASS: &str =
+    "the centre of mass is not finite: the arm has no mass, or the state is too large";

@@ -21,6 +21,7 @@ const SIX: Shape = Shape::Array(Length::Fixed(6), &Shape::Number);
 const ROWS: Shape = Shape::Array(Length::Fixed(6), &VELOCITIES);
 const BASE_ACCELERATION: Shape = Shape::Record(Record::BaseAcceleration, &[TRIPLE, TRIPLE]);
 const ACCELERATIONS: Shape = Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]);
+const ROWS_BY_JOINT: Shape = Shape::Array(Length::Velocities, &VECTOR);
 const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
 
 /// The shapes of results, by the names that they have in the list of functions.
@@ -70,6 +71,8 @@ pub enum Returned {
     FloatingRegressor,
     /// These, and a force and a moment for each tip.
     AccelerationsAndWrenches,
+    /// Six rows of the base and one per joint, in three matrices: with a column per joint, the same, and three columns.
+    FloatingTorqueDerivatives,
 }
 
 impl Returned {
@@ -98,6 +101,10 @@ impl Returned {
             Self::TipVectors => &Shape::Array(Length::Tips, &SIX),
             Self::FloatingAccelerations => &ACCELERATIONS,
             Self::FloatingRegressor => &Shape::Array(Length::Velocities, &Shape::Array(Length::Bodies, &PARAMETERS)),
+            Self::FloatingTorqueDerivatives => &Shape::Record(
+                Record::FloatingTorqueDerivatives,
+                &[ROWS_BY_JOINT, ROWS_BY_JOINT, Shape::Array(Length::Velocities, &TRIPLE)],
+            ),
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -174,6 +181,8 @@ pub enum Record {
     FloatingAccelerations,
     /// These, and the wrench of each contact.
     AccelerationsAndWrenches,
+    /// By q, by q̇ and by the angular velocity of the base.
+    FloatingTorqueDerivatives,
 }
 
 impl Record {
@@ -189,21 +198,23 @@ impl Record {
             Self::BaseAcceleration => "BaseAcceleration",
             Self::FloatingAccelerations => "FloatingAccelerations",
             Self::AccelerationsAndWrenches => "AccelerationsAndWrenches",
+            Self::FloatingTorqueDerivatives => "FloatingTorqueDerivatives",
         }
     }
 
     /// The names of its parts.
     #[must_use]
-    pub const fn fields(self) -> [&'static str; 2] {
+    pub const fn fields(self) -> &'static [&'static str] {
         match self {
-            Self::Pose => ["rotation", "translation"],
-            Self::Wrench => ["force", "moment"],
-            Self::TorqueDerivatives => ["dq", "dqd"],
-            Self::MomentumAndRate => ["momentum", "rate"],
-            Self::FloatingTorques => ["wrench", "tau"],
-            Self::BaseAcceleration => ["linear", "angular"],
-            Self::FloatingAccelerations => ["base", "qdd"],
-            Self::AccelerationsAndWrenches => ["accelerations", "wrenches_on_robot"],
+            Self::Pose => &["rotation", "translation"],
+            Self::Wrench => &["force", "moment"],
+            Self::TorqueDerivatives => &["dq", "dqd"],
+            Self::MomentumAndRate => &["momentum", "rate"],
+            Self::FloatingTorques => &["wrench", "tau"],
+            Self::BaseAcceleration => &["linear", "angular"],
+            Self::FloatingAccelerations => &["base", "qdd"],
+            Self::AccelerationsAndWrenches => &["accelerations", "wrenches_on_robot"],
+            Self::FloatingTorqueDerivatives => &["dq", "dqd", "domega"],
         }
     }
 }

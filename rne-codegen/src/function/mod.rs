@@ -4,6 +4,8 @@ mod answer;
 mod argument;
 mod capability;
 mod entry;
+mod fixed_base;
+mod floating_base;
 mod layout;
 mod table;
 
@@ -34,7 +36,7 @@ impl Function {
 
     /// Its entry in the table, which stands at its place.
     pub const fn entry(self) -> &'static Entry {
-        &TABLE[self as usize]
+        TABLE[self as usize]
     }
 
     /// The trait that it is a method of.

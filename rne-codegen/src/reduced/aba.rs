@@ -20,7 +20,8 @@ use crate::ir::{Builder, ExactAngle, Number, Quantity, Symbol, Vector, square};
 use crate::reduced::backward::{antisymmetric_of, tip_wrenches};
 use crate::reduced::forward::motion_of_base;
 use crate::reduced::inward::full;
-use crate::reduced::rnea_derivatives::{matter, stations};
+use crate::reduced::joint_motion::stations;
+use crate::reduced::rnea_derivatives::matter;
 use crate::reduced::{
     Arm, Composite, Gradient, Inward, JointMotion, Outward, SymbolicTurn, Symmetric, Turned, Twist, Wrench,
 };

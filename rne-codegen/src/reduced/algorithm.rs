@@ -83,7 +83,8 @@ impl Algorithm {
             | Function::CentroidalMomentumMatrix
             | Function::CentroidalBias
             | Function::CentroidalMomentum
-            | Function::ForwardDynamicsInContact => &[BY_GROUPS, BY_JOINTS],
+            | Function::ForwardDynamicsInContact
+            | Function::FloatingInverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -212,6 +213,18 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
                 })
             };
             [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
+        }
+        (Function::FloatingInverseDynamicsDerivatives, _) => {
+            let names: Vec<_> = formulate::on_base([builder.no_vector(); 2])
+                .into_iter()
+                .map(|(name, _)| name)
+                .chain(joints.iter().map(|joint| Name::scalar(Quantity::Torque, joint + 1)))
+                .collect();
+            let columns = sensitivity(arm, Number::integer(2)).with_base(coordinates)?;
+            formulate::sensitivity_of_floating_base(coordinates, &names, &columns)
+                .into_iter()
+                .map(|(name, symbol)| named(name, symbol))
+                .collect()
         }
         (Function::CoriolisMatrix, Algorithm::Crba(_)) => {
             let found = coordinates.matrix(&sensitivity(arm, Number::ONE).by_rate);

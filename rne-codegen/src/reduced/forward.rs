@@ -188,24 +188,29 @@ pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     if builder.moving.get() == Moving::RatesForAccelerations {
         return twist_of_base(arm);
     }
-    // accelerations, gravity included, are zero where they are no arguments
-    let is_told = |quantity| quantity == Quantity::Omega || builder.function.takes(Argument::Base);
-    let told = |quantity| {
-        if is_told(quantity) {
-            Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))))
-        } else {
-            builder.no_vector()
-        }
-    };
-    let [omega, omega_dot] = [Quantity::Omega, Quantity::OmegaDot].map(told);
+    let [omega, omega_dot] = [Quantity::Omega, Quantity::OmegaDot].map(|quantity| of_base(builder, quantity));
     builder.at(Quantity::OriginAcceleration, 0);
     let lambda = arm.parameters.lambda.first().copied().unwrap_or(Number::ONE);
-    let acceleration = (told(Quantity::Acceleration) - told(Quantity::Gravity)).times(lambda);
+    let acceleration = acceleration_of_base(arm).times(lambda);
     let acceleration = builder.name_vector(Quantity::OriginAcceleration, 0, acceleration);
     builder.at(Quantity::Gradient, 0);
     let gradient = Gradient::new(omega, omega_dot);
     builder.name_matrix(Quantity::Gradient, 0, Matrix::from_rows(gradient.u));
     Motion { omega, omega_dot, acceleration, gradient }
+}
+
+/// The acceleration of the origin of frame 0 less gravity.
+pub(crate) fn acceleration_of_base<'s>(arm: &Arm<'_, 's>) -> Vector<'s> {
+    of_base(arm.builder, Quantity::Acceleration) - of_base(arm.builder, Quantity::Gravity)
+}
+
+/// A vector of the motion of the base: accelerations, gravity included, are zero where they are no arguments.
+fn of_base(builder: &Builder, quantity: Quantity) -> Vector<'_> {
+    if quantity == Quantity::Omega || builder.function.takes(Argument::Base) {
+        Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))))
+    } else {
+        builder.no_vector()
+    }
 }
 
 /// The motion of such a base with velocities in the place of accelerations, where the function has them.

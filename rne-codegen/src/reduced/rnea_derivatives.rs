@@ -20,46 +20,69 @@
 //! there: z × f, z × n. For one farther out, i > j, the roles are changed: the column of M for joint i is moved inward
 //! and meets the twist of joint j, and so does tr(G) z - G z of joint i.
 //!
+//! A base that nothing holds is the last body. Its angular velocity ω, of which the acceleration of its origin and its
+//! angular acceleration do not change, moves all bodies behind it:
+//!
+//! ```text
+//! ∂/∂ω_k:  the field of the twist (ω × e_k, 0), and 2 e_k × (its velocity)
+//! ```
+//!
+//! The wrenches at tips are those of their links, and turn with them.
+//!
 //! After J. Carpentier and N. Mansard (2018) and S. Singh, R. Russell and P. Wensing (2022), who have the same in
 //! spatial vectors; here over regrouped matter and in frames N. All velocities are doubled where they enter, which
 //! saves the factors 2.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::coordinates::{Coordinates, scaled};
 use crate::ir::{Number, Quantity, Symbol, Vector, square};
-use crate::reduced::backward::antisymmetric_of;
-use crate::reduced::forward::motion_of_base;
-use crate::reduced::inward::{Carried, Loads, full};
+use crate::reduced::backward::{antisymmetric_of, tip_wrenches};
+use crate::reduced::inward::{Carried, LoadOfLink, Loads, full};
+use crate::reduced::joint_motion::{JointMotion, Motion, of_floating_base, stations};
 use crate::reduced::{
-    Arm, Body, Composite, Gradient, Gyrostat, Inward, Outward, PseudoInertia, SymbolicTurn, Turned, Wrench,
+    Arm, Body, Carrier, Composite, Gradient, Gyrostat, Inward, JointFrame, PseudoInertia, Turned, Wrench,
 };
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
 pub(crate) struct Sensitivity<'s> {
     pub(crate) by_position: Vec<Vec<Symbol<'s>>>,
     pub(crate) by_rate: Vec<Vec<Symbol<'s>>>,
+    of_base: Option<OfBase<'s>>,
 }
 
-/// How a link moves, in some axes. `twice` are velocities times a factor, 2 or 1.
-#[derive(Clone, Copy)]
-pub(crate) struct Motion<'s> {
-    pub(crate) omega: Vector<'s>,
-    omega_dot: Vector<'s>,
-    acceleration: Vector<'s>,
-    twice_omega: Vector<'s>,
-    twice_velocity: Vector<'s>,
+/// The derivatives where nothing holds the base.
+struct OfBase<'s> {
+    /// Of the wrench on the base, by the position and by the rate of each joint.
+    by_joints: Vec<[Wrench<'s>; 2]>,
+    /// Of the torque of each joint, by the angular velocity of the base.
+    torques: Vec<Vector<'s>>,
+    /// Of the wrench on the base, by the components of its angular velocity.
+    wrench: [Wrench<'s>; 3],
 }
 
-/// Motion of a link and of the link before it, where the joint between them is.
-pub(crate) struct JointMotion<'s> {
-    /// Motion of the parent, at this joint's origin, in frame N (prismatic: in the axes of the link).
-    pub(crate) before: Motion<'s>,
-    /// Motion of the link in frame N.
-    unturned: Motion<'s>,
-    /// Motion of the link, in its axes.
-    pub(crate) own: Motion<'s>,
-    /// From the axes of the link to N.
-    pub(crate) turn: SymbolicTurn<'s>,
+impl<'s> Sensitivity<'s> {
+    /// The columns by q, by q̇ and by the angular velocity of a base that nothing holds: force, moment, torques.
+    pub(crate) fn with_base(&self, coordinates: &Coordinates) -> Option<Vec<Vec<Symbol<'s>>>> {
+        let of_base = self.of_base.as_ref()?;
+        let transposed =
+            |rows: &[Vec<Symbol<'s>>], column: usize| rows.iter().map(|row| row[column]).collect::<Vec<_>>();
+        let on_base = |wrench: &Wrench<'s>| wrench.force.0.into_iter().chain(wrench.moment.0);
+        let by_joints = |kind: usize, torques: &[Vec<Symbol<'s>>]| {
+            let rows = coordinates.matrix(torques);
+            let wrenches: Vec<_> = of_base.by_joints.iter().map(|wrenches| wrenches[kind]).collect();
+            let wrenches = coordinates.gathered(&wrenches, Wrench::plus, |wrench, ratio| {
+                wrench.map(|part| part.map(|_, x| scaled(x, ratio)))
+            });
+            let column = |(index, wrench)| on_base(wrench).chain(transposed(&rows, index)).collect::<Vec<_>>();
+            wrenches.iter().enumerate().map(column).collect::<Vec<_>>()
+        };
+        let about = [0, 1, 2].map(|axis: usize| {
+            let torques: Vec<_> = of_base.torques.iter().map(|torque| torque.0[axis]).collect();
+            on_base(&of_base.wrench[axis]).chain(coordinates.torques(&torques)).collect()
+        });
+        Some([by_joints(0, &self.by_position), by_joints(1, &self.by_rate), about.into()].concat())
+    }
 }
 
 /// ∫ r vᵀ dm
@@ -121,6 +144,14 @@ impl<'s> Behind<'s> {
         Self { moment, wrench, ..self }
     }
 
+    /// With what the link exerts at its tips, in its axes and about the origin of its frame. A spinning sphere stays in
+    /// frame N.
+    fn with_wrench(self, arm: &Arm<'_, 's>, index: usize, wrench: Wrench<'s>) -> Self {
+        let turn = arm.is_spin(index).then(|| Turned::AboutZ(arm.turn_of_group(index)));
+        let wrench = turn.map_or(wrench, |turn| wrench.turned(turn));
+        Self { wrench: self.wrench.plus(wrench), ..self }
+    }
+
     /// 2 Ω × velocity, for a doubled velocity.
     fn deflected(&self, by: Vector<'s>) -> Wrench<'s> {
         let g = &self.moment;
@@ -178,27 +209,6 @@ impl<'s> Inward<'s> for Column<'s> {
     }
 }
 
-impl<'s> Outward<'s> for Motion<'s> {
-    fn turned_back(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
-        Self {
-            omega: f(self.omega),
-            omega_dot: f(self.omega_dot),
-            acceleration: f(self.acceleration),
-            twice_omega: f(self.twice_omega),
-            twice_velocity: f(self.twice_velocity),
-        }
-    }
-
-    fn at(self, p: Vector<'s>) -> Self {
-        let gradient = Gradient::new(self.omega, self.omega_dot);
-        Self {
-            acceleration: self.acceleration + gradient.of(p),
-            twice_velocity: self.twice_velocity + self.twice_omega.cross(p),
-            ..self
-        }
-    }
-}
-
 /// The derivatives of the torques. `factor` is that of the velocities: 2 for derivatives; with 1 the derivatives by
 /// rates are the Coriolis matrix, half of them.
 pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<'s> {
@@ -207,13 +217,17 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     let dof = stations.len();
     let rows = arm.rows();
     let zero = builder.zero();
-    let mut found = Sensitivity { by_position: vec![vec![zero; dof]; dof], by_rate: vec![vec![zero; dof]; dof] };
+    let nothing = || vec![vec![zero; dof]; dof];
+    let mut found = Sensitivity { by_position: nothing(), by_rate: nothing(), of_base: None };
+    let tips = tip_wrenches(arm, |_| Number::ONE);
     let mut loads: Loads<Behind<'s>, Column<'s>> = Loads::new();
     for index in (0..dof).rev() {
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
         let own = own(Composite::of_link(arm, index, &matter(arm, Some(index))), &station.own);
         let own = row.gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, &station.own, factor));
+        let at_tips = tips.iter().filter(|(on, _)| *on == index).map(|(_, wrench)| *wrench).reduce(Wrench::plus);
+        let own = at_tips.into_iter().fold(own, |own, wrench| own.with_wrench(arm, index, wrench));
         // everything in frame N of this joint
         let (mut load, turn) = (loads.take(index), (row.kind == Revolute).then_some(station.turn));
         for column in row.gyrostats.iter().flat_map(|gyrostat| columns_of(arm, gyrostat, &station.own)) {
@@ -229,11 +243,12 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
         }
         meet(arm, index, station, &column, &mut found);
         gather(&mut columns, column);
-        if let Some(parent) = row.parent {
+        if let Some(parent) = arm.joint_frames.carrier(index) {
             let carried = Carried { behind: Some(behind), columns };
             loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
     }
+    found.of_base = arm.joint_frames.base.as_ref().map(|base| of_base(arm, base, loads.take(dof), factor));
     for matrix in [&mut found.by_position, &mut found.by_rate] {
         for (elements, row) in matrix.iter_mut().zip(rows) {
             for (element, column) in elements.iter_mut().zip(rows) {
@@ -242,6 +257,41 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
         }
     }
     found
+}
+
+/// The derivatives where nothing holds the base, in its axes and about its origin, from what its joints carry.
+fn of_base<'s>(
+    arm: &Arm<'_, 's>,
+    base: &Carrier,
+    mut load: LoadOfLink<Behind<'s>, Column<'s>>,
+    factor: Number,
+) -> OfBase<'s> {
+    let (builder, rows) = (arm.builder, arm.rows());
+    builder.at(Quantity::BaseForce, 0);
+    let motion = of_floating_base(arm, factor);
+    let own = own(Composite::of_matter(builder, &matter(arm, None)), &motion);
+    let own = base.gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, &motion, factor));
+    let whole = load.with_link(own);
+    // rotors bring a joint's column over another branch than its own
+    let mut columns = Vec::new();
+    let of_rotors = base.gyrostats.iter().flat_map(|gyrostat| columns_of(arm, gyrostat, &motion));
+    load.columns(None).into_iter().chain(of_rotors).for_each(|column| gather(&mut columns, column));
+    let wrench = [0, 1, 2].map(|axis| {
+        let unit = Vector([0, 1, 2].map(|other| if other == axis { builder.one() } else { builder.zero() }));
+        let by_twist = whole.body.carried(motion.omega.cross(unit), builder.no_vector());
+        by_twist.plus(whole.deflected(unit))
+    });
+    let nothing = (Wrench::zero(builder), Wrench::zero(builder), builder.no_vector());
+    let of_joint = |(index, row): (usize, &JointFrame)| {
+        let column = columns.iter().find(|column| column.joint == index);
+        let (by_position, by_rate, by_omega) = column.map_or(nothing, |column| {
+            (column.by_position, column.by_rate, column.unit.moment.cross(motion.omega) + column.spin)
+        });
+        let signed = |v: Vector<'s>| v.map(|_, x| x.signed(row.reversed));
+        ([by_position, by_rate].map(|wrench| wrench.map(signed)), signed(by_omega))
+    };
+    let (by_joints, torques) = rows.iter().enumerate().map(of_joint).unzip();
+    OfBase { by_joints, torques, wrench }
 }
 
 /// The matter of a link, or of a base that nothing holds. A last link that is a spinning sphere is one again: what the
@@ -258,61 +308,6 @@ pub(crate) fn matter(arm: &Arm<'_, '_>, link: Option<usize>) -> PseudoInertia {
         (0..3).for_each(|k| matter.s[k][k] = matter.s[k][k] - half);
     }
     matter
-}
-
-/// How all links move.
-pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion<'s>> {
-    let (builder, rows) = (arm.builder, arm.rows());
-    let (zeros, zero) = (builder.no_vector(), builder.zero());
-    let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
-    let floating = arm.joint_frames.base.as_ref().map(|_| motion_of_base(arm));
-    let mut stations: Vec<JointMotion<'s>> = Vec::with_capacity(rows.len());
-    for (index, row) in rows.iter().enumerate() {
-        builder.at(Quantity::Omega, index + 1);
-        let (rate, rate_dot) = (arm.rate(index), arm.rate_dot(index));
-        let (last, last_unturned, last_turn) = if let Some(parent) = row.parent {
-            let parent = &stations[parent];
-            (parent.own, parent.unturned, parent.turn)
-        } else {
-            let gravity = builder.vector(arm.joint_frames.gravity[index].map(|g| -g));
-            // a base that nothing holds has accelerations of its own
-            let (omega, acceleration) = floating.map_or((zeros, gravity), |base| (base.omega, zeros));
-            let base = Motion {
-                omega,
-                omega_dot: zeros,
-                acceleration,
-                twice_omega: omega.times(factor),
-                twice_velocity: zeros,
-            };
-            (base, base, still)
-        };
-        let before = arm.outward(index, last, last_unturned, last_turn);
-        let (own, unturned, turn) = match row.kind {
-            Revolute => {
-                let turn = if arm.is_spin(index) { still } else { arm.turn_of_group(index) };
-                let ([wx, wy, _], [dx, dy, dz]) = (before.omega.0, before.omega_dot.0);
-                let omega = before.omega.plus_z(rate);
-                let unturned = Motion {
-                    omega,
-                    omega_dot: Vector([dx + rate * wy, dy - rate * wx, dz + rate_dot]),
-                    twice_omega: omega.times(factor),
-                    ..before
-                };
-                (unturned.turned_back(|v| turn.back_about_z(v)), unturned, turn)
-            }
-            Prismatic => {
-                let (u, twice_rate) = (builder.vector(row.axis), rate.times(Number::integer(2)));
-                let own = Motion {
-                    acceleration: before.acceleration + before.omega.cross(u * twice_rate) + u * rate_dot,
-                    twice_velocity: before.twice_velocity + u * rate.times(factor),
-                    ..before
-                };
-                (own, own, still)
-            }
-        };
-        stations.push(JointMotion { before, unturned, own, turn });
-    }
-    stations
 }
 
 /// The columns of the joints with which a rotor turns, by what moves its carrier.

@@ -226,6 +226,10 @@ const fn about(record: Record) -> &'static str {
         Record::AccelerationsAndWrenches => "Accelerations, and what contacts exert on the robot at each tip.",
         Record::FloatingAccelerations => "Acceleration of the base, and accelerations of the joints.",
         Record::MomentumAndRate => "Momenta of the joints, M q̇, and their rates without external torques.",
+        Record::FloatingTorqueDerivatives => {
+            "Force and moment on the base and torques, by positions, velocities and angular velocity of the base; axes \
+             of frame 0."
+        }
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

@@ -107,6 +107,7 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::BaseAcceleration => "base_acceleration",
         Record::FloatingAccelerations => "floating_accelerations",
         Record::AccelerationsAndWrenches => "accelerations_and_wrenches",
+        Record::FloatingTorqueDerivatives => "floating_torque_derivatives",
     };
     format!("{prefix}_{name}")
 }
@@ -161,7 +162,7 @@ fn elements(layout: &Layout, name: &str, dot: &str, places: &mut Vec<String>) {
             (0..*length).for_each(|index| elements(of, &format!("{name}[{index}]"), ".", places));
         }
         Layout::Record(record, parts) => {
-            let fields = record.fields().into_iter().zip(parts);
+            let fields = record.fields().iter().zip(parts);
             fields.for_each(|(field, part)| elements(part, &format!("{name}{dot}{field}"), ".", places));
         }
     }

@@ -27,7 +27,7 @@ from ._rne import (
     names as _names,
     pose_log,
 )
-from .bases import base_from_imu, base_from_mujoco, base_from_pinocchio
+from .bases import base_from_imu, base_from_mujoco, base_from_pinocchio, derivatives_to_pinocchio
 from .excitation import Excitation, excite
 from .identification import Identification, identify
 from .logs import Log, log
@@ -51,6 +51,7 @@ __all__ = [
     "base_from_imu",
     "base_from_mujoco",
     "base_from_pinocchio",
+    "derivatives_to_pinocchio",
     "excite",
     "from_mujoco",
     "from_pinocchio",

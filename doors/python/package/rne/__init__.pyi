@@ -404,6 +404,10 @@ def base_from_mujoco(
     qpos: ArrayLike, qvel: ArrayLike, qacc: ArrayLike, *, gravity: ArrayLike = ...,
 ) -> dict[str, Floats]:
     """The base of a MuJoCo model with a free joint, which is its first joint."""
+def derivatives_to_pinocchio(
+    derivatives: Sequence[ArrayLike], mass: ArrayLike, q: ArrayLike, v: ArrayLike, *, gravity: ArrayLike = ...,
+) -> tuple[Floats, Floats]:
+    """The matrices ∂τ/∂q and ∂τ/∂v of Pinocchio's derivatives of `rnea` with a free flyer."""
 
 def from_mujoco(model: Any, **options: Any) -> Arm:
     """The arm of a compiled MuJoCo model, an `mujoco.MjModel`."""

@@ -1,5 +1,5 @@
 """The motion of a floating base in the vectors of other tools, as arguments of
-`Arm.inverse_dynamics_of_floating_base`.
+`Arm.inverse_dynamics_of_floating_base`, and its derivatives as their matrices.
 
 docs/conventions.md has the table of these conventions. Each function takes one state or many: vectors are the last axis
 of an array.
@@ -44,6 +44,30 @@ def base_from_pinocchio(q, v, a, *, gravity=_GRAVITY):
     return _told(omega, a[..., 3:6], a[..., :3] + np.cross(omega, velocity), _in_base((w, x, y, z), gravity))
 
 
+def derivatives_to_pinocchio(derivatives, mass, q, v, *, gravity=_GRAVITY):
+    """The matrices ∂τ/∂q and ∂τ/∂v of `pinocchio.computeRNEADerivatives` with a free flyer; its ∂τ/∂a is `mass`.
+
+    derivatives: what `Arm.floating_inverse_dynamics_derivatives` returns for the base of `base_from_pinocchio`.
+    mass: `Arm.floating_mass_matrix` at the same positions, of shape (6 + n, 6 + n) or (N, 6 + n, 6 + n).
+    q, v: the vectors of Pinocchio, of which the first 7 and 6 elements count.
+    gravity: in the world, m/s².
+
+    Returns two matrices of this shape. Rows are force, moment and torques. Columns are those of Pinocchio's tangent
+    space, in axes of the base: translation and rotation of the base, or its linear and angular velocity, then the
+    joints in the order of the arm.
+    """
+    dq, dqd, domega = (np.asarray(matrix, float) for matrix in derivatives)
+    linear = np.asarray(mass, float)[..., :, :3]
+    q, v = (np.asarray(vector, float) for vector in (q, v))
+    x, y, z, w = np.moveaxis(q[..., 3:7], -1, 0)
+    gravity = _in_base((w, x, y, z), gravity)
+    # Pinocchio holds gravity in world axes, and its spatial acceleration a - ω × v
+    turned = -linear @ _skew(gravity)
+    by_q = np.concatenate([np.zeros_like(turned), turned, dq], axis=-1)
+    by_linear, by_angular = linear @ _skew(v[..., 3:6]), domega - linear @ _skew(v[..., :3])
+    return by_q, np.concatenate([by_linear, by_angular, dqd], axis=-1)
+
+
 def base_from_mujoco(qpos, qvel, qacc, *, gravity=_GRAVITY):
     """The base of a MuJoCo model with a free joint, which is its first joint.
 
@@ -56,6 +80,11 @@ def base_from_mujoco(qpos, qvel, qacc, *, gravity=_GRAVITY):
     qpos, qvel, qacc = (np.asarray(vector, float) for vector in (qpos, qvel, qacc))
     turn = np.moveaxis(qpos[..., 3:7], -1, 0)
     return _told(qvel[..., 3:6], qacc[..., 3:6], _in_base(turn, qacc[..., :3]), _in_base(turn, gravity))
+
+
+def _skew(vector):
+    """The matrix of the cross product with a vector."""
+    return np.cross(vector[..., None, :], np.eye(3)).swapaxes(-1, -2)
 
 
 def _in_base(quaternion, vector):

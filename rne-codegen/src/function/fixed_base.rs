@@ -1,0 +1,290 @@
+//! The functions of a robot on a base that a stand holds or that moves as told.
+
+use super::Function;
+use super::answer::{AXES, Answer, AnswerTable, Labels, MatrixUnit};
+use super::capability::Capability;
+use super::entry::{Entry, Own, WITHOUT_MASS};
+use crate::quantity::Quantity;
+
+/// A row and a column per joint.
+const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
+    AnswerTable { about, unit: Some(unit), rows: Labels::Joints, columns: Labels::Joints }
+}
+
+/// The mass of the payload in a listing.
+const PAYLOAD_MASS: Own = Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1");
+
+/// Its centre of mass.
+const PAYLOAD_COM: Own = Own::names(
+    Quantity::Com,
+    "centre of mass from the link frame's origin; of the payload, from the tip frame's, for i = n + 1",
+);
+
+/// Its inertia.
+const PAYLOAD_INERTIA: Own =
+    Own::names(Quantity::Inertia, "inertia about the centre of mass; of the payload, in tip axes, for i = n + 1");
+/// The momenta of the joints in a listing.
+const MOMENTUM: Own = Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇"));
+
+/// Their rates.
+const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
+    format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
+});
+
+const MASS_MATRIX: Entry = Entry {
+    output: "mass",
+    listed: "returned: the rows of the matrix",
+    answer: Answer::Tables(&[of_joints("", MatrixUnit::Mass)]),
+    is_of_motion: true,
+    feels_rotors: true,
+    ..Entry::of(Function::MassMatrix, Capability::MassMatrix)
+};
+
+const FORWARD_DYNAMICS: Entry = Entry {
+    output: "qdd",
+    answer: Answer::Accelerations,
+    divides: Some(
+        "the accelerations are not finite: the mass matrix is singular \
+         (a joint moves no mass), or the state is too large",
+    ),
+    inverts_mass: true,
+    feels_rotors: true,
+    ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
+};
+
+const DERIVATIVES: Entry = Entry {
+    output: "derivatives",
+    listed: "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
+    answer: Answer::Tables(&[of_joints("∂τ/∂q", MatrixUnit::PerPosition), of_joints("∂τ/∂q̇", MatrixUnit::PerRate)]),
+    is_of_motion: true,
+    ..Entry::of(Function::InverseDynamicsDerivatives, Capability::InverseDynamicsDerivatives)
+};
+
+const MOMENTUM_AND_RATE: Entry = Entry {
+    output: "momentum",
+    listed: "returned: the momenta of the joints, then their rates",
+    own: &[MOMENTUM, MOMENTUM_RATE],
+    answer: Answer::Tables(&[AnswerTable::of(
+        "momentum of each joint, M q̇ (N m s, prismatic: N s), and its rate without external torques (N m, \
+        prismatic: N)",
+        Labels::Names(&["momentum", "rate"]),
+        Labels::Joints,
+    )]),
+    is_of_motion: true,
+    feels_rotors: true,
+    ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
+};
+
+/// The functions.
+pub(super) const FIXED_BASE: &[Entry] = &[
+    Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
+    Entry { ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics) },
+    Entry {
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics)
+    },
+    Entry { ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics) },
+    Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorques, Capability::InverseDynamics) },
+    Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorques, Capability::InverseDynamics) },
+    MASS_MATRIX,
+    Entry {
+        output: "coriolis",
+        listed: "returned: the rows of the matrix",
+        own: &[Own::of(Quantity::CoriolisElement, |joint| {
+            format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")
+        })],
+        answer: Answer::Tables(&[of_joints("", MatrixUnit::PerRate)]),
+        is_of_motion: true,
+        ..Entry::of(Function::CoriolisMatrix, Capability::CoriolisMatrix)
+    },
+    FORWARD_DYNAMICS,
+    Entry {
+        output: "tip",
+        listed: "returned: the rows of the rotation, then the translation",
+        answer: Answer::Poses,
+        ..Entry::of(Function::ForwardKinematics, Capability::Kinematics)
+    },
+    Entry {
+        output: "poses",
+        listed: "returned: rotation and translation of every link",
+        answer: Answer::Poses,
+        ..Entry::of(Function::LinkPoses, Capability::Kinematics)
+    },
+    Entry {
+        output: "jacobian",
+        listed: "returned: three linear rows, then three angular ones",
+        own: &[
+            Own::of(Quantity::JacobianLinear, |joint| format!("column {joint} of the Jacobian")),
+            Own::of(Quantity::JacobianAngular, |joint| format!("column {joint} of the Jacobian")),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "velocity of the tip per joint velocity, world axes: v in m/s, w in rad/s",
+            Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
+            Labels::Joints,
+        )]),
+        ..Entry::of(Function::Jacobian, Capability::Kinematics)
+    },
+    Entry {
+        output: "acceleration",
+        own: &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "acceleration of the tip where q̈ = 0, world axes",
+            Labels::Names(&["linear, m/s²", "angular, rad/s²"]),
+            AXES,
+        )]),
+        ..Entry::of(Function::JacobianRateTimesVelocity, Capability::Kinematics)
+    },
+    Entry {
+        output: "energy",
+        own: &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())],
+        answer: Answer::Number("J"),
+        feels_rotors: true,
+        ..Entry::of(Function::KineticEnergy, Capability::Energy)
+    },
+    Entry {
+        output: "energy",
+        own: &[
+            Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
+            Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
+        ],
+        answer: Answer::Number("J"),
+        ..Entry::of(Function::PotentialEnergy, Capability::Energy)
+    },
+    Entry {
+        output: "centre",
+        listed: "returned: x, y, z",
+        own: &[Own::meaning(
+            Quantity::ComPosition,
+            "centre of mass of link i, from the base in world axes; i = 0: of the arm, in the world",
+            |joint| match joint {
+                0 => "centre of mass of the arm: Σ m c / Σ m, in the world".to_owned(),
+                _ => format!("centre of mass of link {joint}, from the base in world axes"),
+            },
+        )],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "centre of mass of the arm in the world, m",
+            Labels::Names(&["arm"]),
+            AXES,
+        )]),
+        divides: Some(WITHOUT_MASS),
+        ..Entry::of(Function::CentreOfMass, Capability::CentreOfMass)
+    },
+    Entry {
+        output: "jacobian",
+        listed: "returned: the rows of the Jacobian",
+        own: &[
+            Own::meaning(Quantity::ComPosition, "centre of mass of link i, from the base in world axes", |joint| {
+                format!("centre of mass of link {joint}, from the base in world axes")
+            }),
+            Own::meaning(
+                Quantity::JacobianLinear,
+                "velocity of the centre of mass per rate of joint i, world axes",
+                |joint| format!("column {joint} of the Jacobian: what is behind joint {joint} moves with it"),
+            ),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "velocity of the centre of mass per joint velocity, world axes, m/s",
+            Labels::Names(&["vx", "vy", "vz"]),
+            Labels::Joints,
+        )]),
+        divides: Some(WITHOUT_MASS),
+        ..Entry::of(Function::CentreOfMassJacobian, Capability::CentreOfMass)
+    },
+    Entry {
+        output: "regressor",
+        listed: "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
+        own: &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))],
+        answer: Answer::PerParameter,
+        ..Entry::of(Function::Regressor, Capability::Regressor)
+    },
+    DERIVATIVES,
+    Entry {
+        output: "wrenches",
+        listed: "returned: force and moment of every joint",
+        answer: Answer::Tables(&[AnswerTable::of(
+            "what the link before exerts at each joint, axes fixed to the link, z along the joint: f in N, n \
+            in N m",
+            Labels::Joints,
+            Labels::Names(&["fx", "fy", "fz", "nx", "ny", "nz"]),
+        )]),
+        is_irreducible: true,
+        ..Entry::of(Function::JointWrenches, Capability::JointWrenches)
+    },
+    MOMENTUM_AND_RATE,
+    Entry { ..Entry::torques(Function::InverseDynamicsOnMovingBase, Capability::MovingBase) },
+    Entry {
+        output: "tau",
+        own: &[Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"))],
+        answer: Answer::Torques,
+        is_irreducible: true,
+        feels_rotors: true,
+        ..Entry::of(Function::ActuatorTorques, Capability::Actuation)
+    },
+    Entry {
+        output: "inverse",
+        listed: "returned: the rows of the matrix",
+        own: &[
+            Own::meaning(Quantity::RateDot, "element (i, j) of M⁻¹", |joint| {
+                format!("row {joint} of the inverse: L⁻ᵀ D⁻¹ L⁻¹")
+            }),
+            Own::of(Quantity::LowerFactor, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::ScaledFactor, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::Pivot, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::InversePivot, |_| "M = L D Lᵀ".to_owned()),
+            Own::meaning(Quantity::Reduced, "element (i, j) of L⁻¹", |joint| format!("row {joint} of L⁻¹")),
+            Own::meaning(Quantity::Scaled, "element (i, j) of D⁻¹ L⁻¹", |joint| {
+                format!("row {joint} of D⁻¹ L⁻¹")
+            }),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "acceleration of the row's joint per torque of the column's: 1/(kg m²), prismatic 1/kg, mixed 1/(kg m)",
+            Labels::Joints,
+            Labels::Joints,
+        )]),
+        feels_rotors: true,
+        is_of_motion: true,
+        inverts_mass: true,
+        divides: Some(
+            "the inverse is not finite: the mass matrix is singular \
+             (a joint moves no mass), or the positions are too large",
+        ),
+        ..Entry::of(Function::InverseMassMatrix, Capability::MassMatrix)
+    },
+    Entry {
+        is_of_motion: true,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM],
+        ..Entry::torques(Function::GravityTorquesWithPayload, Capability::PayloadDynamics)
+    },
+    Entry {
+        is_of_motion: true,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..Entry::torques(Function::BiasTorquesWithPayload, Capability::PayloadDynamics)
+    },
+    Entry {
+        function: Function::MassMatrixWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..MASS_MATRIX
+    },
+    Entry {
+        function: Function::ForwardDynamicsWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..FORWARD_DYNAMICS
+    },
+    Entry {
+        function: Function::InverseDynamicsDerivativesWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..DERIVATIVES
+    },
+    Entry {
+        function: Function::MomentumAndRateWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..MOMENTUM_AND_RATE
+    },
+    Entry { output: "tau", ..Entry::of(Function::WrenchTorques, Capability::Kinematics) },
+    Entry { ..Entry::torques(Function::InverseDynamicsWithWrenches, Capability::TipWrenches) },
+    Entry { function: Function::ForwardDynamicsWithWrenches, capability: Capability::TipWrenches, ..FORWARD_DYNAMICS },
+];
