@@ -189,9 +189,10 @@ impl<'w> Lowering<'w> {
                     && lectures(definition.name)
                     && old.name.quantity.step() == quantity.step()
             });
-            // a torque is an alias of a component of a force or moment, a derivative may be a sine
+            // a torque is an alias of a component of a force or moment, a derivative may be a sine, and the sine of one
+            // angle is more or less the cosine of another
             let is_alias = matches!(quantity, Quantity::Torque | Quantity::AxisTorque)
-                || (is_turn && definition.name.by.is_some());
+                || (is_turn && (negative || definition.name.by.is_some()));
             if wins && !is_alias {
                 *slot = Some(Given { name: definition.name, negative });
             }
@@ -212,7 +213,7 @@ impl<'w> Lowering<'w> {
         }
     }
 
-    /// A term without a name that is used more than once, and a constant without a name, are called after the quantity
+    /// A term without a name that is used more than once, and a leaf without a name, are called after the quantity
     /// in which they first stood. Other names may look alike, and what a language tells apart is their text: a number
     /// that gives a text of them is left out.
     fn name_shared_terms(&mut self) {
@@ -228,7 +229,8 @@ impl<'w> Lowering<'w> {
         for (id, node) in self.written.graph.nodes() {
             let index = id.index();
             let is_constant = matches!(node, Op::Constant(_));
-            let needs_name = self.uses[index] > 0 && (is_constant || self.uses[index] > 1);
+            let is_leaf = is_constant || matches!(node, Op::Sine(_) | Op::Cosine(_));
+            let needs_name = self.uses[index] > 0 && (is_leaf || self.uses[index] > 1);
             if self.names[index].is_some() || !needs_name {
                 continue;
             }
@@ -298,9 +300,8 @@ impl<'w> Lowering<'w> {
         let at = at.magnitude().signed(constant.value < 0.0);
         let turn = match constant.name.quantity {
             Quantity::Theta | Quantity::GroupTheta => self.written.graph.turn(at),
-            // one without a name of its own, such as of the contacts
-            Quantity::Constant => self.written.graph.known_turn(at),
-            _ => None,
+            // one that was made as an angle, whatever it is called after
+            _ => self.written.graph.known_turn(at),
         };
         (self.written.graph.number(at).unwrap_or_default(), turn)
     }

@@ -109,6 +109,14 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
         ));
     }
     remarks.extend(of_motors(robot));
+    if !robot.contacts.is_empty() {
+        let names = robot.tip_names();
+        let contacts: Vec<&str> = robot.contacts.iter().map(|contact| names[contact.tip]).collect();
+        remarks.push(format!(
+            "the contacts at {} are left out: a URDF has no place for them, and has these tips as links",
+            contacts.join(", ")
+        ));
+    }
     let mut text = String::from("<?xml version=\"1.0\"?>\n");
     if let Some(title) = &robot.title {
         let _ = writeln!(text, "<!-- {} -->", comment(title));

@@ -1,10 +1,11 @@
 //! From a URDF to a robot file, with an account of what was done.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use rne_model::{
-    Angle, Bodies, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Reader, Remedy,
-    Report, Robot, Row, RunTime, Transform,
+    Angle, Bodies, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Link, Reader,
+    Remedy, Report, Robot, Row, RunTime, Transform,
 };
 
 use crate::chain::{Chain, Extracted, extract};
@@ -273,22 +274,32 @@ impl Urdf {
 
     /// Bodies of which the inertia has a negative eigenvalue.
     fn refuse_unphysical(&self, robot: &Robot, told: &Extracted) -> Result<(), Report> {
+        if let Some(FloatingBase { link, .. }) = &robot.floating_base
+            && !link.is_physical(&link.inertia)
+        {
+            let base = self.links.iter().find(|link| link.name == told.base);
+            let span = base.map_or(0..0, |link| link.span.clone());
+            let name = format!("the base {}", quoted(&told.base));
+            return Err(self.unphysical(&span, &name, link, ""));
+        }
         for ((joint, span), lumped) in robot.joints.iter().zip(&told.spans).zip(&told.lumped) {
             if joint.is_physical() {
                 continue;
             }
-            let moment = joint.row.link.inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
-            let message = format!(
-                "the link that the joint {} moves has the principal moment of inertia {moment:.3e} kg m²; no body has \
-                 a negative one",
-                quoted(&joint.name)
-            );
             let several =
                 if lumped.len() > 1 { format!(" (lumped of {})", crate::source::names(lumped)) } else { String::new() };
-            let help = format!("correct the inertia{several}, or keep it");
-            return Err(self.source.error_with(span, message, help, &Remedy::KeepUnphysical));
+            let name = format!("the link that the joint {} moves", quoted(&joint.name));
+            return Err(self.unphysical(span, &name, &joint.row.link, &several));
         }
         Ok(())
+    }
+
+    fn unphysical(&self, span: &Range<usize>, name: &str, link: &Link, several: &str) -> Report {
+        let moment = link.inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
+        let message =
+            format!("{name} has the principal moment of inertia {moment:.3e} kg m²; no body has a negative one");
+        let help = format!("correct the inertia{several}, or keep it");
+        self.source.error_with(span, message, help, &Remedy::KeepUnphysical)
     }
 }
 

@@ -56,12 +56,15 @@ pub fn write(robot: &Robot) -> String {
     if robot.base != Transform::IDENTITY {
         noted(&mut text, &format!("base: {}", transform(&robot.base)), "m, rad");
     }
-    if let Some(FloatingBase { name, link: Link { mass, com, inertia: tensor, .. } }) = &robot.floating_base {
+    if let Some(FloatingBase { name, link: link @ Link { mass, com, inertia: tensor, .. } }) = &robot.floating_base {
         let _ = writeln!(text, "floating_base:\n  name: {name}\n  link:");
         noted(&mut text, &format!("    mass: {}", exact_digits(*mass)), "kg");
         noted(&mut text, &format!("    com: {}", list(com)), "m");
         if *tensor != Inertia::default() {
             noted(&mut text, &format!("    inertia: {}", inertia(tensor)), "kg m²");
+        }
+        if !link.is_physical(tensor) {
+            text.push_str("    physical: false\n");
         }
     }
     if let (false, Some(on)) = (robot.is_serial(), robot.tip().on) {

@@ -18,7 +18,8 @@ pub struct Selection {
     pub base: Option<String>,
     /// The link at the end of the arm; needed where the tree has several leaves.
     pub tip: Option<String>,
-    /// Movable joints that are held, and where: rad or m.
+    /// Movable joints that are held, and where: rad or m. The joint that lets the base float is held at 0, which fixes
+    /// the base.
     pub lock: Vec<(String, f64)>,
     /// Whether every other movable joint off the chain is held at zero.
     pub lock_others: bool,
@@ -46,7 +47,13 @@ impl Urdf {
 impl Selection {
     /// Whether the robot has a floating base.
     pub(crate) fn floats(&self, urdf: &Urdf, base: usize) -> Result<bool, Report> {
-        let floats = self.floating.unwrap_or(self.whole && urdf.floats == Some(base));
+        let mut locked = self.lock.iter().filter_map(|(name, _)| urdf.joints.iter().find(|joint| joint.name == *name));
+        let is_free = urdf.floats.is_some_and(|link| locked.all(|joint| joint.child != link));
+        if self.floating == Some(true) && urdf.floats.is_some() && !is_free {
+            let message = "the base is to float, and the joint that lets it float is locked";
+            return Err(urdf.source.error(&urdf.links[base].span, message.to_owned(), None));
+        }
+        let floats = self.floating.unwrap_or(self.whole && is_free && urdf.floats == Some(base));
         let may_float = self.whole && (base == urdf.root || urdf.floats == Some(base));
         if floats && !may_float {
             let message = "a floating base is the root link of a whole robot, or the link that floats in the file";
@@ -250,6 +257,14 @@ pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize,
     for (name, value) in &selection.lock {
         let index = joint(urdf, name)?;
         let joint = &urdf.joints[index];
+        if urdf.floats == Some(joint.child) {
+            if *value != 0.0 {
+                let message = format!("the joint {} floats, and can be locked at 0 only", quoted(name));
+                let help = "0 fixes the base where the file has it";
+                return Err(urdf.source.error(&joint.span, message, help.to_owned()));
+            }
+            continue;
+        }
         if !joint.kind.has_one_freedom() {
             let message =
                 format!("the joint {} is {} and cannot be locked at a value", quoted(name), joint.kind.name());

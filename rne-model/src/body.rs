@@ -273,7 +273,7 @@ fn body(cx: &Context, node: &Node, joints: &[String]) -> Option<Body> {
         written: or(matter::NO_INERTIA) "inertia" matter::tensor,
         about: or(matter::ABOUT_COM) "inertia_about" matter::reference,
     });
-    let matter = matter::link(cx, node, (mass, com), (written, about))?;
+    let matter = matter::link(cx, node, (mass, com), (written, about), true)?;
     Some(Body { name, fixed: FixedFrame { on, placement: at }, matter })
 }
 

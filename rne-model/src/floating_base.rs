@@ -50,8 +50,9 @@ fn base_link(cx: &Context, node: &Node) -> Option<Link> {
         com: or([0.0; 3]) "com" matter::com,
         written: or(matter::NO_INERTIA) "inertia" matter::tensor,
         about: or(matter::ABOUT_COM) "inertia_about" matter::reference,
+        physical: or(true) "physical" matter::physical,
     });
-    matter::link(cx, node, (mass, com), (written, about))
+    matter::link(cx, node, (mass, com), (written, about), physical)
 }
 
 fn base_name(cx: &Context, node: &Node, root: &Node) -> Option<String> {

@@ -2,10 +2,10 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use crate::Inertia;
+use crate::{Inertia, Link};
 
 /// Rounding that is forgiven, relative to the largest magnitude involved.
-pub(crate) const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-12;
 
 /// Moves a tensor from the origin of the link frame to the centre of mass: I - m(|c|² 1 - c cᵀ).
 ///
@@ -33,7 +33,7 @@ where
 }
 
 /// The largest number that went into a tensor about the centre of mass: what its rounding errors are relative to.
-pub(crate) fn largest_magnitude(written: &Inertia, m: f64, [x, y, z]: [f64; 3]) -> f64 {
+fn largest_magnitude(written: &Inertia, m: f64, [x, y, z]: [f64; 3]) -> f64 {
     largest(written).max(m * (x * x + y * y + z * z))
 }
 
@@ -53,6 +53,17 @@ impl Inertia {
     #[must_use]
     pub fn impossible_moments(&self) -> Option<[f64; 3]> {
         self.principal_moments().filter(|[a, b, c]| c - (a + b) > TOLERANCE * c)
+    }
+}
+
+impl Link {
+    /// Whether the inertia is positive semidefinite about the centre of mass, but for rounding, and there is no first
+    /// moment without mass: so it is with a body. `written` is the inertia as the file has it, about any point.
+    #[must_use]
+    pub fn is_physical(&self, written: &Inertia) -> bool {
+        let magnitude = largest_magnitude(written, self.mass, self.com);
+        let moments = self.inertia.principal_moments();
+        !self.has_first_moment() && moments.is_some_and(|moments| moments[0] >= -TOLERANCE * magnitude)
     }
 }
 

@@ -3,9 +3,8 @@
 use crate::decode::{Context, choice, list, not_negative, read_mapping};
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
-use crate::source::six_digits;
 use crate::varying::{com_of_first_moment, entry, inertia_about_com, inertia_element};
-use crate::{Entry, Inertia, InertiaElement, InertiaReference, Link, inertia, lint};
+use crate::{Entry, Inertia, InertiaElement, InertiaReference, Link, lint, matter};
 
 /// The link with its inertia about the centre of mass, and the inertia as written.
 pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
@@ -15,7 +14,7 @@ pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (In
         _moment: optional "first_moment" |_, _| Some(()),
         written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
-        physical: or(true) "physical" |cx, node| choice(cx, node, "answer", &[("true", true), ("false", false)]),
+        physical: or(true) "physical" matter::physical,
     });
     let (com, first_moment) = match (node.get("first_moment"), node.get("com")) {
         (None, _) => (com, [0.0; 3]),
@@ -31,42 +30,10 @@ pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (In
         (Some(moment), true) => no_body(cx, moment, (node.get("inertia_about"), about), physical)?,
         _ => about,
     };
-    let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
+    let place = matter::place_of_inertia(node);
     let inertia = inertia_about_com(cx, place.clone(), joint, (written, about), (mass, com))?;
-    let Some(moments) = inertia::principal_moments(&inertia) else {
-        let message = "the inertia about the centre of mass is not finite; mass, com and inertia are too large";
-        return cx.refuse(Diagnostic::error(place, message));
-    };
-    let magnitude = inertia::largest_magnitude(&written, mass, com);
-    let is_body = moments[0] >= -inertia::TOLERANCE * magnitude;
     let link = Link { mass, com, inertia, first_moment };
-    if first_moment != [0.0; 3] {
-        // that it is no body is said already
-        return Some((link, (written, about)));
-    }
-    if !is_body && !physical {
-        lint::unphysical(cx, place, moments);
-        return Some((link, (written, about)));
-    }
-    if !is_body {
-        let message = format!(
-            "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
-             it must be zero or positive",
-            six_digits(moments[0])
-        );
-        return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(match about {
-            InertiaReference::Com => {
-                "check the signs and the order of the products of inertia; a tensor about the origin of the link frame \
-                 needs `inertia_about: origin`"
-            }
-            InertiaReference::Origin => {
-                "check mass and com; if the tensor already refers to the centre of mass, write `inertia_about: com`"
-            }
-        }));
-    }
-    lint::triangle_inequality(cx, place.clone(), &link.inertia);
-    lint::radius_of_gyration(cx, place, mass, moments);
-    Some((link, (written, about)))
+    Some((matter::checked(cx, place, link, (written, about), physical)?, (written, about)))
 }
 
 /// The first moment of a link without mass, about the origin of its frame.

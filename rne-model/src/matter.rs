@@ -1,6 +1,9 @@
-//! Mass, centre of mass and inertia that no run-time parameter changes: of a body, and of a floating base.
+//! Mass, centre of mass and inertia that no run-time parameter changes, of a body and of a floating base; and whether
+//! those of any link are those of a body.
 
-use crate::decode::{Context, list, not_negative, read_mapping};
+use std::ops::Range;
+
+use crate::decode::{Context, choice, list, not_negative, read_mapping};
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
 use crate::source::six_digits;
@@ -41,33 +44,70 @@ pub(crate) fn tensor(cx: &Context, node: &Node) -> Option<Inertia> {
     Some(Inertia { xx, yy, zz, xy, xz, yz })
 }
 
+/// Whether the numbers are those of a body, as the file says.
+pub(crate) fn physical(cx: &Context, node: &Node) -> Option<bool> {
+    choice(cx, node, "answer", &[("true", true), ("false", false)])
+}
+
+/// The place of what is said of an inertia.
+pub(crate) fn place_of_inertia(node: &Node) -> Range<usize> {
+    ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head()
+}
+
 /// The body of `node` with its inertia about the centre of mass, if its numbers are those of a body.
 pub(crate) fn link(
     cx: &Context,
     node: &Node,
     (mass, com): (f64, [f64; 3]),
     (written, about): (Inertia, InertiaReference),
+    physical: bool,
 ) -> Option<Link> {
-    let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
     let inertia = match about {
         InertiaReference::Com => written,
         InertiaReference::Origin => inertia::about_com(written, &mass, com),
     };
-    let Some(moments) = inertia::principal_moments(&inertia) else {
+    let link = Link { mass, com, inertia, first_moment: [0.0; 3] };
+    checked(cx, place_of_inertia(node), link, (written, about), physical)
+}
+
+/// A link, if its numbers are those of a body, or `physical` says that they need not be.
+pub(crate) fn checked(
+    cx: &Context,
+    place: Range<usize>,
+    link: Link,
+    (written, about): (Inertia, InertiaReference),
+    physical: bool,
+) -> Option<Link> {
+    let Some(moments) = inertia::principal_moments(&link.inertia) else {
         let message = "the inertia about the centre of mass is not finite; mass, com and inertia are too large";
         return cx.refuse(Diagnostic::error(place, message));
     };
-    if moments[0] < -inertia::TOLERANCE * inertia::largest_magnitude(&written, mass, com) {
+    let is_body = link.is_physical(&written);
+    if link.has_first_moment() {
+        // that it is no body is said already
+        return Some(link);
+    }
+    if !is_body && !physical {
+        lint::unphysical(cx, place, moments);
+        return Some(link);
+    }
+    if !is_body {
         let message = format!(
-            "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg \
-             m²; it must be zero or positive",
+            "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
+             it must be zero or positive",
             six_digits(moments[0])
         );
-        let help = "check the signs and the order of the products of inertia, and the point that the tensor \
-                    refers to";
-        return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(help));
+        return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(match about {
+            InertiaReference::Com => {
+                "check the signs and the order of the products of inertia; a tensor about the origin of the link frame \
+                 needs `inertia_about: origin`"
+            }
+            InertiaReference::Origin => {
+                "check mass and com; if the tensor already refers to the centre of mass, write `inertia_about: com`"
+            }
+        }));
     }
-    lint::triangle_inequality(cx, place.clone(), &inertia);
-    lint::radius_of_gyration(cx, place, mass, moments);
-    Some(Link { mass, com, inertia, first_moment: [0.0; 3] })
+    lint::triangle_inequality(cx, place.clone(), &link.inertia);
+    lint::radius_of_gyration(cx, place, link.mass, moments);
+    Some(link)
 }

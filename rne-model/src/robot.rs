@@ -2,7 +2,7 @@
 
 use crate::{
     Angle, Bodies, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, FrameId, Friction, Inertia,
-    JointKind, Link, Model, Motor, Row, RunTime, Transform, inertia,
+    JointKind, Model, Motor, Row, RunTime, Transform,
 };
 
 /// A validated robot, as its file describes it.
@@ -130,12 +130,7 @@ impl Joint {
     /// is no first moment without mass: so it is with a body. A file must say `physical: false` where it is not.
     #[must_use]
     pub fn is_physical(&self) -> bool {
-        let Link { mass, com, inertia, .. } = self.row.link;
-        if self.row.link.has_first_moment() {
-            return false;
-        }
-        let magnitude = inertia::largest_magnitude(&self.written_inertia.0, mass, com);
-        inertia.principal_moments().is_some_and(|moments| moments[0] >= -inertia::TOLERANCE * magnitude)
+        self.row.link.is_physical(&self.written_inertia.0)
     }
 }
 

@@ -369,6 +369,26 @@ fn contacts_exert_the_rate_of_the_momentum() {
     }
 }
 
+/// Where the row of a joint begins with a turn about its axis, the reduced form and the rows of contacts count one angle
+/// from different zeros: by any part of a turn, or by a right angle, so that a cosine is the negative of a sine.
+#[test]
+fn contacts_behind_a_turn_about_an_axis_are_proved() {
+    for rpy in ["[-2.2, 0, 0]", "[-2.2, 3*pi/2, 1.2]"] {
+        let robot = robot(&format!(
+            "format: 2\nname: turned\nsource: invented\nconvention: standard\ngravity: [0, 0, -9.81]\n\
+             floating_base: {{name: trunk, link: {{mass: 1.5, com: [0.1, 0.2, 0.3], \
+             inertia: {{xx: 0.1, yy: 0.2, zz: 0.15}}}}}}\n\
+             frames: [{{name: foot, on: hip, xyz: [0.1, 0.2, 0.3]}}]\ntips: [foot]\n\
+             contacts: [{{tip: foot, kind: point}}]\njoints:\n  - name: hip\n    type: revolute\n    \
+             at: {{xyz: [0.1, 0.3, -0.2], rpy: {rpy}}}\n    dh: {{theta: 0.7, d: 0.1, a: 0.2, alpha: 0.4}}\n    \
+             link: {{mass: 1.0, com: [0.1, 0.3, 0.2], inertia: {{xx: 0.1, yy: 0.2, zz: 0.15}}}}\n"
+        ));
+        let program = Compiler::new(&robot).compile(Function::ForwardDynamicsInContact, Form::Reduced);
+        let refusals = program.expect("a program").refusals;
+        assert!(refusals.is_empty(), "{rpy}: {refusals:?}");
+    }
+}
+
 /// HyQ stands still under the torques that its feet ask when they carry it, and the forces under them are its weight.
 #[test]
 fn a_quadruped_stands_on_its_feet() {

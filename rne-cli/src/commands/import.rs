@@ -57,7 +57,7 @@ pub(crate) struct Arguments {
     /// Denavit-Hartenberg convention of the new table: standard or modified [default: standard; modified for a tree]
     #[arg(long, value_name = "C", value_parser = convention(), hide_possible_values = true)]
     convention: Option<Convention>,
-    /// Lock a movable joint at this position, rad or m, such as finger=0.04; may be repeated
+    /// Lock a movable joint at this position, rad or m, such as finger=0.04; may be repeated; 0 holds a floating base
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
     lock: Vec<(String, f64)>,
     /// Lock all movable joints outside the arm at zero, except joints of --lock
@@ -119,7 +119,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ..Options::default()
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
-    let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account, arguments));
+    let joints = if robot.dof() == 1 { "1 joint".to_owned() } else { format!("{} joints", robot.dof()) };
+    let remark = format!("{TITLE}{}{TITLE:#}: {joints}\n{}", robot.name, told(&account, arguments));
     arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 
@@ -156,13 +157,17 @@ fn frames(account: &Account, keeps_frames: bool) -> String {
 }
 
 /// The option that changes whether the link that floats in the file is a floating base.
-fn other_base(account: &Account, whole: bool) -> Option<String> {
-    let text = match (account.floats?, whole) {
-        (true, _) => format!("{TYPED}--fixed{TYPED:#} fixes the base where the file has it"),
-        (false, true) => format!("without {TYPED}--fixed{TYPED:#}, it is the floating base"),
-        (false, false) => format!("with {TYPED}--whole{TYPED:#}, it is the floating base of the whole robot"),
+fn other_base(account: &Account, arguments: &Arguments) -> Option<String> {
+    let option = match (account.floats?, arguments) {
+        (true, _) => return Some(format!("{TYPED}--fixed{TYPED:#} fixes the base where the file has it")),
+        (false, Arguments { whole: false, .. }) => {
+            return Some(format!("with {TYPED}--whole{TYPED:#}, it is the floating base of the whole robot"));
+        }
+        (false, Arguments { fixed: true, .. }) => "--fixed",
+        (false, Arguments { base: Some(_), .. }) => "--base",
+        _ => "--lock",
     };
-    Some(text)
+    Some(format!("without {TYPED}{option}{TYPED:#}, it is the floating base"))
 }
 
 /// The account of an import, line by line.
@@ -199,7 +204,7 @@ fn told(account: &Account, arguments: &Arguments) -> String {
     for remark in &account.remarks {
         let _ = writeln!(text, "{TITLE}note{TITLE:#}: {remark}");
     }
-    text.extend(other_base(account, arguments.whole).map(|option| format!("{TITLE}note{TITLE:#}: {option}\n")));
+    text.extend(other_base(account, arguments).map(|option| format!("{TITLE}note{TITLE:#}: {option}\n")));
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", rounding(&account.rounding));
     let lints = account.lints.warnings().count();
     if lints > 0 {

@@ -135,6 +135,15 @@ fn a_base_that_floats_in_the_file_floats() {
         told.contains("rne fixes it where the file has it note: without --fixed, it is the floating base"),
         "{told}"
     );
+    // the joint that lets it float can be locked where it is
+    let (locked, told) = whole(&["--lock", "free=0"]);
+    assert!(locked == fixed && told.contains("note: without --lock, it is the floating base"), "{locked}{told}");
+    let (_, told) = whole(&["--base", "world"]);
+    assert!(told.contains("note: without --base, it is the floating base"), "{told}");
+    let elsewhere = ["import", urdf, "--whole", "--tip", "tip", "--lock", "free=1"];
+    fails(1, &elsewhere, &["the joint `free` floats, and can be locked at 0 only", "0 fixes the base"]);
+    let both = ["import", urdf, "--whole", "--tip", "tip", "--lock", "free=0", "--floating"];
+    fails(1, &both, &["the base is to float, and the joint that lets it float is locked"]);
     let arm = rne(&["import", urdf, "--tip", "tip", "--lock-others"]);
     assert!(!arm.out.contains("floating_base") && arm.err.contains("with --whole"), "{arm:?}");
     fails(2, &["import", urdf, "--whole", "--fixed", "--floating"], &["cannot be used with"]);

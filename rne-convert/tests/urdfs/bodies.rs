@@ -53,6 +53,25 @@ fn bodies_that_are_none() {
     assert!(!kept.robot.joints[0].is_physical());
 }
 
+/// The same of a base that floats.
+#[test]
+fn a_base_that_is_no_body() {
+    let urdf = pendulum("").replace(
+        "<link name=\"base\"/>",
+        "<link name=\"base\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" \
+         izz=\"-0.3\"/></inertial></link>",
+    );
+    let selection = Selection { whole: true, floating: Some(true), ..Selection::default() };
+    let options = Options { selection, convention: Convention::Modified, ..Options::default() };
+    let message = refused(&urdf, &options);
+    assert!(message.contains("the base `base` has the principal moment of inertia -3.000e-1 kg m²"), "{message}");
+    assert!(message.contains("arm.urdf:") && message.contains("or keep it; KeepUnphysical"), "{message}");
+    let options = Options { keep_unphysical: true, ..options };
+    let kept = Urdf::read("arm.urdf", &urdf).and_then(|urdf| urdf.import(&options)).expect("a robot");
+    assert_eq!(kept.robot.floating_base.expect("a base").link.inertia.zz, -0.3);
+    assert!(kept.account.lints.to_string().contains("as `physical: false` allows"), "{}", kept.account.lints);
+}
+
 /// The import names a link whose inertia no body can have, even if the links that are fixed to it hide this. The link
 /// is the motor of Talos' gripper (Gepetto/example-robot-data#130).
 #[test]

@@ -152,6 +152,16 @@ fn a_floating_base_is_the_root_of_a_urdf() {
     }
 }
 
+/// A URDF has no contacts, and the export says so.
+#[test]
+fn contacts_are_left_out_with_a_note() {
+    let robot = read(include_str!("../../../docs/standing_hyq.yaml"));
+    let exported = rne_convert::export(&robot).unwrap();
+    let note = "the contacts at lf_foot, lh_foot, rf_foot, rh_foot are left out: a URDF has no place for them";
+    assert!(exported.remarks.iter().any(|remark| remark.starts_with(note)), "{:?}", exported.remarks);
+    assert!(exported.text.contains(note), "{}", exported.text);
+}
+
 /// A floating joint on a root without mass makes the base float: the same robot as without this root and joint.
 #[test]
 fn a_floating_joint_makes_the_base_float() {
