@@ -82,7 +82,7 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
     let torques = program(Function::InverseDynamics);
     let with_wrench = program(Function::InverseDynamicsWithWrench);
     let reduced = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("compiles");
-    let data = rne_report::data(&robot, &torques, &with_wrench, Some(&reduced));
+    let data = rne_report::data(&robot, &torques, Some(&with_wrench), Some(&reduced));
     let inspection = Inspection::new(&robot, &with_wrench);
     let arm = DynArm::from_robot(&robot);
     let (mut states, mut traces, mut poses, mut asked) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
