@@ -220,6 +220,127 @@ def wrench(driver, rne, robot, dof):
     print(f"  with a wrench at the tip: worst difference {worst:.1e} of the largest")
 
 
+def in_axes_of_base(rpy, vector):
+    """R transposed times a vector of the world, with R = Rz(yaw) Ry(pitch) Rx(roll)."""
+    def turned(angle, a, b):
+        return math.cos(angle) * a + math.sin(angle) * b, math.cos(angle) * b - math.sin(angle) * a
+    x, y, z = vector
+    x, y = turned(rpy[2], x, y)
+    z, x = turned(rpy[1], z, x)
+    y, z = turned(rpy[0], y, z)
+    return [x, y, z]
+
+
+BASE = ("rpy", "omega", "omega_dot", "acceleration")
+ON_BASE = "const of = rne.parts(); return { tau: of.total, wrench: of.onBase.total, weight: document.getElementById('weight').textContent }"
+
+
+def floating(driver, rne, robot, page, tips):
+    """A base that nothing holds: torques and what acts on the base are those of `rne eval`, by hands, keys and addresses."""
+    opened(driver, page)
+    name, chance = page.stem, random.Random(29)
+    inspection = json.loads(subprocess.run([rne, "show", robot, "--json"], check=True, capture_output=True).stdout)
+    dof, gravity = len(inspection["robot"]["joints"]), inspection["robot"]["gravity"]
+
+    def right(state):
+        base, wrenches = state["base"], state["wrench"]
+        command = ["--function=inverse_dynamics_of_floating_base", f"--base-omega={lists(base['omega'])}",
+                   f"--base-omega-dot={lists(base['omega_dot'])}", f"--base-acceleration={lists(base['acceleration'])}",
+                   f"--gravity={lists(in_axes_of_base(base['rpy'], gravity))}"]
+        command += [f"--tip-wrench={tip}={lists(wrenches['f'][3 * at:3 * at + 3] + wrenches['n'][3 * at:3 * at + 3])}"
+                    for at, tip in enumerate(tips)]
+        found = evaluated(rne, robot, state, *command)["result"]
+        return found["wrench"]["force"] + found["wrench"]["moment"], found["tau"]
+
+    def compare(shown, state, what):
+        on_base, tau = right(state)
+        largest = max(1.0, *map(abs, on_base + tau))
+        pairs = zip(shown["wrench"] + shown["tau"], on_base + tau, strict=True)
+        worst = max(abs(a - b) for a, b in pairs) / largest
+        check(worst <= TOLERANCE, f"{name}, {what}: torques and what acts on the base differ by {worst:.1e}")
+        return worst
+
+    # it stands still: what acts on it is its weight
+    zeros = [0.0] * dof
+    rest = {"q": zeros, "qd": zeros, "qdd": zeros, "base": {of: [0.0] * 3 for of in BASE},
+            "wrench": {"f": [0.0] * 3 * len(tips), "n": [0.0] * 3 * len(tips)}}
+    driver.execute_script("rne.setState(arguments[0])", rest)
+    shown = driver.execute_script(ON_BASE)
+    compare(shown, rest, "at rest")
+    weight = math.hypot(*right(rest)[0][:3])
+    said = f"|F| = {weight:.1f} N. The robot stands still: F is its weight, {weight:.1f} N." if weight else "There is no gravity"
+    check(said in shown["weight"], f"{name}: of a robot at rest the page says {shown['weight']!r}, not {said!r}")
+    # everything moves, in each form
+    worst = 0.0
+    for form in ("folded", "unfolded", "reduced"):
+        pressed(driver, form)
+        state = {of: [round(chance.uniform(-2, 2), 3) for _ in range(dof)] for of in ("q", "qd", "qdd")}
+        state["base"] = {of: [round(chance.uniform(-2, 2), 3) for _ in range(3)] for of in BASE}
+        state["wrench"] = {of: [round(chance.uniform(-20, 20), 2) for _ in range(3 * len(tips))] for of in ("f", "n")}
+        fragment = "#" + "&".join(f"{of}={lists(state[of])}" for of in ("q", "qd", "qdd"))
+        fragment += "".join(f"&{of}={lists(state['base'][of])}" for of in BASE)
+        fragment += "".join(f"&{of}={lists(state['wrench'][of])}" for of in ("f", "n")) + ("" if form == "folded" else f"&{form}")
+        opened(driver, page, fragment)
+        worst = max(worst, compare(driver.execute_script(ON_BASE), state, form))
+        view, notice = driver.execute_script("return [rne.view(), document.getElementById('address-notice').textContent]")
+        check(not notice and view["state"]["base"] == state["base"] and view["wrench"] == state["wrench"],
+              f"{name}: an address shows {view['state']['base']} and says {notice!r}")
+        again = driver.execute_script("return rne.address()")
+        opened(driver, page, again)
+        check(driver.execute_script("return [rne.view().state, rne.address()]") == [view["state"], again],
+              f"{name}: a moved base does not come back by its address")
+    if len(tips) > 1:
+        parts = driver.execute_script(
+            """
+            document.querySelector(`[data-tip-name="${arguments[0]}"]`).click();
+            const of = document.querySelector('[data-tip="fx"]');
+            of.value = 7;
+            of.dispatchEvent(new Event("input", { bubbles: true }));
+            return [rne.view().wrench.f[3], Number(of.value)];
+            """, tips[1])
+        check(parts == [parts[1]] * 2, f"{name}: the sliders of {tips[1]} set {parts}")
+    driver.execute_script("document.getElementById('rest').click()")
+    held = driver.execute_script("return rne.view().state.base")
+    check(held == {**state["base"], **{of: [0, 0, 0] for of in BASE[1:]}}, f"{name}: at rest the base has {held}")
+    driver.execute_script("document.getElementById('home').click()")
+    check(driver.execute_script("return rne.view().state.base") == rest["base"], f"{name}: reset leaves the base moved")
+    # keys turn the trunk, and gravity with it
+    box = "return document.querySelector('.solid.base .body').getAttribute('d')"
+    before = driver.execute_script(box)
+    driver.find_element(By.CSS_SELECTOR, '[data-base="rpy-0"]').send_keys(*[Keys.ARROW_RIGHT] * 5)
+    roll = driver.execute_script("return rne.view().state.base.rpy[0]")
+    check(abs(roll - math.pi / 10) < 1e-9, f"{name}: five keys on the roll make it {roll}")
+    check(driver.execute_script(box) != before, f"{name}: the drawing of the base does not turn")
+    field = driver.find_element(By.CSS_SELECTOR, '[data-base-degrees="1"]')
+    field.clear()
+    field.send_keys("-22,5", Keys.ENTER)
+    pitch = driver.execute_script("return rne.view().state.base.rpy[1]")
+    check(abs(pitch + math.pi / 8) < 1e-15, f"{name}: -22,5 degrees of pitch are {pitch} rad")
+    shown, told = driver.execute_script("return ['x', 'y', 'z'].map(of => rne.value(`g0_${of}`))"), in_axes_of_base([roll, pitch, 0], gravity)
+    check(all(abs(a - b) < 1e-12 for a, b in zip(shown, told, strict=True)), f"{name}: gravity in the base is {shown}")
+    # the motion is that of the joints
+    driver.execute_script("const of = document.getElementById('time'); of.value = 0.4; of.dispatchEvent(new Event('input'))")
+    held = driver.execute_script("return rne.view().state.base")
+    check(held == {**rest["base"], "rpy": [roll, pitch, 0]}, f"{name}: in a motion the base has {held}")
+    # arrow keys go from cell to cell, over those that are empty
+    driver.find_element(By.CSS_SELECTOR, '[data-cell="0-4"]').click()
+    driver.find_element(By.CSS_SELECTOR, '[data-cell="0-4"]').send_keys(Keys.ARROW_RIGHT, Keys.ARROW_UP)
+    at = driver.execute_script("return document.activeElement.dataset.cell")
+    check(at == "1-2", f"{name}: keys go from the base's step 4 to the cell {at}")
+    for component in ("ddcb0_x", "fb0_z", "nb0_y"):
+        values = driver.execute_script("rne.select(arguments[0]); return document.querySelector('[data-readout]').textContent", component)
+        check(component in values, f"{name}: {component} is not told")
+    for where in ("desk", "phone"):
+        seen_on(driver, *SCREENS[where])
+        # one small cell, for the rules are slow
+        opened(driver, page, "#cell=0.4&rpy=0.2,-0.3,0.4")
+        narrow(driver, f"{name}, {where}")
+        accessible(driver, f"{name}, {where}")
+    seen_on(driver, *SCREENS["desk"])
+    quiet(driver, name)
+    print(f"  {name}: a floating base, worst difference {worst:.1e} of the largest")
+
+
 def views(driver, page):
     """What a reader has chosen comes back on another page of the same arm."""
     opened(driver, page)
@@ -972,8 +1093,14 @@ def main():
         pages[robot] = folder / f"{robot}.html"
         pages[robot].unlink(missing_ok=True)
         subprocess.run([rne, "report", robot, "-o", str(pages[robot])], check=True, capture_output=True)
+    floats = {"standing_hyq": ["lf_foot", "lh_foot", "rf_foot", "rh_foot"], "satellite": ["tip"]}
+    for robot in floats:
+        pages[robot] = folder / f"{robot}.html"
+        subprocess.run([rne, "report", f"docs/{robot}.yaml", "--force", "-o", str(pages[robot])], check=True, capture_output=True)
     driver = browser(*SCREENS["desk"])
     try:
+        for robot, tips in floats.items():
+            floating(driver, rne, f"docs/{robot}.yaml", pages[robot], tips)
         figures(driver, pages)
         for media in ("screen", "print"):
             dots(driver, pages["puma560"], media)

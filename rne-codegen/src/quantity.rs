@@ -274,6 +274,8 @@ quantities! {
     TwiceRate:                  "twice_qd",  Joint,     4, false, "2q̇", "rad/s|m/s", "2 q̇";
     Acceleration:               "ddc",       Vector,    4, true,  "c̈", "m/s²",
         "c̈: acceleration of the centre of mass";
+    BaseAcceleration:           "ddcb",      Vector,    4, true,  "c̈", "m/s²",
+        "c̈: acceleration of the centre of mass of a base that nothing holds";
     OriginAcceleration:         "a",         Vector,    4, true,  "a", "m/s²",
         "acceleration of the frame's origin, less gravity";
     OriginAccelerationUnturned: "an",        Vector,    4, true,  "aN", "m/s²", "the same in frame N";

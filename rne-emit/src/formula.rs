@@ -204,6 +204,21 @@ pub(super) fn payload_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     written(templates, numbers)
 }
 
+/// The formulas of a step for a base that nothing holds; a is the acceleration of the origin of frame 0, F and N are
+/// what must act on the base.
+pub(super) fn base_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
+    let templates: Templates = match step {
+        Step::Acceleration => &[(Quantity::BaseAcceleration, "c̈{i} = a{i} + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i})")],
+        Step::Wrenches => &[
+            (Quantity::InertiaMoment, "n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i}"),
+            (Quantity::BaseForce, "F{i} = m{i} (c̈{i} - g{i}) + f{i},{n}"),
+            (Quantity::BaseMoment, "N{i} = n{i} + n{i},{n} + d{i} × F{i} + r{rn} × f{i},{n}"),
+        ],
+        _ => &[],
+    };
+    written(templates, numbers)
+}
+
 /// The formulas of the reduced form that stand in the place of a step. The order of their terms and the frame in which
 /// they are evaluated are choices of the plan.
 pub(super) fn reduced_formulas(step: Step, kind: JointKind, numbers: &Numbers) -> Vec<Formula> {

@@ -12,7 +12,7 @@ use rne_model::{Joint, JointKind, Robot, one_line};
 
 use super::annotated::{Annotated, Part};
 use super::expression;
-use super::formula::{Formula, Numbers, formulas, payload_formulas, reduced_formulas};
+use super::formula::{Formula, Numbers, base_formulas, formulas, payload_formulas, reduced_formulas};
 use super::line_breaks::statement as written;
 use super::syntax::Syntax;
 use super::table::angle;
@@ -203,9 +203,11 @@ impl fmt::Display for Folds {
 /// The statements of a program, with the headings and explanations of each joint and step.
 #[must_use]
 pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Listing<'a> {
-    // only what returns torques keeps to joints and steps
+    // only what returns torques keeps to joints and steps; the code of a floating base does not, its explanation does
     let keeps_to_steps = program.form == Form::SevenSteps
-        && (program.function.returns_torques() || program.function == Function::JointWrenches);
+        && (program.function.returns_torques()
+            || program.function == Function::JointWrenches
+            || what.explain && program.function == Function::InverseDynamicsOfFloatingBase);
     let mut sections = if keeps_to_steps { by_steps(robot, program, what) } else { in_order(robot, program, what) };
     sections.retain(|section| !section.lines.is_empty());
     Listing { sections }
@@ -215,8 +217,10 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
     // out with steps 1 to 5, back with 6 and 7
     // a payload is one link more
     let last = program.joints + usize::from(program.function.takes(Argument::Payload));
-    let outward = (1..=last).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
-    let inward = (1..=last).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
+    let floats = program.function.is_of_floating_base();
+    let first = usize::from(!(floats && robot.floating_base.is_some()));
+    let outward = (first..=last).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
+    let inward = (first..=last).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
     let mut sections = Vec::new();
     // several steps use them, and not the first one first
     let of_parameters = of_parameters(program);
@@ -227,8 +231,14 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
             std::iter::once(heading).chain(statements.map(|statement| Line::statement(program, statement))).collect();
         sections.push(Section { place: None, lines });
     }
-    // its joint does not move
-    let is_of_links = |joint, step| joint <= program.joints || !matches!(step, Step::Velocity | Step::Torque);
+    let is_of_links = |joint, step| match step {
+        // nobody gives the velocity of a floating base
+        Step::Velocity if floats => false,
+        Step::Acceleration | Step::Wrenches => true,
+        // the joint of a payload does not move
+        Step::Velocity | Step::Torque => joint > 0 && joint <= program.joints,
+        _ => joint > 0,
+    };
     let places = outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step) && is_of_links(joint, step));
     for (joint, step) in places {
         let here = |place: &Place| place.joint == joint && place.step == step;
@@ -241,6 +251,10 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
             continue;
         }
         let mut lines = heading(robot, program, joint, step);
+        if joint == 0 {
+            let numbers = Numbers::of(robot, joint, program.function);
+            lines.extend(base_formulas(step, &numbers).into_iter().map(Line::Formula));
+        }
         lines.extend(code);
         if what.explain {
             lines.extend(resolutions(robot, program, joint, step));

@@ -68,7 +68,7 @@ const fn drawn(quantity: Quantity) -> Option<&'static str> {
     Some(match quantity {
         Q::Omega | Q::OmegaDot | Q::JointForce | Q::JointMoment | Q::JointPointVelocity => "joint",
         Q::JointPointAcceleration | Q::OriginAcceleration | Q::ReducedForce | Q::ReducedMoment => "joint",
-        Q::OmegaCrossD | Q::Velocity | Q::Acceleration | Q::Gravity => "com",
+        Q::OmegaCrossD | Q::Velocity | Q::Acceleration | Q::BaseAcceleration | Q::Gravity => "com",
         Q::InertiaForce | Q::InertiaMoment | Q::AngularMomentum | Q::MasslessForce | Q::OmegaCrossMoment => "com",
         // of the next joint: what it carries
         Q::ChildForce | Q::ChildMoment | Q::OmegaCrossR | Q::R => "lever",

@@ -3,11 +3,12 @@
 /** The words of an address that have no value. */
 const WORDS = ["exercise", "lecture", "unfolded", "reduced", "c", "equations", "joint", "base", "light", "dark", "frames"];
 
-/** The keys of an address that have a value. */
+/** The keys of an address that have a value; those of a floating base come on top. */
 const KEYS = ["q", "qd", "qdd", "f", "n", "cell", "look"];
+const keysOf = (page) => (page.state.base ? [...KEYS, ...Object.keys(OF_BASE)] : KEYS);
 
 /** What an address asks for: lists by their names, and words. */
-function readAddress(fragment) {
+function readAddress(fragment, keys = KEYS) {
   const asked = { lists: {}, given: new Set(), words: new Set(), cell: null, look: null, wrong: [], unknown: [] };
   for (const part of fragment.replace(/^#/, "").split("&").filter(Boolean)) {
     const [key, value] = part.includes("=") ? [part.slice(0, part.indexOf("=")), part.slice(part.indexOf("=") + 1)] : [part, null];
@@ -22,20 +23,20 @@ function readAddress(fragment) {
     const numbers = texts.map(numberOf);
     if (key === "look" && VIEWS.includes(value)) asked.look = value;
     else if (key === "cell" && /^\d+\.\d$/.test(value)) asked.cell = value.split(".").map(Number);
-    else if (!KEYS.includes(key)) asked.unknown.push(key);
+    else if (!keys.includes(key)) asked.unknown.push(key);
     else if (key === "cell") asked.wrong.push(`cell=${value} is no cell: write cell=JOINT.STEP`);
     else if (numbers.every(Number.isFinite)) asked.lists[key] = numbers;
     else if (key === "look") asked.wrong.push(`look=${value} is no view: it is ${VIEWS.join(", ")}, or three numbers`);
     else asked.wrong.push(`“${texts.find((_, at) => !Number.isFinite(numbers[at]))}” in ${key} is no number`);
   }
   if (asked.unknown.length)
-    asked.wrong.push(`${asked.unknown.join(", ")} is not known: the keys are ${KEYS.join(", ")}; the words are ${WORDS.join(", ")}, no-masses`);
+    asked.wrong.push(`${asked.unknown.join(", ")} is not known: the keys are ${keys.join(", ")}; the words are ${WORDS.join(", ")}, no-masses`);
   return asked;
 }
 
 /** Shows what an address asks for; returns what it cannot show, in words. */
 function showAddress(page, fragment) {
-  const { lists, words, cell, look, wrong } = readAddress(fragment);
+  const { lists, words, cell, look, wrong } = readAddress(fragment, keysOf(page));
   const { coordinates } = page.inspection;
   const fits = (key, count) => {
     if (!lists[key]) return false;
@@ -46,7 +47,9 @@ function showAddress(page, fragment) {
   };
   const state = structuredClone(page.initial);
   for (const of of OF) if (fits(of, coordinates.length)) state[of] = page.inspection.ofJoints(lists[of]);
-  const wrench = { f: fits("f", 3) ? lists.f : [0, 0, 0], n: fits("n", 3) ? lists.n : [0, 0, 0] };
+  for (const of of Object.keys(state.base || {})) if (fits(of, 3)) state.base[of] = lists[of];
+  const wrench = page.inspection.freeTips();
+  for (const of of ["f", "n"]) if (fits(of, wrench[of].length)) wrench[of] = lists[of];
   const chosen = (group, first) => group.find((name) => words.has(name)) || first;
   const view = {
     ...viewOf(page),
@@ -85,6 +88,7 @@ function addressOf(page) {
   const parts = [];
   const isFirst = (a, b) => a.every((value, index) => value === b[index]);
   for (const of of OF) if (!isFirst(view.state[of], page.initial[of])) parts.push(`${of}=${listed(page, view.state[of]).join(",")}`);
+  for (const [of, vector] of Object.entries(view.state.base || {})) if (!isFirst(vector, page.initial.base[of])) parts.push(`${of}=${vector.join(",")}`);
   for (const of of ["f", "n"]) if (view.wrench[of].some((value) => value !== 0)) parts.push(`${of}=${view.wrench[of].join(",")}`);
   if (!isFirst(view.cell, page.firstCell)) parts.push(`cell=${view.cell.join(".")}`);
   const name = page.arm.viewName();
@@ -107,7 +111,7 @@ class Address {
   }
 
   show(fragment) {
-    const { words, unknown, cell, given } = readAddress(fragment);
+    const { words, unknown, cell, given } = readAddress(fragment, keysOf(this.page));
     const wrong = words.size || unknown.length || fragment.includes("=") ? showAddress(this.page, fragment) : [];
     this.note(OF.some((of) => given.has(of)) ? ["qd", "qdd"].filter((of) => !given.has(of)) : []);
     byId("address-notice").hidden = wrong.length === 0;

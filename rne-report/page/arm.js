@@ -12,6 +12,8 @@ const KINDS = {
   inertia_moment: ["moment", true],
   child_moment: ["moment", true],
   torque: ["moment", true],
+  base_moment: ["moment", true],
+  base_force: ["force", false],
   joint_force: ["force", false],
   inertia_force: ["force", false],
   child_force: ["force", false],
@@ -34,6 +36,12 @@ const LAYERS = [
   ["joint_moment", 6],
   ["torque", 7],
 ];
+
+/** What a floating base has in a layer: its quantities are others than those of links. */
+const LAYER_OF_BASE = { base_acceleration: "acceleration", base_force: "joint_force", base_moment: "joint_moment" };
+
+/** The faces of a box by its corners, which count x first and z last: bottom and top stand first. */
+const FACES = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
 
 /** The key of an arrow: omega-2, or r-1-5 for the lever of link 1 to joint 5, which is not the first on it. */
 const keyOfArrow = ({ quantity, joint, carries }) => `${quantity}-${joint}${carries ? `-${carries}` : ""}`;
@@ -63,6 +71,8 @@ class Arm {
     const gravity = turn(ofAngles(robot.base.rpy), robot.gravity);
     this.up = norm(gravity) > 0 ? unit(times(gravity, -1)) : [0, 0, 1];
     this.gravityInWorld = gravity;
+    // where frame 0 stands
+    this.placed = robot.base;
     const near = Math.abs(this.up[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1];
     this.east = unit(cross(cross(this.up, near), this.up));
     this.north = cross(this.up, this.east);
@@ -128,9 +138,12 @@ class Arm {
     for (const [quantity] of LAYERS) {
       for (let joint = 1; joint <= dof; joint++) this.arrow(quantity, joint);
     }
+    if (inspection.floating) {
+      for (const quantity of ["omega", "omega_dot", "gravity", ...Object.keys(LAYER_OF_BASE)]) this.arrow(quantity, 0);
+    }
     this.down = this.plainArrow("gravity", "g");
-    this.tip = { f: this.plainArrow("force", "tip force"), n: this.plainArrow("moment", "tip moment") };
-    this.wrench = { f: [0, 0, 0], n: [0, 0, 0] };
+    this.tips = inspection.tips.map(() => ({ f: this.plainArrow("force", "tip force"), n: this.plainArrow("moment", "tip moment") }));
+    this.wrench = inspection.freeTips();
     this.words = new Labels();
     this.look = { yaw: -0.9, pitch: 0.32, zoom: 1 };
     this.home = this.look;
@@ -181,7 +194,7 @@ class Arm {
     this.words.put(text, this.words.inside(text, { x: to.x + 7, y: to.y + 4 }, "start"));
   }
 
-  /** Gravity, in the corner, and the wrench at the tip. */
+  /** Gravity, in the corner, and the wrenches at the tips, the longest of a kind with a fixed length. */
   drawForces(pose) {
     const isHeavy = norm(this.gravityInWorld) > 0;
     this.down[0].parentNode.toggleAttribute("hidden", !isHeavy);
@@ -192,14 +205,18 @@ class Arm {
       const corner = { x: 24 - Math.min(0, to.x - from.x), y: 20 };
       this.drawPlain(this.down, corner, { x: corner.x + to.x - from.x, y: corner.y + to.y - from.y });
     }
-    const tip = this.inspection.dof + 1;
     for (const of of ["f", "n"]) {
-      const size = norm(this.wrench[of]);
-      this.tip[of][0].parentNode.toggleAttribute("hidden", size === 0);
-      if (size === 0) continue;
-      const along = times(turn(pose.rotations[tip], this.wrench[of]), (this.size * 0.5) / size);
-      const [from, to] = [pose.joints[tip], add(pose.joints[tip], along)].map((point) => this.project(point));
-      this.drawPlain(this.tip[of], from, to, of === "n");
+      const vectors = pose.tips.map((_, tip) => this.wrench[of].slice(3 * tip, 3 * tip + 3));
+      const largest = Math.max(...vectors.map(norm));
+      vectors.forEach((vector, tip) => {
+        const isFree = norm(vector) === 0;
+        this.tips[tip][of][0].parentNode.toggleAttribute("hidden", isFree);
+        if (isFree) return;
+        const { at, axes } = pose.tips[tip];
+        const along = times(turn(axes, vector), (this.size * 0.5) / largest);
+        const [from, to] = [at, add(at, along)].map((point) => this.project(point));
+        this.drawPlain(this.tips[tip][of], from, to, of === "n");
+      });
     }
   }
 
@@ -217,10 +234,10 @@ class Arm {
   /** Chooses from where to look at first: along the axes of an arm whose joints are all parallel. */
   fit(poses) {
     const [first] = poses;
-    const last = this.inspection.dof;
+    const { robot, dof: last } = this.inspection;
     const axes = first.rotations.slice(1, last + 1).map((turned) => column(turned, 2));
     // all of whose axes are parallel, so that a figure in the plane has everything
-    this.isPlanar = axes.every((axis) => Math.abs(dot(axis, axes[0])) > 0.999);
+    this.isPlanar = !this.inspection.floating && axes.every((axis) => Math.abs(dot(axis, axes[0])) > 0.999);
     const axis = axes[0];
     const isUpright = Math.abs(dot(axis, this.up)) > 0.999;
     // the arm from its side
@@ -240,12 +257,15 @@ class Arm {
     };
     this.home = this.views[this.isPlanar ? (isUpright ? "top" : "front") : "3D"];
     this.look = this.home;
-    const points = poses.flatMap((pose) => [...pose.joints, ...pose.coms, ...pose.elbows]);
+    const points = poses.flatMap((pose) => [...pose.joints, ...pose.coms, ...pose.elbows, ...pose.tips.map(({ at }) => at), ...(pose.box || [])]);
     const low = AXES.map((_, at) => Math.min(...points.map((point) => point[at])));
     const high = AXES.map((_, at) => Math.max(...points.map((point) => point[at])));
     this.centre = times(add(low, high), 0.5);
     this.size = Math.max(norm(minusV(high, low)) / 2, 0.05) * 1.05;
     this.extent = this.size;
+    // a floating base is above the ground on which its robot stands first
+    const ground = Math.min(...points.map((point) => dot(minusV(point, robot.base.xyz), this.up)));
+    this.ground = this.inspection.floating ? add(robot.base.xyz, times(this.up, ground)) : robot.base.xyz;
   }
 
   /** The yaw with which x of frame 0 points to the right in a view from above. */
@@ -307,7 +327,7 @@ class Arm {
   /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
   draw(q) {
     if (!this.width) this.measure();
-    const pose = (this.pose = new Pose(this.inspection, this.value, q));
+    const pose = (this.pose = new Pose(this.inspection, this.value, q, this.placed));
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
@@ -396,21 +416,24 @@ class Arm {
     const step = niceAbove(span / 4);
     const count = Math.ceil(span / step);
     const at = (a, b) =>
-      this.project(add(this.inspection.robot.base.xyz, add(times(this.east, a * step), times(this.north, b * step))));
+      this.project(add(this.ground, add(times(this.east, a * step), times(this.north, b * step))));
     let path = "";
     for (let line = -count; line <= count; line++) {
       path += segment(at(line, -count), at(line, count)) + segment(at(-count, line), at(count, line));
     }
     this.floor.setAttribute("d", path);
+    this.floor.toggleAttribute("hidden", Boolean(this.inspection.floating) && norm(this.gravityInWorld) === 0);
   }
 
   drawSolids(pose) {
     for (const solid of this.solids) {
       const { joint, kind } = solid;
       const radius = this.thickness(joint);
-      if (kind === "link") {
+      if (joint === 0 && pose.box) {
+        this.drawBox(solid, pose);
+      } else if (kind === "link") {
         const from = joint === 0 ? this.inspection.robot.base.xyz : pose.joints[joint];
-        const carried = this.inspection.carriedBy(joint).map((end) => pose.joints[end]);
+        const carried = this.endsOf(joint, pose);
         // the end of a branch reaches to its centre of mass
         const ends = carried.length ? carried : [pose.coms[joint]];
         const paths = ends.map((to) => [from, joint === 0 ? to : pose.elbows[joint], to]);
@@ -448,6 +471,33 @@ class Arm {
     }
   }
 
+  /** Where a link ends: at the joints and at the tip that it carries; of several tips, at each. */
+  endsOf(link, pose) {
+    const { inspection } = this;
+    const carried = inspection.carriedBy(link).map((end) => pose.joints[end]);
+    if (!inspection.floating) return carried;
+    const tips = inspection.tips.flatMap(({ on }, tip) => (on === link ? [pose.tips[tip].at] : []));
+    // one at the joint is no end
+    return [...carried, ...tips].filter((end) => norm(minusV(end, pose.joints[link])) > 1e-9);
+  }
+
+  /** A floating base, as the box of its mass and inertia. */
+  drawBox(solid, pose) {
+    const isBox = solid.kind === "base";
+    const corners = pose.box.map((corner) => this.project(corner));
+    const middle = pose.coms[0];
+    const isSeen = (face) => {
+      const centre = times(face.reduce((sum, at) => add(sum, pose.box[at]), [0, 0, 0]), 1 / 4);
+      const viewer = add(this.centre, times(this.view.toViewer, this.view.far));
+      return dot(minusV(centre, middle), minusV(viewer, centre)) > 0;
+    };
+    const seen = FACES.map((face, at) => ({ at, path: polygon(face.map((corner) => corners[corner])), isSeen: isSeen(face) })).filter((face) => face.isSeen);
+    solid.body.setAttribute("d", isBox ? seen.map((face) => face.path).join("") : "");
+    // top or bottom
+    solid.cap.setAttribute("d", isBox ? seen.filter((face) => face.at < 2).map((face) => face.path).join("") : "");
+    solid.depth = this.project(middle).depth;
+  }
+
   drawMarks(pose) {
     const long = this.size * 0.3;
     const short = this.size * 0.17;
@@ -472,7 +522,8 @@ class Arm {
       const isLit = this.litFrame === joint;
       const [origin, turned] = this.frame(pose, joint, isLit);
       // all axes of the base are those of one frame
-      const isTold = this.showFrames && (joint === 0 || this.chosen.kind !== "base");
+      const isOfFloating = joint === 0 && Boolean(this.inspection.floating);
+      const isTold = isOfFloating || (this.showFrames && (joint === 0 || this.chosen.kind !== "base"));
       triad.forEach((of, which) => {
         const isShown = isTold || isLit;
         of.line.toggleAttribute("hidden", !isShown);
@@ -506,11 +557,12 @@ class Arm {
   drawArrows(pose) {
     const largest = {};
     for (const arrow of this.arrows.values()) {
-      const isShown = this.layers.has(arrow.quantity) || arrow.isLit;
+      const layer = LAYER_OF_BASE[arrow.quantity] || arrow.quantity;
+      const isShown = this.layers.has(layer) || arrow.isLit;
       arrow.isShown = isShown;
       if (!isShown) continue;
       arrow.numbers = this.vector(arrow);
-      if (arrow.numbers) largest[arrow.quantity] = Math.max(largest[arrow.quantity] || 0, norm(arrow.numbers));
+      if (arrow.numbers) largest[layer] = Math.max(largest[layer] || 0, norm(arrow.numbers));
     }
     // letters that would stand on each other: the lit ones are written, and then the first
     for (const arrow of [...this.arrows.values()].sort(
@@ -519,7 +571,7 @@ class Arm {
       // a vector that is zero is told where it is pointed at
       const isShown = arrow.isShown && arrow.numbers && (arrow.isLit || norm(arrow.numbers) > 0);
       arrow.node.toggleAttribute("hidden", !isShown);
-      if (isShown) this.drawArrow(arrow, pose, largest[arrow.quantity]);
+      if (isShown) this.drawArrow(arrow, pose, largest[LAYER_OF_BASE[arrow.quantity] || arrow.quantity]);
     }
   }
 

@@ -72,6 +72,8 @@ class ChosenAxes {
   isOther(name) {
     const meaning = this.inspection.meaning(name);
     if (this.kind === "link" || !meaning || !this.has(meaning)) return false;
+    // a floating base has one set of axes
+    if (this.inspection.floating && meaning.joint === 0) return false;
     return meaning.quantity !== "rotation" || this.kind === "joint";
   }
 

@@ -9,7 +9,7 @@ class Cards {
     const head = element(
       "header",
       { class: "cell-head" },
-      element("h3", {}, `Joint ${cell.joint}, step ${cell.step}: ${cell.title}`),
+      element("h3", {}, `${cell.joint === 0 ? "Base" : `Joint ${cell.joint}`}, step ${cell.step}: ${cell.title}`),
       element("p", { class: "hint" }, this.counts(cell)),
       this.axesHint(cell),
       cell.step === 7
@@ -301,8 +301,10 @@ class Cards {
     const torques = element("p", { class: "hint" });
     this.page.live.push(() => {
       const result = this.page.reduced.outputs.map((output) => output());
-      const [own, others] = [result, this.page.split.free].map((torques) => torques.map(short).join(", "));
-      torques.textContent = `Its torques here: ${own}; those of the seven steps: ${others}.`;
+      const { free, total, onBase } = this.page.split;
+      const [own, others] = [result, onBase ? [...onBase.total, ...total] : free].map((torques) => torques.map(short).join(", "));
+      const what = onBase ? "force and moment on the base and torques" : "torques";
+      torques.textContent = `Its ${what} here: ${own}; those of the seven steps: ${others}.`;
     });
     return [
       element("header", { class: "cell-head" }, element("h3", {}, "The reduced form")),
@@ -339,7 +341,7 @@ class Cards {
       said.className = `answer ${text ? (isRight ? "right" : "wrong") : ""}`;
       input.setAttribute("aria-invalid", String(Boolean(text) && !isRight));
       this.page.handIn.show();
-      this.page.bars.update(this.page.split, (joint) => this.page.hides(`tau${joint}`));
+      this.page.paintBars();
       for (const paint of this.page.live) paint();
       this.page.reading.readout();
     };

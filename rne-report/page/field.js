@@ -38,3 +38,22 @@ function fill(field, value) {
   field.value = typedText(value);
   field.removeAttribute("aria-invalid");
 }
+
+/** A field for an angle in degrees; `taken(value)` is called with radians. */
+function degreesField(attributes, taken) {
+  const inRadians = (value, text) => taken(/[a-zπ°]/.test(text) ? value : (value * Math.PI) / 180);
+  return numberField({ class: "number degrees", ...attributes }, inRadians);
+}
+
+const fillDegrees = (field, angle) => fill(field, Number(((angle * 180) / Math.PI).toFixed(2)));
+
+/** Lets arrow keys move a slider by hundredths of its range; with the step "any" they would go by a tenth. */
+function goByHundredths(slider) {
+  slider.addEventListener("keydown", (event) => {
+    const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+    if (!way) return;
+    event.preventDefault();
+    slider.value = Number(slider.value) + (way * (slider.max - slider.min)) / (event.shiftKey ? 1000 : 100);
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+}

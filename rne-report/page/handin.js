@@ -16,10 +16,14 @@ function worksheetOf(page, student) {
   const { exercise } = page;
   // only the cells with an answer are marked
   const { cells: all } = page.inspection;
-  const cells = all.filter((cell) => cell.components.some((of) => exercise.answers.has(of.name)));
+  const cells = all.filter((cell) => cell.joint > 0 && cell.components.some((of) => exercise.answers.has(of.name)));
   const asked = cells.length ? `, cells ${cells.map(({ joint, step }) => `${joint}.${step}`).join(" ")}` : "";
   const lines = [`# rne worksheet, format 1, robot ${robot.name}${asked}${name ? `, student ${name}` : ""}`];
-  lines.push(`# ${exercise.score()}`, "joint,step,quantity,component,value,unit,frame");
+  lines.push(`# ${exercise.score()}`);
+  const { base } = page.state;
+  // a worksheet is that of a base at rest
+  if (base) lines.push(`# base: ${Object.entries(base).map(([of, vector]) => `${of} ${vector.join(" ")}`).join(", ")}`);
+  lines.push("joint,step,quantity,component,value,unit,frame");
   robot.joints.forEach((joint, index) => {
     const slides = joint.kind === "prismatic";
     const units = slides ? ["m", "m/s", "m/s²"] : ["rad", "rad/s", "rad/s²"];
@@ -29,7 +33,7 @@ function worksheetOf(page, student) {
   for (const [of, { text, isRight, tries }] of exercise.answers) {
     const meaning = page.inspection.meaning(of);
     const quantity = WORKSHEET_NAMES[meaning.quantity] || meaning.quantity;
-    if (!WORKSHEET_QUANTITIES.includes(quantity)) {
+    if (!WORKSHEET_QUANTITIES.includes(quantity) || meaning.joint === 0) {
       others.push(`# ${of}: ${text}, ${isRight ? "right" : "wrong"}, attempts: ${tries}`);
       continue;
     }
@@ -52,6 +56,7 @@ class HandIn {
 
   show() {
     byId("score").textContent = this.page.exercise.score();
+    byId("mark-base").hidden = !this.page.inspection.floating;
     if (byId("hand-in").open) byId("answers").value = worksheetOf(this.page, byId("student").value);
   }
 }

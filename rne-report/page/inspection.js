@@ -30,6 +30,9 @@ class Inspection {
     // the angle is its constant part and q: two letters
     const { theta, angle } = data.quantities;
     if (theta) [theta.letter, angle.meaning] = ["θ\u0304", "constant part θ\u0304 of the table + q"];
+    /** Where wrenches act: the tips of the list of the file, or the one tip. */
+    this.tips = this.floating?.tips || [null];
+    if (this.floating) this.nameBase();
     this.components = new Map();
     for (const component of data.table) this.components.set(component.name, component);
     for (const cell of data.cells) {
@@ -59,6 +62,17 @@ class Inspection {
     }
   }
 
+  /** Names of a floating base: its argument a is no c̈, and its F and N are other vectors than f0 and n0. */
+  nameBase() {
+    const { acceleration, base_force, base_moment } = this.quantities;
+    const meaning = "a: acceleration of the origin of frame 0";
+    this.quantities.frame_acceleration = { ...acceleration, letter: "a", meaning, drawn: "joint" };
+    for (const names of [this.names, this.programs.reduced?.names || {}])
+      for (const axis of AXES) names[`ddc0_${axis}`] = ["frame_acceleration", 0, axis];
+    Object.assign(base_force, { letter: "F", drawn: "joint" });
+    Object.assign(base_moment, { letter: "N", drawn: "joint" });
+  }
+
   /** Gives the joints that follow others what they have in a state of those. */
   follow(state) {
     this.robot.joints.forEach((joint, index) => {
@@ -71,13 +85,24 @@ class Inspection {
     return state;
   }
 
-  /** The arguments of a state by their names in the code: q1, qd1, qdd1; and a wrench at the tip. Followers have none. */
+  /**
+   * The arguments of a state by their names in the code: q1, qd1, qdd1; the motion of a floating base with gravity in
+   * its axes; and wrenches at the tips. Followers have none.
+   */
   argumentsOf(state, wrench = null) {
     const given = {};
     for (const of of OF) {
       for (const index of this.coordinates) given[`${of}${index + 1}`] = state[of][index];
     }
-    if (wrench) {
+    if (state.base) {
+      const { rpy, omega, omega_dot, acceleration } = state.base;
+      const turned = ofAngles(rpy);
+      const gravity = AXES.map((_, at) => dot(column(turned, at), this.robot.gravity));
+      const ofBase = { w0: omega, dw0: omega_dot, ddc0: acceleration, g0: gravity };
+      for (const [name, vector] of Object.entries(ofBase)) AXES.forEach((axis, at) => (given[`${name}_${axis}`] = vector[at]));
+      for (const of of wrench ? ["f", "n"] : [])
+        wrench[of].forEach((value, at) => (given[`${of}t${1 + Math.floor(at / 3)}_${AXES[at % 3]}`] = value));
+    } else if (wrench) {
       const ends = `${this.dof}_${this.dof + 1}`;
       ["x", "y", "z"].forEach((axis, index) => {
         given[`f${ends}_${axis}`] = wrench.f[index];
@@ -87,6 +112,12 @@ class Inspection {
     return given;
   }
 
+  /** Forces and moments at the tips when nothing touches them: three numbers for each tip. */
+  freeTips() {
+    const zeros = () => this.tips.flatMap(() => [0, 0, 0]);
+    return { f: zeros(), n: zeros() };
+  }
+
   /** A number for each joint, from one for each coordinate; a follower has `rest`. */
   ofJoints(ofCoordinates, rest = 0) {
     const all = this.robot.joints.map(() => rest);
@@ -94,11 +125,12 @@ class Inspection {
     return all;
   }
 
-  /** Whether a torque depends on a cell, also by terms that vanish; the velocities of step 3 are for the reader. */
+  /** Whether a torque or the wrench on the base depends on a cell, also by terms that vanish; the velocities of step 3 are for the reader. */
   isNeeded(cell) {
     if (!this.needed) {
       this.needed = new Set();
-      const waiting = [...this.components.keys()].filter((name) => this.meaning(name)?.quantity === "torque");
+      const isResult = (name) => ["torque", "base_force", "base_moment"].includes(this.meaning(name)?.quantity);
+      const waiting = [...this.components.keys()].filter(isResult);
       while (waiting.length) {
         const name = waiting.pop();
         if (this.needed.has(name)) continue;

@@ -28,10 +28,10 @@ function ordinaryPose(robot, pattern) {
   });
 }
 
-/** The motion of least jerk from rest to rest: 10 s³ - 15 s⁴ + 6 s⁵ of the way. */
+/** The motion of least jerk from rest to rest: 10 s³ - 15 s⁴ + 6 s⁵ of the way. A floating base stands still. */
 class Trajectory {
-  constructor(from, to, seconds) {
-    Object.assign(this, { from, to, seconds });
+  constructor(from, to, seconds, base = null) {
+    Object.assign(this, { from, to, seconds, base });
   }
 
   /** The state at a time, s. */
@@ -45,6 +45,7 @@ class Trajectory {
       q: this.from.map((from, joint) => from + (this.to[joint] - from) * way),
       qd: along(rate),
       qdd: along(bend),
+      ...(this.base ? { base: structuredClone({ ...this.base, ...AT_REST }) } : {}),
     };
   }
 }
@@ -106,22 +107,13 @@ class Sliders {
         };
         const field = numberField({ "data-name": `${of}${index + 1}`, "data-field": of, class: "number", "aria-label": `${label} as a number, ${unitOf}` }, set);
         const isAngle = of === "q" && joint.kind === "revolute";
-        const degrees = isAngle
-          ? numberField({ "data-degrees": index + 1, class: "number degrees", "aria-label": `${label} in degrees` }, (value, text) => set(/[a-zπ°]/.test(text) ? value : (value * Math.PI) / 180))
-          : null;
+        const degrees = isAngle ? degreesField({ "data-degrees": index + 1, "aria-label": `${label} in degrees` }, set) : null;
         input.addEventListener("input", () => {
           state[of][index] = Number(input.value);
           this.tell(state, of, index);
           changed(of, index);
         });
-        // arrow keys by hundredths of the range; with "any" they would go by a tenth
-        input.addEventListener("keydown", (event) => {
-          const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
-          if (!way) return;
-          event.preventDefault();
-          input.value = Number(input.value) + (way * (high - low)) / (event.shiftKey ? 1000 : 100);
-          input.dispatchEvent(new Event("input", { bubbles: true }));
-        });
+        goByHundredths(input);
         if (joint.follows) for (const part of [input, field, degrees]) if (part) part.disabled = true;
         this.inputs.set(`${of}${index}`, input);
         this.outputs.set(`${of}${index}`, { field, degrees, unit: unitText(unitOf) });
@@ -160,7 +152,7 @@ class Sliders {
     const value = state[of][index];
     fill(field, value);
     field.title = `${full(value)} ${unit}`;
-    if (degrees) fill(degrees, Number(((value * 180) / Math.PI).toFixed(2)));
+    if (degrees) fillDegrees(degrees, value);
     this.inputs.get(`${of}${index}`).setAttribute("aria-valuetext", `${value.toFixed(3)} ${unit}`);
   }
 }

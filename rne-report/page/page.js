@@ -20,7 +20,8 @@ class Page {
     this.folded = new Program(data.programs.folded);
     this.reduced = data.programs.reduced ? new Program(data.programs.reduced) : null;
     this.equations = new Equations(inspection.components);
-    this.torques = new Torques(inspection, this.folded, new Program(data.programs.with_wrench));
+    const withWrench = data.programs.with_wrench ? new Program(data.programs.with_wrench) : this.folded;
+    this.torques = new Torques(inspection, this.folded, withWrench);
     this.axes = new ChosenAxes(inspection, (name) => this.value(name), () => this.state.q);
     this.exercise = new Exercise(inspection, this.equations, this.axes);
     this.isLecture = false;
@@ -28,10 +29,11 @@ class Page {
       q: ordinaryPose(robot, [0.4, -0.6, 0.9, -0.8, 0.7, 0.5, -0.4]),
       qd: robot.joints.map((_, index) => [0.5, 0.8, -0.6][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
       qdd: robot.joints.map((_, index) => [1, -1.5, 2][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
+      ...(inspection.floating ? { base: levelBase() } : {}),
     };
     inspection.follow(this.initial);
     this.state = structuredClone(this.initial);
-    this.wrench = { f: [0, 0, 0], n: [0, 0, 0] };
+    this.wrench = inspection.freeTips();
     this.form = "folded";
     this.language = "rust";
     this.live = [];
@@ -55,7 +57,8 @@ class Page {
       this.update();
       this.retime();
     });
-    this.bars = new Bars(byId("bars"), inspection);
+    this.bars = new Bars(byId("bars"), barsOfJoints(inspection));
+    if (inspection.floating) this.makeBase();
     this.plot = new Plot(byId("plot"), inspection, this.torques);
     this.describe();
     this.makeSwitches();
@@ -66,9 +69,10 @@ class Page {
     this.makeMotion();
     this.reading.listen();
 
+    this.arm.placed = this.placed();
     this.from = [...this.initial.q];
     this.to = ordinaryPose(robot, [-0.9, 1.1, -0.3, 0.9, -0.8, -0.9, 1.0]);
-    this.given = this.inspection.argumentsOf(this.state);
+    this.given = this.argumentsOfCode();
     this.equations.set(this.given);
     this.arm.fit([this.poseAt(this.state.q)]);
     this.retime();
@@ -86,22 +90,48 @@ class Page {
   poseAt(q) {
     const equations = new Equations(this.inspection.components);
     equations.set(this.inspection.argumentsOf({ ...this.state, q }));
-    return new Pose(this.inspection, (name) => equations.value(name), q);
+    return new Pose(this.inspection, (name) => equations.value(name), q, this.placed());
+  }
+
+  /** Where frame 0 stands in the world: a floating base is turned as its state says. */
+  placed() {
+    const { base } = this.inspection.robot;
+    return this.state.base ? { ...base, rpy: this.state.base.rpy } : base;
+  }
+
+  /** What only a robot with a floating base has: the motion of the base, and the force and moment on it. */
+  makeBase() {
+    this.baseSliders = new BaseSliders(this.inspection, () => this.state, (of) => {
+      this.stop();
+      this.update();
+      if (of === "rpy") this.retime();
+    });
+    byId("sliders").parentNode.before(this.baseSliders.root);
+    this.onBase = new OnBase(this.inspection);
+    byId("bars").before(this.onBase.root);
+    byId("tip-hint").textContent = "They are arguments of the code: vectors, equations and the force on the base have them, too.";
   }
 
   describe() {
     const { robot, generator, dof } = this.inspection;
-    const mass = robot.joints.reduce((sum, joint) => sum + joint.mass, 0);
-    const what = this.inspection.isTree() ? `a tree of ${dof} joints` : `${dof} joints`;
+    const { floating } = this.inspection;
+    const mass = robot.joints.reduce((sum, joint) => sum + joint.mass, floating ? floating.mass : 0);
+    const joints = this.inspection.isTree() ? `a tree of ${dof} joints` : `${dof} joints`;
+    const what = floating ? `${joints} on a floating base` : joints;
     byId("described").textContent = `${what}, ${robot.convention} Denavit-Hartenberg, ${short(mass)} kg moved`;
-    if (this.inspection.isTree()) byId("tip-link").textContent = `link ${robot.tip}`;
+    if (this.inspection.tips.length > 1) {
+      byId("tip-where").textContent = "each tip";
+      byId("tip-link").textContent = "the robot";
+    } else if (this.inspection.isTree()) {
+      byId("tip-link").textContent = `link ${robot.tip}`;
+    }
     byId("source").textContent = `Numbers: ${robot.source}`;
     byId("generator").textContent =
       `Written by ${generator}. The code has the vectors of link i in axes fixed to link i, z along joint i; ` +
       "“Axes of vectors” tells them in others. The code is evaluated in your browser: + − × ÷ give the bits of Rust.";
     byId("key").append(
       ...PARTS.map(([part, meaning, formula]) =>
-        element("span", { title: formula }, element("i", { class: `swatch ${part}` }), meaning),
+        element("span", { title: floating ? PARTS_WITH_BASE[part] : formula }, element("i", { class: `swatch ${part}` }), meaning),
       ),
       element("span", {}, element("i", { class: "swatch total" }), "sum"),
     );
@@ -117,9 +147,17 @@ class Page {
         });
     this.inspection.follow(this.state);
     }
+    for (const of of Object.keys((this.state.base && state.base) || {})) this.state.base[of] = state.base[of].map(Number);
     this.stop();
-    this.sliders.show(this.state);
+    this.showSliders();
     this.update();
+    // the motion has the base as it stands
+    if (this.state.base && this.trajectory) this.retime();
+  }
+
+  showSliders() {
+    this.sliders.show(this.state);
+    this.baseSliders?.show();
   }
 
   /** Computes and paints everything that depends on the state. */
@@ -127,18 +165,30 @@ class Page {
     this.inspection.follow(this.state);
     this.sliders.tellFollowers(this.state);
     this.arm.wrench = this.wrench;
-    this.given = this.inspection.argumentsOf(this.state);
+    this.arm.placed = this.placed();
+    this.given = this.argumentsOfCode();
     this.split = this.torques.split(this.state, this.wrench);
     this.equations.set(this.given);
     if (this.reduced) this.reduced.run(this.given);
     this.arm.draw(this.state.q);
-    this.bars.update(this.split, (joint) => this.hides(`tau${joint}`));
+    this.paintBars();
     this.paintHand();
     for (const paint of this.live) paint();
     this.reading.readout();
     this.exercise.begin(JSON.stringify([this.state, this.axes.kind]));
     this.handIn.show();
     this.address?.later();
+  }
+
+  /** Of a floating base, the code takes the wrenches at the tips, too. */
+  argumentsOfCode() {
+    return this.inspection.argumentsOf(this.state, this.state.base ? this.wrench : null);
+  }
+
+  paintBars() {
+    const isHidden = (name) => this.hides(name);
+    this.bars.update(this.split, isHidden);
+    this.onBase?.update(this.split, { state: this.state, wrench: this.wrench, isHidden });
   }
 
   /** The value of a name: the code's, or that of its equation where the code has none. */
@@ -220,7 +270,8 @@ class Page {
     const { quantities } = this.inspection;
     this.layerButtons = new Map();
     for (const [quantity] of LAYERS) {
-      if (!quantities[quantity]) continue;
+      // nobody gives the velocity of a floating base
+      if (!quantities[quantity] || (quantity === "velocity" && this.inspection.floating)) continue;
       const before = this.inspection.isTree() ? "p, the parent of link i," : "i-1";
       const meaning = quantities[quantity].meaning.replace("h = i - 1", before);
       const button = element(
@@ -321,12 +372,15 @@ class Page {
   }
 
   makeStill() {
-    byId("rest").addEventListener("click", () =>
-      this.setState({ qd: this.state.qd.map(() => 0), qdd: this.state.qdd.map(() => 0) }),
-    );
-    byId("faster").addEventListener("click", () => this.setState({ qd: this.state.qd.map((rate) => 2 * rate) }));
+    const still = () => this.state.qd.map(() => 0);
+    const twice = (rates) => rates.map((rate) => 2 * rate);
+    byId("rest").addEventListener("click", () => this.setState({ qd: still(), qdd: still(), base: AT_REST }));
+    byId("faster").addEventListener("click", () => {
+      const { qd, base } = this.state;
+      this.setState({ qd: twice(qd), base: base && { omega: twice(base.omega) } });
+    });
     byId("home").addEventListener("click", () => {
-      this.tip.show({ f: [0, 0, 0], n: [0, 0, 0] });
+      this.tip.show(this.inspection.freeTips());
       this.retime();
       this.setState(this.initial);
     });
@@ -377,14 +431,15 @@ class Page {
     const isOnMotion = this.plot.has(this.state);
     this.plot.hand.toggleAttribute("hidden", !isOnMotion);
     const told = isOnMotion ? "" : " The bars show the state of the sliders, which is not on this motion; “time” sets it.";
-    byId("plot-words").textContent = this.plot.words() + told;
+    const ofBase = this.state.base ? " In the motion the base stands still, in the orientation that it has." : "";
+    byId("plot-words").textContent = this.plot.words() + ofBase + told;
   }
 
   retime() {
     const seconds = Math.round(100 * 10 ** Number(byId("duration").value)) / 100;
     byId("seconds").textContent = `${seconds.toFixed(2)} s`;
     byId("duration").setAttribute("aria-valuetext", `${seconds} s`);
-    this.trajectory = new Trajectory(this.from, this.to, seconds);
+    this.trajectory = new Trajectory(this.from, this.to, seconds, structuredClone(this.state.base));
     this.plot.set(this.trajectory, this.wrench);
     this.paintHand();
     // the intermediates of the code belong to the state again
@@ -396,7 +451,7 @@ class Page {
     this.plot.point(time);
     byId("time").value = time / this.trajectory.seconds;
     byId("time").setAttribute("aria-valuetext", `${time.toFixed(2)} s`);
-    this.sliders.show(this.state);
+    this.showSliders();
     this.update();
   }
 
@@ -436,16 +491,18 @@ class Page {
     // a line stands before each branch
     const begins = new Set(branches.slice(1).map(([joint]) => joint));
     const edge = (joint) => (begins.has(joint) ? "branch" : null);
-    const columns = Array.from({ length: dof }, (_, index) => index + 1);
+    // a floating base has steps of its own
+    const first = this.inspection.floating ? 0 : 1;
+    const columns = Array.from({ length: dof + 1 - first }, (_, index) => index + first);
     // of more joints than fit beside each other the table is as wide as it has to be, and scrolls
     this.isWide = dof > 7;
     byId("grid").classList.toggle("wide", this.isWide);
-    byId("grid").style.setProperty("--joints", dof);
+    byId("grid").style.setProperty("--joints", columns.length);
     const head = element(
       "tr",
       {},
       element("td", {}, "operations of joint"),
-      ...columns.map((joint) => element("th", { scope: "col", class: edge(joint), title: this.inspection.robot.joints[joint - 1].name }, String(joint))),
+      ...columns.map((joint) => element("th", { scope: "col", class: edge(joint), title: joint ? this.inspection.robot.joints[joint - 1].name : this.inspection.floating.name }, joint ? String(joint) : "base")),
     );
     const ofBranch = ([joint, ...more]) => {
       const parent = this.inspection.parentOf(joint);
@@ -456,7 +513,7 @@ class Page {
         parent === 0 ? "base" : `link ${parent}`,
       );
     };
-    const heads = begins.size ? [element("tr", { class: "branches" }, element("td", {}, "branch on"), ...branches.map(ofBranch)), head] : [head];
+    const heads = begins.size ? [element("tr", { class: "branches" }, element("td", {}, "branch on"), first ? null : element("th", {}), ...branches.map(ofBranch)), head] : [head];
     const body = element("tbody");
     STEPS.forEach((title, index) => {
       const row = element(
@@ -470,7 +527,7 @@ class Page {
           element("span", { class: "step-title" }, title),
         ),
       );
-      for (let joint = 1; joint <= dof; joint++) {
+      for (const joint of columns) {
         const cell = this.inspection.cell(joint, index + 1);
         const isNeeded = !cell || this.inspection.isNeeded(cell);
         const [before, after] = cell ? [total(cell.before), total(cell.after)] : [0, 0];
@@ -481,8 +538,8 @@ class Page {
             "data-cell": `${joint}-${index + 1}`,
             tabindex: "-1",
             disabled: !cell,
-            "aria-label": `joint ${joint}, step ${index + 1}, ${title}: ${before} operations, ${after} after folding`,
-            title: `${before} operations, ${after} after folding${isNeeded ? "" : "; no torque needs it"}`,
+            "aria-label": `${joint ? `joint ${joint}` : "base"}, step ${index + 1}, ${title}: ${before} operations, ${after} after folding`,
+            title: cell ? `${before} operations, ${after} after folding${isNeeded ? "" : "; no torque needs it"}` : "no torque needs it",
           },
           element("b"),
         );
@@ -541,7 +598,7 @@ class Page {
       button.tabIndex = button.dataset.cell === `${cell.joint}-${cell.step}` ? 0 : -1;
       const which = this.form === "unfolded" ? "unfolded" : "folded";
       const isNeedless = which === "folded" && !button.isNeeded;
-      button.firstChild.textContent = isNeedless ? (this.isWide ? "–" : "not needed") : String(button.counts[which]);
+      button.firstChild.textContent = button.disabled ? "" : isNeedless ? (this.isWide ? "–" : "not needed") : String(button.counts[which]);
       button.firstChild.classList.toggle("not-needed", isNeedless && !this.isWide);
       button.style.setProperty("--share", (button.counts[which] / this.most[which]).toFixed(3));
     }

@@ -54,16 +54,23 @@ function rotationOf(value, joint) {
   );
 }
 
-/** Where everything stands in the world, by the rotations and lengths of the equations. */
+/** Half the edges of the box that has the mass and the moments of inertia of a base, m; null where none has them. */
+function halvesOf({ mass, inertia }) {
+  const sum = inertia[0] + inertia[1] + inertia[2];
+  const squares = inertia.map((of) => (1.5 * (sum - 2 * of)) / mass);
+  return squares.every((of) => of > 0 && Number.isFinite(of)) ? squares.map(Math.sqrt) : null;
+}
+
+/** Where everything stands in the world, by the rotations and lengths of the equations, and where the base is placed. */
 class Pose {
-  constructor(inspection, value, q) {
-    const { robot, dof } = inspection;
+  constructor(inspection, value, q, placed = inspection.robot.base) {
+    const { robot, dof, floating } = inspection;
     const isModified = robot.convention === "modified";
     const vector = (stem) => AXES.map((axis) => value(`${stem}_${axis}`));
-    const base = ofAngles(robot.base.rpy);
+    const base = ofAngles(placed.rpy);
     this.rotations = [base];
     this.joints = [robot.base.xyz];
-    this.coms = [robot.base.xyz];
+    this.coms = [floating ? add(robot.base.xyz, turn(base, floating.com)) : robot.base.xyz];
     this.elbows = [robot.base.xyz];
     this.frames = [{ at: robot.base.xyz, axes: base }];
     for (let joint = 1; joint <= dof; joint++) {
@@ -92,5 +99,14 @@ class Pose {
     this.joints.push(tip);
     this.rotations.push(product(this.rotations[robot.tip], rotationOf(value, dof + 1)));
     this.frames.push({ at: tip, axes: this.rotations[dof + 1] });
+    const placedTip = ({ on, xyz, rpy }) => ({
+      at: add(this.frames[on].at, turn(this.frames[on].axes, xyz)),
+      axes: product(this.frames[on].axes, ofAngles(rpy)),
+    });
+    this.tips = floating ? floating.tips.map(placedTip) : [this.frames[dof + 1]];
+    // the corners of the box of a floating base
+    const halves = floating ? halvesOf(floating) : null;
+    const signs = [-1, 1].flatMap((z) => [-1, 1].flatMap((y) => [-1, 1].map((x) => [x, y, z])));
+    this.box = halves && signs.map((sign) => add(this.coms[0], turn(base, sign.map((of, at) => of * halves[at]))));
   }
 }

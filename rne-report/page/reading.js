@@ -357,7 +357,10 @@ class Reading {
     if (!way) return;
     if (target.matches("[data-cell]")) {
       const [joint, step] = target.dataset.cell.split("-").map(Number);
-      const next = document.querySelector(`[data-cell="${joint + way[0]}-${step + way[1]}"]:not(:disabled)`);
+      const at = (times) => document.querySelector(`[data-cell="${joint + times * way[0]}-${step + times * way[1]}"]`);
+      let times = 1;
+      while (at(times)?.disabled) times += 1;
+      const next = at(times);
       if (next) {
         event.preventDefault();
         next.focus();

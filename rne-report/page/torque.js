@@ -7,27 +7,42 @@ const PARTS = [
   ["tip", "force and moment at the tip", "τ with what the tip exerts − τ"],
 ];
 
-/** The torques of a state and their parts, each a list with a number per joint. */
+/** The parts where the base moves, too. */
+const PARTS_WITH_BASE = {
+  gravity: "everything at rest in this orientation: q̇ = q̈ = 0, ω = ω̇ = a = 0",
+  velocity: "what q̇ and ω add, without accelerations",
+  inertia: "what q̈, ω̇ and a add",
+  tip: "what the forces and moments at the tips add",
+};
+
+/** A floating base that keeps its orientation and does not move. */
+const AT_REST = { omega: [0, 0, 0], omega_dot: [0, 0, 0], acceleration: [0, 0, 0] };
+
+/**
+ * The torques of a state and their parts, each a list with a number per joint; `onBase` has the same lists of force and
+ * moment on a floating base.
+ */
 class Torques {
   constructor(inspection, folded, withWrench) {
     this.inspection = inspection;
-    const run = (program) => (given) => inspection.ofJoints(program.run(given));
-    this.folded = run(folded);
-    this.withWrench = run(withWrench);
+    this.folded = folded;
+    this.withWrench = withWrench;
   }
 
   split(state, wrench = null) {
-    const still = state.q.map(() => 0);
-    const gravity = this.folded(this.inspection.argumentsOf({ q: state.q, qd: still, qdd: still }));
-    const moving = this.folded(this.inspection.argumentsOf({ q: state.q, qd: state.qd, qdd: still }));
+    const { q, qd, qdd, base } = state;
+    const still = q.map(() => 0);
+    const of = (state) => this.folded.run(this.inspection.argumentsOf(state));
+    const gravity = of({ q, qd: still, qdd: still, base: base && { ...base, ...AT_REST } });
+    const moving = of({ q, qd, qdd: still, base: base && { ...base, ...AT_REST, omega: base.omega } });
     // last, so that the program's intermediates are those of the state
-    const free = this.folded(this.inspection.argumentsOf(state));
+    const free = of({ q, qd, qdd, base });
     const total =
       wrench && [...wrench.f, ...wrench.n].some((of) => of !== 0)
-        ? this.withWrench(this.inspection.argumentsOf(state, wrench))
+        ? this.withWrench.run(this.inspection.argumentsOf(state, wrench))
         : free;
-    const less = (a, b) => a.map((value, joint) => value - b[joint]);
-    return {
+    const less = (a, b) => a.map((value, at) => value - b[at]);
+    const parts = {
       total,
       free,
       gravity,
@@ -35,13 +50,40 @@ class Torques {
       inertia: less(free, moving),
       tip: less(total, free),
     };
+    const each = (part) => Object.fromEntries(Object.entries(parts).map(([name, values]) => [name, part(values)]));
+    const ofBase = base ? 6 : 0;
+    const torques = each((values) => this.inspection.ofJoints(values.slice(ofBase)));
+    return base ? { ...torques, onBase: each((values) => values.slice(0, ofBase)) } : torques;
   }
 }
 
+/** The rows of bars of the torques. No actuator is at a joint that follows others. */
+const barsOfJoints = (inspection) =>
+  inspection.robot.joints.map((joint, index) => ({
+    name: `tau${index + 1}`,
+    label: `torque ${index + 1}`,
+    unit: unitText(inspection.unitOf("torque", index + 1)),
+    data: { "data-torque": index + 1 },
+    symbol: math("msub", {}, math("mi", {}, "τ"), math("mn", {}, String(index + 1))),
+    isLeftOut: Boolean(joint.follows),
+  }));
+
+/** The rows of bars of what must act on a floating base. */
+const barsOfBase = (inspection) =>
+  [["f", "base_force", "force"], ["n", "base_moment", "moment"]].flatMap(([of, quantity, word]) =>
+    AXES.map((axis) => ({
+      name: `${of}b0_${axis}`,
+      label: `${word} on the base along ${axis}`,
+      unit: unitText(inspection.unitOf(quantity, 0)),
+      data: { "data-on-base": `${of}${axis}` },
+      group: of,
+      symbol: math("msub", {}, math("mi", {}, inspection.quantities[quantity].letter), math("mi", {}, axis)),
+    })),
+  );
+
 class Bars {
-  constructor(list, inspection) {
-    this.rows = inspection.robot.joints.map((joint, index) => {
-      const unitOf = unitText(inspection.unitOf("torque", index + 1));
+  constructor(list, rows) {
+    this.rows = rows.map(({ name, label: words, unit, data, symbol, group, isLeftOut }) => {
       const segments = PARTS.map(([part, meaning]) => element("span", { class: `bar ${part}`, title: meaning }));
       const total = element("span", { class: "bar-total" });
       const track = element(
@@ -51,12 +93,11 @@ class Bars {
         ...segments,
         total,
       );
-      const text = element("output", { "data-torque": index + 1, class: "torque-value" });
-      const name = `tau${index + 1}`;
+      const text = element("output", { ...data, class: "torque-value" });
       const label = element(
         "button",
-        { type: "button", class: "torque-name pick", "data-name": name, "aria-label": `torque ${index + 1}` },
-        math("math", {}, math("msub", {}, math("mi", {}, "τ"), math("mn", {}, String(index + 1)))),
+        { type: "button", class: "torque-name pick", "data-name": name, "aria-label": words },
+        math("math", {}, symbol),
       );
       const [low, high] = [element("span", { class: "end low" }), element("span", { class: "end high" })];
       const row = element(
@@ -71,18 +112,27 @@ class Bars {
         ),
         text,
       );
-      // no actuator is at a joint that follows others
-      if (!joint.follows) list.append(row);
-      return { segments, total, text, low, high, unit: unitOf, end: 0, effort: joint.effort_limit };
+      if (!isLeftOut) list.append(row);
+      return { name, group, segments, total, text, low, high, unit, end: 0 };
     });
   }
 
+  /** How far the bars of a row reach, to one side or the other. */
+  reach(split, at) {
+    const values = PARTS.map(([part]) => split[part][at]);
+    const above = values.filter((value) => value > 0).reduce((sum, value) => sum + value, 0);
+    const below = -values.filter((value) => value < 0).reduce((sum, value) => sum + value, 0);
+    return Math.max(above, below, 1e-9);
+  }
+
   update(split, isHidden = () => false) {
+    const reaches = this.rows.map((_, at) => this.reach(split, at));
     this.rows.forEach((row, joint) => {
       const values = PARTS.map(([part]) => split[part][joint]);
-      const above = values.filter((value) => value > 0).reduce((sum, value) => sum + value, 0);
-      const below = -values.filter((value) => value < 0).reduce((sum, value) => sum + value, 0);
-      const most = Math.max(above, below, 1e-9);
+      // components of one vector have one scale
+      const most = row.group
+        ? Math.max(0, ...reaches.filter((reach, at) => reach > 1e-9 && this.rows[at].group === row.group)) || 1
+        : reaches[joint];
       // an end that moved with every number would hide what grows
       if (most > row.end || most < row.end / 6) {
         row.end = niceAbove(most * 1.05);
@@ -95,13 +145,13 @@ class Bars {
         const { style } = row.segments[part];
         style.left = `${value >= 0 ? 50 + stack.up : 50 - stack.down - size}%`;
         style.width = `${size}%`;
-        const told = isHidden(joint + 1) ? "" : `: ${short(value)} ${row.unit}`;
+        const told = isHidden(row.name) ? "" : `: ${short(value)} ${row.unit}`;
         row.segments[part].title = `${PARTS[part][1]}${told}`;
         stack[value >= 0 ? "up" : "down"] += size;
       });
       row.total.style.left = `${50 + (50 * split.total[joint]) / row.end}%`;
-      row.text.textContent = isHidden(joint + 1) ? "?" : `${short(split.total[joint])} ${row.unit}`;
-      row.text.title = isHidden(joint + 1) ? "" : `${full(split.total[joint])} ${row.unit}`;
+      row.text.textContent = isHidden(row.name) ? "?" : `${short(split.total[joint])} ${row.unit}`;
+      row.text.title = isHidden(row.name) ? "" : `${full(split.total[joint])} ${row.unit}`;
     });
   }
 }
@@ -205,7 +255,9 @@ class Plot {
   /** Whether a state, whose torques the bars show, is that of the motion at the time of the cursor. */
   has(state) {
     const there = this.trajectory.at(this.time);
-    return OF.every((of) => there[of].every((value, joint) => Math.abs(value - state[of][joint]) <= 1e-9));
+    const isThere = (a, b) => a.every((value, at) => Math.abs(value - b[at]) <= 1e-9);
+    const isBaseThere = !state.base || Object.keys(state.base).every((of) => isThere(there.base[of], state.base[of]));
+    return isBaseThere && OF.every((of) => isThere(there[of], state[of]));
   }
 
   /** Where the motion is, s. */

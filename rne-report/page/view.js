@@ -42,7 +42,7 @@ function showView(page, view) {
   if (view.kinds !== kindsOf(page)) return;
   const cell = page.inspection.cell(...view.cell);
   if (cell) page.open(cell);
-  page.tip.show(view.wrench);
+  page.tip.show({ ...page.inspection.freeTips(), ...view.wrench });
   document.querySelector(".tip-force").open = view.tip;
   Object.assign(page, { from: view.from, to: view.to });
   byId("duration").value = view.duration;

@@ -2,7 +2,7 @@
 
 use rne_codegen::Program;
 use rne_inspection::{Became, Component, Inspection, Name, Statement};
-use rne_model::Robot;
+use rne_model::{Angle, FixedFrame, Robot};
 use serde_json::{Map, Value, json};
 
 /// The data of a page.
@@ -11,17 +11,20 @@ use serde_json::{Map, Value, json};
 /// equations. `names` has arrays of quantity, joint, component (or null), part (where it is one) and what the link
 /// carries there (where it is not the first). A component has its name, its equation and, unless it is computed, what
 /// became of it, with its reason by number. `programs` are three: `folded`, with the tip wrench as arguments
-/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture.
+/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture. Where nothing holds
+/// the base, `folded` takes the wrenches at the tips itself, and `floating` has the base and these tips.
 #[must_use]
-pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Option<&Program>) -> Value {
+pub fn data(robot: &Robot, torques: &Program, with_wrench: Option<&Program>, reduced: Option<&Program>) -> Value {
     let folded = Inspection::new(robot, torques);
-    let wrench = Inspection::new(robot, with_wrench);
     let mut quantities = folded.quantities.clone();
-    quantities.extend(wrench.quantities.clone());
     let mut programs = Map::new();
     programs.insert("folded".to_owned(), program(&folded, true));
-    // only its torques are shown
-    programs.insert("with_wrench".to_owned(), program(&wrench, false));
+    if let Some(with_wrench) = with_wrench {
+        let wrench = Inspection::new(robot, with_wrench);
+        quantities.extend(wrench.quantities.clone());
+        // only its torques are shown
+        programs.insert("with_wrench".to_owned(), program(&wrench, false));
+    }
     if let Some(reduced) = reduced {
         let inspection = Inspection::new(robot, reduced);
         let mut told = program(&inspection, true);
@@ -48,7 +51,7 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
         })
     });
     let cells = cells.collect::<Vec<_>>();
-    json!({
+    let mut data = json!({
         "schema": "rne-report",
         "version": 1,
         "generator": folded.generator,
@@ -60,7 +63,28 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
         "table": table,
         "cells": cells,
         "programs": programs,
-    })
+    });
+    if let Some(floating) = floating(robot) {
+        data["floating"] = floating;
+    }
+    data
+}
+
+/// A base that nothing holds, and the tips of its robot; `on` counts joints from 1, 0 is the base.
+fn floating(robot: &Robot) -> Option<Value> {
+    let base = robot.floating_base.as_ref()?;
+    let tip = |name: &str, FixedFrame { on, placement }: FixedFrame| {
+        let rpy = placement.rpy.map(|angle: Angle| angle.radians);
+        json!({ "name": name, "on": on.map_or(0, |joint| joint + 1), "xyz": placement.xyz, "rpy": rpy })
+    };
+    let listed = robot.tips.iter().map(|&at| &robot.frames[at]).map(|frame| tip(&frame.name, frame.fixed));
+    let mut tips: Vec<Value> = listed.collect();
+    if tips.is_empty() {
+        tips.push(tip("tip", robot.tip()));
+    }
+    let (link, inertia) = (&base.link, base.link.inertia);
+    let inertia = [inertia.xx, inertia.yy, inertia.zz];
+    Some(json!({ "name": base.name, "mass": link.mass, "com": link.com, "inertia": inertia, "tips": tips }))
 }
 
 /// The meaning of every name.

@@ -29,13 +29,13 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 22] = [
+pub const SCRIPTS: [(&str, &str); 23] = [
+    ("pose.js", include_str!("../page/pose.js")),
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
     ("number.js", include_str!("../page/number.js")),
     ("field.js", include_str!("../page/field.js")),
     ("equation.js", include_str!("../page/equation.js")),
-    ("pose.js", include_str!("../page/pose.js")),
     ("axes.js", include_str!("../page/axes.js")),
     ("shape.js", include_str!("../page/shape.js")),
     ("label.js", include_str!("../page/label.js")),
@@ -45,6 +45,7 @@ pub const SCRIPTS: [(&str, &str); 22] = [
     ("torque.js", include_str!("../page/torque.js")),
     ("motion.js", include_str!("../page/motion.js")),
     ("wrench.js", include_str!("../page/wrench.js")),
+    ("base.js", include_str!("../page/base.js")),
     ("exercise.js", include_str!("../page/exercise.js")),
     ("cell.js", include_str!("../page/cell.js")),
     ("reading.js", include_str!("../page/reading.js")),
@@ -56,20 +57,25 @@ pub const SCRIPTS: [(&str, &str); 22] = [
 
 /// The page of an arm. Units are SI: m, rad, N, N m.
 ///
-/// `reduced` is the program of the inverse dynamics in the reduced form, by whatever plan there is for the arm; without
-/// it the one is taken that the compiler makes without a plan.
+/// `reduced` is the program of [`Function::of_plan`] in the reduced form, by whatever plan there is for the arm; without
+/// it the one is taken that the compiler makes without a plan. This function is the inverse dynamics: of a robot with a
+/// floating base, the one whose arguments are the motion of the base and wrenches at the tips.
 ///
 /// # Errors
 /// When the inverse dynamics do not compile: [`Compiler::compile`].
 pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileError> {
     let compiler = Compiler::new(robot);
+    let function = Function::of_plan(robot);
     let own = match reduced {
         Some(_) => None,
-        None => Some(compiler.compile(Function::InverseDynamics, Form::Reduced)?),
+        None => Some(compiler.compile(function, Form::Reduced)?),
     };
-    let with_wrench = compiler.compile(Function::InverseDynamicsWithWrench, Form::SevenSteps)?;
-    let torques = Compiler::new(robot).with_equations().compile(Function::InverseDynamics, Form::SevenSteps)?;
-    let data = data(robot, &torques, &with_wrench, reduced.or(own.as_ref()));
+    let with_wrench = match robot.floating_base {
+        Some(_) => None,
+        None => Some(compiler.compile(Function::InverseDynamicsWithWrench, Form::SevenSteps)?),
+    };
+    let torques = Compiler::new(robot).with_equations().compile(function, Form::SevenSteps)?;
+    let data = data(robot, &torques, with_wrench.as_ref(), reduced.or(own.as_ref()));
     let mut script = String::new();
     for (name, text) in SCRIPTS {
         let _ = write!(script, "\n// ---- {name}\n\n{}", template::code(text));

@@ -82,7 +82,7 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
     let torques = program(Function::InverseDynamics);
     let with_wrench = program(Function::InverseDynamicsWithWrench);
     let reduced = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("compiles");
-    let data = rne_report::data(&robot, &torques, &with_wrench, Some(&reduced));
+    let data = rne_report::data(&robot, &torques, Some(&with_wrench), Some(&reduced));
     let inspection = Inspection::new(&robot, &with_wrench);
     let arm = DynArm::from_robot(&robot);
     let (mut states, mut traces, mut poses, mut asked) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -287,4 +287,102 @@ fn addresses_that_the_page_does_not_know_are_told() {
         assert_eq!(said.is_empty(), parts.is_empty(), "{address}: {said}");
         assert!(parts.iter().all(|part| said.contains(part)), "{address}: {said}");
     }
+}
+
+/// Robots whose base nothing holds.
+const FLOATING: [&str; 2] = [include_str!("../../docs/standing_hyq.yaml"), include_str!("../../docs/satellite.yaml")];
+
+/// By the code, by the equations before folding and by the reduced form, the page has the wrench on a base that moves
+/// and the torques of the runtime; its parts add up, and those of gravity and velocities are what they are said to be.
+#[test]
+fn a_floating_base_of_the_page_is_that_of_the_runtime() {
+    const SCRIPT: &str = "
+        const asked = JSON.parse(require('fs').readFileSync(process.argv[2], 'utf8'));
+        console.log(JSON.stringify(asked.map(({ data, states }) => {
+          const inspection = new Inspection(data);
+          const [folded, reduced] = [data.programs.folded, data.programs.reduced].map((record) => new Program(record));
+          const equations = new Equations(inspection.components);
+          const torques = new Torques(inspection, folded, folded);
+          return states.map(({ state, wrench }) => {
+            const split = torques.split(state, wrench);
+            const given = inspection.argumentsOf(state, wrench);
+            equations.set(given);
+            const all = (part) => [...split.onBase[part], ...split[part]].map(String);
+            const byEquations = data.programs.folded.outputs.map(([name]) => String(equations.value(name)));
+            const { total, gravity, velocity, inertia, tip } = Object.fromEntries(
+              ['total', 'gravity', 'velocity', 'inertia', 'tip'].map((part) => [part, all(part)]));
+            return { total, gravity, velocity, inertia, tip, byEquations, reduced: reduced.run(given).map(String) };
+          });
+        })));";
+    let mut random = fastrand::Rng::with_seed(41);
+    let mut questions = Vec::new();
+    let mut expected = Vec::new();
+    for text in FLOATING {
+        let reader = Reader::new("floating").trees();
+        let robot = reader.read(text).unwrap_or_else(|report| panic!("{report}")).robot;
+        let page = rne_report::page(&robot, None).expect("it compiles");
+        let (_, data) = page.split_once(r#"id="data">"#).expect("a page has data");
+        let (data, _) = data.split_once("</script>").expect("the data end");
+        let data: Value = serde_json::from_str(data).expect("JSON");
+        let (arm, tips) = (DynArm::from_robot(&robot), robot.tips.len().max(1));
+        let mut states = Vec::new();
+        for _ in 0..STATES {
+            let mut list = |count: usize| (0..count).map(|_| random.f64() * 4.0 - 2.0).collect::<Vec<f64>>();
+            let [q, qd, qdd] = [0, 1, 2].map(|_| list(robot.dof()));
+            let [rpy, omega, omega_dot, acceleration] = [0; 4].map(|_| <[f64; 3]>::try_from(list(3)).expect("three"));
+            let (force, moment) = (list(3 * tips), list(3 * tips));
+            let wrenches: Vec<rne_runtime::Wrench<f64>> = (0..tips)
+                .map(|tip| {
+                    let triple = |list: &[f64]| [0, 1, 2].map(|axis| list[3 * tip + axis]);
+                    rne_runtime::Wrench { force: triple(&force), moment: triple(&moment) }
+                })
+                .collect();
+            // Rᵀ g: along each axis of the base, which is a column of R
+            let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| turned(rpy, axis));
+            let gravity = axes.map(|axis| (0..3).map(|at| axis[at] * robot.gravity[at]).sum());
+            let rest = rne_runtime::BaseMotion { gravity, ..Default::default() };
+            let turning = rne_runtime::BaseMotion { omega, ..rest };
+            let moving = rne_runtime::BaseMotion { omega_dot, acceleration, ..turning };
+            let still = vec![0.0; robot.dof()];
+            let free = vec![rne_runtime::Wrench::default(); tips];
+            let of = |qd: &[f64], qdd: &[f64], base, wrenches: &[rne_runtime::Wrench<f64>]| {
+                let (on_base, tau) =
+                    arm.inverse_dynamics_of_floating_base(&q, qd, qdd, base, wrenches).expect("lengths are right");
+                [&on_base.force[..], &on_base.moment[..], &tau[..]].concat()
+            };
+            let gravity = of(&still, &still, &rest, &free);
+            let (mass, size) = (arm_mass(&robot), |vector: &[f64]| vector.iter().map(|x| x * x).sum::<f64>().sqrt());
+            assert!(
+                (size(&gravity[..3]) - mass * size(&robot.gravity)).abs() < 1e-11,
+                "a base at rest bears the weight"
+            );
+            let with_rates = of(&qd, &still, &turning, &free);
+            expected.push((robot.name.clone(), of(&qd, &qdd, &moving, &wrenches), gravity, with_rates));
+            let base = json!({ "rpy": rpy, "omega": omega, "omega_dot": omega_dot, "acceleration": acceleration });
+            let wrench = json!({ "f": force, "n": moment });
+            states.push(json!({ "state": { "q": q, "qd": qd, "qdd": qdd, "base": base }, "wrench": wrench }));
+        }
+        questions.push(json!({ "data": data, "states": states }));
+    }
+    let Some(answers) = by_node(SCRIPT, &questions) else { return };
+    let answers = answers.iter().flat_map(|answer| answer.as_array().expect("a list"));
+    for ((name, all, gravity, with_rates), said) in expected.iter().zip(answers) {
+        let part = |of: &str| numbers(&said[of]);
+        close(&part("total"), all, 1e-13, name);
+        close(&part("byEquations"), all, 1e-12, name);
+        close(&part("reduced"), all, 1e-11, name);
+        close(&part("gravity"), gravity, 1e-13, name);
+        let sum = |parts: &[&str]| {
+            let parts: Vec<Vec<f64>> = parts.iter().map(|of| part(of)).collect();
+            (0..all.len()).map(|at| parts.iter().map(|part| part[at]).sum()).collect::<Vec<f64>>()
+        };
+        close(&sum(&["gravity", "velocity"]), with_rates, 1e-12, name);
+        close(&sum(&["gravity", "velocity", "inertia", "tip"]), all, 1e-12, name);
+    }
+}
+
+/// The mass of a robot with a floating base, kg.
+fn arm_mass(robot: &Robot) -> f64 {
+    let base = robot.floating_base.as_ref().map_or(0.0, |base| base.link.mass);
+    robot.joints.iter().map(|joint| joint.row.link.mass).sum::<f64>() + base
 }

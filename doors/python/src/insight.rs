@@ -208,7 +208,8 @@ impl Arm {
 
     /// The page of `rne report`: one file of HTML that needs no network.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
-        let reduced = self.program("inverse_dynamics", Some("reduced"))?;
+        let function = rne_codegen::Function::of_plan(self.robot()).to_string();
+        let reduced = self.program(&function, Some("reduced"))?;
         py.detach(|| rne_report::page(self.robot(), Some(&reduced))).map_err(|error| of_evaluation(&error))
     }
 

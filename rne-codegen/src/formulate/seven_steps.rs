@@ -59,8 +59,9 @@ impl<'s> Motion<'s> {
         };
         let (line, d) = (arm.builder.joint(0), body.com);
         let omega_cross_d = line.vector(Quantity::OmegaCrossD, || omega.cross(d));
+        // the argument has the name of c̈_0
         let c_ddot =
-            line.vector(Quantity::Acceleration, || of_origin + omega_dot.cross(d) + omega.cross(omega_cross_d));
+            line.vector(Quantity::BaseAcceleration, || of_origin + omega_dot.cross(d) + omega.cross(omega_cross_d));
         Self { turning, d, c_dot: at_rest, c_ddot, gravity }
     }
 
