@@ -224,22 +224,14 @@ fn random_plans_with_rotors_are_the_seven_steps() {
 #[test]
 fn random_plans_of_floating_bases_are_the_seven_steps() {
     const FUNCTION: Function = Function::InverseDynamicsOfFloatingBase;
-<<<<<<< HEAD
-    // The bias is a part of the others. Forward dynamics in contact is not one of them: where the row of a joint turns
-    // about one axis of its parent, its reduced form is not proved yet, and builds take the seven steps, rewritten.
-=======
     // the bias is a part of the others
->>>>>>> contact
-    const SOLVED: [Function; 5] = [
+    const SOLVED: [Function; 6] = [
         Function::FloatingMassMatrix,
         Function::FloatingForwardDynamics,
         Function::CentroidalBias,
         Function::CentroidalMomentum,
-<<<<<<< HEAD
-        Function::FloatingInverseDynamicsDerivatives,
-=======
         Function::ForwardDynamicsInContact,
->>>>>>> contact
+        Function::FloatingInverseDynamicsDerivatives,
     ];
     let (mut robots, mut tried, mut solved) = (0, 0, 0);
     for index in 0..rounds(60) {
