@@ -4,12 +4,12 @@ use std::fmt;
 
 use crate::decode::{Context, read_mapping, text};
 use crate::diagnostic::Diagnostic;
-use crate::document::{Content, Node};
+use crate::document::Node;
 use crate::frame::{carrier, joint_names};
 use crate::schema::fixed_transform;
 use crate::source::quoted;
 use crate::spelling::nearest_name;
-use crate::tree::needs_format_2;
+use crate::tree::items;
 use crate::varying::leave_out;
 use crate::{
     Entry, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, Link, Robot, Transform, inertia, matter,
@@ -180,15 +180,8 @@ fn together(one: &Link, other: &Link) -> Link {
 
 /// Reads the list `bodies` of a file whose root is `root`. [`Bodies::add_to`] makes them parts of their links.
 pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -> Option<Bodies> {
-    let Some(node) = root.get("bodies") else { return Some(Bodies::default()) };
-    if format == 1 {
-        return cx.refuse(needs_format_2("bodies", node));
-    }
-    let Content::Sequence(items) = &node.content else {
-        let message = format!("found {} where a list of bodies is needed", node.described());
-        let help = "begin each body with a dash, such as `- {name: camera, on: joint6, mass: 0.3}`";
-        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of bodies is needed").help(help));
-    };
+    let help = "begin each body with a dash, such as `- {name: camera, on: joint6, mass: 0.3}`";
+    let items = items(cx, root, ("bodies", format), "bodies", help)?;
     if let Some(excess) = items.get(MAX_BODIES) {
         let message = format!("{} bodies; at most {MAX_BODIES} bodies are allowed", items.len());
         return cx.refuse(Diagnostic::error(excess.head(), message).label(format!("body {}", MAX_BODIES + 1)));

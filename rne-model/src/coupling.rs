@@ -6,7 +6,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, Node};
 use crate::frame::joint_names;
 use crate::source::{quoted, six_digits};
-use crate::tree::needs_format_2;
+use crate::tree::items;
 use crate::varying::fixed;
 use crate::{Drive, Entry, Joint, JointKind, Limits, Robot, lint};
 
@@ -114,15 +114,8 @@ struct Written {
 
 /// Reads the list `couplings` of a file whose root is `root`, and gives each follower its coupling.
 pub(crate) fn couplings(cx: &Context, root: &Node, format: u32, joints: &mut [Joint]) -> Option<()> {
-    let Some(node) = root.get("couplings") else { return Some(()) };
-    if format == 1 {
-        return cx.refuse(needs_format_2("couplings", node));
-    }
-    let Content::Sequence(items) = &node.content else {
-        let message = format!("found {} where a list of couplings is needed", node.described());
-        let help = "begin each coupling with a dash, such as `- {joint: finger_b, follows: {finger_a: 1}}`";
-        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of couplings is needed").help(help));
-    };
+    let help = "begin each coupling with a dash, such as `- {joint: finger_b, follows: {finger_a: 1}}`";
+    let items = items(cx, root, ("couplings", format), "couplings", help)?;
     let names = joint_names(root);
     let written: Vec<_> = items.iter().map(|item| coupling(cx, item, &names, joints)).collect();
     let written = written.into_iter().collect::<Option<Vec<_>>>()?;

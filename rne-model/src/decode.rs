@@ -341,6 +341,8 @@ fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
         ));
     }
     let place = match key {
+        "first_moment" if allowed.contains(&"mass") => return Some("only the link of a joint has this key".to_owned()),
+        "physical" if allowed.contains(&"mass") => return Some("only a link has this key".to_owned()),
         "theta" | "d" | "a" | "alpha" | "gamma" | "b" => "`dh`",
         "mass" | "com" | "first_moment" | "inertia" | "inertia_about" | "physical" => "`link`",
         "position" | "velocity" | "effort" => "`limits`",

@@ -8,7 +8,7 @@ use crate::frame::{carrier, joint_names};
 use crate::robot::parent;
 use crate::schema::text_of_one_line;
 use crate::source::quoted;
-use crate::tree::needs_format_2;
+use crate::tree::items;
 use crate::varying::fixed;
 use crate::{Joint, Robot};
 
@@ -123,15 +123,8 @@ impl Robot {
 
 /// Reads the list `motors` of a file whose root is `root`.
 pub(crate) fn drives(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -> Option<Vec<Drive>> {
-    let Some(node) = root.get("motors") else { return Some(Vec::new()) };
-    if format == 1 {
-        return cx.refuse(needs_format_2("motors", node));
-    }
-    let Content::Sequence(items) = &node.content else {
-        let message = format!("found {} where a list of motors is needed", node.described());
-        let help = "begin each motor with a dash, such as `- {turns: {joint2: 42, joint3: -25}}`";
-        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of motors is needed").help(help));
-    };
+    let help = "begin each motor with a dash, such as `- {turns: {joint2: 42, joint3: -25}}`";
+    let items = items(cx, root, ("motors", format), "motors", help)?;
     if let Some(excess) = items.get(MAX_DRIVES) {
         let message = format!("{} motors; at most {MAX_DRIVES} motors are allowed", items.len());
         return cx.refuse(Diagnostic::error(excess.head(), message).label(format!("motor {}", MAX_DRIVES + 1)));

@@ -213,7 +213,11 @@ pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [
 /// Checks the joints' inertias together: joints that nothing resists, and masses whose inertia is forgotten.
 pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints: &[Joint]) {
     let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
-    if joints.iter().all(|joint| joint.row.link.is_empty() && joint.motor.is_none_or(|motor| motor.inertia == 0.0)) {
+    // a base that floats has a mass
+    let is_geometry = root.get("floating_base").is_none();
+    if is_geometry
+        && joints.iter().all(|joint| joint.row.link.is_empty() && joint.motor.is_none_or(|motor| motor.inertia == 0.0))
+    {
         let place = root.get("joints").unwrap_or(root).head();
         cx.report(
             Diagnostic::lint(place, "no link has a mass or an inertia: the file has the geometry only")

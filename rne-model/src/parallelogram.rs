@@ -15,7 +15,7 @@ use crate::frame::joint_names;
 use crate::robot::parent;
 use crate::schema::end_of_loop;
 use crate::source::{quoted, six_digits};
-use crate::tree::needs_format_2;
+use crate::tree::items;
 use crate::{Convention, Coupling, Entry, FixedFrame, Joint, JointKind, Transform};
 
 /// Lengths that differ by less than this part of the longer one, and directions by less than this, are equal: tables
@@ -35,14 +35,8 @@ pub(crate) fn loops(
     (format, convention): (u32, Convention),
     joints: &mut [Joint],
 ) -> Option<()> {
-    let Some(node) = root.get("loops") else { return Some(()) };
-    if format == 1 {
-        return cx.refuse(needs_format_2("loops", node));
-    }
-    let Content::Sequence(items) = &node.content else {
-        let message = format!("found {} where a list of loops is needed", node.described());
-        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of loops is needed"));
-    };
+    let help = "begin each loop with a dash, as in the section Parallelograms of docs/robot-file.md";
+    let items = items(cx, root, ("loops", format), "loops", help)?;
     let names = joint_names(root);
     for item in items {
         let it = closed_loop(cx, item, &names)?;

@@ -2,9 +2,9 @@
 
 use crate::decode::{Context, text};
 use crate::diagnostic::Diagnostic;
-use crate::document::{Content, Node};
+use crate::document::Node;
 use crate::source::quoted;
-use crate::tree::needs_format_2;
+use crate::tree::items;
 use crate::{Entry, FixedFrame, Frame, Joint, Robot, Transform};
 
 /// The name of the tip frame where the file has no list `tips`.
@@ -45,15 +45,8 @@ impl Robot {
 
 /// Reads the list `tips` of a file whose root is `root`: the frames that carry wrenches, each counted from 0.
 pub(crate) fn tips(cx: &Context, root: &Node, format: u32, frames: &[Frame]) -> Option<Vec<usize>> {
-    let Some(node) = root.get("tips") else { return Some(Vec::new()) };
-    if format == 1 {
-        return cx.refuse(needs_format_2("tips", node));
-    }
-    let Content::Sequence(items) = &node.content else {
-        let message = format!("found {} where a list of names is needed", node.described());
-        let help = "write the names of the frames that carry wrenches, such as `tips: [left, right]`";
-        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of names is needed").help(help));
-    };
+    let help = "write the names of the frames that carry wrenches, such as `tips: [left, right]`";
+    let items = items(cx, root, ("tips", format), "names", help)?;
     let mut tips = Vec::new();
     for item in items {
         let place = || item.span.clone();

@@ -1,5 +1,7 @@
 //! Trees: which link carries each joint of a robot file, where its row begins there, and which link carries the tip.
 
+use std::rc::Rc;
+
 use crate::decode::Context;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
@@ -70,6 +72,26 @@ pub(crate) fn needs_format_2(key: &str, node: &Node) -> Diagnostic {
     Diagnostic::error(node.head(), message)
         .label("not in `format: 1`")
         .help("write `format: 2` at the top of the file; everything else keeps its meaning")
+}
+
+/// The items of a list that files of `format: 2` may have, of things that `what` says; none where the file has no list.
+pub(crate) fn items<'n>(
+    cx: &Context,
+    root: &'n Node,
+    (key, format): (&str, u32),
+    what: &str,
+    help: &str,
+) -> Option<&'n [Rc<Node>]> {
+    let Some(node) = root.get(key) else { return Some(&[]) };
+    if format == 1 {
+        return cx.refuse(needs_format_2(key, node));
+    }
+    let Content::Sequence(items) = &node.content else {
+        let needed = format!("a list of {what} is needed");
+        let message = format!("found {} where {needed}", node.described());
+        return cx.refuse(Diagnostic::error(node.head(), message).label(needed).help(help));
+    };
+    Some(items)
 }
 
 /// The mistake of a `gamma` or a `b` in a row that cannot have one.

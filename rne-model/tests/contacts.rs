@@ -9,7 +9,8 @@ fn text(format: u32, base: &str, contacts: &str) -> String {
     let joint = "type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1, com: [-0.5, 0, 0]}";
     format!(
         "format: {format}\nname: biped\nsource: a test\nconvention: standard\ngravity: [0, 0, -9.81]\n{base}\
-         frames: [{{name: left, on: a, xyz: [0, 0, 0]}}, {{name: right, on: b, xyz: [0, 0, 0]}}]\n\
+         frames: [{{name: left, on: a, xyz: [0, 0, 0]}}, {{name: right, on: b, xyz: [0, 0, 0]}}, \
+         {{name: other, on: b, xyz: [0, 0, 0]}}, {{name: imu, on: base, xyz: [0, 0, 0]}}]\n\
          tips: [left, right]\ncontacts: {contacts}\njoints:\n  - {{name: a, parent: base, {joint}}}\n  \
          - {{name: b, parent: base, {joint}}}\n"
     )
@@ -47,6 +48,27 @@ fn mistakes_in_contacts_are_told_at_their_place() {
             report.contains(&format!(" --> biped.yaml:{place}\n")) && report.contains(said),
             "{contacts}\n{report}"
         );
+    }
+    for (tip, help) in [
+        ("other", "add the name of the frame to the list `tips`: `tips: [left, right, other]`"),
+        ("imu", "a contact must be on a link that a joint moves"),
+        ("knee_of_nobody", "add the frame to `frames`, and its name to the list `tips`: `tips: [left, right, knee_of"),
+    ] {
+        let report = read(&text(2, FLOATING, &format!("[{{tip: {tip}, kind: point}}]"))).unwrap_err();
+        assert!(report.contains(&format!("= help: {help}")), "{report}");
+    }
+    for (key, said) in [
+        ("first_moment: [0, 0, 0]", "only the link of a joint has this key"),
+        (
+            "mass: m",
+            "only lengths, gravity, the numbers under `motor`, and the mass, centre of mass and inertia of a link",
+        ),
+    ] {
+        let base = FLOATING.replace("mass: 1", &format!("mass: 1, {key}")).replace("mass: 1, mass", "mass");
+        let text = format!("parameters: {{m: 1}}\n{}", text(2, &base, "[]"));
+        let read = Reader::new("biped.yaml").trees().run_time(&["m"]).read(&text);
+        let report = read.expect_err(key).to_string();
+        assert!(report.contains(said), "{report}");
     }
     let report = read(&text(2, FLOATING, "[{tip: left, kind: glued}]")).unwrap_err();
     assert!(report.contains("`point` or `weld`"), "{report}");

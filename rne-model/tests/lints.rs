@@ -30,6 +30,9 @@ fn geometry_alone_is_told_once() {
     let with_rotor = joint.replace("}}", "}, motor: {inertia: 1e-4, gear_ratio: 100}}");
     let said = found(&format!("{head}{joint}{with_rotor}"));
     assert!(said.diagnostics.iter().all(|diagnostic| diagnostic.message.contains("resist")), "{said}");
+    let floating = head.replace("joints:", "floating_base: {name: trunk, link: {mass: 3}}\njoints:").replace('1', "2");
+    let said = Reader::new("x").trees().read(&format!("{floating}{joint}")).expect("a robot").lints.to_string();
+    assert!(!said.contains("geometry only") && said.contains("resist"), "{said}");
     let one = joint.replace("}}", "}, link: {mass: 1, com: [-0.1, 0, 0]}}");
     assert!(!found(&format!("{head}{joint}{one}")).to_string().contains("geometry only"));
 }

@@ -21,6 +21,20 @@ impl<T: Scalar> Pose<T> {
     }
 }
 
+impl Pose<f64> {
+    /// Whether it is that of a rigid body, as far as single precision can say: the rows of its rotation are unit vectors
+    /// at right angles, right-handed, to 1e-4. One with a NaN counts as rigid, because what is computed of it is NaN.
+    #[must_use]
+    pub fn is_rigid(&self) -> bool {
+        const MOST_ROUNDED: f64 = 1e-4;
+        let [x, y, z] = self.rotation;
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
+        let errors = [dot(x, x) - 1.0, dot(y, y) - 1.0, dot(x, y), z[0] - cross[0], z[1] - cross[1], z[2] - cross[2]];
+        !errors.iter().any(|error| *error > MOST_ROUNDED || *error < -MOST_ROUNDED)
+    }
+}
+
 /// From and to nalgebra.
 #[cfg(feature = "nalgebra")]
 mod conversion {

@@ -60,6 +60,20 @@ fn exponential(twist: [f64; 6]) -> Pose<f64> {
 }
 
 #[test]
+fn a_pose_is_rigid_if_its_rotation_is_one() {
+    let [s, c] = [0.6_f32, 0.8].map(f64::from);
+    let pose = |rotation: [[f64; 3]; 3]| Pose { rotation, translation: [0.0; 3] };
+    let turned = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]];
+    assert!(pose(turned).is_rigid() && pose([[f64::NAN; 3]; 3]).is_rigid());
+    for (row, column, off) in [(0, 0, 2e-4), (0, 1, 2e-3), (1, 0, -2e-3), (2, 0, 2e-4), (2, 2, -2.0)] {
+        let mut wrong = turned;
+        wrong[row][column] += off;
+        assert!(!pose(wrong).is_rigid(), "{wrong:?}");
+    }
+    assert!(!pose([[0.0; 3]; 3]).is_rigid());
+}
+
+#[test]
 fn the_angle_is_found_from_0_to_pi() {
     let mut numbers = Numbers::new(5);
     let near_zero = (0..=16).map(|n| (false, 10.0_f64.powi(-n)));

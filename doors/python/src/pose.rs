@@ -81,7 +81,7 @@ fn matrices<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, P
         [.., 4, 4] => {
             let read = array.readonly();
             let mut poses = read.as_slice()?.chunks_exact(16).map(pose_of);
-            if let Some(at) = poses.position(|pose| !is_rotation(&pose.rotation)) {
+            if let Some(at) = poses.position(|pose| !pose.is_rigid()) {
                 return Err(PyValueError::new_err(format!(
                     "the rotation of `{name}`, state {at}, is none: its columns must be unit vectors at right angles, \
                      right-handed"
@@ -94,15 +94,6 @@ fn matrices<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, P
              `forward_kinematics` returns them"
         ))),
     }
-}
-
-/// Whether a matrix is a rotation, as far as single precision can say. A matrix with a NaN passes: its results are NaN.
-fn is_rotation(rotation: &[[f64; 3]; 3]) -> bool {
-    let [x, y, z] = *rotation;
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
-    let errors = [dot(x, x) - 1.0, dot(y, y) - 1.0, dot(x, y), z[0] - cross[0], z[1] - cross[1], z[2] - cross[2]];
-    !errors.iter().any(|error| error.abs() > 1e-4)
 }
 
 /// The shape without the axes of the matrices.

@@ -127,7 +127,8 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
         if meant.is_empty() { String::new() } else { format!(" (did you mean {TYPED}{}{TYPED:#}?)", meant.join(", ")) };
     let number = name.split(|c: char| !c.is_ascii_digit()).find_map(|digits| digits.parse::<usize>().ok());
     let beyond = number.is_some_and(|joint| joint > robot.dof());
-    let meant = if beyond { format!(", which has {} joints", robot.dof()) } else { meant };
+    let joints = if robot.dof() == 1 { "1 joint".to_owned() } else { format!("{} joints", robot.dof()) };
+    let meant = if beyond { format!(", which has {joints}") } else { meant };
     Err(Failure::usage(format_args!(
         "there is no name `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
          code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",
@@ -235,8 +236,9 @@ section of docs/reduced-form.md that explains the formula.";
 
 /// How arguments are given.
 const OF_EVAL: &str = "\
-Give each function all of its options and no others. Only --qd, --qdd and --gravity may be missing: --qd and --qdd \
-are zero by default, and --gravity is the gravity of the robot file. A LIST has one number per joint, base to tip: \
+Give each function all of its options and no others. Some may be missing: --qd, --qdd and the options --base-… are \
+zero by default, --base-rotation is the identity, --gravity is the gravity of the robot file, and nothing acts at a tip \
+without --tip-wrench. A LIST has one number per joint, base to tip: \
 rad for a revolute joint, m for a prismatic joint. pi/2 and 'deg(30)' are numbers, too. --wrench is the force and the \
 moment that the last link exerts at the tip, N and N m, in tip axes. --payload is in kg, m and kg m², in tip axes. \
 The options --base-… are in frame 0. rne rounds the tables that it prints; --json prints every digit, in the shape \
@@ -262,7 +264,28 @@ fn of_eval() -> String {
     );
     row("--q --qd --tau", &functions_of(&[Positions, Rates, Torques]));
     row("--qd --qdd", "actuator_torques (zero for a joint without a motor)");
-    text + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
+    text + &entries(of_base_and_tips()) + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
+}
+
+/// The options of each function of a floating base, or of several tips, that takes more than those of the joints.
+fn of_base_and_tips() -> impl Iterator<Item = (&'static str, String)> {
+    let option = |argument: &Argument| match argument {
+        Argument::Positions => "--q",
+        Argument::Rates => "--qd",
+        Argument::Accelerations => "--qdd",
+        Argument::Torques => "--tau",
+        Argument::Wrenches => "--tip-wrench",
+        Argument::Base => "--base-omega --base-omega-dot --base-acceleration --gravity",
+        Argument::BaseVelocity => "--base-omega",
+        Argument::BaseTwist => "--base-velocity --base-omega",
+        Argument::BasePose => "--base-pose",
+        Argument::BaseRotation => "--base-rotation",
+        Argument::Wrench | Argument::Payload | Argument::Sines | Argument::Cosines => "",
+    };
+    let is_more = |function: &Function| function.is_of_floating_base() || function.takes(Argument::Wrenches);
+    let functions = Function::ALL.into_iter().filter(is_more).filter(|function| function.arguments().len() > 1);
+    functions
+        .map(move |function| (function.name(), function.arguments().iter().map(option).collect::<Vec<_>>().join(" ")))
 }
 
 /// The functions with exactly these arguments.

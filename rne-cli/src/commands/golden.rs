@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use rne::{BaseMotion, DynArm, Scalar, Wrench};
 use rne_codegen::{Function, Program};
 use rne_emit::{Golden, Precision};
-use rne_model::{GoldenFile, Robot, exact_digits};
+use rne_model::{Contact, GoldenFile, Robot, exact_digits};
 
 use crate::outcome::Failure;
 use crate::render::physics;
@@ -35,7 +35,8 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
                 let is_left_out = program.function.inverts_mass()
                     && precision == Precision::Single
                     && !is_well_conditioned(&state, arm);
-                Ok(if is_finite && !is_left_out { numbers } else { Vec::new() })
+                let is_possible = program.function != Function::ForwardDynamicsInContact || can_hold(&numbers, arm);
+                Ok(if is_finite && is_possible && !is_left_out { numbers } else { Vec::new() })
             });
             let results = results.collect::<Result<_, Failure>>()?;
             let sizes =
@@ -78,6 +79,15 @@ fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure>
 fn is_well_conditioned(state: &State, arm: &DynArm) -> bool {
     const LEAST: f64 = 1e-3;
     arm.mass_matrix(&state.q).is_ok_and(|matrix| physics::smallest_pivot(matrix) > LEAST)
+}
+
+/// Whether contacts can hold an arm as they should, by what its forward dynamics in contact returns: redundant ones
+/// cannot where their tips would have to move in different ways, and their forces are large.
+fn can_hold(numbers: &[f64], arm: &DynArm) -> bool {
+    /// Of the tips, m/s² or rad/s².
+    const MOST: f64 = 1e-3;
+    let forces = numbers.len().saturating_sub(6 * arm.tips().len());
+    numbers[forces..].iter().all(|force| force.abs() * Contact::DAMPING < MOST)
 }
 
 /// Every argument by its name in emitted code.

@@ -4,12 +4,14 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
+use rne::Pose;
 use rne_logs::{CsvRows, Npy};
 use rne_model::{did_you_mean, open_file};
 
 use crate::files::csv_table::quoted;
 use crate::files::input_file::{self, is_standard_input, is_stream};
 use crate::outcome::Failure;
+use crate::values::state::ROTATION;
 
 /// States of a part: some megabytes, whatever the file's size.
 pub(crate) const PART: usize = 16_384;
@@ -20,8 +22,31 @@ pub(crate) struct Table {
     pub(crate) states: Option<u64>,
     name: String,
     rows: Rows,
+    restricted: Restricted,
+}
+
+/// The columns whose numbers may not be any.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Restricted {
     /// The column of a mass, which is not negative.
-    mass: Option<usize>,
+    pub(crate) mass: Option<usize>,
+    /// The first of nine columns of a rotation, row by row.
+    pub(crate) rotation: Option<usize>,
+}
+
+impl Restricted {
+    /// The mistake of a row, whose columns have these names.
+    fn mistake(self, row: &[f64], name: impl Fn(usize) -> String) -> Option<String> {
+        if let Some((at, mass)) = self.mass.and_then(|at| Some((at, *row.get(at)?)))
+            && mass < 0.0
+        {
+            return Some(format!("the mass {} is {mass} kg; a mass is zero or positive", name(at)));
+        }
+        let at = self.rotation?;
+        let row = |from: usize| row.get(from..from + 3)?.try_into().ok();
+        let pose = Pose { rotation: [row(at)?, row(at + 3)?, row(at + 6)?], translation: [0.0; 3] };
+        (!pose.is_rigid()).then(|| format!("what begins with {} is no rotation: {ROTATION}", name(at)))
+    }
 }
 
 enum Rows {
@@ -39,12 +64,12 @@ enum Rows {
 
 impl Table {
     /// Opens a file that has these columns: by name in CSV, in this order in an array. A column that is missing in CSV
-    /// may have its other name. One of them may be a mass.
+    /// may have its other name.
     pub(crate) fn open(
         path: &Path,
         columns: &[String],
         others: &[Option<String>],
-        mass: Option<usize>,
+        restricted: Restricted,
     ) -> Result<Self, Failure> {
         let name = input_file::name(path);
         let unreadable = |error: io::Error| Failure::input(format_args!("the states {name} cannot be read: {error}"));
@@ -62,9 +87,9 @@ impl Table {
             return Err(Failure::input(format_args!("{name} looks like UTF-16; save the file as UTF-8")));
         }
         if first.starts_with(&Npy::MAGIC[..Npy::MAGIC.len().min(first.len())]) && !first.is_empty() {
-            return Ok(Self { mass, ..Self::npy(name, file, columns)? });
+            return Ok(Self { restricted, ..Self::npy(name, file, columns)? });
         }
-        Ok(Self { mass, ..Self::csv(name, file, columns, others)? })
+        Ok(Self { restricted, ..Self::csv(name, file, columns, others)? })
     }
 
     fn csv(
@@ -100,7 +125,7 @@ impl Table {
             }
         }
         let rows = Rows::Csv { rows: Box::new(rows), columns };
-        Ok(Self { states: None, name, rows, mass: None })
+        Ok(Self { states: None, name, rows, restricted: Restricted::default() })
     }
 
     fn npy(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
@@ -116,14 +141,12 @@ impl Table {
             return Err(wrong(&format_args!("the array has {width} columns, but {numbers} are needed: {needed}")));
         }
         let rows = Rows::Npy { numbers: npy.numbers, width: wanted.len(), read: 0 };
-        Ok(Self { states: Some(states), name, rows, mass: None })
+        Ok(Self { states: Some(states), name, rows, restricted: Restricted::default() })
     }
 
     /// Appends the rows of the next part; how many there are.
     pub(crate) fn read(&mut self, rows: &mut Vec<f64>) -> Result<usize, Failure> {
-        let (name, mass) = (&self.name, self.mass);
-        // of the row that was read last
-        let negative = |row: &[f64]| mass.and_then(|mass| row.get(mass)).copied().filter(|mass| *mass < 0.0);
+        let (name, restricted) = (&self.name, self.restricted);
         match &mut self.rows {
             Rows::Csv { rows: table, columns } => {
                 let mut count = 0;
@@ -149,11 +172,9 @@ impl Table {
                             Failure::input(format_args!("{name}:{line}: `{column}` is {what}"))
                         })?);
                     }
-                    if let Some(negative) = negative(&rows[begin..]) {
-                        let (line, column) = (table.line(), &columns[mass.unwrap_or_default()].1);
-                        return Err(Failure::input(format_args!(
-                            "{name}:{line}: the mass `{column}` is {negative} kg; a mass is zero or positive"
-                        )));
+                    let column = |at: usize| format!("`{}`", columns[at].1);
+                    if let Some(mistake) = restricted.mistake(&rows[begin..], column) {
+                        return Err(Failure::input(format_args!("{name}:{}: {mistake}", table.line())));
                     }
                     count += 1;
                 }
@@ -174,12 +195,8 @@ impl Table {
                 }
                 for row in rows.chunks_exact((*width).max(1)) {
                     *read += 1;
-                    if let Some(negative) = negative(row) {
-                        let column = mass.unwrap_or_default() + 1;
-                        return Err(Failure::input(format_args!(
-                            "{name}: state {read}: the mass in column {column} is {negative} kg; a mass is zero or \
-                             positive"
-                        )));
+                    if let Some(mistake) = restricted.mistake(row, |at| format!("in column {}", at + 1)) {
+                        return Err(Failure::input(format_args!("{name}: state {read}: {mistake}")));
                     }
                 }
                 Ok(rows.len() / (*width).max(1))

@@ -12,7 +12,7 @@ use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination};
 use crate::files::input_file::is_standard_input;
 use crate::files::output_file::is_standard_output;
 use crate::files::state_results::{self, Results};
-use crate::files::state_table::{PART, Table};
+use crate::files::state_table::{PART, Restricted, Table};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, QUIET};
 
@@ -73,10 +73,14 @@ fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<S
     compiled.arguments().iter().flat_map(headings).collect()
 }
 
-/// The column of a payload's mass.
-fn mass(compiled: &CompiledFunction) -> Option<usize> {
-    let payload = compiled.arguments().iter().position(|(name, _)| *name == "payload")?;
-    Some(compiled.arguments()[..payload].iter().map(|(_, elements)| elements).sum())
+/// The columns of a payload's mass and of a rotation.
+fn restricted(compiled: &CompiledFunction) -> Restricted {
+    let place = |wanted: &str| {
+        let argument = compiled.arguments().iter().position(|(name, _)| *name == wanted)?;
+        Some(compiled.arguments()[..argument].iter().map(|(_, elements)| elements).sum())
+    };
+    // a pose begins with its rotation
+    Restricted { mass: place("payload"), rotation: place("base_rotation").or_else(|| place("pose")) }
 }
 
 /// The columns of its results: torques and accelerations by their symbols, others by the function's name and their
@@ -109,7 +113,7 @@ impl Job<'_> {
     pub(crate) fn run(&self) -> Result<Outcome, Failure> {
         let compiled = self.arm.function(self.function).map_err(Failure::input)?;
         let columns = columns(compiled, self.arm);
-        let mut table = Table::open(self.states, &columns, &named_columns(compiled, self.arm), mass(compiled))?;
+        let mut table = Table::open(self.states, &columns, &named_columns(compiled, self.arm), restricted(compiled))?;
         let outputs = results(self.function, self.arm);
         let read = [self.robot_file, self.states];
         let mut results = Results::open(self.out.filter(|out| !is_standard_output(out)), &read, self.force, &outputs)?;

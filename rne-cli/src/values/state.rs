@@ -317,20 +317,17 @@ fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, F
     Ok(Pose { rotation: turn.rotation(), translation: triple(values, 0) })
 }
 
+/// What a rotation is.
+pub(crate) const ROTATION: &str =
+    "its three rows must have the length 1, be at right angles to each other, and be right-handed";
+
 /// The rotation of these nine numbers, row by row.
 fn rotation(name: &str, numbers: &[f64]) -> Result<[[f64; 3]; 3], Failure> {
-    let rows = [0, 3, 6].map(|row| triple(numbers, row));
-    let [x, y, z] = rows;
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
-    let errors = [dot(x, x) - 1.0, dot(y, y) - 1.0, dot(x, y), z[0] - cross[0], z[1] - cross[1], z[2] - cross[2]];
-    if errors.iter().all(|error| error.abs() < MOST_ROUNDED) {
-        return Ok(rows);
+    let rotation = [0, 3, 6].map(|row| triple(numbers, row));
+    if (Pose { rotation, translation: [0.0; 3] }).is_rigid() {
+        return Ok(rotation);
     }
-    Err(Failure::usage(format_args!(
-        "{name} is no rotation: its three rows must have the length 1, be at right angles to each other, and be \
-         right-handed"
-    )))
+    Err(Failure::usage(format_args!("{name} is no rotation: {ROTATION}")))
 }
 
 /// The wrench at a tip: `left=0,0,-5,0,0,0`.
@@ -361,11 +358,7 @@ fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Resul
         return if given.is_empty() {
             Ok(wrenches)
         } else {
-            Err(Failure::usage(format_args!(
-                "{function} takes no --tip-wrench; {} and {} do",
-                Function::InverseDynamicsWithWrenches,
-                Function::ForwardDynamicsWithWrenches
-            )))
+            Err(not_taken(function, "--tip-wrench", Argument::Wrenches))
         };
     }
     if given.is_empty() && !function.is_of_floating_base() {
@@ -404,9 +397,6 @@ fn triple(list: &[f64], from: usize) -> [f64; 3] {
     [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
 }
 
-/// How far the rows of a rotation may be from unit vectors at right angles: as far as single precision can say.
-const MOST_ROUNDED: f64 = 1e-4;
-
 /// The most functions that a message names.
 const MOST_NAMED: usize = 6;
 
@@ -422,22 +412,24 @@ fn argument(
     match list {
         None if !function.takes(kind) => Ok(None),
         None => Err(Failure::usage(format_args!("{function} needs {name}, {what}"))),
-        Some(_) if !function.takes(kind) => {
-            // --payload chooses the others
-            let is_named = |other: &Function| other.takes(kind) && other.capability() != Capability::PayloadDynamics;
-            let others: Vec<String> =
-                Function::ALL.iter().filter(|other| is_named(other)).map(ToString::to_string).collect();
-            let hint = match others.as_slice() {
-                [only] => format!("; {only} does"),
-                [some @ .., last] if others.len() <= MOST_NAMED => format!("; {} and {last} do", some.join(", ")),
-                _ => String::new(),
-            };
-            Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))
-        }
+        Some(_) if !function.takes(kind) => Err(not_taken(function, name, kind)),
         Some(List(values)) if values.len() != expected => {
             let (found, numbers) = (values.len(), if expected == 1 { "number" } else { "numbers" });
             Err(Failure::usage(format_args!("{name} needs {expected} {numbers}, not {found}: {what}")))
         }
         Some(List(values)) => Ok(Some(values.clone())),
     }
+}
+
+/// The error of an option that a function does not take, with the functions that do.
+fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
+    // --payload chooses the others
+    let is_named = |other: &Function| other.takes(kind) && other.capability() != Capability::PayloadDynamics;
+    let others: Vec<String> = Function::ALL.iter().filter(|other| is_named(other)).map(ToString::to_string).collect();
+    let hint = match others.as_slice() {
+        [only] => format!("; {only} does"),
+        [some @ .., last] if others.len() <= MOST_NAMED => format!("; {} and {last} do", some.join(", ")),
+        _ => String::new(),
+    };
+    Failure::usage(format_args!("{function} takes no {name}{hint}"))
 }

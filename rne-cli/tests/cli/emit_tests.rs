@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::call::{fails, fine, folder};
+use crate::call::{ROOT, fails, fine, folder};
 
 /// Motors that choose by a sign; a joint that slides, a modified table and accelerations that are divided; parameters.
 const ROBOTS: [&[&str]; 5] = [
@@ -116,12 +116,25 @@ fn c_passes_its_tests() {
         }
     }
     // the code and the runtime agree where the rotation of the base is one, to the last digit
+    let contacts = |real| {
+        let functions = ["--function", "forward_dynamics_in_contact,tip_accelerations"];
+        [&["emit", "docs/standing_hyq.yaml", "--lang", "c", "--tests", "--real", real], &functions[..]].concat()
+    };
     for real in ["float", "double"] {
-        let contacts = ["emit", "docs/standing_hyq.yaml", "--lang", "c", "--tests", "--real", real, "--function"];
-        let code = fine(&[&contacts[..], &["forward_dynamics_in_contact,tip_accelerations"]].concat());
+        let code = fine(&contacts(real));
         let Some(output) = tested_c(&folder, &code) else { return };
         assert!(output.status.success() && said(&output).contains("2 tests, 0 wrong"), "{real}: {}", said(&output));
     }
+    // where two contacts hold one foot, no state has forces to compare
+    let twice = fs::read_to_string(Path::new(ROOT).join("docs/standing_hyq.yaml")).expect("HyQ");
+    let twice = (twice.replace("tips: [", "tips: [toe, "))
+        .replace("contacts:\n", "contacts:\n  - {tip: toe, kind: weld}\n")
+        .replace("joints:\n", "  - {name: toe, on: lf_kfe_joint, xyz: [0.3, 0.1, 0]}\njoints:\n");
+    fs::write(folder.join("twice.yaml"), twice).expect("written");
+    let twice = folder.join("twice.yaml").display().to_string();
+    let code = fine(&[&["emit", &twice][..], &contacts("double")[2..]].concat());
+    let Some(output) = tested_c(&folder, &code) else { return };
+    assert!(output.status.success() && said(&output).contains("1 tests, 0 wrong"), "{}", said(&output));
     let plain = fine(&["emit", "robots/planar2.yaml", "--lang", "c"]);
     assert!(fine(&["emit", "robots/planar2.yaml", "--lang", "c", "--tests"]).starts_with(&plain));
     let out = folder.join("none.c");

@@ -366,6 +366,13 @@ fn functions_take_their_arguments_and_no_others() {
         &["takes no --tau; forward_dynamics, momentum_and_rate, forward_dynamics_with_wrenches, \
              floating_forward_dynamics and forward_dynamics_in_contact do"],
     );
+    call(
+        2,
+        "inverse_dynamics",
+        &[q, ["--tip-wrench", "tip=0,0,0,0,0,0"]].concat(),
+        &["takes no --tip-wrench; inverse_dynamics_with_wrenches, forward_dynamics_with_wrenches, \
+             inverse_dynamics_of_floating_base, floating_bias and floating_forward_dynamics do"],
+    );
     let (zeros, mirrored) = (["--base-rotation", "0,0,0,0,0,0,0,0,0"], ["--base-rotation", "1,0,0,0,1,0,0,0,-1"]);
     call(2, "tip_jacobians", &[q, zeros].concat(), &["--base-rotation is no rotation: its three rows must"]);
     call(2, "tip_jacobians", &[q, mirrored].concat(), &["right-handed"]);

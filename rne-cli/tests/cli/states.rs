@@ -279,6 +279,28 @@ fn a_negative_mass_of_a_payload_is_refused() {
     assert!(!out.exists(), "a file is whole or not there");
 }
 
+/// Rows whose rotation is none are refused, as `rne eval --base-rotation` refuses one.
+#[test]
+fn a_rotation_that_is_none_is_refused() {
+    for (function, first, at) in [("tip_jacobians", "base_rotation_xx", 2), ("floating_potential_energy", "pose_xx", 2)]
+    {
+        let arguments = ["eval", "planar2", "--function", function, "--states", "-"];
+        let names = columns("planar2", function);
+        assert_eq!(names[at], first);
+        let line = |xx: f64| {
+            let mut numbers = vec![0.5; names.len()];
+            numbers[at..at + 9].copy_from_slice(&ROTATION);
+            numbers[at] += xx;
+            numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",") + "\n"
+        };
+        let table = |off: f64| names.join(",") + "\n" + &line(0.0) + &line(off);
+        assert_eq!(rne_reading(&arguments, &table(1e-6)).status, 0);
+        let found = rne_reading(&arguments, &table(1e-3));
+        let said = format!("<standard input>:3: what begins with `{first}` is no rotation: its three rows must have");
+        assert!(found.status == 1 && found.err.contains(&said), "{found:?}");
+    }
+}
+
 /// Nothing is printed beside a message where the mistake is among the first states.
 #[test]
 fn mistakes_in_csv_have_a_line() {
