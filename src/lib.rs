@@ -122,7 +122,9 @@
 
 #[doc(inline)]
 pub use rne_macro::{
-    Actuation, BatchInverseDynamics, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
+    Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
+    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix,
+    Energy,
     FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, ForwardDynamics, FrameKinematics,
     InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
     PayloadDynamics, Regressor, TipWrenches,
@@ -131,8 +133,8 @@ pub use rne_macro::{
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchInverseDynamics,
-    BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual, Energy,
+    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchFloatingInverseDynamics, BatchForwardDynamics,
+    BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual, Energy,
     FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
     ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches,
     Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState,
