@@ -231,11 +231,13 @@ fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream
         _ => {
             let parts = answers.iter().map(|Answer(name, lengths)| {
                 let name = format_ident!("{name}");
-                if lengths.len() == 1 { quote!(#name.iter_mut()) } else { quote!(#name.as_flattened_mut().iter_mut()) }
+                let arrays = if lengths.len() == 1 { quote!(#name) } else { quote!(#name.as_flattened_mut()) };
+                // borrowed, for arguments may live differently long
+                quote!(::core::iter::Iterator::map(#arrays.iter_mut(), |numbers| &mut **numbers))
             });
-            let parts = parts.reduce(|all, part| quote!(#all.chain(#part)));
+            let parts = parts.reduce(|all, part| quote!(::core::iter::Iterator::chain(#all, #part)));
             quote!({
-                let mut all = ::core::iter::Iterator::map(#parts, ::core::mem::take);
+                let mut all = #parts;
                 ::core::array::from_fn(|_| ::core::iter::Iterator::next(&mut all).unwrap_or_default())
             })
         }

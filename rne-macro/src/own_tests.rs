@@ -47,10 +47,13 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
     }
 }
 
-/// The tests of a batch, which need no test of the function itself.
+/// The tests of a batch. An `Arm` stands on the floor.
 pub(crate) fn of_batch(function: Function) -> &'static [&'static str] {
     match function {
         Function::InverseDynamics => &["batches_are_those_of_the_runtime"],
+        Function::MassMatrix => &["mass_matrices_of_a_batch_are_those_of_the_runtime"],
+        Function::ForwardDynamics => &["accelerations_of_a_batch_need_the_torques_that_cause_them"],
+        Function::InverseDynamicsDerivatives => &["derivatives_of_a_batch_are_those_of_the_runtime"],
         _ => &[],
     }
 }

@@ -45,8 +45,14 @@ pub(super) struct OutputsOf<
     const ELEMENTS: usize,
 >(pub(super) States<'a, R, T, 1, INPUTS, ELEMENTS>);
 
-/// An array of the results: full registers, and what is left.
-type Element<'a, V> = (&'a mut [<V as Vector>::Numbers], &'a mut [<V as crate::sin_cos::Lanes>::Element]);
+/// The arrays that are written.
+struct Results<'r, 'a, T> {
+    elements: &'r mut [&'a mut [T]],
+    /// The output that each of them is.
+    places: &'r [u16],
+    /// How many numbers of the register count: 0 for all. It is the last one then.
+    last: usize,
+}
 
 impl<R, T: BatchScalar, const INPUTS: usize, const ANGLES: usize, const OUTPUTS: usize, const ELEMENTS: usize> Work<T>
     for OutputsOf<'_, R, T, INPUTS, ANGLES, OUTPUTS, ELEMENTS>
@@ -66,23 +72,23 @@ where
                 padded[..last].copy_from_slice(numbers);
             }
         }
-        let mut elements = elements.map(|numbers| {
-            let (registers, last) = V::split_mut(numbers);
-            if R::IS_WHOLE { (&mut registers[..full], last) } else { (registers, last) }
-        });
-        let (mut wanted, mut wanted_count) = ([0; ELEMENTS], 0);
-        if !R::IS_WHOLE {
-            for (index, (registers, last)) in elements.iter_mut().enumerate() {
-                if R::PLACES[index] == ZERO {
-                    registers.iter_mut().for_each(|register| V::each_mut(register).fill(T::ZERO));
-                    last.fill(T::ZERO);
-                } else if !registers.is_empty() || !last.is_empty() {
-                    wanted[wanted_count] = index;
-                    wanted_count += 1;
+        let (mut elements, mut places, mut wanted) = (elements, R::PLACES, ELEMENTS);
+        if R::IS_WHOLE {
+            // of one length, as the compiler sees then
+            elements = elements.map(|numbers| &mut numbers[..count]);
+        } else {
+            wanted = 0;
+            for (index, &place) in R::PLACES.iter().enumerate() {
+                if place == ZERO {
+                    elements[index].fill(T::ZERO);
+                } else if !elements[index].is_empty() {
+                    elements.swap(index, wanted);
+                    places[wanted] = place;
+                    wanted += 1;
                 }
             }
         }
-        let wanted = &wanted[..wanted_count];
+        let mut results = Results { elements: &mut elements[..wanted], places: &places[..wanted], last: 0 };
         // One loop for both, so that its code is there once.
         let parts =
             [(full, inputs, 0), (usize::from(last > 0), padded.each_ref().map(|numbers| &numbers[..]), last)];
@@ -96,9 +102,8 @@ where
                     None => &[],
                 };
             }
-            outputs::<R, V, INPUTS, ANGLES, OUTPUTS, ELEMENTS>(
-                robot, unit, registers, arrays, &mut elements, wanted, last,
-            );
+            results.last = last;
+            outputs::<R, V, INPUTS, ANGLES, OUTPUTS, ELEMENTS>(robot, unit, registers, arrays, &mut results);
         }
     }
 }
@@ -117,9 +122,7 @@ fn outputs<
     unit: V::Unit,
     count: usize,
     inputs: [&[V::Numbers]; INPUTS],
-    elements: &mut [Element<'_, V>; ELEMENTS],
-    wanted: &[usize],
-    last: usize,
+    written: &mut Results<'_, '_, V::Element>,
 ) {
     let zero = V::splat(V::Element::ZERO);
     let mut turns = [[[Aligned(zero.store()); ANGLES]; 2]; BLOCK];
@@ -152,19 +155,15 @@ fn outputs<
         for (at, [sines, cosines]) in (start..end).zip(&turns) {
             let (sines, cosines) = (registers::<V, ANGLES>(unit, sines), registers::<V, ANGLES>(unit, cosines));
             robot.outputs(&sines, &cosines, &loaded(unit, &inputs, at, R::REQUIRED), &mut results);
-            if last > 0 {
-                for index in 0..if R::IS_WHOLE { ELEMENTS } else { wanted.len() } {
-                    let index = if R::IS_WHOLE { index } else { wanted[index] };
-                    let numbers = results[usize::from(R::PLACES[index])].0.store();
-                    elements[index].1.copy_from_slice(&V::each(&numbers)[..last]);
-                }
-            } else if R::IS_WHOLE {
-                for index in 0..ELEMENTS {
-                    elements[index].0[at] = results[usize::from(R::PLACES[index])].0.store();
+            let places = written.elements.iter_mut().zip(written.places);
+            if written.last > 0 {
+                for (numbers, &place) in places {
+                    let register = results[usize::from(place)].0.store();
+                    V::split_mut(numbers).1.copy_from_slice(&V::each(&register)[..written.last]);
                 }
             } else {
-                for &index in wanted {
-                    elements[index].0[at] = results[usize::from(R::PLACES[index])].0.store();
+                for (numbers, &place) in places {
+                    V::split_mut(numbers).0[at] = results[usize::from(place)].0.store();
                 }
             }
         }
@@ -172,7 +171,7 @@ fn outputs<
         let squares = squares.store();
         let are_small = V::each(&squares).iter().fold(true, |all, sum| all & sum.is_square_within_limit());
         if cfg!(feature = "std") && !are_small {
-            repair::<R, V, INPUTS, ANGLES, OUTPUTS, ELEMENTS>(robot, start..end, &inputs, elements, last);
+            repair::<R, V, INPUTS, ANGLES, OUTPUTS, ELEMENTS>(robot, start..end, &inputs, written);
         }
         start = end;
     }
@@ -193,13 +192,12 @@ fn repair<
     robot: &R,
     block: Range<usize>,
     inputs: &[&[V::Numbers]; INPUTS],
-    elements: &mut [Element<'_, V>; ELEMENTS],
-    last: usize,
+    written: &mut Results<'_, '_, V::Element>,
 ) {
     let mut results = [V::Element::ZERO; OUTPUTS];
     for at in block {
         let lanes = size_of::<V::Numbers>() / size_of::<V::Element>();
-        for lane in 0..if last > 0 { last } else { lanes } {
+        for lane in 0..if written.last > 0 { written.last } else { lanes } {
             let inputs = inputs.map(|numbers| numbers.get(at).map_or(V::Element::ZERO, |numbers| V::each(numbers)[lane]));
             let angles = robot.angles(&inputs);
             if angles.iter().all(|angle| angle.is_within_limit()) {
@@ -207,16 +205,10 @@ fn repair<
             }
             let (sines, cosines) = V::Element::sin_cos_array(angles);
             robot.outputs(&sines, &cosines, &inputs, &mut results);
-            for (index, (registers, tail)) in elements.iter_mut().enumerate() {
-                let Some(result) = results.get(usize::from(R::PLACES[index])) else { continue };
-                let place = if last > 0 {
-                    tail.get_mut(lane)
-                } else {
-                    registers.get_mut(at).and_then(|register| V::each_mut(register).get_mut(lane))
-                };
-                if let Some(place) = place {
-                    *place = *result;
-                }
+            for (numbers, &place) in written.elements.iter_mut().zip(written.places) {
+                let (registers, last) = V::split_mut(numbers);
+                let lanes = if written.last > 0 { last } else { V::each_mut(&mut registers[at]) };
+                lanes[lane] = results[usize::from(place)];
             }
         }
     }
