@@ -123,23 +123,23 @@
 #[doc(inline)]
 pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
-    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix,
-    Energy,
-    FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, ForwardDynamics, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TipWrenches,
+    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ContactDynamics,
+    CoriolisMatrix, Energy, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, ForwardDynamics,
+    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix,
+    MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchFloatingInverseDynamics, BatchForwardDynamics,
-    BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual, Energy,
-    FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
-    ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches,
-    Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState,
-    Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives,
-    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
+    BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
+    BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual,
+    Energy, FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor,
+    FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError,
+    JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass,
+    ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches,
+    TorqueDerivatives, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

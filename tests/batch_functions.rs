@@ -6,6 +6,7 @@ use std::array::from_fn;
 
 use fastrand::Rng;
 use rne::compiled::{Arguments, Array, CompiledArm, Destination, Form, Function, Number};
+use rne::testing::on_large_stack;
 use rne::{
     BaseMotion, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix,
     BatchScalar, FloatingBase, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, VectorUnit,
@@ -33,7 +34,7 @@ robots! {
         convention: standard
         gravity: [9.81, 0, 0]
         joints:
-          - {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}
+          - {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0], inertia: {}}}
     ";
 }
 
@@ -94,16 +95,18 @@ impl<T: BatchScalar, const DOF: usize> Motion<T, DOF> {
     /// All functions, element after element: mass matrix, accelerations, derivatives.
     fn batches<R>(&self, robot: &R, unit: VectorUnit) -> [Vec<Vec<T>>; 3]
     where
-        R: BatchMassMatrix<DOF> + BatchForwardDynamics<DOF> + BatchInverseDynamicsDerivatives<DOF>,
+        R: BatchMassMatrix<DOF> + BatchForwardDynamics<DOF> + BatchInverseDynamicsDerivatives<DOF> + Sync,
     {
         let [q, qd, qdd, tau] = self.0.each_ref().map(slices);
         let room = |elements| Room::new(elements, q[0].len());
         let (mut mass, mut motion, mut derivatives) = (room(DOF * DOF), room(DOF), room(2 * DOF * DOF));
-        let [matrix] = mass.matrices();
-        robot.mass_matrix_batch_on(unit, q, matrix).expect("arrays of one length");
-        robot.forward_dynamics_batch_on(unit, q, qd, tau, motion.vector()).expect("arrays of one length");
-        let [dq, dqd] = derivatives.matrices();
-        robot.inverse_dynamics_derivatives_batch_on(unit, q, qd, qdd, dq, dqd).expect("arrays of one length");
+        on_large_stack(|| {
+            let [matrix] = mass.matrices();
+            robot.mass_matrix_batch_on(unit, q, matrix).expect("arrays of one length");
+            robot.forward_dynamics_batch_on(unit, q, qd, tau, motion.vector()).expect("arrays of one length");
+            let [dq, dqd] = derivatives.matrices();
+            robot.inverse_dynamics_derivatives_batch_on(unit, q, qd, qdd, dq, dqd).expect("arrays of one length");
+        });
         [mass.0, motion.0, derivatives.0]
     }
 
@@ -156,7 +159,7 @@ fn a_rod_has_its_closed_forms() {
 fn every_unit_gives_the_results_of_single_calls() {
     fn check<const DOF: usize, R>(name: &str, robot: &R)
     where
-        R: BatchMassMatrix<DOF> + BatchForwardDynamics<DOF> + BatchInverseDynamicsDerivatives<DOF>,
+        R: BatchMassMatrix<DOF> + BatchForwardDynamics<DOF> + BatchInverseDynamicsDerivatives<DOF> + Sync,
     {
         for states in LENGTHS {
             let motion = Motion::<f64, DOF>::random(states);
@@ -184,7 +187,7 @@ fn every_unit_gives_the_results_of_single_calls() {
 fn an_arm_read_at_run_time_has_the_bits_of_the_derived_one() {
     fn check<T: Number, const DOF: usize, R>(file: &str, robot: &R, form: Form)
     where
-        R: BatchMassMatrix<DOF> + BatchForwardDynamics<DOF> + BatchInverseDynamicsDerivatives<DOF>,
+        R: BatchMassMatrix<DOF> + BatchForwardDynamics<DOF> + BatchInverseDynamicsDerivatives<DOF> + Sync,
     {
         let arm = CompiledArm::from_file(format!("robots/{file}.yaml")).expect("a shipped robot").in_form(form);
         let motion = Motion::<T, DOF>::random(100);
@@ -244,15 +247,17 @@ fn elements_without_an_array_are_left_out() {
         }
     }
     let [lower] = room.matrices();
-    Hyq.mass_matrix_batch(q, lower).expect("arrays of one length, or empty ones");
+    on_large_stack(|| Hyq.mass_matrix_batch(q, lower).expect("arrays of one length, or empty ones"));
     for (index, numbers) in room.0.iter().enumerate() {
         assert!(numbers.is_empty() || *numbers == mass[index], "element {index}");
     }
     let mut one = [f64::NAN; 21];
-    let nothing = || -> [[&mut [f64]; 12]; 12] { from_fn(|_| from_fn(|_| Default::default())) };
+    let nothing = || [[(); 12]; 12].map(|row| row.map(|()| <&mut [f64]>::default()));
     let mut dqd = nothing();
     dqd[2][1] = &mut one;
-    Hyq.inverse_dynamics_derivatives_batch(q, qd, qdd, nothing(), dqd).expect("one array, and empty ones");
+    on_large_stack(|| {
+        Hyq.inverse_dynamics_derivatives_batch(q, qd, qdd, nothing(), dqd).expect("one array, and empty ones");
+    });
     assert_eq!(one[..], derivatives[144 + 25]);
 }
 
@@ -265,10 +270,7 @@ fn arrays_of_different_lengths_are_named() {
     let [mass] = room.matrices();
     let error = Gantry.mass_matrix_batch(good, mass).expect_err("a mismatch");
     assert_eq!((error.argument, error.joint, error.column, error.length, error.states), ("mass", 1, Some(2), 9, 10));
-    assert_eq!(
-        error.to_string(),
-        "`mass[1][2]` has length 9 and `q[0]` 10: each holds one number per state, or none"
-    );
+    assert_eq!(error.to_string(), "`mass[1][2]` has length 9 and `q[0]` 10: each holds one number per state, or none");
     assert!(room.0.iter().flatten().all(|number| number.is_nan()), "nothing is written");
     let mut room = Room::new(3, 10);
     let error = Gantry.forward_dynamics_batch(good, good, [&ten, &nine, &ten], room.vector()).expect_err("a mismatch");
@@ -312,7 +314,7 @@ impl<T: BatchScalar, const TIPS: usize> Base<T, TIPS> {
 fn torques_and_wrenches_of_floating_bases_are_those_of_single_calls() {
     fn check<const DOF: usize, const NV: usize, const TIPS: usize, R>(name: &str, robot: &R)
     where
-        R: BatchFloatingInverseDynamics<DOF, NV, TIPS>,
+        R: BatchFloatingInverseDynamics<DOF, NV, TIPS> + Sync,
     {
         for states in LENGTHS {
             let (motion, base) = (Motion::<f64, DOF>::random(states), Base::<f64, TIPS>::random(states));
@@ -323,15 +325,25 @@ fn torques_and_wrenches_of_floating_bases_are_those_of_single_calls() {
                 let wrenches = if is_free { [free; TIPS] } else { base.wrenches() };
                 let (of_base, of_joints) = (wrench.vector(), tau.vector());
                 let motion_of_base = base.motion();
-                let done = robot.inverse_dynamics_of_floating_base_batch_on(
-                    unit, q, qd, qdd, &motion_of_base, &wrenches, of_base, of_joints,
-                );
-                done.expect("arrays of one length");
+                on_large_stack(|| {
+                    let done = robot.inverse_dynamics_of_floating_base_batch_on(
+                        unit,
+                        q,
+                        qd,
+                        qdd,
+                        &motion_of_base,
+                        &wrenches,
+                        of_base,
+                        of_joints,
+                    );
+                    done.expect("arrays of one length");
+                });
                 for state in (0..states).step_by(if states > 1000 { 97 } else { 1 }) {
                     let [a, b, c, d, e, f, g, h, i, j, k, l] = at(&base.vectors, state);
                     let (velocity, zero) = ([0.0; 3], Wrench::zero());
                     let (omega, omega_dot) = ([a, b, c], [d, e, f]);
-                    let of_base = BaseMotion { omega, omega_dot, velocity, acceleration: [g, h, i], gravity: [j, k, l] };
+                    let of_base =
+                        BaseMotion { omega, omega_dot, velocity, acceleration: [g, h, i], gravity: [j, k, l] };
                     let wrenches = base.wrenches.each_ref().map(|wrench| {
                         let [a, b, c, d, e, f] = at(wrench, state);
                         if is_free { zero } else { Wrench { force: [a, b, c], moment: [d, e, f] } }

@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{ToTokens, quote};
 use rne_codegen::{
-    ArgumentArray, Expression, ExpressionKind, Name, Negated, Output, Program, Record, Statement, ValueId, fma, fma::Fusing,
+    ArgumentArray, Expression, ExpressionKind, Name, Negated, Output, Program, Record, Statement, ValueId, fma,
+    fma::Fusing,
 };
 
 use super::expression::{Infix as _, Position, needs_parentheses};

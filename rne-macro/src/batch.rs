@@ -58,9 +58,11 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     let mut generics = item.generics.clone();
     if robot.is_none() {
         let parameters = sizes.of_trait(function);
-        generics.params.extend(parameters.into_iter().map(|parameter| -> syn::GenericParam {
-            syn::parse_quote!(const #parameter: ::core::primitive::usize)
-        }));
+        generics.params.extend(
+            parameters.into_iter().map(|parameter| -> syn::GenericParam {
+                syn::parse_quote!(const #parameter: ::core::primitive::usize)
+            }),
+        );
     }
     let (impl_generics, ..) = generics.split_for_impl();
     let (name, of_trait) = (format_ident!("{}", trait_name(function)), sizes.of_trait(function));

@@ -90,8 +90,7 @@ where
         }
         let mut results = Results { elements: &mut elements[..wanted], places: &places[..wanted], last: 0 };
         // One loop for both, so that its code is there once.
-        let parts =
-            [(full, inputs, 0), (usize::from(last > 0), padded.each_ref().map(|numbers| &numbers[..]), last)];
+        let parts = [(full, inputs, 0), (usize::from(last > 0), padded.each_ref().map(|numbers| &numbers[..]), last)];
         for (registers, inputs, last) in parts {
             let mut arrays: [&[V::Numbers]; INPUTS] = [&[]; INPUTS];
             for index in 0..INPUTS {
@@ -198,7 +197,8 @@ fn repair<
     for at in block {
         let lanes = size_of::<V::Numbers>() / size_of::<V::Element>();
         for lane in 0..if written.last > 0 { written.last } else { lanes } {
-            let inputs = inputs.map(|numbers| numbers.get(at).map_or(V::Element::ZERO, |numbers| V::each(numbers)[lane]));
+            let inputs =
+                inputs.map(|numbers| numbers.get(at).map_or(V::Element::ZERO, |numbers| V::each(numbers)[lane]));
             let angles = robot.angles(&inputs);
             if angles.iter().all(|angle| angle.is_within_limit()) {
                 continue;

@@ -11,6 +11,16 @@ use crate::{
     InverseDynamics, InverseDynamicsDerivatives, MassMatrix,
 };
 
+/// Runs a test on a stack of 256 MiB: a build without optimization keeps each intermediate register of a batch in
+/// memory, and threads of tests have 2 MiB.
+pub fn on_large_stack(test: impl FnOnce() + Send) {
+    std::thread::scope(|scope| {
+        let builder = std::thread::Builder::new().stack_size(256 << 20);
+        let done = builder.spawn_scoped(scope, test).unwrap_or_else(|error| panic!("{error}")).join();
+        done.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    });
+}
+
 /// The states, and each joint's numbers of all of them: positions, velocities, accelerations and torques.
 struct Motion<const DOF: usize> {
     states: Vec<State<DOF>>,
@@ -69,14 +79,16 @@ pub fn batches_are_those_of_the_runtime<const DOF: usize, R: BatchInverseDynamic
 }
 
 /// M(q).
-pub fn mass_matrices_of_a_batch_are_those_of_the_runtime<const DOF: usize, R: BatchMassMatrix<DOF>>(
+pub fn mass_matrices_of_a_batch_are_those_of_the_runtime<const DOF: usize, R: BatchMassMatrix<DOF> + Sync>(
     robot: &R,
     file: &RobotFile,
 ) {
     let (arm, motion) = (file.arm::<DOF>(), Motion::new());
     let ([q, ..], mut mass) = (motion.slices(), motion.matrix());
-    let done = robot.mass_matrix_batch(q, mass.each_mut().map(written));
-    done.unwrap_or_else(|mismatch| panic!("{mismatch}"));
+    on_large_stack(|| {
+        let done = robot.mass_matrix_batch(q, mass.each_mut().map(written));
+        done.unwrap_or_else(|mismatch| panic!("{mismatch}"));
+    });
     for (index, state) in motion.states.iter().enumerate() {
         let (found, expected) = (matrix_at(&mass, index), arm.mass_matrix(&state.q));
         let allowed = Allowed::Rounding { scale: 0.0 };
@@ -85,13 +97,18 @@ pub fn mass_matrices_of_a_batch_are_those_of_the_runtime<const DOF: usize, R: Ba
 }
 
 /// The runtime's torques for the accelerations of τ are τ, as for single calls.
-pub fn accelerations_of_a_batch_need_the_torques_that_cause_them<const DOF: usize, R: BatchForwardDynamics<DOF>>(
+pub fn accelerations_of_a_batch_need_the_torques_that_cause_them<
+    const DOF: usize,
+    R: BatchForwardDynamics<DOF> + Sync,
+>(
     robot: &R,
     file: &RobotFile,
 ) {
     let (arm, motion) = (file.arm::<DOF>(), Motion::new());
     let ([q, qd, _, tau], mut qdd) = (motion.slices(), motion.vector());
-    robot.forward_dynamics_batch(q, qd, tau, written(&mut qdd)).unwrap_or_else(|mismatch| panic!("{mismatch}"));
+    on_large_stack(|| {
+        robot.forward_dynamics_batch(q, qd, tau, written(&mut qdd)).unwrap_or_else(|mismatch| panic!("{mismatch}"));
+    });
     for (index, state) in motion.states.iter().enumerate() {
         let State { q, qd, tau, .. } = state;
         if !are_finite(&arm.forward_dynamics(q, qd, tau)) {
@@ -106,15 +123,20 @@ pub fn accelerations_of_a_batch_need_the_torques_that_cause_them<const DOF: usiz
 }
 
 /// ∂τ/∂q and ∂τ/∂q̇.
-pub fn derivatives_of_a_batch_are_those_of_the_runtime<const DOF: usize, R: BatchInverseDynamicsDerivatives<DOF>>(
+pub fn derivatives_of_a_batch_are_those_of_the_runtime<
+    const DOF: usize,
+    R: BatchInverseDynamicsDerivatives<DOF> + Sync,
+>(
     robot: &R,
     file: &RobotFile,
 ) {
     let (arm, motion) = (file.arm::<DOF>(), Motion::new());
     let ([q, qd, qdd, _], mut dq, mut dqd) = (motion.slices(), motion.matrix(), motion.matrix());
-    let [of_q, of_qd] = [&mut dq, &mut dqd].map(|matrix| matrix.each_mut().map(written));
-    let done = robot.inverse_dynamics_derivatives_batch(q, qd, qdd, of_q, of_qd);
-    done.unwrap_or_else(|mismatch| panic!("{mismatch}"));
+    on_large_stack(|| {
+        let [of_q, of_qd] = [&mut dq, &mut dqd].map(|matrix| matrix.each_mut().map(written));
+        let done = robot.inverse_dynamics_derivatives_batch(q, qd, qdd, of_q, of_qd);
+        done.unwrap_or_else(|mismatch| panic!("{mismatch}"));
+    });
     for (index, state) in motion.states.iter().enumerate() {
         let allowed = Allowed::Rounding { scale: scale(&arm, state) };
         let expected = arm.inverse_dynamics_derivatives(&state.q, &state.qd, &state.qdd);

@@ -23,7 +23,7 @@ mod torques;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use batches::{
     accelerations_of_a_batch_need_the_torques_that_cause_them, batches_are_those_of_the_runtime,
-    derivatives_of_a_batch_are_those_of_the_runtime, mass_matrices_of_a_batch_are_those_of_the_runtime,
+    derivatives_of_a_batch_are_those_of_the_runtime, mass_matrices_of_a_batch_are_those_of_the_runtime, on_large_stack,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use geometry::{

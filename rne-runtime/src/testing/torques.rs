@@ -6,8 +6,8 @@ use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest};
 use super::state::{State, states};
 use crate::{
-    Actuation, Arm, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, MovingBase,
-    PayloadDynamics, Regressor, Wrench,
+    Actuation, Arm, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, MovingBase, PayloadDynamics, Regressor,
+    Wrench,
 };
 
 /// Torques that vanish but for rounding are measured by this part of the forces and moments at the joints.
