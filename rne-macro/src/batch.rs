@@ -216,10 +216,8 @@ fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream
     };
     let places = distinct.iter().enumerate().map(|(index, first)| {
         let wanted = if is_whole { Some(index) } else { *first };
-        match wanted.and_then(|wanted| outputs.binary_search(&wanted).ok()) {
-            Some(place) => Literal::usize_unsuffixed(place).into_token_stream(),
-            None => quote!(#krate::batch::ZERO),
-        }
+        let place = wanted.and_then(|wanted| outputs.binary_search(&wanted).ok()).map(Literal::usize_unsuffixed);
+        place.map_or_else(|| quote!(#krate::batch::ZERO), Literal::into_token_stream)
     });
     let [input_count, angle_count, output_count, element_count, required] =
         [numbers.len(), program.sines_and_cosines.len(), outputs.len(), distinct.len(), required]

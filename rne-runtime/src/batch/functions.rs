@@ -181,6 +181,7 @@ pub trait BatchInverseDynamicsDerivatives<const DOF: usize>: InverseDynamicsDeri
 /// Torques, and the wrench that must act on the base, of many states of a robot whose base nothing holds.
 ///
 /// One slice per joint or component of a vector, and in it one number per state. All slices have the same length.
+#[allow(clippy::too_many_arguments)] // each is a quantity
 pub trait BatchFloatingInverseDynamics<const DOF: usize, const VELOCITIES: usize, const TIPS: usize>:
     FloatingBase<DOF, VELOCITIES, TIPS>
 {

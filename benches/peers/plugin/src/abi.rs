@@ -14,9 +14,9 @@ use std::ptr;
 
 #[cfg(feature = "batch")]
 use rne::BatchInverseDynamics;
+use rne::InverseDynamics;
 #[cfg(all(feature = "batch", feature = "functions"))]
 use rne::{BatchForwardDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix};
-use rne::InverseDynamics;
 #[cfg(feature = "functions")]
 use rne::{ForwardDynamics, InverseDynamicsDerivatives, MassMatrix};
 
@@ -274,10 +274,15 @@ pub(crate) unsafe extern "C" fn batch_mass_matrix<R: BatchMassMatrix<DOF> + Defa
     // SAFETY: as this function's, and a context of ours, which nobody else has meanwhile.
     let (q, blocks) = unsafe { (joints::<DOF>(q, count), &mut *context.cast::<crate::blocks::Blocks>()) };
     // as Pinocchio, one half of the matrix
-    blocks.compute(count, DOF * DOF, |element| element % DOF <= element / DOF, |states, mut rows| {
-        let done = R::default().mass_matrix_batch(q.map(|x| &x[states.clone()]), rows.matrix());
-        assert!(done.is_ok(), "all slices have the same length, or none");
-    });
+    blocks.compute(
+        count,
+        DOF * DOF,
+        |element| element % DOF <= element / DOF,
+        |states, mut rows| {
+            let done = R::default().mass_matrix_batch(q.map(|x| &x[states.clone()]), rows.matrix());
+            assert!(done.is_ok(), "all slices have the same length, or none");
+        },
+    );
 }
 
 /// Both derivatives of the torques of `count` states, as the mass matrices.
@@ -285,7 +290,10 @@ pub(crate) unsafe extern "C" fn batch_mass_matrix<R: BatchMassMatrix<DOF> + Defa
 /// # Safety
 /// The pointers are as the module's page says, for `count` states of a robot with `DOF` joints.
 #[cfg(all(feature = "batch", feature = "functions"))]
-pub(crate) unsafe extern "C" fn batch_derivatives<R: BatchInverseDynamicsDerivatives<DOF> + Default, const DOF: usize>(
+pub(crate) unsafe extern "C" fn batch_derivatives<
+    R: BatchInverseDynamicsDerivatives<DOF> + Default,
+    const DOF: usize,
+>(
     context: *mut c_void,
     q: *const f64,
     qd: *const f64,
@@ -297,12 +305,17 @@ pub(crate) unsafe extern "C" fn batch_derivatives<R: BatchInverseDynamicsDerivat
     let arguments = [q, qd, qdd].map(|x| unsafe { joints::<DOF>(x, count) });
     // SAFETY: a context of ours, which nobody else has meanwhile.
     let blocks = unsafe { &mut *context.cast::<crate::blocks::Blocks>() };
-    blocks.compute(count, 2 * DOF * DOF, |_| true, |states, mut rows| {
-        let [q, qd, qdd] = arguments.map(|joints| joints.map(|x| &x[states.clone()]));
-        let (by_q, by_qd) = (rows.matrix(), rows.matrix());
-        let done = R::default().inverse_dynamics_derivatives_batch(q, qd, qdd, by_q, by_qd);
-        assert!(done.is_ok(), "all slices have the same length, or none");
-    });
+    blocks.compute(
+        count,
+        2 * DOF * DOF,
+        |_| true,
+        |states, mut rows| {
+            let [q, qd, qdd] = arguments.map(|joints| joints.map(|x| &x[states.clone()]));
+            let (by_q, by_qd) = (rows.matrix(), rows.matrix());
+            let done = R::default().inverse_dynamics_derivatives_batch(q, qd, qdd, by_q, by_qd);
+            assert!(done.is_ok(), "all slices have the same length, or none");
+        },
+    );
 }
 
 /// Many states of an arm that is compiled at run time.
@@ -387,9 +400,9 @@ pub unsafe extern "C" fn rp_func(k: c_int, robot: *const c_char) -> *const c_voi
             | Function::ForwardDynamics(call)
             | Function::Other(_, call)
             | Function::Matrices(_, call) => *call as *const c_void,
-            Function::Batch(batch)
-            | Function::BatchForwardDynamics(batch)
-            | Function::BatchMatrices(_, batch) => *batch as *const c_void,
+            Function::Batch(batch) | Function::BatchForwardDynamics(batch) | Function::BatchMatrices(_, batch) => {
+                *batch as *const c_void
+            }
             #[cfg(feature = "machine")]
             Function::Machine(_) => machine as *const c_void,
         },
