@@ -122,22 +122,24 @@
 
 #[doc(inline)]
 pub use rne_macro::{
-    Actuation, BatchInverseDynamics, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
-    FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
-    ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
-    MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
+    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ContactDynamics,
+    CoriolisMatrix, Energy, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics,
+    FloatingRegressor, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist, BatchInverseDynamics,
-    BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual, Energy,
-    FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics,
-    FloatingRegressor, FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix,
-    MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics,
-    Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
+    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
+    BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
+    BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual,
+    Energy, FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives,
+    FloatingKinematics, FloatingRegressor, FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics,
+    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics,
+    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
+    Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
     dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]

@@ -5,9 +5,9 @@ use std::process::Command;
 
 use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
-    Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Payload, Pose,
-    Regressor, Scalar, Wrench,
+    Actuation, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix,
+    CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
 };
 
 #[derive(
@@ -25,6 +25,9 @@ use rne::{
     MomentumObserver,
     MovingBase,
     Actuation,
+    BatchMassMatrix,
+    BatchForwardDynamics,
+    BatchInverseDynamicsDerivatives,
 )]
 #[robot(path = "../robots/puma560.yaml", tests)]
 struct Puma560;
@@ -90,6 +93,9 @@ fn each_derive_has_its_tests() {
     for (module, tests) in [
         ("puma560_inverse_dynamics_tests", 3),
         ("puma560_batch_inverse_dynamics_tests", 1),
+        ("puma560_batch_mass_matrix_tests", 1),
+        ("puma560_batch_forward_dynamics_tests", 1),
+        ("puma560_batch_inverse_dynamics_derivatives_tests", 1),
         ("puma560_mass_matrix_tests", 2),
         ("puma560_coriolis_matrix_tests", 1),
         ("puma560_forward_dynamics_tests", 2),

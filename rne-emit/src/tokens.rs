@@ -1,12 +1,13 @@
 //! A program as Rust tokens.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{ToTokens, quote};
 use rne_codegen::{
-    ArgumentArray, Expression, ExpressionKind, Name, Negated, Program, Record, Statement, ValueId, fma, fma::Fusing,
+    ArgumentArray, Expression, ExpressionKind, Name, Negated, Output, Program, Record, Statement, ValueId, fma,
+    fma::Fusing,
 };
 
 use super::expression::{Infix as _, Position, needs_parentheses};
@@ -85,8 +86,11 @@ impl<'a> Body<'a> {
 
     /// The part after the angles, when the arguments `sin` and `cos` are references to the sines and cosines of its
     /// angles.
+    ///
+    /// The results that `places` names, in the order of [`Program::outputs`], are written to the reference to an array
+    /// `outputs`, each as soon as it is known: what waits in a register is written to memory and read again.
     #[must_use]
-    pub fn beyond_angles(&self) -> TokenStream {
+    pub fn beyond_angles(&self, places: &[usize]) -> TokenStream {
         let used: BTreeSet<Name> = self.program.expressions().flat_map(Expression::names).collect();
         let arguments = self.arguments(|_| true, |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
@@ -96,8 +100,36 @@ impl<'a> Body<'a> {
             let [sines, cosines] = self.turn_names();
             quote!(let #sines = *sin; let #cosines = *cos;)
         };
-        let rest = self.beyond_turns();
-        quote!(#arguments #turns #constants #rest)
+        let statements = &self.program.statements;
+        let at: BTreeMap<Name, usize> = statements.iter().enumerate().map(|(at, known)| (known.name, at + 1)).collect();
+        let mut results = vec![TokenStream::new(); statements.len() + 1];
+        for (place, &output) in places.iter().enumerate() {
+            let value = self.program.outputs[output].value;
+            let names = self.program.values.used(value).names();
+            let known = names.filter_map(|name| at.get(&name).copied()).max().unwrap_or_default();
+            let (place, value) = (Literal::usize_unsuffixed(place), self.used(value));
+            results[known].extend(quote!(outputs[#place] = #value;));
+        }
+        let mut results = results.into_iter();
+        let known = results.next();
+        let rest = statements.iter().zip(results).map(|(known, results)| {
+            let statement = self.statements(std::slice::from_ref(known));
+            quote!(#statement #results)
+        });
+        quote!(#arguments #turns #constants #known #(#rest)*)
+    }
+
+    /// For each result, in the order of [`Program::outputs`], the first that is the same value: of an element above the
+    /// diagonal that below. `None` for what is always zero.
+    #[must_use]
+    pub fn distinct(&self) -> Vec<Option<usize>> {
+        let (values, mut first) = (&self.program.values, BTreeMap::new());
+        let outputs = self.program.outputs.iter().enumerate();
+        let place = |(index, output): (usize, &Output)| {
+            let is_zero = matches!(values.used(output.value).kind(), ExpressionKind::Zero);
+            (!is_zero).then(|| *first.entry(output.value).or_insert(index))
+        };
+        outputs.map(place).collect()
     }
 
     fn arguments(&self, is_asked: impl Fn(&str) -> bool, is_used: impl Fn(Name) -> bool) -> TokenStream {

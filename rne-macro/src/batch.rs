@@ -1,23 +1,33 @@
-//! `#[derive(BatchInverseDynamics)]`.
+//! The derives of batches: `#[derive(BatchInverseDynamics)]` and its like.
 
-use proc_macro2::{Literal, Span, TokenStream};
-use quote::{ToTokens, quote};
-use rne_codegen::{Capability, Form, Function, Target as Machine};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::{ToTokens, format_ident, quote};
+use rne_codegen::{Argument, Form, Function, Length, Program, Target as Machine};
 use syn::DeriveInput;
 
 use crate::attribute::Attribute;
 use crate::error::Errors;
 use crate::expand::{compiler, load};
 use crate::implementation::Target;
-use crate::own_tests::{self, OF_BATCHES};
+use crate::own_tests::{self, of_batch};
 use crate::parameters::Parameters;
 
+/// The sizes of a robot, as literals or parameters.
+struct Sizes {
+    dof: TokenStream,
+    velocities: TokenStream,
+    tips: TokenStream,
+}
+
+/// A result: its name and the lengths of its arrays.
+struct Answer(&'static str, Vec<TokenStream>);
+
 /// The second derive on a robot. What is wrong with the struct, its attribute or the file has been said by the first,
-/// `InverseDynamics`, which the trait requires: nothing is reported here, and an unknown robot computes nothing.
+/// `InverseDynamics`, say, which the trait requires: nothing is reported here, and an unknown robot computes nothing.
 ///
-/// The torques are written once more, for they must be inlined into code of each vector unit, and must not into every
+/// The function is written once more, for it must be inlined into code of each vector unit, and must not into every
 /// place where a user calls the first derive's methods.
-pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
+pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     let item: DeriveInput = match syn::parse2(input) {
         Ok(item) => item,
         Err(error) => return error.to_compile_error(),
@@ -34,89 +44,231 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         refused.at(&item.ident, message);
     }
     let refused = refused.into_tokens();
-    let joints = loaded.robot.as_ref().filter(|robot| !robot.run_time.is_empty()).map(rne_model::Robot::dof);
-    let program = loaded.robot.and_then(|robot| {
-        if !robot.run_time.is_empty() {
-            return None;
-        }
-        let (capability, span) = (Capability::InverseDynamics, Span::call_site());
-        let robot = rne_model::Robot { rotors: attribute.rotors, ..robot };
-        let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut said)?;
-        compiler.for_target(Machine::Throughput).compile(Function::InverseDynamics, attribute.form).ok()
+    // the sizes of a robot are known where it is only refused
+    let robot = loaded.robot.map(|robot| rne_model::Robot { rotors: attribute.rotors, ..robot });
+    let sizes = robot.as_ref().map_or_else(Sizes::unknown, |robot| Sizes::of(robot.dof(), robot.tip_count()));
+    let program = robot.as_ref().filter(|robot| robot.run_time.is_empty()).and_then(|robot| {
+        let (capability, span) = (function.capability(), Span::call_site());
+        let compiler = compiler(robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut said)?;
+        compiler.for_target(Machine::Throughput).compile(function, attribute.form).ok()
     });
     let target = Target::new(&item, &attribute, None);
     let (ident, krate) = (&item.ident, &attribute.krate);
-    let (impl_generics, type_generics, where_clause) = item.generics.split_for_impl();
-    let number = target.number();
-    let method = |dof: &TokenStream, body: &TokenStream| {
+    let (_, type_generics, where_clause) = item.generics.split_for_impl();
+    let mut generics = item.generics.clone();
+    if robot.is_none() {
+        let parameters = sizes.of_trait(function);
+        generics.params.extend(
+            parameters.into_iter().map(|parameter| -> syn::GenericParam {
+                syn::parse_quote!(const #parameter: ::core::primitive::usize)
+            }),
+        );
+    }
+    let (impl_generics, ..) = generics.split_for_impl();
+    let (name, of_trait) = (format_ident!("{}", trait_name(function)), sizes.of_trait(function));
+    let body = program.as_ref().map_or_else(
+        || quote!(::core::result::Result::Ok(())),
+        |program| body(program, krate, &answers(function, &sizes)),
+    );
+    let method = sizes.method(function, &target.number(), krate, &body);
+    let tests = program.as_ref().map(|program| {
+        let tests = of_batch(function);
+        own_tests::module(&item, &attribute, trait_name(function), tests, program.dof, &loaded.text)
+    });
+    quote! {
+        #refused
+        #[automatically_derived]
+        #[allow(unused_variables, unused_mut)] // of a robot that is not known
+        #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
+        #[allow(clippy::inline_always)] // into the code of each vector unit
+        impl #impl_generics #krate::#name<#(#of_trait),*> for #ident #type_generics #where_clause {
+            #method
+        }
+        #tests
+    }
+}
+
+/// The name of the trait and the derive.
+fn trait_name(function: Function) -> &'static str {
+    match function {
+        Function::MassMatrix => "BatchMassMatrix",
+        Function::ForwardDynamics => "BatchForwardDynamics",
+        Function::InverseDynamicsDerivatives => "BatchInverseDynamicsDerivatives",
+        Function::InverseDynamicsOfFloatingBase => "BatchFloatingInverseDynamics",
+        _ => "BatchInverseDynamics",
+    }
+}
+
+fn answers(function: Function, sizes: &Sizes) -> Vec<Answer> {
+    let vector = || vec![sizes.dof.clone()];
+    let matrix = || vec![sizes.dof.clone(); 2];
+    match function {
+        Function::MassMatrix => vec![Answer("mass", matrix())],
+        Function::ForwardDynamics => vec![Answer("qdd", vector())],
+        Function::InverseDynamicsDerivatives => vec![Answer("dq", matrix()), Answer("dqd", matrix())],
+        Function::InverseDynamicsOfFloatingBase => vec![Answer("wrench", vec![quote!(6)]), Answer("tau", vector())],
+        _ => vec![Answer("tau", vector())],
+    }
+}
+
+impl Sizes {
+    fn of(dof: usize, tips: usize) -> Self {
+        let size = |size| Literal::usize_unsuffixed(size).into_token_stream();
+        Self { dof: size(dof), velocities: size(Length::Velocities.of(dof, tips)), tips: size(tips) }
+    }
+
+    fn unknown() -> Self {
+        Self { dof: quote!(__JOINTS), velocities: quote!(__VELOCITIES), tips: quote!(__TIPS) }
+    }
+
+    /// The arguments of the trait.
+    fn of_trait(&self, function: Function) -> Vec<&TokenStream> {
+        match function {
+            Function::InverseDynamicsOfFloatingBase => vec![&self.dof, &self.velocities, &self.tips],
+            _ => vec![&self.dof],
+        }
+    }
+
+    fn method(&self, function: Function, number: &Ident, krate: &syn::Path, body: &TokenStream) -> TokenStream {
+        let name = format_ident!("{function}_batch_on", function = function.name());
+        let (dof, tips) = (&self.dof, &self.tips);
+        let arguments = function.arguments().iter().map(|argument| match argument {
+            Argument::Base => quote!(base: &#krate::BaseMotion<&[#number]>),
+            Argument::Wrenches => quote!(wrenches: &[#krate::Wrench<&[#number]>; #tips]),
+            Argument::Rates => quote!(qd: [&[#number]; #dof]),
+            Argument::Accelerations => quote!(qdd: [&[#number]; #dof]),
+            Argument::Torques => quote!(tau: [&[#number]; #dof]),
+            _ => quote!(q: [&[#number]; #dof]),
+        });
+        let results = answers(function, self).into_iter().map(|Answer(name, lengths)| {
+            let name = format_ident!("{name}");
+            let kind = lengths.iter().rev().fold(quote!(&mut [#number]), |kind, length| quote!([#kind; #length]));
+            quote!(mut #name: #kind)
+        });
         quote! {
-            fn inverse_dynamics_batch_on<#number: #krate::BatchScalar>(
+            fn #name<#number: #krate::BatchScalar>(
                 &self,
                 unit: #krate::VectorUnit,
-                q: [&[#number]; #dof],
-                qd: [&[#number]; #dof],
-                qdd: [&[#number]; #dof],
-                tau: [&mut [#number]; #dof],
+                #(#arguments,)*
+                #(#results,)*
             ) -> ::core::result::Result<(), #krate::LengthMismatch> {
                 #body
             }
         }
+    }
+}
+
+/// The arrays of an argument of the program: its name there, the numbers of the method's argument, and their part of
+/// the list of arguments.
+fn inputs(name: &'static str, length: usize, krate: &syn::Path) -> (Vec<TokenStream>, Vec<TokenStream>) {
+    let list = quote!(#krate::batch::Argument);
+    let elements = |of: &TokenStream, length: usize| {
+        (0..length).map(Literal::usize_unsuffixed).map(|index| quote!(#of[#index])).collect::<Vec<_>>()
     };
-    let Some(program) = program else {
-        let mut generics = item.generics.clone();
-        // the robot is known where it is only refused
-        let dof = joints.map_or(quote!(__JOINTS), |joints| Literal::usize_unsuffixed(joints).into_token_stream());
-        if joints.is_none() {
-            generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+    if name == "wrenches" {
+        let parts = (0..length / 6).flat_map(|tip| ["force", "moment"].map(|part| (tip, part)));
+        return parts
+            .map(|(tip, part)| {
+                let name = format!("wrenches[{tip}].{part}");
+                let (tip, part) = (Literal::usize_unsuffixed(tip), format_ident!("{part}"));
+                (elements(&quote!(wrenches[#tip].#part), 3), quote!(#list::optional_vector(#name, 3)))
+            })
+            .fold((Vec::new(), Vec::new()), |(mut numbers, mut arguments), (of_part, argument)| {
+                numbers.extend(of_part);
+                arguments.push(argument);
+                (numbers, arguments)
+            });
+    }
+    let count = Literal::usize_unsuffixed(length);
+    let (of, shown) = match name.strip_prefix("base_") {
+        Some(part) => {
+            let ident = format_ident!("{part}");
+            (quote!(base.#ident), format!("base.{part}"))
         }
-        let (impl_generics, ..) = generics.split_for_impl();
-        let method = method(&dof, &quote!(::core::result::Result::Ok(())));
-        return quote! {
-            #refused
-            #[automatically_derived]
-            #[allow(unused_variables)]
-            impl #impl_generics #krate::BatchInverseDynamics<#dof> for #ident #type_generics #where_clause {
-                #method
-            }
-        };
+        None => (format_ident!("{name}").into_token_stream(), name.to_owned()),
     };
-    let [dof, angle_count] = [program.dof, program.sines_and_cosines.len()].map(Literal::usize_unsuffixed);
-    let tests = own_tests::module(&item, &attribute, "BatchInverseDynamics", OF_BATCHES, program.dof, &loaded.text);
+    (elements(&of, length), vec![quote!(#list::vector(#shown, #count))])
+}
+
+/// The call of the loop, with the code.
+fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream {
     let scalar = quote!(#krate::Scalar);
-    let body = rne_emit::Body::new(&program, &scalar);
+    let body = rne_emit::Body::new(program, &scalar);
     let body = if program.form == Form::SevenSteps { body } else { body.all_fused() };
-    let (angles, torques) = (body.angles(), body.beyond_angles());
-    let method = method(
-        &quote!(#dof),
-        &quote! {
-            struct Torques;
-            impl #krate::batch::Torques<#dof, #angle_count> for Torques {
-                #[inline(always)]
-                fn angles<T: #scalar>(&self, q: &[T; #dof]) -> [T; #angle_count] {
-                    #angles
-                }
-                #[inline(always)]
-                fn torques<T: #scalar>(
-                    &self,
-                    sin: &[T; #angle_count],
-                    cos: &[T; #angle_count],
-                    q: &[T; #dof],
-                    qd: &[T; #dof],
-                    qdd: &[T; #dof],
-                ) -> [T; #dof] {
-                    #torques
-                }
-            }
-            #krate::batch::run(&Torques, unit, q, qd, qdd, tau)
-        },
-    );
-    quote! {
-        #[automatically_derived]
-        #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
-        #[allow(clippy::inline_always)] // into the code of each vector unit
-        impl #impl_generics #krate::BatchInverseDynamics<#dof> for #ident #type_generics #where_clause {
-            #method
+    let (mut numbers, mut arguments, mut taken, mut required) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    for array in program.arrays_without_parameters() {
+        let length = array.elements.len();
+        let places = (numbers.len()..numbers.len() + length).map(Literal::usize_unsuffixed);
+        let name = format_ident!("{}", array.name);
+        taken.push(quote!(let #name = &[#(inputs[#places]),*];));
+        let (of_array, of_list) = inputs(array.name, length, krate);
+        numbers.extend(of_array);
+        arguments.extend(of_list);
+        required = if array.name == "wrenches" { required } else { numbers.len() };
+    }
+    let is_whole = answers.iter().all(|Answer(_, lengths)| lengths.len() == 1);
+    let distinct = body.distinct();
+    // what is wanted in any case is written, a zero too
+    let outputs: Vec<usize> = if is_whole {
+        (0..distinct.len()).collect()
+    } else {
+        (0..distinct.len()).filter(|index| distinct[*index] == Some(*index)).collect()
+    };
+    let places = distinct.iter().enumerate().map(|(index, first)| {
+        let wanted = if is_whole { Some(index) } else { *first };
+        let place = wanted.and_then(|wanted| outputs.binary_search(&wanted).ok()).map(Literal::usize_unsuffixed);
+        place.map_or_else(|| quote!(#krate::batch::ZERO), Literal::into_token_stream)
+    });
+    let [input_count, angle_count, output_count, element_count, required] =
+        [numbers.len(), program.sines_and_cosines.len(), outputs.len(), distinct.len(), required]
+            .map(Literal::usize_unsuffixed);
+    let results = answers.iter().map(|Answer(name, lengths)| match &lengths[..] {
+        [rows, columns] => quote!(#krate::batch::Argument::matrix(#name, #rows, #columns)),
+        lengths => quote!(#krate::batch::Argument::vector(#name, #(#lengths)*)),
+    });
+    let elements = match answers {
+        [Answer(name, lengths)] if lengths.len() == 1 => format_ident!("{name}").into_token_stream(),
+        _ => {
+            let parts = answers.iter().map(|Answer(name, lengths)| {
+                let name = format_ident!("{name}");
+                let arrays = if lengths.len() == 1 { quote!(#name) } else { quote!(#name.as_flattened_mut()) };
+                // borrowed, for arguments may live differently long
+                quote!(::core::iter::Iterator::map(#arrays.iter_mut(), |numbers| &mut **numbers))
+            });
+            let parts = parts.reduce(|all, part| quote!(::core::iter::Iterator::chain(#all, #part)));
+            quote!({
+                let mut all = #parts;
+                ::core::array::from_fn(|_| ::core::iter::Iterator::next(&mut all).unwrap_or_default())
+            })
         }
-        #tests
+    };
+    let (angles, statements) = (body.angles(), body.beyond_angles(&outputs));
+    let of_angles = &taken[..1]; // positions come first
+    quote! {
+        struct Code;
+        impl #krate::batch::BatchFunction<#input_count, #angle_count, #output_count, #element_count> for Code {
+            const ARGUMENTS: &'static [#krate::batch::Argument] = &[#(#arguments),*];
+            const RESULTS: &'static [#krate::batch::Argument] = &[#(#results),*];
+            const REQUIRED: ::core::primitive::usize = #required;
+            const PLACES: [::core::primitive::u16; #element_count] = [#(#places),*];
+            const IS_WHOLE: ::core::primitive::bool = #is_whole;
+            #[inline(always)]
+            fn angles<T: #scalar>(&self, inputs: &[T; #input_count]) -> [T; #angle_count] {
+                #(#of_angles)*
+                #angles
+            }
+            #[inline(always)]
+            fn outputs<T: #scalar>(
+                &self,
+                sin: &[T; #angle_count],
+                cos: &[T; #angle_count],
+                inputs: &[T; #input_count],
+                outputs: &mut [T; #output_count],
+            ) {
+                #(#taken)*
+                #statements
+            }
+        }
+        #krate::batch::run(&Code, unit, [#(#numbers),*], #elements)
     }
 }

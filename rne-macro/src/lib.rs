@@ -23,7 +23,7 @@ mod tips;
 mod warning;
 
 use proc_macro::TokenStream;
-use rne_codegen::Capability;
+use rne_codegen::{Capability, Function};
 
 #[cfg_attr(not(doctest), doc = include_str!("inverse_dynamics.md"))] // `rne` runs the examples
 #[proc_macro_derive(InverseDynamics, attributes(robot))]
@@ -34,7 +34,43 @@ pub fn derive_inverse_dynamics(input: TokenStream) -> TokenStream {
 #[cfg_attr(not(doctest), doc = include_str!("batch_inverse_dynamics.md"))]
 #[proc_macro_derive(BatchInverseDynamics, attributes(robot))]
 pub fn derive_batch_inverse_dynamics(input: TokenStream) -> TokenStream {
-    batch::batch_inverse_dynamics(input.into()).into()
+    batch::batch(Function::InverseDynamics, input.into()).into()
+}
+
+/// Implements the trait `BatchMassMatrix` for a struct that derives `MassMatrix` too: M(q) of many states at once.
+///
+/// As [`BatchInverseDynamics`](macro@BatchInverseDynamics), with an array for each element of the matrix; elements with
+/// an empty array are not written.
+#[proc_macro_derive(BatchMassMatrix, attributes(robot))]
+pub fn derive_batch_mass_matrix(input: TokenStream) -> TokenStream {
+    batch::batch(Function::MassMatrix, input.into()).into()
+}
+
+/// Implements the trait `BatchForwardDynamics` for a struct that derives `ForwardDynamics` too: accelerations of many
+/// states at once.
+///
+/// As [`BatchInverseDynamics`](macro@BatchInverseDynamics).
+#[proc_macro_derive(BatchForwardDynamics, attributes(robot))]
+pub fn derive_batch_forward_dynamics(input: TokenStream) -> TokenStream {
+    batch::batch(Function::ForwardDynamics, input.into()).into()
+}
+
+/// Implements the trait `BatchInverseDynamicsDerivatives` for a struct that derives `InverseDynamicsDerivatives` too:
+/// ∂τ/∂q and ∂τ/∂q̇ of many states at once.
+///
+/// As [`BatchMassMatrix`](macro@BatchMassMatrix).
+#[proc_macro_derive(BatchInverseDynamicsDerivatives, attributes(robot))]
+pub fn derive_batch_inverse_dynamics_derivatives(input: TokenStream) -> TokenStream {
+    batch::batch(Function::InverseDynamicsDerivatives, input.into()).into()
+}
+
+/// Implements the trait `BatchFloatingInverseDynamics` for a struct that derives `FloatingBase` too: torques, and the
+/// wrench on the base, of many states of a robot whose base nothing holds.
+///
+/// As [`BatchInverseDynamics`](macro@BatchInverseDynamics).
+#[proc_macro_derive(BatchFloatingInverseDynamics, attributes(robot))]
+pub fn derive_batch_floating_inverse_dynamics(input: TokenStream) -> TokenStream {
+    batch::batch(Function::InverseDynamicsOfFloatingBase, input.into()).into()
 }
 
 /// Implements the trait `MassMatrix` for a struct: the mass matrix M(q).

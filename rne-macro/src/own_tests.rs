@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
-use rne_codegen::{Capability, Form};
+use rne_codegen::{Capability, Form, Function};
 use rne_model::{GoldenFile, GoldenState};
 use syn::ext::IdentExt;
 use syn::{Data, DeriveInput, Path, PathSegment};
@@ -48,8 +48,16 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
     }
 }
 
-/// Names of the tests of batches.
-pub(crate) const OF_BATCHES: &[&str] = &["batches_are_those_of_the_runtime"];
+/// The tests of a batch. An `Arm` stands on the floor.
+pub(crate) fn of_batch(function: Function) -> &'static [&'static str] {
+    match function {
+        Function::InverseDynamics => &["batches_are_those_of_the_runtime"],
+        Function::MassMatrix => &["mass_matrices_of_a_batch_are_those_of_the_runtime"],
+        Function::ForwardDynamics => &["accelerations_of_a_batch_need_the_torques_that_cause_them"],
+        Function::InverseDynamicsDerivatives => &["derivatives_of_a_batch_are_those_of_the_runtime"],
+        _ => &[],
+    }
+}
 
 /// Says why a struct can have no tests: they need a value of it, and all its numbers.
 pub(crate) fn check(item: &DeriveInput, attribute: &Attribute, parameters: &Parameters, errors: &mut Errors) {

@@ -135,8 +135,7 @@ fn near_multiples(sin_cos: &impl SinCos<f64>, range: Range<u32>, worst: &mut [Wo
 
 fn on<T: BatchScalar>(unit: VectorUnit, angles: [T; 8]) -> ([T; 8], [T; 8]) {
     let (mut sines, mut cosines) = (angles, angles);
-    let inputs = [&angles[..]; 2];
-    batch::run(&Turn, unit, inputs, inputs, inputs, [&mut sines, &mut cosines]).expect("arrays of one length");
+    batch::run(&Turn, unit, [&angles], [&mut sines, &mut cosines]).expect("arrays of one length");
     (sines, cosines)
 }
 

@@ -65,6 +65,10 @@ pub trait InverseDynamics<const DOF: usize> {
 }
 
 /// The mass matrix M(q) of τ = M(q) q̈ + C(q, q̇) q̇ + g(q).
+#[diagnostic::on_unimplemented(
+    note = "`MassMatrix` belongs into the same `derive`: `#[derive(MassMatrix)]`, and with batches \
+            `#[derive(MassMatrix, BatchMassMatrix)]`"
+)]
 pub trait MassMatrix<const DOF: usize> {
     /// M(q): element (i, j) is the torque at joint i for a unit acceleration of joint j, from rest and without gravity.
     /// In kg m², kg m or kg, as the kinds of joints i and j have it.
@@ -94,6 +98,10 @@ pub trait CoriolisMatrix<const DOF: usize> {
 }
 
 /// Motion from torques, for simulation.
+#[diagnostic::on_unimplemented(
+    note = "`ForwardDynamics` belongs into the same `derive`: `#[derive(ForwardDynamics)]`, and with batches \
+            `#[derive(ForwardDynamics, BatchForwardDynamics)]`"
+)]
 pub trait ForwardDynamics<const DOF: usize> {
     /// Accelerations q̈ = M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)) with a free tip, rad/s² or m/s².
     ///
@@ -284,6 +292,10 @@ pub struct TorqueDerivatives<const DOF: usize, T> {
 }
 
 /// How the torques change with the state.
+#[diagnostic::on_unimplemented(
+    note = "`InverseDynamicsDerivatives` belongs into the same `derive`: `#[derive(InverseDynamicsDerivatives)]`, and with batches \
+            `#[derive(InverseDynamicsDerivatives, BatchInverseDynamicsDerivatives)]`"
+)]
 pub trait InverseDynamicsDerivatives<const DOF: usize> {
     /// ∂τ/∂q and ∂τ/∂q̇ of [`inverse_dynamics`](InverseDynamics::inverse_dynamics) at a state, row = torque, column =
     /// joint. ∂τ/∂q̈ is the [mass matrix](MassMatrix::mass_matrix).
@@ -391,6 +403,10 @@ pub struct FloatingAccelerations<const DOF: usize, T> {
 /// base, three angular ones, all in axes of frame 0, then those of the joints. Accelerations are (a - g, ω̇, q̈) with
 /// the classical acceleration a of the origin of frame 0; forces are (force, moment about this origin, τ). So neither
 /// gravity nor the orientation of the base enters.
+#[diagnostic::on_unimplemented(
+    note = "`FloatingBase` belongs into the same `derive`: `#[derive(FloatingBase)]`, and with batches \
+            `#[derive(FloatingBase, BatchFloatingInverseDynamics)]`"
+)]
 pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
     /// Torques, and the wrench that must act on the base, when frame 0 moves as `base` says.
     ///

@@ -107,7 +107,10 @@ pub use base_motion::BaseMotion;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use base_state::BaseTwist;
-pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
+pub use batch::{
+    BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
+    BatchMassMatrix, BatchScalar, LengthMismatch, VectorUnit,
+};
 pub use capability::{
     AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, ContactDynamics,
     CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor,

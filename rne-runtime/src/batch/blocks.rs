@@ -4,11 +4,11 @@ use core::ops::Range;
 
 use super::scalar::Register;
 use super::vector::{Vector, Work};
-use super::{BatchScalar, Torques};
+use super::{BatchFunction, BatchScalar};
 use crate::Scalar;
 use crate::sin_cos::{Float, kernel};
 
-/// Registers in a block. Sines and cosines come first for all of a block, then torques: each of the two loops is small
+/// Registers in a block. Sines and cosines come first for all of a block, then results: each of the two loops is small
 /// enough for the processor to work on two registers' states at once, and what they share stays in the first-level
 /// cache.
 const BLOCK: usize = 8;
@@ -16,78 +16,122 @@ const BLOCK: usize = 8;
 /// The most numbers that a register has.
 const WIDEST: usize = 16;
 
+/// An element that is always zero, in [`BatchFunction::PLACES`].
+pub const ZERO: u16 = u16::MAX;
+
 /// Registers in memory, none across two lines of the cache.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Aligned<T>(T);
 
-/// States whose torques are to be computed: arrays of one length.
-pub(super) struct States<'a, R, T, const DOF: usize> {
+/// States whose results are to be computed: arrays of one length, of which some may be empty.
+pub(super) struct States<'a, R, T, const ARGUMENTS: usize, const INPUTS: usize, const ELEMENTS: usize> {
     pub(super) robot: &'a R,
     pub(super) count: usize,
-    /// Positions, velocities, accelerations.
-    pub(super) inputs: [[&'a [T]; DOF]; 3],
-    pub(super) tau: [&'a mut [T]; DOF],
+    /// The numbers of each argument.
+    pub(super) inputs: [[&'a [T]; INPUTS]; ARGUMENTS],
+    /// The numbers of the results.
+    pub(super) elements: [&'a mut [T]; ELEMENTS],
 }
 
-/// The torques of states, which depend on `ANGLES` angles.
-pub(super) struct TorquesOf<'a, R, T, const DOF: usize, const ANGLES: usize>(pub(super) States<'a, R, T, DOF>);
+/// The results of states, which depend on `ANGLES` angles, as `OUTPUTS` distinct numbers.
+pub(super) struct OutputsOf<
+    'a,
+    R,
+    T,
+    const INPUTS: usize,
+    const ANGLES: usize,
+    const OUTPUTS: usize,
+    const ELEMENTS: usize,
+>(pub(super) States<'a, R, T, 1, INPUTS, ELEMENTS>);
 
-impl<R, T: BatchScalar, const DOF: usize, const ANGLES: usize> Work<T> for TorquesOf<'_, R, T, DOF, ANGLES>
+/// The arrays that are written.
+struct Results<'r, 'a, T> {
+    elements: &'r mut [&'a mut [T]],
+    /// The output that each of them is.
+    places: &'r [u16],
+    /// How many numbers of the register count: 0 for all. It is the last one then.
+    last: usize,
+}
+
+impl<R, T: BatchScalar, const INPUTS: usize, const ANGLES: usize, const OUTPUTS: usize, const ELEMENTS: usize> Work<T>
+    for OutputsOf<'_, R, T, INPUTS, ANGLES, OUTPUTS, ELEMENTS>
 where
-    R: Torques<DOF, ANGLES>,
+    R: BatchFunction<INPUTS, ANGLES, OUTPUTS, ELEMENTS>,
 {
-    /// Writes the torques, computed in registers `V`.
+    /// Writes the results, computed in registers `V`.
     #[inline(always)]
     fn run<V: Vector<Element = T>>(self, unit: V::Unit) {
-        let States { robot, count, inputs, tau } = self.0;
+        let States { robot, count, inputs: [inputs], elements } = self.0;
         let lanes = size_of::<V::Numbers>() / size_of::<T>();
         let (full, last) = (count / lanes, count % lanes);
         // The last register is filled up with zeros, which are states like any other.
-        let mut padded = [[[T::ZERO; WIDEST]; DOF]; 3];
-        for (padded, numbers) in padded.as_flattened_mut().iter_mut().zip(inputs.as_flattened()) {
-            padded[..last].copy_from_slice(&numbers[count - last..count]);
+        let mut padded = [[T::ZERO; WIDEST]; INPUTS];
+        for (padded, numbers) in padded.iter_mut().zip(&inputs) {
+            if let Some(numbers) = numbers.get(count - last..count) {
+                padded[..last].copy_from_slice(numbers);
+            }
         }
-        let mut padded_tau = [[T::ZERO; WIDEST]; DOF];
-        let mut tau = tau.map(|numbers| numbers[..count].split_at_mut(count - last));
+        let (mut elements, mut places, mut wanted) = (elements, R::PLACES, ELEMENTS);
+        if R::IS_WHOLE {
+            // of one length, as the compiler sees then
+            elements = elements.map(|numbers| &mut numbers[..count]);
+        } else {
+            wanted = 0;
+            for (index, &place) in R::PLACES.iter().enumerate() {
+                if place == ZERO {
+                    elements[index].fill(T::ZERO);
+                } else if !elements[index].is_empty() {
+                    elements.swap(index, wanted);
+                    places[wanted] = place;
+                    wanted += 1;
+                }
+            }
+        }
+        let mut results = Results { elements: &mut elements[..wanted], places: &places[..wanted], last: 0 };
         // One loop for both, so that its code is there once.
-        let parts = [
-            (full, inputs, tau.each_mut().map(|(numbers, _)| &mut **numbers)),
-            (
-                usize::from(last > 0),
-                padded.each_ref().map(|arrays| arrays.each_ref().map(|numbers| &numbers[..])),
-                padded_tau.each_mut().map(|numbers| &mut numbers[..]),
-            ),
-        ];
-        for (registers, inputs, tau) in parts {
-            let inputs = inputs.map(|arrays| arrays.map(|numbers| &V::split(numbers).0[..registers]));
-            let tau = tau.map(|numbers| &mut V::split_mut(numbers).0[..registers]);
-            torques::<R, V, DOF, ANGLES>(robot, unit, registers, inputs, tau);
-        }
-        for ((_, tau), padded) in tau.into_iter().zip(padded_tau) {
-            tau.copy_from_slice(&padded[..last]);
+        let parts = [(full, inputs, 0), (usize::from(last > 0), padded.each_ref().map(|numbers| &numbers[..]), last)];
+        for (registers, inputs, last) in parts {
+            let mut arrays: [&[V::Numbers]; INPUTS] = [&[]; INPUTS];
+            for index in 0..INPUTS {
+                let numbers = V::split(inputs[index]).0;
+                arrays[index] = match numbers.get(..registers) {
+                    Some(numbers) => numbers,
+                    None if index < R::REQUIRED => &numbers[..registers],
+                    None => &[],
+                };
+            }
+            results.last = last;
+            outputs::<R, V, INPUTS, ANGLES, OUTPUTS, ELEMENTS>(robot, unit, registers, arrays, &mut results);
         }
     }
 }
 
-/// The torques of full registers.
+/// The results of full registers, or of one whose first `last` numbers count.
 #[inline(always)]
-fn torques<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: usize, const ANGLES: usize>(
+fn outputs<
+    R: BatchFunction<INPUTS, ANGLES, OUTPUTS, ELEMENTS>,
+    V: Vector<Element: BatchScalar>,
+    const INPUTS: usize,
+    const ANGLES: usize,
+    const OUTPUTS: usize,
+    const ELEMENTS: usize,
+>(
     robot: &R,
     unit: V::Unit,
     count: usize,
-    inputs: [[&[V::Numbers]; DOF]; 3],
-    mut tau: [&mut [V::Numbers]; DOF],
+    inputs: [&[V::Numbers]; INPUTS],
+    written: &mut Results<'_, '_, V::Element>,
 ) {
-    let [q, qd, qdd] = inputs;
     let zero = V::splat(V::Element::ZERO);
     let mut turns = [[[Aligned(zero.store()); ANGLES]; 2]; BLOCK];
+    let mut results = [Register(zero); OUTPUTS];
     let mut start = 0;
     while start < count {
         let end = count.min(start + BLOCK);
         let mut squares = zero;
         for (at, [sines, cosines]) in (start..end).zip(&mut turns) {
-            let angles = robot.angles(&loaded::<V, DOF>(unit, &q, at));
+            let angles = robot.angles(&loaded::<V, INPUTS>(unit, &inputs, at, R::REQUIRED));
             // Not a loop: what one indexes is written to memory first, perhaps in parts, and waited for.
             macro_rules! each {
                 ($($index:literal)*) => {
@@ -109,42 +153,62 @@ fn torques<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: 
         }
         for (at, [sines, cosines]) in (start..end).zip(&turns) {
             let (sines, cosines) = (registers::<V, ANGLES>(unit, sines), registers::<V, ANGLES>(unit, cosines));
-            let torques =
-                robot.torques(&sines, &cosines, &loaded(unit, &q, at), &loaded(unit, &qd, at), &loaded(unit, &qdd, at));
-            for joint in 0..DOF {
-                tau[joint][at] = torques[joint].0.store();
+            robot.outputs(&sines, &cosines, &loaded(unit, &inputs, at, R::REQUIRED), &mut results);
+            let places = written.elements.iter_mut().zip(written.places);
+            if written.last > 0 {
+                for (numbers, &place) in places {
+                    let register = results[usize::from(place)].0.store();
+                    V::split_mut(numbers).1.copy_from_slice(&V::each(&register)[..written.last]);
+                }
+            } else {
+                for (numbers, &place) in places {
+                    V::split_mut(numbers).0[at] = results[usize::from(place)].0.store();
+                }
             }
         }
         // Not so for NaN and infinities either.
         let squares = squares.store();
         let are_small = V::each(&squares).iter().fold(true, |all, sum| all & sum.is_square_within_limit());
         if cfg!(feature = "std") && !are_small {
-            repair::<R, V, DOF, ANGLES>(robot, start..end, &inputs, &mut tau);
+            repair::<R, V, INPUTS, ANGLES, OUTPUTS, ELEMENTS>(robot, start..end, &inputs, written);
         }
         start = end;
     }
 }
 
-/// Writes the torques of states that have an angle beyond the limit of the kernel of sine and cosine once more: those
+/// Writes the results of states that have an angle beyond the limit of the kernel of sine and cosine once more: those
 /// of one state by itself.
 #[cold]
 #[inline(never)]
-fn repair<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: usize, const ANGLES: usize>(
+fn repair<
+    R: BatchFunction<INPUTS, ANGLES, OUTPUTS, ELEMENTS>,
+    V: Vector<Element: BatchScalar>,
+    const INPUTS: usize,
+    const ANGLES: usize,
+    const OUTPUTS: usize,
+    const ELEMENTS: usize,
+>(
     robot: &R,
     block: Range<usize>,
-    inputs: &[[&[V::Numbers]; DOF]; 3],
-    tau: &mut [&mut [V::Numbers]; DOF],
+    inputs: &[&[V::Numbers]; INPUTS],
+    written: &mut Results<'_, '_, V::Element>,
 ) {
+    let mut results = [V::Element::ZERO; OUTPUTS];
     for at in block {
-        for lane in 0..size_of::<V::Numbers>() / size_of::<V::Element>() {
-            let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| V::each(&numbers[at])[lane]));
-            let angles = robot.angles(&q);
+        let lanes = size_of::<V::Numbers>() / size_of::<V::Element>();
+        for lane in 0..if written.last > 0 { written.last } else { lanes } {
+            let inputs =
+                inputs.map(|numbers| numbers.get(at).map_or(V::Element::ZERO, |numbers| V::each(numbers)[lane]));
+            let angles = robot.angles(&inputs);
             if angles.iter().all(|angle| angle.is_within_limit()) {
                 continue;
             }
             let (sines, cosines) = V::Element::sin_cos_array(angles);
-            for (numbers, torque) in tau.iter_mut().zip(robot.torques(&sines, &cosines, &q, &qd, &qdd)) {
-                V::each_mut(&mut numbers[at])[lane] = torque;
+            robot.outputs(&sines, &cosines, &inputs, &mut results);
+            for (numbers, &place) in written.elements.iter_mut().zip(written.places) {
+                let (registers, last) = V::split_mut(numbers);
+                let lanes = if written.last > 0 { last } else { V::each_mut(&mut registers[at]) };
+                lanes[lane] = results[usize::from(place)];
             }
         }
     }
@@ -152,11 +216,19 @@ fn repair<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: u
 
 // Loops, for what `array::from_fn` writes stays in memory.
 
+/// Zeros of arrays that are empty, as those from `required` on may be.
 #[inline(always)]
-fn loaded<V: Vector, const N: usize>(unit: V::Unit, numbers: &[&[V::Numbers]; N], at: usize) -> [Register<V>; N] {
+fn loaded<V: Vector, const N: usize>(
+    unit: V::Unit,
+    numbers: &[&[V::Numbers]; N],
+    at: usize,
+    required: usize,
+) -> [Register<V>; N] {
     let mut registers = [Register(V::splat(V::Element::ZERO)); N];
     for index in 0..N {
-        registers[index] = Register(V::load(unit, &numbers[index][at]));
+        if index < required || at < numbers[index].len() {
+            registers[index] = Register(V::load(unit, &numbers[index][at]));
+        }
     }
     registers
 }
@@ -172,14 +244,14 @@ fn registers<V: Vector, const N: usize>(unit: V::Unit, numbers: &[Aligned<V::Num
 
 /// The torques of each state by itself.
 #[cfg(feature = "arm")]
-pub(super) fn one_by_one<R, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, DOF>)
+pub(super) fn one_by_one<R, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, 3, DOF, DOF>)
 where
     R: crate::InverseDynamics<DOF>,
 {
-    let States { robot, count, inputs, mut tau } = all;
+    let States { robot, count, inputs, mut elements } = all;
     for state in 0..count {
         let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| numbers[state]));
-        for (numbers, torque) in tau.iter_mut().zip(robot.inverse_dynamics(&q, &qd, &qdd)) {
+        for (numbers, torque) in elements.iter_mut().zip(robot.inverse_dynamics(&q, &qd, &qdd)) {
             numbers[state] = torque;
         }
     }

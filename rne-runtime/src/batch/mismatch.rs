@@ -5,42 +5,86 @@ use core::fmt;
 
 /// An array has another length than the first joint's positions, which say how many states there are.
 ///
-/// Nothing has been computed then, and no torque written.
+/// Nothing has been computed then, and no result written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LengthMismatch {
-    /// Name of the argument: `q`, `qd`, `qdd` or `tau`.
+    /// Name of the argument: `q`, `qd`, `qdd`, `tau`, `mass` and so on.
     pub argument: &'static str,
-    /// Index of the joint's array in the argument, from 0.
+    /// Index of the joint's array in the argument, or of the row in a matrix, from 0.
     pub joint: usize,
+    /// Index of the column in a matrix, from 0.
+    pub column: Option<usize>,
     /// The length of that array.
     pub length: usize,
     /// The length of `q[0]`.
     pub states: usize,
+    /// Whether the array may be empty, too.
+    pub may_be_empty: bool,
 }
 
 impl fmt::Display for LengthMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { argument, joint, length, states } = self;
-        write!(f, "`{argument}[{joint}]` has length {length} and `q[0]` {states}: each holds one number per state")
+        let Self { argument, joint, length, states, .. } = self;
+        write!(f, "`{argument}[{joint}]")?;
+        if let Some(column) = self.column {
+            write!(f, "[{column}]")?;
+        }
+        write!(f, "` has length {length} and `q[0]` {states}: each holds one number per state")?;
+        if self.may_be_empty { write!(f, ", or none") } else { Ok(()) }
     }
 }
 
 impl Error for LengthMismatch {}
 
-/// The length of all arrays: of the inputs, and those of the torques.
-pub(super) fn common_length<T, const DOF: usize>(
-    [q, qd, qdd]: [&[&[T]; DOF]; 3],
-    tau: [usize; DOF],
+/// An argument of a batch: its name and its arrays.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Argument {
+    pub name: &'static str,
+    pub rows: usize,
+    /// 0 for a vector.
+    pub columns: usize,
+    pub may_be_empty: bool,
+}
+
+impl Argument {
+    /// A vector, whose arrays have a number for each state.
+    #[must_use]
+    pub const fn vector(name: &'static str, rows: usize) -> Self {
+        Self { name, rows, columns: 0, may_be_empty: false }
+    }
+
+    /// A vector, whose arrays may be empty.
+    #[must_use]
+    pub const fn optional_vector(name: &'static str, rows: usize) -> Self {
+        Self { may_be_empty: true, ..Self::vector(name, rows) }
+    }
+
+    /// A matrix, whose arrays may be empty.
+    #[must_use]
+    pub const fn matrix(name: &'static str, rows: usize, columns: usize) -> Self {
+        Self { name, rows, columns, may_be_empty: true }
+    }
+}
+
+/// The length of all arrays of some arguments, the first of which says it.
+pub(super) fn common_length(
+    arguments: [&[Argument]; 2],
+    mut lengths: impl Iterator<Item = usize>,
 ) -> Result<usize, LengthMismatch> {
-    let states = q.first().map_or(0, |first| first.len());
-    let inputs = [("q", q), ("qd", qd), ("qdd", qdd)].map(|(argument, arrays)| (argument, arrays.map(<[T]>::len)));
-    for (argument, lengths) in inputs.into_iter().chain([("tau", tau)]) {
-        for (joint, length) in lengths.into_iter().enumerate() {
-            if length != states {
-                return Err(LengthMismatch { argument, joint, length, states });
+    let mut states = None;
+    for &Argument { name: argument, rows, columns, may_be_empty } in arguments.into_iter().flatten() {
+        for (index, length) in lengths.by_ref().take(rows * columns.max(1)).enumerate() {
+            let states = *states.get_or_insert(length);
+            if length != states && !(may_be_empty && length == 0) {
+                let (joint, column) = match columns {
+                    0 => (index, None),
+                    _ => (index / columns, Some(index % columns)),
+                };
+                return Err(LengthMismatch { argument, joint, column, length, states, may_be_empty });
             }
         }
     }
-    Ok(states)
+    Ok(states.unwrap_or(0))
 }

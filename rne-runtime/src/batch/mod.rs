@@ -33,7 +33,7 @@
 //!
 //! A torque depends on its state and on the vector unit, not on the states beside it, the length of the arrays or the
 //! number of threads. In the form `seven_steps`, on a unit without fused multiply-add (SSE2), it has the bits that
-//! [`inverse_dynamics`](InverseDynamics::inverse_dynamics) gives. On one with it, sines and cosines are rounded less
+//! [`inverse_dynamics`](crate::InverseDynamics::inverse_dynamics) gives. On one with it, sines and cosines are rounded less
 //! often, and in the reduced forms the terms of sums stand in another order: torques differ in their last bits.
 //!
 //! # Method
@@ -50,6 +50,7 @@ mod blocks;
 #[cfg_attr(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")), path = "x86.rs")]
 #[cfg_attr(not(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64"))), path = "undetected.rs")]
 mod detected;
+mod functions;
 mod mismatch;
 #[cfg(feature = "rayon")]
 mod parallel;
@@ -57,108 +58,79 @@ mod scalar;
 mod unit;
 pub(crate) mod vector;
 
+#[doc(hidden)]
+pub use blocks::ZERO;
+pub use functions::{
+    BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
+    BatchMassMatrix,
+};
+#[doc(hidden)]
+pub use mismatch::Argument;
 pub use mismatch::LengthMismatch;
 pub use scalar::BatchScalar;
 pub use unit::VectorUnit;
 
-use core::array::from_fn;
+use crate::Scalar;
+use blocks::{OutputsOf, States};
 
-#[cfg(feature = "arm")]
-use crate::{Arm, Constant};
-use crate::{InverseDynamics, Scalar};
-#[cfg(feature = "arm")]
-use blocks::one_by_one;
-use blocks::{States, TorquesOf};
-
-/// Torques from motion for many states at once.
+/// Code of a derive: a function once more, in two parts and `#[inline(always)]` for [`run`].
 ///
-/// One slice per joint, base to tip, and in it one number per state: rad, rad/s, rad/s² and N m for revolute joints, m,
-/// m/s, m/s² and N for prismatic ones. All slices have the same length.
-pub trait BatchInverseDynamics<const DOF: usize>: InverseDynamics<DOF> {
-    /// Writes to `tau` the torques for positions `q`, velocities `qd` and accelerations `qdd` with a free tip, on the
-    /// widest vector unit that the processor has.
-    ///
-    /// # Errors
-    ///
-    /// When two slices differ in length. No torque is written then.
-    fn inverse_dynamics_batch<T: BatchScalar>(
-        &self,
-        q: [&[T]; DOF],
-        qd: [&[T]; DOF],
-        qdd: [&[T]; DOF],
-        tau: [&mut [T]; DOF],
-    ) -> Result<(), LengthMismatch> {
-        self.inverse_dynamics_batch_on(VectorUnit::widest(), q, qd, qdd, tau)
-    }
-
-    /// Computes the batch on a given vector unit: for comparisons, or for the same bits on every processor.
-    ///
-    /// # Errors
-    ///
-    /// When two slices differ in length. No torque is written then.
-    fn inverse_dynamics_batch_on<T: BatchScalar>(
-        &self,
-        unit: VectorUnit,
-        q: [&[T]; DOF],
-        qd: [&[T]; DOF],
-        qdd: [&[T]; DOF],
-        tau: [&mut [T]; DOF],
-    ) -> Result<(), LengthMismatch>;
-}
-
-#[cfg(feature = "arm")]
-/// One state after the other: a robot that is known at run time is loops, in which no vector unit finds work.
-impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF, S> {
-    fn inverse_dynamics_batch_on<T: BatchScalar>(
-        &self,
-        _: VectorUnit,
-        q: [&[T]; DOF],
-        qd: [&[T]; DOF],
-        qdd: [&[T]; DOF],
-        tau: [&mut [T]; DOF],
-    ) -> Result<(), LengthMismatch> {
-        for_each_part(self, [q, qd, qdd], tau, one_by_one)
-    }
-}
-
-/// Code of the derive: [`InverseDynamics::inverse_dynamics`] once more, in two parts and `#[inline(always)]` for
-/// [`run`].
+/// The inputs are the elements of all arguments, one after the other.
 #[doc(hidden)]
-pub trait Torques<const DOF: usize, const ANGLES: usize>: Sync {
-    /// The angles whose sines and cosines the torques depend on.
-    fn angles<T: Scalar>(&self, q: &[T; DOF]) -> [T; ANGLES];
-    fn torques<T: Scalar>(
+pub trait BatchFunction<const INPUTS: usize, const ANGLES: usize, const OUTPUTS: usize, const ELEMENTS: usize>:
+    Sync
+{
+    /// The arguments that have the inputs.
+    const ARGUMENTS: &[Argument];
+    /// The arguments that have the elements of the results.
+    const RESULTS: &[Argument];
+    /// How many inputs have a number for each state; those behind may be empty, and are zero then.
+    const REQUIRED: usize;
+    /// Which output each element of the results is, or [`ZERO`].
+    const PLACES: [u16; ELEMENTS];
+    /// Whether all elements of the results are wanted, and each is an output of its own.
+    const IS_WHOLE: bool;
+
+    /// The angles whose sines and cosines the outputs depend on.
+    fn angles<T: Scalar>(&self, inputs: &[T; INPUTS]) -> [T; ANGLES];
+    /// Writes the outputs.
+    fn outputs<T: Scalar>(
         &self,
         sin: &[T; ANGLES],
         cos: &[T; ANGLES],
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-    ) -> [T; DOF];
+        inputs: &[T; INPUTS],
+        outputs: &mut [T; OUTPUTS],
+    );
 }
 
 /// Runs a batch; the derived method calls it.
 #[doc(hidden)]
-pub fn run<R: Torques<DOF, ANGLES>, T: BatchScalar, const DOF: usize, const ANGLES: usize>(
+pub fn run<R, T: BatchScalar, const INPUTS: usize, const ANGLES: usize, const OUTPUTS: usize, const ELEMENTS: usize>(
     robot: &R,
     unit: VectorUnit,
-    q: [&[T]; DOF],
-    qd: [&[T]; DOF],
-    qdd: [&[T]; DOF],
-    tau: [&mut [T]; DOF],
-) -> Result<(), LengthMismatch> {
-    for_each_part(robot, [q, qd, qdd], tau, |states| unit.run(TorquesOf::<_, _, _, ANGLES>(states)))
+    inputs: [&[T]; INPUTS],
+    elements: [&mut [T]; ELEMENTS],
+) -> Result<(), LengthMismatch>
+where
+    R: BatchFunction<INPUTS, ANGLES, OUTPUTS, ELEMENTS>,
+{
+    for_each_part(robot, [R::ARGUMENTS, R::RESULTS], [inputs], elements, |states| {
+        unit.run(OutputsOf::<_, _, _, ANGLES, OUTPUTS, _>(states));
+    })
 }
 
 /// Runs the states, all at once or divided among threads.
-fn for_each_part<R: Sync, T: BatchScalar, const DOF: usize>(
+fn for_each_part<R: Sync, T: BatchScalar, const ARGUMENTS: usize, const INPUTS: usize, const ELEMENTS: usize>(
     robot: &R,
-    inputs: [[&[T]; DOF]; 3],
-    tau: [&mut [T]; DOF],
-    run: impl Fn(States<'_, R, T, DOF>) + Sync,
+    arguments: [&[Argument]; 2],
+    inputs: [[&[T]; INPUTS]; ARGUMENTS],
+    elements: [&mut [T]; ELEMENTS],
+    run: impl Fn(States<'_, R, T, ARGUMENTS, INPUTS, ELEMENTS>) + Sync,
 ) -> Result<(), LengthMismatch> {
-    let count = mismatch::common_length(inputs.each_ref(), from_fn(|joint| tau[joint].len()))?;
-    let states = States { robot, count, inputs, tau };
+    let of_inputs = inputs.as_flattened().iter().map(|numbers| numbers.len());
+    let lengths = of_inputs.chain(elements.iter().map(|numbers| numbers.len()));
+    let count = mismatch::common_length(arguments, lengths)?;
+    let states = States { robot, count, inputs, elements };
     #[cfg(feature = "rayon")]
     parallel::for_each_part(states, &run);
     #[cfg(not(feature = "rayon"))]

@@ -10,26 +10,29 @@ use crate::threads::join;
 const TASK: usize = 4096;
 
 /// Runs tasks of some thousand states each, on rayon's threads; few states on the thread that called.
-pub(super) fn for_each_part<R: Sync, T: Send + Sync, const DOF: usize>(
-    all: States<'_, R, T, DOF>,
-    run: &(impl Fn(States<'_, R, T, DOF>) + Sync),
+pub(super) fn for_each_part<R: Sync, T: Send + Sync, const A: usize, const N: usize, const E: usize>(
+    all: States<'_, R, T, A, N, E>,
+    run: &(impl Fn(States<'_, R, T, A, N, E>) + Sync),
 ) {
     if all.count < 2 * TASK {
         return run(all);
     }
-    let (first, second) = halves(all);
+    let [first, second] = halves(all);
     join(|| for_each_part(first, run), || for_each_part(second, run));
 }
 
-fn halves<R, T, const DOF: usize>(all: States<'_, R, T, DOF>) -> (States<'_, R, T, DOF>, States<'_, R, T, DOF>) {
-    let States { robot, count, inputs, tau: mut rest } = all;
+/// The two halves of states. Each half of an empty array is empty.
+fn halves<R, T, const A: usize, const N: usize, const E: usize>(
+    all: States<'_, R, T, A, N, E>,
+) -> [States<'_, R, T, A, N, E>; 2] {
+    let States { robot, count, inputs, elements: mut rest } = all;
     let middle = count / 2 / TASK * TASK;
-    let inputs = inputs.map(|arrays| arrays.map(|numbers| numbers.split_at(middle)));
-    let tau = from_fn(|joint| rest[joint].split_off_mut(..middle).unwrap_or_default());
+    let inputs = inputs.map(|arrays| arrays.map(|numbers| numbers.split_at_checked(middle).unwrap_or_default()));
+    let elements = from_fn(|index| rest[index].split_off_mut(..middle).unwrap_or_default());
     let [first, second] =
         [inputs.map(|arrays| arrays.map(|halves| halves.0)), inputs.map(|arrays| arrays.map(|halves| halves.1))];
-    (
-        States { robot, count: middle, inputs: first, tau },
-        States { robot, count: count - middle, inputs: second, tau: rest },
-    )
+    [
+        States { robot, count: middle, inputs: first, elements },
+        States { robot, count: count - middle, inputs: second, elements: rest },
+    ]
 }

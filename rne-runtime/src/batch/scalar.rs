@@ -150,19 +150,25 @@ mod sealed {
 mod tests {
     use super::Register;
     use crate::Scalar;
-    use crate::batch::{Torques, VectorUnit, run};
+    use crate::batch::{Argument, BatchFunction, VectorUnit, run};
     use crate::sin_cos::{Float, Lanes};
 
     /// q² + q̇
     struct SquareAndSum;
 
-    impl Torques<1, 0> for SquareAndSum {
-        fn angles<T: Scalar>(&self, _: &[T; 1]) -> [T; 0] {
+    impl BatchFunction<2, 0, 1, 1> for SquareAndSum {
+        const ARGUMENTS: &[Argument] = &[Argument::vector("q", 1), Argument::vector("qd", 1)];
+        const RESULTS: &[Argument] = &[Argument::vector("tau", 1)];
+        const REQUIRED: usize = 2;
+        const PLACES: [u16; 1] = [0];
+        const IS_WHOLE: bool = true;
+
+        fn angles<T: Scalar>(&self, _: &[T; 2]) -> [T; 0] {
             []
         }
 
-        fn torques<T: Scalar>(&self, _: &[T; 0], _: &[T; 0], q: &[T; 1], qd: &[T; 1], _: &[T; 1]) -> [T; 1] {
-            [q[0].mul_add(q[0], qd[0])]
+        fn outputs<T: Scalar>(&self, _: &[T; 0], _: &[T; 0], &[q, qd]: &[T; 2], outputs: &mut [T; 1]) {
+            outputs[0] = q.mul_add(q, qd);
         }
     }
 
@@ -171,7 +177,7 @@ mod tests {
         let (q, qd) = ([1.0 + f64::EPSILON], [-(1.0 + 2.0 * f64::EPSILON)]);
         for (index, unit) in VectorUnit::all().enumerate() {
             let mut tau = [f64::NAN];
-            run(&SquareAndSum, unit, [&q], [&qd], [&[0.0]], [&mut tau]).expect("arrays of one length");
+            run(&SquareAndSum, unit, [&q, &qd], [&mut tau]).expect("arrays of one length");
             let is_fused = index > 0 || crate::sin_cos::FUSED_F64;
             assert_eq!(tau, [if is_fused { f64::EPSILON * f64::EPSILON } else { 0.0 }], "{unit}");
         }

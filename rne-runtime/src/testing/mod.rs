@@ -4,6 +4,8 @@
 //! Not part of the public interface: derived code names it.
 
 #[cfg(all(feature = "arm", feature = "std"))]
+mod batches;
+#[cfg(all(feature = "arm", feature = "std"))]
 mod comparison;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod geometry;
@@ -18,6 +20,11 @@ mod state;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod torques;
 
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use batches::{
+    accelerations_of_a_batch_need_the_torques_that_cause_them, batches_are_those_of_the_runtime,
+    derivatives_of_a_batch_are_those_of_the_runtime, mass_matrices_of_a_batch_are_those_of_the_runtime, on_large_stack,
+};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use geometry::{
     centre_of_mass_is_that_of_the_runtime, kinematics_are_those_of_the_runtime, rotations_are_orthonormal,
@@ -37,7 +44,7 @@ pub use robot_file::RobotFile;
 pub use state::{JOINTS, Random};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use torques::{
-    actuator_torques_are_those_of_the_runtime, batches_are_those_of_the_runtime, derivatives_are_those_of_the_runtime,
+    actuator_torques_are_those_of_the_runtime, derivatives_are_those_of_the_runtime,
     gravity_and_bias_are_torques_without_motion, joint_wrenches_are_those_of_the_runtime,
     payload_dynamics_are_those_of_the_runtime, regressor_is_that_of_the_runtime, torques_are_linear_in_accelerations,
     torques_are_those_of_the_runtime, torques_on_a_moving_base_are_those_of_the_runtime,

@@ -6,8 +6,8 @@ use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest};
 use super::state::{State, states};
 use crate::{
-    Actuation, Arm, BatchInverseDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, MovingBase,
-    PayloadDynamics, Regressor, Wrench,
+    Actuation, Arm, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, MovingBase, PayloadDynamics, Regressor,
+    Wrench,
 };
 
 /// Torques that vanish but for rounding are measured by this part of the forces and moments at the joints.
@@ -80,31 +80,6 @@ pub fn gravity_and_bias_are_torques_without_motion<const DOF: usize, R: InverseD
         compare("gravity_torques and τ(q, 0, 0)", &state, allowed, &robot.gravity_torques(q), &at_rest);
         let steady = robot.inverse_dynamics(q, qd, &zero);
         compare("bias_torques and τ(q, q̇, 0)", &state, allowed, &robot.bias_torques(q, qd), &steady);
-    }
-}
-
-/// All states in one batch.
-pub fn batches_are_those_of_the_runtime<const DOF: usize, R: BatchInverseDynamics<DOF>>(robot: &R, file: &RobotFile) {
-    let (arm, states): (_, Vec<State<DOF>>) = (file.arm::<DOF>(), states().collect());
-    let joint = |numbers: fn(&State<DOF>) -> &[f64; DOF]| -> [Vec<f64>; DOF] {
-        array::from_fn(|i| states.iter().map(|state| numbers(state)[i]).collect())
-    };
-    let (q, qd, qdd) = (joint(|state| &state.q), joint(|state| &state.qd), joint(|state| &state.qdd));
-    let mut tau: [Vec<f64>; DOF] = array::from_fn(|_| vec![0.0; states.len()]);
-    robot
-        .inverse_dynamics_batch(
-            q.each_ref().map(Vec::as_slice),
-            qd.each_ref().map(Vec::as_slice),
-            qdd.each_ref().map(Vec::as_slice),
-            tau.each_mut().map(Vec::as_mut_slice),
-        )
-        .unwrap_or_else(|mismatch| panic!("{mismatch}"));
-    for (index, state) in states.iter().enumerate() {
-        let found: [f64; DOF] = array::from_fn(|i| tau[i][index]);
-        let expected = arm.inverse_dynamics(&state.q, &state.qd, &state.qdd);
-        // vector registers have sines and cosines of their own
-        let allowed = Allowed::Rounding { scale: scale(&arm, state) };
-        compare("inverse_dynamics_batch", state, allowed, &found, &expected);
     }
 }
 

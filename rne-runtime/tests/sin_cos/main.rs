@@ -218,8 +218,7 @@ fn a_product_and_a_sum() {
 fn on_unit<T: BatchScalar>(unit: VectorUnit, angle: T) -> (T, T) {
     let (mut sine, mut cosine) = ([angle], [angle]);
     let angles = [angle];
-    let inputs = [&angles[..]; 2];
-    batch::run(&Turn, unit, inputs, inputs, inputs, [&mut sine, &mut cosine]).expect("arrays of one length");
+    batch::run(&Turn, unit, [&angles], [&mut sine, &mut cosine]).expect("arrays of one length");
     (sine[0], cosine[0])
 }
 

@@ -1,17 +1,23 @@
 //! Sines and cosines as a batch computes them.
 
 use rne_runtime::Scalar;
-use rne_runtime::batch::Torques;
+use rne_runtime::batch::{Argument, BatchFunction};
 
-/// A robot whose torques are the sine and the cosine of its first joint: what a vector unit makes of them.
+/// A function that gives the sine and the cosine of its input: what a vector unit makes of them.
 pub(crate) struct Turn;
 
-impl Torques<2, 1> for Turn {
-    fn angles<T: Scalar>(&self, q: &[T; 2]) -> [T; 1] {
-        [q[0]]
+impl BatchFunction<1, 1, 2, 2> for Turn {
+    const ARGUMENTS: &[Argument] = &[Argument::vector("q", 1)];
+    const RESULTS: &[Argument] = &[Argument::vector("turn", 2)];
+    const REQUIRED: usize = 1;
+    const PLACES: [u16; 2] = [0, 1];
+    const IS_WHOLE: bool = true;
+
+    fn angles<T: Scalar>(&self, q: &[T; 1]) -> [T; 1] {
+        *q
     }
 
-    fn torques<T: Scalar>(&self, sin: &[T; 1], cos: &[T; 1], _: &[T; 2], _: &[T; 2], _: &[T; 2]) -> [T; 2] {
-        [sin[0], cos[0]]
+    fn outputs<T: Scalar>(&self, &[sin]: &[T; 1], &[cos]: &[T; 1], _: &[T; 1], outputs: &mut [T; 2]) {
+        *outputs = [sin, cos];
     }
 }

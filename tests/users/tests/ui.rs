@@ -17,7 +17,7 @@ fn mistakes_and_their_messages() {
 }
 
 /// File, and what the one message has in it.
-const BY_RUSTC: [(&str, &[&str]); 10] = [
+const BY_RUSTC: [(&str, &[&str]); 11] = [
     ("array_length", &["error[E0308]", "array_length.rs:8:49", "size of 2", "size of 3"]),
     (
         "batch_alone",
@@ -26,6 +26,15 @@ const BY_RUSTC: [(&str, &[&str]); 10] = [
             "batch_alone.rs:6:8",
             "`Rod: InverseDynamics<1>`",
             "derive(InverseDynamics, BatchInverseDynamics)",
+        ],
+    ),
+    (
+        "batch_of_another_function",
+        &[
+            "error[E0277]",
+            "batch_of_another_function.rs:6:8",
+            "`Rod: MassMatrix<1>`",
+            "derive(MassMatrix, BatchMassMatrix)",
         ],
     ),
     ("crate_is_elsewhere", &["error[E0433]", "crate_is_elsewhere.rs:4:48", "`dynamics`"]),

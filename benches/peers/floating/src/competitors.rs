@@ -87,12 +87,49 @@ fn of_states<'a, S, O: Copy + 'a>(
     Competitor { name, quantity, is_batch: false, call: Box::new(call), result: Box::new(result) }
 }
 
+/// Numbers of all states, element by element.
+fn columns<const DOF: usize>(states: &[State<DOF>], of: &dyn Fn(&State<DOF>) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let rows: Vec<Vec<f64>> = states.iter().map(of).collect();
+    (0..rows[0].len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect()
+}
+
+/// Slices of as many columns as there are.
+fn slices<const N: usize>(columns: &[Vec<f64>]) -> [&[f64]; N] {
+    std::array::from_fn(|index| columns[index].as_slice())
+}
+
+/// rne, generated for one robot, for all states in one call.
+pub fn batch<'a, R, const DOF: usize, const NV: usize>(states: &'a [State<DOF>]) -> Competitor<'a>
+where
+    R: rne::BatchFloatingInverseDynamics<DOF, NV, 1> + Default + 'a,
+{
+    let [q, qd, qdd] =
+        [columns(states, &|s| s.q.to_vec()), columns(states, &|s| s.qd.to_vec()), columns(states, &|s| s.qdd.to_vec())];
+    let base = columns(states, &|s| [s.base.omega, s.base.omega_dot, s.base.acceleration, s.base.gravity].concat());
+    let run = move |room: &mut [f64]| {
+        let [omega, omega_dot, acceleration, gravity] = [0, 3, 6, 9].map(|first| slices::<3>(&base[first..]));
+        let nothing: [&[f64]; 3] = [&[]; 3];
+        let base = rne::BaseMotion { omega, omega_dot, velocity: nothing, acceleration, gravity };
+        let free = [rne::Wrench { force: nothing, moment: nothing }];
+        let mut results = room.chunks_mut(states.len());
+        let wrench = std::array::from_fn(|_| results.next().expect("room for the wrench"));
+        let tau = std::array::from_fn(|_| results.next().expect("room for the torques"));
+        let (q, qd, qdd) = (slices(&q), slices(&qd), slices(&qdd));
+        let done = R::default().inverse_dynamics_of_floating_base_batch(q, qd, qdd, &base, &free, wrench, tau);
+        done.unwrap_or_else(|mismatch| panic!("{mismatch}"));
+    };
+    let mut room = vec![0.0; NV * states.len()];
+    run(&mut room);
+    let first = room.clone();
+    let result = move |index: usize| first.chunks(states.len()).map(|column| column[index]).collect();
+    let call = move |_: Range<usize>| run(&mut room);
+    let (call, result) = (Box::new(call), Box::new(result));
+    Competitor { name: "rne_batch", quantity: Quantity::InverseDynamics, is_batch: true, call, result }
+}
+
 /// rne, compiled at run time, for all states in one call.
 pub fn machine<'a, const DOF: usize>(states: &'a [State<DOF>], arm: &'a CompiledArm) -> Vec<Competitor<'a>> {
-    let columns = |of: &dyn Fn(&State<DOF>) -> Vec<f64>| -> Vec<Vec<f64>> {
-        let rows: Vec<Vec<f64>> = states.iter().map(of).collect();
-        (0..rows[0].len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect()
-    };
+    let columns = |of: &dyn Fn(&State<DOF>) -> Vec<f64>| columns(states, of);
     let functions = [
         (Function::InverseDynamicsOfFloatingBase, Quantity::InverseDynamics),
         (Function::FloatingForwardDynamics, Quantity::ForwardDynamics),

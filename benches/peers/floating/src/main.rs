@@ -20,12 +20,12 @@ use rne_machine::CompiledArm;
 use state::State;
 
 /// `HyQ` on a floating base.
-#[derive(Clone, Copy, Default, rne::FloatingBase, rne::CentroidalMomentum)]
+#[derive(Clone, Copy, Default, rne::FloatingBase, rne::CentroidalMomentum, rne::BatchFloatingInverseDynamics)]
 #[robot(path = "../../../trees/hyq_floating.yaml", form = "reduced", allow_lints)]
 struct Hyq;
 
 /// Unitree's G1 on a floating base.
-#[derive(Clone, Copy, Default, rne::FloatingBase, rne::CentroidalMomentum)]
+#[derive(Clone, Copy, Default, rne::FloatingBase, rne::CentroidalMomentum, rne::BatchFloatingInverseDynamics)]
 #[robot(path = "../../../trees/g1_floating.yaml", form = "reduced", allow_lints)]
 struct G1;
 
@@ -80,7 +80,7 @@ fn deviation(other: &mut Competitor<'_>, ours: &mut Competitor<'_>) -> f64 {
 /// Checks all competitors of a robot, and times them in turn.
 fn compare<R, const DOF: usize, const NV: usize>(name: &str, folder: &str, library: &Library, rounds: usize) -> Vec<Row>
 where
-    R: rne::FloatingBase<DOF, NV, 1> + rne::CentroidalMomentum<DOF, NV> + Default,
+    R: rne::BatchFloatingInverseDynamics<DOF, NV, 1> + rne::CentroidalMomentum<DOF, NV> + Default,
 {
     let urdf = format!("{folder}/{name}.urdf");
     let file = format!("{}/../../trees/{name}_floating.yaml", env!("CARGO_MANIFEST_DIR"));
@@ -89,6 +89,7 @@ where
     let mut random = fastrand::Rng::with_seed(1);
     let states: Vec<State<DOF>> = (0..STATES).map(|_| State::random(&mut random)).collect();
     let mut competitors = competitors::ours::<R, DOF, NV>(&states);
+    competitors.push(competitors::batch::<R, DOF, NV>(&states));
     competitors.extend(competitors::machine(&states, &arm));
     competitors.extend(competitors::dynibo(&urdf, &joints, &states));
     competitors.extend(competitors::pinocchio(library, [folder, &format!("{name}_floating")], &states));

@@ -15,6 +15,8 @@ use std::ptr;
 #[cfg(feature = "batch")]
 use rne::BatchInverseDynamics;
 use rne::InverseDynamics;
+#[cfg(all(feature = "batch", feature = "functions"))]
+use rne::{BatchForwardDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix};
 #[cfg(feature = "functions")]
 use rne::{ForwardDynamics, InverseDynamicsDerivatives, MassMatrix};
 
@@ -41,6 +43,10 @@ pub(crate) enum Function {
     /// These quantities in the context.
     Matrices(&'static [c_int], Call),
     Batch(Batch),
+    /// Accelerations of many states.
+    BatchForwardDynamics(Batch),
+    /// These quantities of many states, one after the other in the context.
+    BatchMatrices(&'static [c_int], Batch),
     /// Many states of an arm that is compiled at run time.
     #[cfg(feature = "machine")]
     Machine(rne_codegen::Function),
@@ -204,28 +210,112 @@ fn copy<const DOF: usize>(place: &mut [f64], rows: &[[f64; DOF]]) {
     place[..numbers.len()].copy_from_slice(numbers);
 }
 
-/// Torques of `count` states.
+/// The numbers of each joint in an array from C.
+///
+/// # Safety
+/// Joint j's numbers start at j·count; `DOF·count` initialised ones, which nobody writes meanwhile.
+#[cfg(feature = "batch")]
+unsafe fn joints<'a, const DOF: usize>(x: *const f64, count: usize) -> [&'a [f64]; DOF] {
+    // SAFETY: as this function's.
+    std::array::from_fn(|j| unsafe { std::slice::from_raw_parts(x.add(j * count), count) })
+}
+
+/// The functions of many states whose result is a vector of the joints.
+#[cfg(feature = "batch")]
+macro_rules! batches {
+    ($($(#[$attribute:meta])* $name:ident: $capability:ident, $method:ident;)*) => {$(
+        $(#[$attribute])*
+        ///
+        /// # Safety
+        /// The pointers are as the module's page says, for `count` states of a robot with `DOF` joints.
+        pub(crate) unsafe extern "C" fn $name<R: $capability<DOF> + Default, const DOF: usize>(
+            _context: *mut c_void,
+            q: *const f64,
+            qd: *const f64,
+            third: *const f64,
+            out: *mut f64,
+            count: usize,
+        ) {
+            // SAFETY: as this function's.
+            let [q, qd, third] = [q, qd, third].map(|x| unsafe { joints::<DOF>(x, count) });
+            // SAFETY: the same places of `out`: the slices of different joints do not overlap, nor do they overlap the
+            // inputs. They are initialised, because the driver's memory is.
+            let room =
+                std::array::from_fn(|j| unsafe { std::slice::from_raw_parts_mut(out.add(j * count), count) });
+            let done = R::default().$method(q, qd, third, room);
+            // A panic aborts here: it cannot unwind out of `extern "C"`.
+            assert!(done.is_ok(), "all slices have the same length");
+        }
+    )*};
+}
+
+#[cfg(feature = "batch")]
+batches! {
+    /// Torques of `count` states.
+    batch: BatchInverseDynamics, inverse_dynamics_batch;
+    /// Accelerations of `count` states.
+    #[cfg(feature = "functions")]
+    batch_forward_dynamics: BatchForwardDynamics, forward_dynamics_batch;
+}
+
+/// Mass matrices of `count` states, a block after the other in the context.
 ///
 /// # Safety
 /// The pointers are as the module's page says, for `count` states of a robot with `DOF` joints.
-#[cfg(feature = "batch")]
-pub(crate) unsafe extern "C" fn batch<R: BatchInverseDynamics<DOF> + Default, const DOF: usize>(
-    _context: *mut c_void,
+#[cfg(all(feature = "batch", feature = "functions"))]
+pub(crate) unsafe extern "C" fn batch_mass_matrix<R: BatchMassMatrix<DOF> + Default, const DOF: usize>(
+    context: *mut c_void,
+    q: *const f64,
+    _qd: *const f64,
+    _qdd: *const f64,
+    _out: *mut f64,
+    count: usize,
+) {
+    // SAFETY: as this function's, and a context of ours, which nobody else has meanwhile.
+    let (q, blocks) = unsafe { (joints::<DOF>(q, count), &mut *context.cast::<crate::blocks::Blocks>()) };
+    // as Pinocchio, one half of the matrix
+    blocks.compute(
+        count,
+        DOF * DOF,
+        |element| element % DOF <= element / DOF,
+        |states, mut rows| {
+            let done = R::default().mass_matrix_batch(q.map(|x| &x[states.clone()]), rows.matrix());
+            assert!(done.is_ok(), "all slices have the same length, or none");
+        },
+    );
+}
+
+/// Both derivatives of the torques of `count` states, as the mass matrices.
+///
+/// # Safety
+/// The pointers are as the module's page says, for `count` states of a robot with `DOF` joints.
+#[cfg(all(feature = "batch", feature = "functions"))]
+pub(crate) unsafe extern "C" fn batch_derivatives<
+    R: BatchInverseDynamicsDerivatives<DOF> + Default,
+    const DOF: usize,
+>(
+    context: *mut c_void,
     q: *const f64,
     qd: *const f64,
     qdd: *const f64,
-    out: *mut f64,
+    _out: *mut f64,
     count: usize,
 ) {
-    use std::{array, slice};
-    // SAFETY: joint j's numbers start at j·count; `DOF·count` initialised ones each, which nobody writes meanwhile.
-    let joints = |x: *const f64| array::from_fn(|j| unsafe { slice::from_raw_parts(x.add(j * count), count) });
-    // SAFETY: the same places of `out`: the slices of different joints do not overlap, nor do they overlap the inputs.
-    // They are initialised, because the driver's memory is.
-    let tau = array::from_fn(|j| unsafe { slice::from_raw_parts_mut(out.add(j * count), count) });
-    let done = R::default().inverse_dynamics_batch(joints(q), joints(qd), joints(qdd), tau);
-    // A panic aborts here: it cannot unwind out of `extern "C"`.
-    assert!(done.is_ok(), "all slices have the same length");
+    // SAFETY: as this function's.
+    let arguments = [q, qd, qdd].map(|x| unsafe { joints::<DOF>(x, count) });
+    // SAFETY: a context of ours, which nobody else has meanwhile.
+    let blocks = unsafe { &mut *context.cast::<crate::blocks::Blocks>() };
+    blocks.compute(
+        count,
+        2 * DOF * DOF,
+        |_| true,
+        |states, mut rows| {
+            let [q, qd, qdd] = arguments.map(|joints| joints.map(|x| &x[states.clone()]));
+            let (by_q, by_qd) = (rows.matrix(), rows.matrix());
+            let done = R::default().inverse_dynamics_derivatives_batch(q, qd, qdd, by_q, by_qd);
+            assert!(done.is_ok(), "all slices have the same length, or none");
+        },
+    );
 }
 
 /// Many states of an arm that is compiled at run time.
@@ -285,6 +375,8 @@ pub extern "C" fn rp_kind(k: c_int) -> c_int {
         Some((_, Function::InverseDynamics(_))) => 0,
         Some((_, Function::ForwardDynamics(_))) => 1,
         Some((_, Function::Batch(_))) => 3,
+        Some((_, Function::BatchMatrices(..))) => 4,
+        Some((_, Function::BatchForwardDynamics(_))) => 5,
         #[cfg(feature = "machine")]
         Some((_, Function::Machine(crate::machine::TORQUES))) => 3,
         #[cfg(feature = "machine")]
@@ -308,7 +400,9 @@ pub unsafe extern "C" fn rp_func(k: c_int, robot: *const c_char) -> *const c_voi
             | Function::ForwardDynamics(call)
             | Function::Other(_, call)
             | Function::Matrices(_, call) => *call as *const c_void,
-            Function::Batch(batch) => *batch as *const c_void,
+            Function::Batch(batch) | Function::BatchForwardDynamics(batch) | Function::BatchMatrices(_, batch) => {
+                *batch as *const c_void
+            }
             #[cfg(feature = "machine")]
             Function::Machine(_) => machine as *const c_void,
         },
@@ -320,15 +414,20 @@ pub unsafe extern "C" fn rp_func(k: c_int, robot: *const c_char) -> *const c_voi
 ///
 /// # Safety
 /// `robot` is a string of C.
-#[cfg_attr(not(feature = "machine"), allow(unused_variables))]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rp_open(k: c_int, robot: *const c_char, _folder: *const c_char) -> *mut c_void {
     // SAFETY: as this function's.
-    #[cfg(feature = "machine")]
-    if let Some(robot) = unsafe { find(robot) }
-        && let Some((_, Function::Machine(function))) = competitor(robot, k)
-    {
-        return ptr::from_mut(Box::leak(Box::new(crate::machine::Machine::new(robot.file, *function)))).cast();
+    let robot = unsafe { find(robot) };
+    match robot.and_then(|robot| competitor(robot, k)) {
+        #[cfg(feature = "machine")]
+        Some((_, Function::Machine(function))) => {
+            let file = robot.map_or("", |robot| robot.file);
+            return ptr::from_mut(Box::leak(Box::new(crate::machine::Machine::new(file, *function)))).cast();
+        }
+        Some((_, Function::BatchMatrices(..))) => {
+            return ptr::from_mut(Box::leak(Box::new(crate::blocks::Blocks::default()))).cast();
+        }
+        _ => {}
     }
     let nothing = [f64::NAN; MOST_JOINTS * MOST_JOINTS];
     let tau = [f64::NAN; MOST_JOINTS];
@@ -342,15 +441,15 @@ pub unsafe extern "C" fn rp_open(k: c_int, robot: *const c_char, _folder: *const
 /// The context is one that [`rp_open`] made.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rp_keep(k: c_int, context: *mut c_void, keep: c_int) {
-    #[cfg(feature = "machine")]
-    if let Some((_, Function::Machine(_))) = competitor(&crate::ROBOTS[0], k) {
-        // SAFETY: a context of ours, which nobody else has meanwhile.
-        unsafe { (*context.cast::<crate::machine::Machine>()).keeps_all = keep != 0 };
-        return;
-    }
-    let _ = k;
     // SAFETY: a context of ours, which nobody else has meanwhile.
-    unsafe { (*context.cast::<Results>()).keep = keep != 0 }
+    unsafe {
+        match competitor(&crate::ROBOTS[0], k) {
+            #[cfg(feature = "machine")]
+            Some((_, Function::Machine(_))) => (*context.cast::<crate::machine::Machine>()).keeps_all = keep != 0,
+            Some((_, Function::BatchMatrices(..))) => (*context.cast::<crate::blocks::Blocks>()).keeps_all = keep != 0,
+            _ => (*context.cast::<Results>()).keep = keep != 0,
+        }
+    }
 }
 
 /// What competitor `k` computed in its last call with this context and `out`, or null.
@@ -365,6 +464,12 @@ pub unsafe extern "C" fn rp_result(k: c_int, context: *mut c_void, out: *const f
             // SAFETY: a context of ours, which nobody writes during this call.
             let machine = unsafe { &*context.cast::<crate::machine::Machine>() };
             return machine.matrices(what).map_or(ptr::null(), <[f64]>::as_ptr);
+        }
+        Some((_, Function::BatchMatrices(quantities, _))) => {
+            // SAFETY: a context of ours, which nobody writes during this call.
+            let blocks = unsafe { &*context.cast::<crate::blocks::Blocks>() };
+            let place = quantities.iter().position(|quantity| *quantity == what);
+            return place.map_or(ptr::null(), |place| blocks.part(place, quantities.len()).as_ptr());
         }
         Some((_, Function::Matrices(quantities, _))) if quantities.contains(&what) => {}
         Some((_, Function::Other(quantity, _))) if *quantity == what => return out,

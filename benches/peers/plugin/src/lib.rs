@@ -1,6 +1,7 @@
 //! The robots of the comparison, one struct each, and the table that the C interface looks them up in.
 
 mod abi;
+mod blocks;
 #[cfg(feature = "machine")]
 mod machine;
 
@@ -20,6 +21,10 @@ macro_rules! robots {
             #[cfg_attr(
                 feature = "functions",
                 derive(rne::MassMatrix, rne::ForwardDynamics, rne::InverseDynamicsDerivatives)
+            )]
+            #[cfg_attr(
+                all(feature = "batch", feature = "functions"),
+                derive(rne::BatchMassMatrix, rne::BatchForwardDynamics, rne::BatchInverseDynamicsDerivatives)
             )]
             #[cfg_attr(not(feature = "reduced"), robot(path = $path, allow_lints))]
             #[cfg_attr(feature = "reduced", robot(path = $path, form = "reduced", allow_lints))]
@@ -49,6 +54,21 @@ macro_rules! robots {
                 (
                     c"rne_derivatives_tau_m",
                     Function::Matrices(&[DTAU_DQ, DTAU_DQD, TAU, MASS_MATRIX], abi::derivatives::<$name, $dof, true>),
+                ),
+                #[cfg(all(feature = "batch", feature = "functions"))]
+                (
+                    c"rne_batch_mass_matrix",
+                    Function::BatchMatrices(&[MASS_MATRIX], abi::batch_mass_matrix::<$name, $dof>),
+                ),
+                #[cfg(all(feature = "batch", feature = "functions"))]
+                (
+                    c"rne_batch_forward_dynamics",
+                    Function::BatchForwardDynamics(abi::batch_forward_dynamics::<$name, $dof>),
+                ),
+                #[cfg(all(feature = "batch", feature = "functions"))]
+                (
+                    c"rne_batch_derivatives",
+                    Function::BatchMatrices(&[DTAU_DQ, DTAU_DQD], abi::batch_derivatives::<$name, $dof>),
                 ),
                 #[cfg(feature = "machine")]
                 (c"rne_machine_batch", Function::Machine(machine::TORQUES)),

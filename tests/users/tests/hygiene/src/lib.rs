@@ -10,9 +10,10 @@
 
 use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option, result::Result};
 use ::dynamics::{
-    Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumObserver, MovingBase,
-    Regressor, TipWrenches,
+    Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
+    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CoriolisMatrix, Energy, FloatingBase,
+    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix,
+    MomentumObserver, MovingBase, Regressor, TipWrenches,
 };
 
 /// Seven joints, with limits.
@@ -37,13 +38,18 @@ where
     InverseDynamics,
     BatchInverseDynamics,
     MassMatrix,
+    BatchMassMatrix,
     CoriolisMatrix,
     ForwardDynamics,
+    BatchForwardDynamics,
     Kinematics,
     Energy,
     CentreOfMass,
     Regressor,
     InverseDynamicsDerivatives,
+    BatchInverseDynamicsDerivatives,
+    FloatingBase,
+    BatchFloatingInverseDynamics,
     JointWrenches,
     MomentumObserver,
     MovingBase,
@@ -91,11 +97,15 @@ pub struct Wam;
     MassMatrix,
     CoriolisMatrix,
     ForwardDynamics,
+    BatchForwardDynamics,
     Kinematics,
     Energy,
     CentreOfMass,
     Regressor,
     InverseDynamicsDerivatives,
+    BatchInverseDynamicsDerivatives,
+    FloatingBase,
+    BatchFloatingInverseDynamics,
     JointWrenches,
     MomentumObserver,
     MovingBase,
