@@ -301,8 +301,8 @@ pub fn derive_contact_dynamics(input: TokenStream) -> TokenStream {
 /// The tips are those of [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.
 ///
 /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
-/// gets a constant with the operations, `FLOATING_INVERSE_DYNAMICS_DERIVATIVES_OPERATIONS`; `DOF`, names and limits come
-/// with `InverseDynamics`.
+/// gets a constant with the operations, `FLOATING_INVERSE_DYNAMICS_DERIVATIVES_OPERATIONS`; `DOF`, names and limits
+/// come with `InverseDynamics`.
 #[proc_macro_derive(FloatingInverseDynamicsDerivatives, attributes(robot))]
 pub fn derive_floating_inverse_dynamics_derivatives(input: TokenStream) -> TokenStream {
     expand::capability(Capability::FloatingInverseDynamicsDerivatives, input.into()).into()

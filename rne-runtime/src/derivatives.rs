@@ -1,5 +1,5 @@
-//! Derivatives of the torques, and of the wrench on a base that nothing holds, by dual numbers through the seven steps: exact
-//! up to rounding, one direction at a time.
+//! Derivatives of the torques, and of the wrench on a base that nothing holds, by dual numbers through the seven steps:
+//! exact up to rounding, one direction at a time.
 
 use rne_model::FixedFrame;
 

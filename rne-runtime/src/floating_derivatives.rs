@@ -89,8 +89,8 @@ pub struct DynFloatingTorqueDerivatives<T> {
 
 #[cfg(feature = "std")]
 impl<T: Scalar> DynFloatingTorqueDerivatives<T> {
-    /// As [`FloatingTorqueDerivatives::to_pinocchio`], of a mass matrix with 6 + n rows. Rows that `mass` lacks are left
-    /// out.
+    /// As [`FloatingTorqueDerivatives::to_pinocchio`], of a mass matrix with 6 + n rows. Rows that `mass` lacks are
+    /// left out.
     #[must_use]
     pub fn to_pinocchio(&self, base: &BaseMotion<T>, mass: &[Vec<T>]) -> [Vec<Vec<T>>; 2] {
         let units = Units::new(base);
@@ -105,7 +105,7 @@ impl<T: Scalar> DynFloatingTorqueDerivatives<T> {
     }
 }
 
-/// What a - g changes by, for a unit of each linear and angular variable of the base.
+/// Changes of a - g for a unit of each linear and angular variable of the base.
 struct Units<T> {
     /// By its rotation, less that of gravity: e × g.
     turned: [[T; 3]; 3],

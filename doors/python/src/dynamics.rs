@@ -106,8 +106,8 @@ macro_rules! returned {
     };
     (FloatingTorqueDerivatives) => {
         "dq and dqd, of shape (6 + n, n) or (N, 6 + n, n), and domega, of shape (6 + n, 3) or (N, 6 + n, 3); \
-         `derivatives_to_pinocchio` makes Pinocchio's matrices of them; `out` is one array of shape ((6 + n) (2 n + 3),) \
-         or (N, (6 + n) (2 n + 3))."
+         `derivatives_to_pinocchio` makes Pinocchio's matrices of them; `out` is one array of shape \
+         ((6 + n) (2 n + 3),) or (N, (6 + n) (2 n + 3))."
     };
     (AccelerationsAndWrenches) => {
         "the acceleration of the base, linear then angular, of shape (6,) or (N, 6), those of the joints, of shape \

@@ -53,11 +53,11 @@ pub(crate) struct Sensitivity<'s> {
 
 /// The derivatives where nothing holds the base.
 struct OfBase<'s> {
-    /// Of the wrench on the base, by the position and by the rate of each joint.
+    /// The wrench on the base, by the position and by the rate of each joint.
     by_joints: Vec<[Wrench<'s>; 2]>,
-    /// Of the torque of each joint, by the angular velocity of the base.
+    /// The torque of each joint, by the angular velocity of the base.
     torques: Vec<Vector<'s>>,
-    /// Of the wrench on the base, by the components of its angular velocity.
+    /// The wrench on the base, by the components of its angular velocity.
     wrench: [Wrench<'s>; 3],
 }
 
