@@ -322,6 +322,13 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats, Floats]:
         """Accelerations of a robot on a floating base while its contacts hold tips, and the wrenches of these."""
+    def floating_inverse_dynamics_derivatives(
+        self, q: Joints, qd: Joints, qdd: Joints, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats]:
+        """Derivatives of `inverse_dynamics_of_floating_base` by q, by q̇ and by the angular velocity of the base."""
     # <!-- end -->
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,
