@@ -49,7 +49,7 @@ pub(crate) fn physical(cx: &Context, node: &Node) -> Option<bool> {
     choice(cx, node, "answer", &[("true", true), ("false", false)])
 }
 
-/// The place of what is said of an inertia.
+/// The place of a message about an inertia.
 pub(crate) fn place_of_inertia(node: &Node) -> Range<usize> {
     ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head()
 }

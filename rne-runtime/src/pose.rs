@@ -22,8 +22,8 @@ impl<T: Scalar> Pose<T> {
 }
 
 impl Pose<f64> {
-    /// Whether it is that of a rigid body, as far as single precision can say: the rows of its rotation are unit vectors
-    /// at right angles, right-handed, to 1e-4. One with a NaN counts as rigid, because what is computed of it is NaN.
+    /// Whether it is the pose of a rigid body, as far as single precision can tell: the rows of its rotation are unit
+    /// vectors at right angles, right-handed, to 1e-4. A pose with a NaN counts as rigid, because its results are NaN.
     #[must_use]
     pub fn is_rigid(&self) -> bool {
         const MOST_ROUNDED: f64 = 1e-4;

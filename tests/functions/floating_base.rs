@@ -315,8 +315,8 @@ fn contacts_exert_the_rate_of_the_momentum() {
     }
 }
 
-/// Where the row of a joint begins with a turn about its axis, the reduced form and the rows of contacts count one angle
-/// from different zeros: by any part of a turn, or by a right angle, so that a cosine is the negative of a sine.
+/// Where the row of a joint begins with a turn about its axis, the reduced form and the rows of contacts count one
+/// angle from different zeros: by any part of a turn, or by a right angle, so that a cosine is the negative of a sine.
 #[test]
 fn contacts_behind_a_turn_about_an_axis_are_proved() {
     for rpy in ["[-2.2, 0, 0]", "[-2.2, 3*pi/2, 1.2]"] {

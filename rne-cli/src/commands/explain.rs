@@ -237,8 +237,8 @@ section of docs/reduced-form.md that explains the formula.";
 /// How arguments are given.
 const OF_EVAL: &str = "\
 Give each function all of its options and no others. Some may be missing: --qd, --qdd and the options --base-… are \
-zero by default, --base-rotation is the identity, --gravity is the gravity of the robot file, and nothing acts at a tip \
-without --tip-wrench. A LIST has one number per joint, base to tip: \
+zero by default, --base-rotation is the identity, --gravity is the gravity of the robot file, and nothing acts at a \
+tip without --tip-wrench. A LIST has one number per joint, base to tip: \
 rad for a revolute joint, m for a prismatic joint. pi/2 and 'deg(30)' are numbers, too. --wrench is the force and the \
 moment that the last link exerts at the tip, N and N m, in tip axes. --payload is in kg, m and kg m², in tip axes. \
 The options --base-… are in frame 0. rne rounds the tables that it prints; --json prints every digit, in the shape \

@@ -84,7 +84,7 @@ fn is_well_conditioned(state: &State, arm: &DynArm) -> bool {
 /// Whether contacts can hold an arm as they should, by what its forward dynamics in contact returns: redundant ones
 /// cannot where their tips would have to move in different ways, and their forces are large.
 fn can_hold(numbers: &[f64], arm: &DynArm) -> bool {
-    /// Of the tips, m/s² or rad/s².
+    /// The largest acceleration of a tip that is held, m/s² or rad/s².
     const MOST: f64 = 1e-3;
     let forces = numbers.len().saturating_sub(6 * arm.tips().len());
     numbers[forces..].iter().all(|force| force.abs() * Contact::DAMPING < MOST)

@@ -318,7 +318,7 @@ fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, F
     Ok(Pose { rotation: turn.rotation(), translation: triple(values, 0) })
 }
 
-/// What a rotation is.
+/// The condition for nine numbers to be a rotation, for error messages.
 pub(crate) const ROTATION: &str =
     "its three rows must have the length 1, be at right angles to each other, and be right-handed";
 
