@@ -293,8 +293,8 @@ pub struct TorqueDerivatives<const DOF: usize, T> {
 
 /// How the torques change with the state.
 #[diagnostic::on_unimplemented(
-    note = "`InverseDynamicsDerivatives` belongs into the same `derive`: `#[derive(InverseDynamicsDerivatives)]`, and with batches \
-            `#[derive(InverseDynamicsDerivatives, BatchInverseDynamicsDerivatives)]`"
+    note = "`InverseDynamicsDerivatives` belongs into the same `derive`: `#[derive(InverseDynamicsDerivatives)]`, and \
+            with batches `#[derive(InverseDynamicsDerivatives, BatchInverseDynamicsDerivatives)]`"
 )]
 pub trait InverseDynamicsDerivatives<const DOF: usize> {
     /// ∂τ/∂q and ∂τ/∂q̇ of [`inverse_dynamics`](InverseDynamics::inverse_dynamics) at a state, row = torque, column =

@@ -188,8 +188,8 @@ pub trait BatchFloatingInverseDynamics<const DOF: usize, const VELOCITIES: usize
     /// Writes to `tau` the torques (N m or N), and to `wrench` the force (N) and then the moment (N m) that must act ON
     /// the base beside gravity, about the origin of frame 0 and in its axes, as
     /// [`inverse_dynamics_of_floating_base`](FloatingBase::inverse_dynamics_of_floating_base) does. The vectors of
-    /// `base` are slices of their components; its velocity is not read. `wrenches` are exerted BY the robot at its tips;
-    /// an empty slice in one is zero. On the widest vector unit that the processor has.
+    /// `base` are slices of their components; its velocity is not read. `wrenches` are exerted BY the robot at its
+    /// tips; an empty slice in one is zero. On the widest vector unit that the processor has.
     ///
     /// # Errors
     ///

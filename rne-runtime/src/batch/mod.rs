@@ -33,8 +33,9 @@
 //!
 //! A torque depends on its state and on the vector unit, not on the states beside it, the length of the arrays or the
 //! number of threads. In the form `seven_steps`, on a unit without fused multiply-add (SSE2), it has the bits that
-//! [`inverse_dynamics`](crate::InverseDynamics::inverse_dynamics) gives. On one with it, sines and cosines are rounded less
-//! often, and in the reduced forms the terms of sums stand in another order: torques differ in their last bits.
+//! [`inverse_dynamics`](crate::InverseDynamics::inverse_dynamics) gives. On one with it, sines and cosines are rounded
+//! less often, and in the reduced forms the terms of sums stand in another order: torques differ in their last bits.
+//! The results of the other functions are like that, too.
 //!
 //! # Method
 //!
@@ -86,7 +87,7 @@ pub trait BatchFunction<const INPUTS: usize, const ANGLES: usize, const OUTPUTS:
     const RESULTS: &[Argument];
     /// How many inputs have a number for each state; those behind may be empty, and are zero then.
     const REQUIRED: usize;
-    /// Which output each element of the results is, or [`ZERO`].
+    /// The output that each element of the results is, or [`ZERO`].
     const PLACES: [u16; ELEMENTS];
     /// Whether all elements of the results are wanted, and each is an output of its own.
     const IS_WHOLE: bool;
