@@ -123,8 +123,8 @@ fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
     all.iter().map(&mut told).collect()
 }
 
-/// The code that computes the outputs. Where it is shown, its statements are objects; else each is its name and its value.
-/// The page writes their text, which the tests compare with the text that is emitted.
+/// The code that computes the outputs. Where it is shown, its statements are objects; else each is its name and its
+/// value. The page writes their text, which the tests compare with the text that is emitted.
 fn program(inspection: &Inspection, is_shown: bool) -> Value {
     let told = |statement: &Statement| {
         if !is_shown {
