@@ -214,7 +214,7 @@ class Cards {
 
   /** The code of a component and its numbers, or why there is none. */
   codeOf({ name, general, became, statements = [] }, isUnfolded) {
-    if (isUnfolded) return this.codeLine({ name, value: general, rust: `let ${name} = ${codeOf(general)};` });
+    if (isUnfolded) return this.codeLine({ name, value: general });
     if (statements.length) return element("div", {}, ...statements.map((statement) => this.codeLine(statement)));
     const said = {
       same: () => [
@@ -288,10 +288,8 @@ class Cards {
   }
 
   /** A statement in the language of choice, in one line: it breaks where the page is narrow. */
-  textOf({ name, value, rust }) {
-    return this.page.language === "c"
-      ? `const double ${name} = ${codeOf(value, true)};`
-      : rust.replace(/\n\s*/g, " ");
+  textOf({ name, value }) {
+    return this.page.language === "c" ? `const double ${name} = ${codeOf(value, true)};` : `let ${name} = ${codeOf(value)};`;
   }
 
   reducedCode() {

@@ -123,13 +123,14 @@ fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
     all.iter().map(&mut told).collect()
 }
 
-/// The code that computes the outputs, with its text where that is shown; else a statement is its name and its value.
-fn program(inspection: &Inspection, with_text: bool) -> Value {
+/// The code that computes the outputs. Where it is shown, its statements are objects; else each is its name and its
+/// value. The page writes their text, which the tests compare with the text that is emitted.
+fn program(inspection: &Inspection, is_shown: bool) -> Value {
     let told = |statement: &Statement| {
-        if !with_text {
+        if !is_shown {
             return json!([statement.name, statement.value]);
         }
-        let mut told = json!({ "name": statement.name, "value": statement.value, "rust": statement.rust });
+        let mut told = json!({ "name": statement.name, "value": statement.value });
         if let Some(component) = statement.component.as_ref().filter(|component| **component != statement.name) {
             told["component"] = json!(component);
         }

@@ -75,7 +75,7 @@ const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, s
     slips,
     right,
     value: component ? String(equations.value(component.name)) : "0",
-    rust: data.programs.folded.statements.map(({ name, value, rust }) => [`let ${name} = ${codeOf(value)};`, rust]),
+    rust: ["folded", "reduced"].map((of) => data.programs[of].statements.map(({ name, value }) => `let ${name} = ${codeOf(value)};`)),
     c: data.programs.folded.statements.map(({ name, value }) => `const double ${name} = ${codeOf(value, true)};`),
   };
 });

@@ -19,6 +19,8 @@ struct Asked {
     traces: Vec<DynTrace<f64>>,
     /// The frames of the links in the world.
     poses: Vec<Vec<Pose<f64>>>,
+    /// The statements that are emitted, of the seven steps and of the reduced form.
+    code: [Vec<String>; 2],
 }
 
 /// The shipped robots that are tried, and trees by rows of either convention.
@@ -106,7 +108,11 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
             "wrench": { "f": force, "n": moment },
         }));
     }
-    (Asked { robot, states, traces, poses }, json!({ "data": data, "states": asked }))
+    let code = [&torques, &reduced].map(|program| {
+        let statements = Inspection::new(&robot, program).statements;
+        statements.iter().map(|statement| without_blanks(&statement.rust)).collect()
+    });
+    (Asked { robot, states, traces, poses, code }, json!({ "data": data, "states": asked }))
 }
 
 /// What node says to the questions; nothing where there is no node.
@@ -155,7 +161,7 @@ fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitt
     let Some(answers) = answers(&questions) else { return };
     assert_eq!(answers.len(), asked.len());
     let mut named = (0, 0);
-    for (Asked { robot, states, .. }, answer) in asked.iter().zip(&answers) {
+    for (Asked { robot, states, code, .. }, answer) in asked.iter().zip(&answers) {
         let name = &robot.name;
         for ([free, with_wrench, gravity], said) in states.iter().zip(answer["answers"].as_array().expect("a list")) {
             // with the runtime's sine and cosine the same bits
@@ -167,9 +173,10 @@ fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitt
             close(&numbers(&said["equations"]), free, 1e-13, name);
             close(&numbers(&said["reduced"]), free, 1e-11, name);
         }
-        for pair in answer["rust"].as_array().expect("a list") {
-            let text = |index: usize| without_blanks(pair[index].as_str().expect("a text"));
-            assert_eq!(text(0), text(1), "{name}");
+        for (lines, emitted) in answer["rust"].as_array().expect("two programs").iter().zip(code) {
+            let lines =
+                lines.as_array().expect("a list").iter().map(|line| without_blanks(line.as_str().expect("a text")));
+            assert_eq!(&lines.collect::<Vec<_>>(), emitted, "{name}");
         }
         let value: f64 = answer["value"].as_str().and_then(|text| text.parse().ok()).expect("a number");
         assert_eq!(answer["right"], "Right.", "{name}");
