@@ -394,7 +394,7 @@ impl Piece {
             return start + only.broken(indent) + end;
         }
         let texts: Vec<Annotated> = elements.iter().map(|element| element.broken(indent + 4) + ",").collect();
-        let fills = *open == '[' && texts.iter().all(|text| text.as_str().len() <= SHORT + 1);
+        let fills = *open == '[' && !is_nested && texts.iter().all(|text| text.as_str().len() <= SHORT + 1);
         let (mut text, mut column, last) = (start, WIDTH, texts.len() - 1);
         for (index, element) in texts.into_iter().enumerate() {
             let width = element.as_str().len();

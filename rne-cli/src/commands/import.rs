@@ -32,8 +32,7 @@ URDF with joints outside the arm: --lock torso_lift_joint=0.1 --lock-others.
 
 rne joins links that are fixed to each other. rne replaces an angle within 2e-4
 rad of a multiple of pi/12 by this multiple, and reports the resulting change.
-Without -o rne writes the robot file to standard output and its report to
-standard error.")]
+Without -o the robot file goes to standard output, the report to standard error.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// URDF file, or MJCF file, whose root element is mujoco; - is standard input

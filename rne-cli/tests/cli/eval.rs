@@ -341,7 +341,8 @@ fn a_moving_base_is_under_the_gravity_of_the_file_unless_told() {
             &[
                 "inverse_dynamics takes no",
                 name,
-                "inverse_dynamics_on_moving_base, inverse_dynamics_of_floating_base and floating_regressor do",
+                "inverse_dynamics_on_moving_base, inverse_dynamics_of_floating_base, floating_regressor and \
+                 floating_inverse_dynamics_derivatives do",
             ],
         );
     }
@@ -371,7 +372,8 @@ fn functions_take_their_arguments_and_no_others() {
         "inverse_dynamics",
         &[q, ["--tip-wrench", "tip=0,0,0,0,0,0"]].concat(),
         &["takes no --tip-wrench; inverse_dynamics_with_wrenches, forward_dynamics_with_wrenches, \
-             inverse_dynamics_of_floating_base, floating_bias and floating_forward_dynamics do"],
+             inverse_dynamics_of_floating_base, floating_bias, floating_forward_dynamics and \
+             floating_inverse_dynamics_derivatives do"],
     );
     let (zeros, mirrored) = (["--base-rotation", "0,0,0,0,0,0,0,0,0"], ["--base-rotation", "1,0,0,0,1,0,0,0,-1"]);
     call(2, "tip_jacobians", &[q, zeros].concat(), &["--base-rotation is no rotation: its three rows must"]);

@@ -225,7 +225,9 @@ fn loaded<V: Vector, const N: usize>(
     required: usize,
 ) -> [Register<V>; N] {
     let mut registers = [Register(V::splat(V::Element::ZERO)); N];
-    // Not a loop, as for angles: a loop over the inputs of a large robot writes registers to memory in parts.
+    // Not a loop, as for angles: a loop over the inputs of a large robot writes registers to memory in parts. Without
+    // optimization each of them would have a place of its own on the stack, so it is a loop there.
+    #[cfg(not(debug_assertions))]
     macro_rules! each {
         ($($index:literal)*) => {
             $(if $index < N && ($index < required || at < numbers[$index].len()) {
@@ -233,6 +235,7 @@ fn loaded<V: Vector, const N: usize>(
             })*
         };
     }
+    #[cfg(not(debug_assertions))]
     each!(
         0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15
         16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31
@@ -243,7 +246,7 @@ fn loaded<V: Vector, const N: usize>(
         96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111
         112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127
     );
-    for index in 128..N {
+    for index in if cfg!(debug_assertions) { 0 } else { 128 }..N {
         if index < required || at < numbers[index].len() {
             registers[index] = Register(V::load(unit, &numbers[index][at]));
         }
