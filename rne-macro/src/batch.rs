@@ -71,6 +71,8 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
         |program| body(program, krate, &answers(function, &sizes)),
     );
     let method = sizes.method(function, &target.number(), krate, &body);
+    // a robot that is not known uses no argument
+    let unused = program.is_none().then(|| quote!(#[allow(unused_variables)]));
     let tests = program.as_ref().map(|program| {
         let tests = of_batch(function);
         own_tests::module(&item, &attribute, trait_name(function), tests, program.dof, &loaded.text)
@@ -78,7 +80,7 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     quote! {
         #refused
         #[automatically_derived]
-        #[allow(unused_variables, unused_mut)] // of a robot that is not known
+        #unused
         #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
         #[allow(clippy::inline_always)] // into the code of each vector unit
         impl #impl_generics #krate::#name<#(#of_trait),*> for #ident #type_generics #where_clause {
@@ -143,7 +145,7 @@ impl Sizes {
         let results = answers(function, self).into_iter().map(|Answer(name, lengths)| {
             let name = format_ident!("{name}");
             let kind = lengths.iter().rev().fold(quote!(&mut [#number]), |kind, length| quote!([#kind; #length]));
-            quote!(mut #name: #kind)
+            quote!(#name: #kind)
         });
         quote! {
             fn #name<#number: #krate::BatchScalar>(
@@ -226,20 +228,21 @@ fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream
         [rows, columns] => quote!(#krate::batch::Argument::matrix(#name, #rows, #columns)),
         lengths => quote!(#krate::batch::Argument::vector(#name, #(#lengths)*)),
     });
-    let elements = match answers {
-        [Answer(name, lengths)] if lengths.len() == 1 => format_ident!("{name}").into_token_stream(),
+    let (mutable, elements) = match answers {
+        [Answer(name, lengths)] if lengths.len() == 1 => (None, format_ident!("{name}").into_token_stream()),
         _ => {
-            let parts = answers.iter().map(|Answer(name, lengths)| {
-                let name = format_ident!("{name}");
+            let names = answers.iter().map(|Answer(name, _)| format_ident!("{name}")).collect::<Vec<_>>();
+            let parts = answers.iter().zip(&names).map(|(Answer(_, lengths), name)| {
                 let arrays = if lengths.len() == 1 { quote!(#name) } else { quote!(#name.as_flattened_mut()) };
                 // borrowed, for arguments may live differently long
                 quote!(::core::iter::Iterator::map(#arrays.iter_mut(), |numbers| &mut **numbers))
             });
             let parts = parts.reduce(|all, part| quote!(::core::iter::Iterator::chain(#all, #part)));
-            quote!({
+            let elements = quote!({
                 let mut all = #parts;
                 ::core::array::from_fn(|_| ::core::iter::Iterator::next(&mut all).unwrap_or_default())
-            })
+            });
+            (Some(quote!(let (#(mut #names,)*) = (#(#names,)*);)), elements)
         }
     };
     let (angles, statements) = (body.angles(), body.beyond_angles(&outputs));
@@ -269,6 +272,7 @@ fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream
                 #statements
             }
         }
+        #mutable
         #krate::batch::run(&Code, unit, [#(#numbers),*], #elements)
     }
 }
