@@ -50,9 +50,13 @@ pub(crate) fn lower(
         let joint = name.joint.checked_sub(1).and_then(|joint| heading.robot.joints.get(joint));
         joint.is_some_and(|joint| joint.row.kind == JointKind::Prismatic)
     };
+    // A length of a joint that slides may be the angle of a joint that follows it.
+    let within_angles = lowering.within_angles();
     let is_angle = |definition: &Definition| {
         let Name { quantity, .. } = definition.name;
-        quantity.is_of_an_angle() && !(quantity == Quantity::FollowerPosition && slides(definition.name))
+        let is_named =
+            quantity.is_of_an_angle() && !(quantity == Quantity::FollowerPosition && slides(definition.name));
+        is_named || (definition.is_node && within_angles.contains(&definition.at.magnitude()))
     };
     let (of_angles, definitions): (Vec<_>, Vec<_>) = definitions.into_iter().partition(is_angle);
     let mut writing = Writing { lowering: &lowering, values: Values::default(), known: FxHashMap::default() };
@@ -312,6 +316,19 @@ impl<'w> Lowering<'w> {
 
     fn live_nodes(&self) -> impl Iterator<Item = (Ref, Op)> {
         self.written.graph.nodes().filter(|&(id, _)| self.is_live(id))
+    }
+
+    /// The nodes of which the angles of sines and cosines are made.
+    fn within_angles(&self) -> FxHashSet<Ref> {
+        let angle = |(_, op)| if let Op::Sine(angle) | Op::Cosine(angle) = op { Some(angle.magnitude()) } else { None };
+        let mut waiting: Vec<Ref> = self.live_nodes().filter_map(angle).collect();
+        let mut found = FxHashSet::default();
+        while let Some(node) = waiting.pop() {
+            if found.insert(node) {
+                waiting.extend(self.written.graph.op(node).operands().map(Ref::magnitude));
+            }
+        }
+        found
     }
 
     fn arguments(&self) -> BTreeSet<Name> {

@@ -207,6 +207,36 @@ fn code_of_robots_with_followers_is_the_runtime() {
     }
 }
 
+/// The angle of a joint that follows a slide is a length of the slide too, where its offset is a coordinate of the
+/// centre of mass.
+#[test]
+fn an_angle_may_be_a_length() {
+    let yaml = "
+format: 2
+name: winch
+source: own
+convention: modified
+gravity: [0, 0, -9.81]
+joints:
+  - name: slide
+    type: prismatic
+    dh: {theta: 0, d: 0, a: 0.2, alpha: 0}
+    link: {mass: 2, com: [0.1, 0, 0.3], inertia: {xx: 0.5, yy: 0.8, zz: 0.8}}
+  - name: drum
+    type: revolute
+    dh: {theta: 0, d: 0, a: 0.2, alpha: 0.3}
+    link: {mass: 2, com: [0.1, 0.1, 0.3], inertia: {xx: 0.5, yy: 0.8, zz: 0.8}}
+couplings:
+  - {joint: drum, follows: {slide: 1}, offset: 0.3}
+";
+    let robot = Reader::new("winch").trees().couplings().read(yaml).expect("it is right").robot;
+    for maker in Maker::CODE {
+        let mut worst = Worst::default();
+        compare_at_states(&Arm::by_no_choice(&robot, maker), maker, &mut worst);
+        worst.at_most(TOLERANCE, &format!("a length as an angle, {maker}"));
+    }
+}
+
 /// The function with numbers of every link is refused by name; every other one has a form that is proved.
 #[test]
 fn functions_of_every_link_are_refused_and_the_others_are_proved() {

@@ -13,7 +13,7 @@ use rne_certify::image::Image;
 use rne_certify::joint_functions::JointFunction;
 use rne_certify::observer::LowPass;
 use rne_certify::{misra, sha256};
-use rne_codegen::{Form, Function, Program};
+use rne_codegen::{Argument, Form, Function, Program};
 use rne_emit::{CCode, Precision, Prefix};
 use rne_model::Robot;
 
@@ -267,6 +267,27 @@ fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
     ];
     if let Some((option, _)) = of_c.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
         return Err(Failure::usage(format_args!("{TYPED}{option}{TYPED:#} is for {TYPED}--lang c{TYPED:#}")));
+    }
+    // a list of options that choose code: others write files or stop the compiler
+    let chooses = |word: &str| ["-f", "-m", "-O", "-W", "--param", "-C"].iter().any(|start| word.starts_with(start));
+    let words = arguments.cc_options.split_whitespace();
+    let writes = |word: &str| ["-fdump", "-flto", "-fsyntax-only"].iter().any(|start| word.starts_with(start));
+    if let Some(word) = words.into_iter().find(|word| !chooses(word) || writes(word)) {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--cc-options{TYPED:#} takes options that choose the code, such as -O3, -fno-schedule-insns or \
+             -mtune=cortex-a5, but not `{word}`"
+        )));
+    }
+    let of_joints = |argument: &Argument| {
+        matches!(argument, Argument::Positions | Argument::Rates | Argument::Accelerations | Argument::Torques)
+    };
+    if arguments.lang != Language::C
+        && let Some(function) = arguments.functions.iter().find(|of| !of.arguments().iter().all(of_joints))
+    {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--lang rust{TYPED:#} certifies functions of joints alone; for {function}, give \
+             {TYPED}--lang c{TYPED:#}"
+        )));
     }
     if !arguments.observer {
         return Ok(());

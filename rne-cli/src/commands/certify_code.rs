@@ -64,8 +64,9 @@ pub(super) fn build(
         Language::C => {
             text = code.source(&header);
             write(&c_source, &text)?;
-            let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"], &more].concat();
-            compile(&own, &[&c_source])?;
+            let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
+            // behind those of the processor, as the certificate lists them
+            compile(&own, &[&more[..], &[&c_source]].concat())?;
             options = [&board::OPTIONS[..], &["-ffunction-sections"], &flags, &more].concat();
             hashes = BTreeMap::from([
                 (header.clone(), sha256(code.header().as_bytes())),
