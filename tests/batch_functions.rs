@@ -51,7 +51,7 @@ struct Drifting;
 /// Around the lengths of a register, and beyond those for which threads are used.
 const LENGTHS: [usize; 8] = [0, 1, 7, 8, 9, 17, 100, 8_203];
 
-/// Random numbers: so many columns of so many states.
+/// Random numbers between -`size` and `size`: N columns with a number for each state.
 fn columns<T: BatchScalar, const N: usize>(seed: u64, size: f64, states: usize) -> [Vec<T>; N] {
     let mut rng = Rng::with_seed(seed);
     from_fn(|_| (0..states).map(|_| T::from_f64(size * (2.0 * rng.f64() - 1.0))).collect())
@@ -125,7 +125,7 @@ impl<T: BatchScalar, const DOF: usize> Motion<T, DOF> {
     }
 }
 
-/// The largest difference of two lists, in units of the largest number; NaN beside NaN is none.
+/// The largest difference of two lists, divided by the largest number. Two NaN in the same place are equal.
 fn difference<T: Copy + Into<f64>>(a: &[T], b: &[T]) -> f64 {
     let largest = a.iter().fold(f64::MIN_POSITIVE, |largest, x| largest.max((*x).into().abs()));
     let differences = a.iter().zip(b).map(|(a, b)| {

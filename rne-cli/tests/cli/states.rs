@@ -279,7 +279,7 @@ fn a_negative_mass_of_a_payload_is_refused() {
     assert!(!out.exists(), "a file is whole or not there");
 }
 
-/// Rows whose rotation is none are refused, as `rne eval --base-rotation` refuses one.
+/// A table of states is refused if a row has a matrix that is no rotation. `rne eval --base-rotation` refuses it, too.
 #[test]
 fn a_rotation_that_is_none_is_refused() {
     for (function, first, at) in [("tip_jacobians", "base_rotation_xx", 2), ("floating_potential_energy", "pose_xx", 2)]

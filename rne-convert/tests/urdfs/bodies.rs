@@ -53,7 +53,7 @@ fn bodies_that_are_none() {
     assert!(!kept.robot.joints[0].is_physical());
 }
 
-/// The same of a base that floats.
+/// An inertia of a floating base that no body can have is refused or kept in the same way.
 #[test]
 fn a_base_that_is_no_body() {
     let urdf = pendulum("").replace(

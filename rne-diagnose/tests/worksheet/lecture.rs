@@ -282,7 +282,7 @@ pub(crate) fn six(convention: &str) -> Robot {
     Robot::from_yaml(&format!("{head}joints:\n{joints}")).unwrap()
 }
 
-/// The same where links 2 and 5 have their first moments and no mass.
+/// The robot whose links 2 and 5 have first moments and no mass instead.
 pub(crate) fn without_mass(mut robot: Robot) -> Robot {
     for index in [1, 4] {
         let link = &mut robot.joints[index].row.link;

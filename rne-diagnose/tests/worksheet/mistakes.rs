@@ -195,7 +195,7 @@ fn axes_of_the_table_are_named() {
     assert!(first.reasons[0].says.contains("`base`: those of frame 0"), "{:?}", first.reasons);
 }
 
-/// Of the misprints that no torque shows, the worksheet does.
+/// The worksheet finds the misprints of the lecture that change no torque.
 #[test]
 fn misprints_of_step_3_are_named() {
     let robot = six("standard");
