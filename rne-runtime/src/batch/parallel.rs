@@ -9,7 +9,8 @@ use crate::threads::join;
 /// A multiple of every block, so that threads divide states where blocks end.
 const TASK: usize = 4096;
 
-/// Runs tasks of some thousand states each, on rayon's threads; few states on the thread that called.
+/// Runs tasks of some thousand states each, on rayon's threads where the build is optimized. Few states run on the
+/// thread that called.
 pub(super) fn for_each_part<R: Sync, T: Send + Sync, const A: usize, const N: usize, const E: usize>(
     all: States<'_, R, T, A, N, E>,
     run: &(impl Fn(States<'_, R, T, A, N, E>) + Sync),
@@ -18,7 +19,15 @@ pub(super) fn for_each_part<R: Sync, T: Send + Sync, const A: usize, const N: us
         return run(all);
     }
     let [first, second] = halves(all);
-    join(|| for_each_part(first, run), || for_each_part(second, run));
+    let (first, second) = (|| for_each_part(first, run), || for_each_part(second, run));
+    // A build without optimization keeps each intermediate register in memory: the function of a large robot then needs
+    // more stack than the 2 MiB that a thread of rayon has.
+    if cfg!(debug_assertions) {
+        first();
+        second();
+    } else {
+        join(first, second);
+    }
 }
 
 /// The two halves of states. Each half of an empty array is empty.
