@@ -50,6 +50,8 @@ mod body;
 #[cfg(feature = "std")]
 mod check;
 #[cfg(feature = "std")]
+mod closed_loop;
+#[cfg(feature = "std")]
 mod contact;
 #[cfg(feature = "std")]
 mod coupling;
@@ -124,6 +126,8 @@ mod varying;
 pub use body::{Bodies, Body, UnknownBody};
 #[cfg(feature = "std")]
 pub use check::{Checked, Reader};
+#[cfg(feature = "std")]
+pub use closed_loop::{ClosedLoop, ClosedLoops, Cut, Pivot};
 #[cfg(feature = "std")]
 pub use contact::{Contact, ContactKind};
 #[cfg(feature = "std")]

@@ -1,8 +1,8 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
 use crate::{
-    Angle, Bodies, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, FrameId, Friction, Inertia,
-    JointKind, Model, Motor, Row, RunTime, Transform,
+    Angle, Bodies, ClosedLoops, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, FrameId,
+    Friction, Inertia, JointKind, Model, Motor, Row, RunTime, Transform,
 };
 
 /// A validated robot, as its file describes it.
@@ -40,6 +40,8 @@ pub struct Robot {
     pub tips: Vec<usize>,
     /// The tips that something outside the robot holds, in the order of the file.
     pub contacts: Vec<Contact>,
+    /// The closed loops, whose dependent joints are no coordinates.
+    pub closed: ClosedLoops,
     /// The bodies that are fixed to links. They are parts of these links already.
     pub bodies: Bodies,
     /// The frame that the kinematic functions of the tip are taken at instead of the tip (pose, Jacobian, J̇q̇, torques
@@ -143,12 +145,17 @@ impl Robot {
 
     /// The joints that follow no other, counted from 0, in the order of q.
     pub fn coordinates(&self) -> impl DoubleEndedIterator<Item = usize> {
-        (0..self.joints.len()).filter(|&index| self.joints[index].coupling.is_none())
+        (0..self.joints.len()).filter(|index| self.is_coordinate(*index))
     }
 
     /// The joints that follow no other, in the order of q.
     pub fn independent_joints(&self) -> impl DoubleEndedIterator<Item = &Joint> {
-        self.joints.iter().filter(|joint| joint.coupling.is_none())
+        self.coordinates().map(|index| &self.joints[index])
+    }
+
+    /// Whether a joint follows no other, neither by a coupling nor by a closed loop.
+    fn is_coordinate(&self, joint: usize) -> bool {
+        self.joints[joint].coupling.is_none() && !self.closed.passive.contains(&joint)
     }
 
     /// The joint of a coordinate, which is counted from 0: an element of q belongs to it.
@@ -213,7 +220,7 @@ impl Robot {
     /// each with a motor of its own, and which has one tip.
     #[must_use]
     pub fn is_chain(&self) -> bool {
-        let has_more = self.has_couplings() || self.floating_base.is_some();
+        let has_more = self.has_couplings() || self.floating_base.is_some() || !self.closed.is_empty();
         self.is_serial() && !has_more && self.drives.is_empty() && self.tips.is_empty()
     }
 

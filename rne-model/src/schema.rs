@@ -20,8 +20,8 @@ use crate::source::{is_control, is_line_break, one_line, quoted, six_digits};
 use crate::tips::{first_tip, tips};
 use crate::varying::{entry, fixed, unknown_names, unknown_settings, without_effect};
 use crate::{
-    Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits, Link,
-    Motor, Robot, Row, Transform, lint, mirror, tree,
+    Angle, ClosedLoops, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE,
+    Limits, Link, Motor, Robot, Row, Transform, lint, mirror, tree,
 };
 
 /// More than every number of 64 joints with a name of its own.
@@ -124,6 +124,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         bodies,
         at: None,
         run_time,
+        closed: ClosedLoops::default(),
         rotors: false,
     })
 }
