@@ -3,6 +3,7 @@
 mod answer;
 mod argument;
 mod capability;
+mod closed_loops;
 mod entry;
 mod fixed_base;
 mod floating_base;
@@ -19,7 +20,7 @@ pub use argument::{Argument, ArgumentPart};
 pub use capability::Capability;
 use entry::Signature;
 pub use entry::{Entry, Own};
-pub use layout::{Layout, Length, Record, Returned, Shape};
+pub use layout::{Layout, Length, Record, Returned, Shape, Sizes};
 pub use table::Function;
 use table::{SIGNATURES, TABLE};
 
@@ -134,6 +135,7 @@ impl Function {
     pub fn of_plan(robot: &Robot) -> Self {
         match robot.floating_base {
             Some(_) => Self::InverseDynamicsOfFloatingBase,
+            _ if !robot.closed.is_empty() => Self::InverseDynamicsOfLoops,
             _ => Self::InverseDynamics,
         }
     }
@@ -148,6 +150,12 @@ impl Function {
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
         self.capability().has_velocities() || matches!(self.capability(), Capability::FloatingEnergy)
+    }
+
+    /// Whether it is a function of a robot with closed loops.
+    #[must_use]
+    pub const fn is_of_closed_loops(self) -> bool {
+        matches!(self.capability(), Capability::ClosedLoops)
     }
 
     /// Whether rotors that belong to the arm change what it returns.
@@ -169,10 +177,10 @@ impl Function {
         SIGNATURES[self as usize].returned.shape()
     }
 
-    /// The shape of its result for `dof` joints and `tips` tips.
+    /// The shape of its result for a robot.
     #[must_use]
-    pub fn layout(self, dof: usize, tips: usize) -> Layout {
-        self.shape().layout(dof, tips)
+    pub fn layout(self, sizes: Sizes) -> Layout {
+        self.shape().layout(sizes)
     }
 
     /// How its numbers are laid out for reading.
