@@ -97,7 +97,7 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Res
     let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
     let robot = Robot::from_yaml(&text).map_err(|report| anyhow!("{report}"))?;
     let plans = choice_of(&file, &robot)?;
-    let all = if name == "puma560" { &Function::ALL[..] } else { &Function::ALL[..1] };
+    let all = if name == "puma560" { &Function::OF_TREES[..] } else { &Function::OF_TREES[..1] };
     let kind: Form = form.parse().map_err(|_| anyhow!("no form is called {form}"))?;
     let compiler = Compiler::new(&robot).with_plans(plans);
     let programs: Result<Vec<_>, _> = all.iter().map(|&function| compiler.compile(function, kind)).collect();

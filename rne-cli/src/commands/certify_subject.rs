@@ -264,6 +264,11 @@ fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
     for argument in function.arguments() {
         let (kind, name) = match argument {
             Argument::Positions => ("const float *", "s->q"),
+            Argument::Passive => {
+                let passive = vec!["0.5f"; program.passive.len()].join(", ");
+                call.before.push(format!("const float passive[{}] = {{{passive}}};", program.passive.len()));
+                ("const float *", "passive")
+            }
             Argument::Rates => ("const float *", "s->qd"),
             Argument::Accelerations | Argument::Torques => ("const float *", "s->qdd"),
             Argument::Payload => {

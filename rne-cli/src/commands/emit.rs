@@ -319,11 +319,17 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         // tips are there for their wrenches
         [] => {
             Function::TORQUES.contains(function)
+                || *function == Function::InverseDynamicsOfLoops
                 || (*function == Function::InverseDynamicsWithWrenches && !robot.tips.is_empty())
         }
         asked => asked.contains(&FunctionOrAll::One(*function)),
     };
-    Function::ALL.into_iter().filter(is_asked).collect()
+    // a function by its name is refused by the compiler, which says why the robot has it not
+    let of_robot: Vec<Function> = match asked.as_slice() {
+        [] => Function::of_robot(robot).collect(),
+        _ => Function::ALL.to_vec(),
+    };
+    of_robot.into_iter().filter(is_asked).collect()
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {

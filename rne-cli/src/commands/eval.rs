@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::DynArm;
-use rne_codegen::{Argument, CompileError, Function, Layout, Record, Step};
+use rne_codegen::{Argument, CompileError, Function, Layout, Record, Sizes, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_model::Robot;
 use serde_json::{Value, json};
@@ -64,6 +64,9 @@ pub(crate) struct Arguments {
     /// A wrench at the tip N of `tips`; may be repeated
     #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
     tip_wrench: Vec<TipWrench>,
+    /// Dependent joints of closed loops [default: closed]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    passive: Option<List>,
     /// Angular velocity of the base, rad/s [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
@@ -87,14 +90,14 @@ pub(crate) struct Arguments {
     base_rotation: Option<List>,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
+        "function", "q", "passive", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
         "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "trace", "json", "csv",
         "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
+        "q", "passive", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
         "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "golden", "trace", "axes",
         "joint", "step", "json", "csv", "compare", "digits",
     ])]
@@ -209,7 +212,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         };
         let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
-    let result = || grouped(&function.layout(robot.dof(), robot.tip_count()), &numbers);
+    let result = || grouped(&function.layout(Sizes::of(&robot)), &numbers);
     if !arguments.trace {
         if arguments.json {
             return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });
@@ -300,6 +303,7 @@ impl Arguments {
     fn given(&self, function: Function) -> Given<'_> {
         Given {
             q: self.q.as_ref(),
+            passive: self.passive.as_ref(),
             qd: self.qd.as_ref(),
             qdd: self.qdd.as_ref(),
             tau: self.tau.as_ref(),

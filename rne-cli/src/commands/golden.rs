@@ -78,7 +78,11 @@ fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure>
 /// while the joints after it move freely.
 fn is_well_conditioned(state: &State, arm: &DynArm) -> bool {
     const LEAST: f64 = 1e-3;
-    arm.mass_matrix(&state.q).is_ok_and(|matrix| physics::smallest_pivot(matrix) > LEAST)
+    let matrix = match state.passive.as_slice() {
+        [] => arm.mass_matrix(&state.q),
+        passive => arm.mass_matrix_of_loops(&state.q, passive),
+    };
+    matrix.is_ok_and(|matrix| physics::smallest_pivot(matrix) > LEAST)
 }
 
 /// Whether contacts can hold an arm as they should, by what its forward dynamics in contact returns: redundant ones
@@ -99,6 +103,7 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("sin", sin),
         ("cos", cos),
         ("q", state.q.clone()),
+        ("passive", state.passive.clone()),
         ("qd", state.qd.clone()),
         ("qdd", state.qdd.clone()),
         ("tau", state.tau.clone()),

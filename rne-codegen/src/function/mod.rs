@@ -35,6 +35,35 @@ impl Function {
         Self::BiasTorques,
     ];
 
+    /// The functions of a robot without closed loops.
+    pub const OF_TREES: [Self; Self::trees()] = {
+        let (mut functions, mut index, mut found) = ([Self::InverseDynamics; Self::trees()], 0, 0);
+        while index < Self::ALL.len() {
+            if !Self::ALL[index].is_of_closed_loops() {
+                functions[found] = Self::ALL[index];
+                found += 1;
+            }
+            index += 1;
+        }
+        functions
+    };
+
+    /// How many functions a robot without closed loops has.
+    const fn trees() -> usize {
+        let (mut index, mut found) = (0, 0);
+        while index < Self::ALL.len() {
+            found += !Self::ALL[index].is_of_closed_loops() as usize;
+            index += 1;
+        }
+        found
+    }
+
+    /// The functions that a robot has: those of its closed loops, or all others.
+    pub fn of_robot(robot: &Robot) -> impl Iterator<Item = Self> + use<> {
+        let has_loops = !robot.closed.is_empty();
+        Self::ALL.into_iter().filter(move |function| function.is_of_closed_loops() == has_loops)
+    }
+
     /// Its entry in the table, which stands at its place.
     pub const fn entry(self) -> &'static Entry {
         TABLE[self as usize]
