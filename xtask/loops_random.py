@@ -44,12 +44,12 @@ class Draft:
     def __init__(self, random, planar, standard):
         self.random, self.planar, self.standard = random, planar, standard
         self.rows, self.q, self.poses, self.parents, self.flat = [], [], {-1: np.eye(4)}, [], {-1: True}
-        self.loops, self.moved = [], []
+        self.loops, self.moved, self.ranks = [], [], []
 
     def row(self, parent, may_slide):
-        """A joint on the link `parent`. In a planar robot z of a link is across the plane, or it slides in the plane."""
+        """A joint on the link `parent`. In a planar robot z of a link is across the plane, or the link slides along it."""
         random, index = self.random, len(self.q)
-        slide = may_slide and random.random() < 0.15
+        slide = may_slide and self.flat[parent] and random.random() < 0.2
         draw = lambda low, high: round(float(random.uniform(low, high)), 3)
         a, theta, d, alpha, branch = draw(0.2, 0.5), draw(-3, 3), 0.0, "0", parent != index - 1
         gamma, b = draw(-3, 3) if branch and self.flat[parent] else 0.0, 0.0
@@ -82,9 +82,9 @@ class Draft:
         small = round(0.1 * min(xx, yy, zz, xx + yy - zz, abs(zz - abs(xx - yy))), 5)
         above = f" parent: {'base' if parent < 0 else f'j{parent + 1}'}," if branch else ""
         kind = "prismatic" if slide else "revolute"
-        self.rows.append(
-            f"- {{name: j{index + 1},{above} type: {kind},{at} dh: {{{dh}}},\n"
-            f"   link: {{mass: {mass}, com: {com}, inertia: {{xx: {xx}, yy: {yy}, zz: {zz}, xy: {small}, yz: {-small}}}}}}}")
+        tensor = f"{{xx: {xx}, yy: {yy}, zz: {zz}, xy: {small}, yz: {-small}}}"
+        self.rows.append(f"- {{name: j{index + 1},{above} type: {kind},{at} dh: {{{dh}}},\n"
+                         f"   link: {{mass: {mass}, com: {com}, inertia: {tensor}}}}}")
         self.poses[index] = self.poses[parent] @ pose
         self.q.append(q)
         self.parents.append(parent)
@@ -98,7 +98,7 @@ class Draft:
         return out
 
     def loop(self, cut):
-        """A new branch and the two places of its cut; the rank of the equations, or None if too few joints are in it."""
+        """A new branch and the two places of its cut; the rank of its equations, or None if too few joints move."""
         random = self.random
         start = int(random.integers(-1, len(self.q)))
         link = start
@@ -155,7 +155,8 @@ class Draft:
 
         if dependent is not None and not all(settle(joint, set()) for joint in dependent):
             return None
-        names = [sorted(joint for joint, of in zip(holder, slots) if of == k and joint is not None) for k in range(len(self.loops))]
+        names = [sorted(joint for joint, of in zip(holder, slots) if of == k and joint is not None)
+                 for k in range(len(self.loops))]
         loops = [f"- {{name: loop{k + 1}, {loop}, dependent: [{', '.join(f'j{row + 1}' for row in names[k])}]}}"
                  for k, loop in enumerate(self.loops)]
         gravity = "[0, -9.81, 0]" if self.planar else "[1.5, -2.5, -9.2]"
@@ -167,16 +168,17 @@ class Draft:
             "loops:", *loops, ""])
 
 
-def draw(random, most):
-    """A draft with at most `most` joints and at least one independent joint, or None."""
-    planar = random.random() < 0.4
-    draft = Draft(random, planar, not planar and random.random() < 0.25)
+def draw(random, kind):
+    """A draft of one to three loops, or None: `kind` says how many, and whether it is planar or in standard rows."""
+    planar = kind % 5 < 2
+    draft = Draft(random, planar, not planar and kind % 4 == 3)
     for _ in range(int(random.integers(0, 3))):
         draft.row(len(draft.q) - 1, False)
-    draft.ranks = [draft.loop(str(random.choice(list(RANKS)))) for _ in range(int(random.choice([1, 1, 2, 2, 3])))]
-    if None in draft.ranks or len(draft.q) > most or not 1 <= len(draft.q) - sum(draft.ranks) <= 4:
-        return None
-    return draft
+    for _ in range(1 + kind % 3):
+        draft.ranks.append(draft.loop(str(random.choice(list(RANKS)))))
+        if draft.ranks[-1] is None:
+            return None
+    return draft if len(draft.q) <= 20 and 1 <= len(draft.q) - sum(draft.ranks) <= 5 else None
 
 
 def choice(random, slopes, rank):
@@ -191,19 +193,19 @@ def choice(random, slopes, rank):
     return sorted(columns)
 
 
-def random_robots(count, robot_of, most=12):
+def random_robots(count, robot_of):
     """Names, texts and closed positions of random robots; every sixth is the one before with other dependent joints.
 
     `robot_of` reads a text."""
-    random, found = np.random.default_rng(20), []
+    random, found, kind = np.random.default_rng(20), [], 0
     while len(found) < count:
-        draft = draw(random, most)
+        draft = draw(random, kind)
         if draft is None:
             continue
         name, rank = f"random{len(found) + 1}", sum(draft.ranks)
         slopes = robot_of(draft.text(name, None)).slopes(draft.q, range(len(draft.q)))
         values = np.linalg.svd(slopes, compute_uv=False)
-        if min(slopes.shape) < rank or values[rank - 1] < 0.02 * values[0] or (values[rank:] > 1e-3).any():
+        if min(slopes.shape) < rank or values[rank - 1] < 0.015 * values[0] or (values[rank:] > 1e-3).any():
             continue
         dependent = choice(random, slopes, rank)
         others = [choice(random, slopes, rank) for _ in range(20)]
@@ -220,5 +222,10 @@ def random_robots(count, robot_of, most=12):
             if closed is None or not robot.sensible(closed[1]) or max(
                     abs(float(a) - b) for a, b in zip(closed[0], draft.q)) > 0.1:
                 break
+            slopes = robot.slopes(closed[0], range(len(draft.q)))
+            loop_map = np.linalg.pinv(slopes[:, robot.passive], rcond=1e-7) @ slopes[:, robot.free]
+            if np.abs(loop_map).max(axis=1).min() < 0.02 or np.abs(loop_map).max() > 20:
+                break  # a loop that is rigid, or that is close to another one
             found.append((robot, text, closed[0]))
+            kind += text is texts[0]
     return found
