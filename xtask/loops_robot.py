@@ -88,7 +88,8 @@ class Robot:
                 pose[:3, 3] = pose[:3, 3] + pose[:3, 2] * q[row]
             else:
                 c, s = mp.cos(q[row]), mp.sin(q[row])
-                pose[:3, 0], pose[:3, 1] = c * pose[:3, 0] + s * pose[:3, 1], c * pose[:3, 1] - s * pose[:3, 0]
+                x, y = pose[:3, 0], pose[:3, 1]  # arrays first: mpmath would print an array that it multiplies
+                pose[:3, 0], pose[:3, 1] = x * c + y * s, y * c - x * s
             out.append(pose if self.after[row] is None else pose @ self.after[row])
         return [*out, shift([0, 0, 0])]
 
