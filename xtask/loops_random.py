@@ -178,6 +178,8 @@ def draw(random, kind):
         draft.ranks.append(draft.loop(str(random.choice(list(RANKS)))))
         if draft.ranks[-1] is None:
             return None
+    for _ in range(int(random.integers(0, 3))):  # joints beside the loops or behind them
+        draft.row(int(random.integers(-1, len(draft.q))), True)
     return draft if len(draft.q) <= 20 and 1 <= len(draft.q) - sum(draft.ranks) <= 5 else None
 
 
