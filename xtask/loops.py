@@ -33,6 +33,7 @@ FOLDER = ROOT / "benches/trees/loops"
 # A position of the independent joints at which the loops close, a guess of the dependent ones, and how far the states
 # are from it. All others are zero.
 START = {
+    "bennett": ({"j1": 1.0, "j2": 2.5, "j3": -1.0}, 0.4),
     "cassie_like": ({"motor_ankle": 0.5, "free_knee": 0.5, "free_ankle": -0.6, "ankle_rod_1": 1.3, "ankle_foot_1": -0.7,
                      "heel_rod_1": -0.5, "heel_tigh_1": -0.8}, 0.2),
     "digit_like": ({"free_foot1": -2.4, "rod1_x": 1.1, "rod2_x": 1.1}, 0.2),
