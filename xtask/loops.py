@@ -108,7 +108,7 @@ def oracle(robot, q, state):
         "mass_matrix": list(mass),
         "forward_dynamics": list(mp.lu_solve(mass, mp.matrix([a - b for a, b in zip(state["tau"], bias)]))),
     }
-    return {key: [float(x) for x in numbers] for key, numbers in values.items()}
+    return {key: [float(x) if abs(x) > 1e-20 else 0.0 for x in numbers] for key, numbers in values.items()}
 
 
 def states(robot, q, reach, count):
