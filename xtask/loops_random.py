@@ -47,7 +47,7 @@ class Draft:
         self.loops, self.moved, self.ranks = [], [], []
 
     def row(self, parent, may_slide):
-        """A joint on the link `parent`. In a planar robot z of a link is across the plane, or the link slides along it."""
+        """A joint on the link `parent`. In a planar robot z of a link is across the plane, or it slides along it."""
         random, index = self.random, len(self.q)
         slide = may_slide and self.flat[parent] and random.random() < 0.2
         draw = lambda low, high: round(float(random.uniform(low, high)), 3)
