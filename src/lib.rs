@@ -182,7 +182,7 @@ pub mod compiled {
     pub use rne_machine::{
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
         EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, Rollout,
-        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, WrongSize,
+        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, Sizes, WrongSize,
     };
 }
 
