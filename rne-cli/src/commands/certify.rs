@@ -329,7 +329,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
     let subjects = arguments.subjects(&robot, &programs)?;
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(&robot));
-    let call = |subject: &Subject| subject.call(prefix.as_str(), robot);
+    let call = |subject: &Subject| subject.call(prefix.as_str(), &robot);
     let calls: Vec<Call> = subjects.iter().map(call).collect::<Result<_, _>>()?;
     let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
     let version = match arguments.lang {
