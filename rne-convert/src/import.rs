@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use rne_model::{
-    Angle, Bodies, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Link, Reader,
+    Angle, Bodies, ClosedLoops, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Link, Reader,
     Remedy, Report, Robot, Row, RunTime, Transform,
 };
 
@@ -353,6 +353,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         bodies: Bodies::default(),
         at: None,
         run_time: RunTime::default(),
+        closed: ClosedLoops::default(),
         rotors: false,
     }
 }

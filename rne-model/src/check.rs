@@ -57,7 +57,12 @@ impl<'a> Reader<'a> {
     /// A reader of a file that messages call `name`, usually its path.
     #[must_use]
     pub const fn new(name: &'a str) -> Self {
-        Self { name, run_time: Vec::new(), settings: Vec::new(), takes: Takes { trees: false, couplings: false, loops: false } }
+        Self {
+            name,
+            run_time: Vec::new(),
+            settings: Vec::new(),
+            takes: Takes { trees: false, couplings: false, loops: false },
+        }
     }
 
     /// These parameters of the file, each once, stay free until run time. The robot is that of their values in the

@@ -53,26 +53,9 @@ struct State {
 impl<'a> Equations<'a> {
     pub(crate) fn new(joints: &'a [Joint], convention: Convention, loops: &[ClosedLoop]) -> Self {
         let ways: Vec<Ways> = loops.iter().map(|closed| Ways::new(joints, convention, closed)).collect();
-        let mut equations = Self { joints, convention, ways, variables: Vec::new(), size: 0.0 };
-        let mut variables: Vec<usize> = (0..loops.len()).flat_map(|index| equations.variables_of(index)).collect();
-        variables.sort_unstable();
-        variables.dedup();
-        equations.variables = variables;
-        let size = equations.ways.iter().map(|ways| ways.size(joints)).fold(0.0, f64::max);
-        equations.size = if size > 0.0 { size } else { 1.0 };
-        equations
-    }
-
-    /// The joints that follow no other, and of which this loop depends, in the order of the joints.
-    pub(crate) fn variables_of(&self, index: usize) -> Vec<usize> {
-        let of_joint = |&joint: &usize| match &self.joints[joint].coupling {
-            Some(coupling) => coupling.follows.iter().map(|(leader, _)| *leader).collect(),
-            None => vec![joint],
-        };
-        let mut variables: Vec<usize> = self.ways[index].joints.iter().flatten().flat_map(of_joint).collect();
-        variables.sort_unstable();
-        variables.dedup();
-        variables
+        let variables = sorted(loops.iter().flat_map(|closed| moving(joints, closed)).collect());
+        let size = ways.iter().map(|ways| ways.size(joints)).fold(0.0, f64::max);
+        Self { joints, convention, ways, variables, size: if size > 0.0 { size } else { 1.0 } }
     }
 
     /// The equations of a loop.
@@ -165,8 +148,7 @@ impl<'a> Equations<'a> {
                 let (velocity, rotation) = self.motion(*joint, *place, axis, &state.places[*place]);
                 let by = self.unit(*joint);
                 let turned = equal.iter().flat_map(|&axis| cross(rotation, state.places[*place].axis(axis)));
-                let product = (ways.cut == Cut::Universal)
-                    .then(|| dot(cross(other.axis(1), one.axis(0)), rotation));
+                let product = (ways.cut == Cut::Universal).then(|| dot(cross(other.axis(1), one.axis(0)), rotation));
                 let column = velocity.into_iter().map(|v| v / self.size).chain(turned).chain(product);
                 self.enter(&mut derivatives, start, *joint, column.map(|value| by * value));
             }
@@ -269,9 +251,7 @@ impl<'a> Equations<'a> {
     /// Whether all joints are within their limits.
     fn is_within(&self, positions: &[f64]) -> bool {
         let is_within = |(joint, position): (&Joint, &f64)| {
-            joint.limits.position.is_none_or(|(lower, upper)| {
-                (lower - ROUNDING..=upper + ROUNDING).contains(position)
-            })
+            joint.limits.position.is_none_or(|(lower, upper)| (lower - ROUNDING..=upper + ROUNDING).contains(position))
         };
         self.joints.iter().zip(positions).all(is_within)
     }
@@ -371,11 +351,33 @@ impl<'a> Equations<'a> {
     }
 }
 
+/// The joints that move one place of a loop and not the other, base first.
+fn own_joints(joints: &[Joint], closed: &ClosedLoop) -> [Vec<usize>; 2] {
+    let mut ways = closed.between.map(|end| way(joints, end.on));
+    let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
+    ways.iter_mut().for_each(|way| drop(way.drain(..shared)));
+    ways
+}
+
+/// The joints that follow no other and that move the places of a loop against each other, in the order of the joints.
+pub(crate) fn moving(joints: &[Joint], closed: &ClosedLoop) -> Vec<usize> {
+    let of_joint = |joint: usize| match &joints[joint].coupling {
+        Some(coupling) => coupling.follows.iter().map(|(leader, _)| *leader).collect(),
+        None => vec![joint],
+    };
+    sorted(own_joints(joints, closed).into_iter().flatten().flat_map(of_joint).collect())
+}
+
+/// In their order, each once.
+pub(crate) fn sorted(mut joints: Vec<usize>) -> Vec<usize> {
+    joints.sort_unstable();
+    joints.dedup();
+    joints
+}
+
 impl Ways {
     fn new(joints: &[Joint], convention: Convention, closed: &ClosedLoop) -> Self {
-        let mut ways = closed.between.map(|end| way(joints, end.on));
-        let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
-        ways.iter_mut().for_each(|way| drop(way.drain(..shared)));
+        let ways = own_joints(joints, closed);
         let first = ways.iter().flatten().next();
         let start = first.map_or(Pose::IDENTITY, |&joint| axis_on_link(joints, convention, joint).turned_back());
         Self { cut: closed.cut, places: closed.between.map(|end| Pose::of(&end.placement)), joints: ways, start }
@@ -429,5 +431,92 @@ impl Random {
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Angle, FixedFrame, Reader, Robot, Transform};
+
+    /// Branches with slides, standard or modified rows, a follower, and a loop between the ends of both.
+    fn robot(convention: &str, cut: Cut) -> Robot {
+        let text = format!(
+            "{{format: 2, name: x, source: own, convention: {convention}, gravity: [0, 0, 0], tool: {{on: c}}, joints: [
+            {{name: root, type: revolute, dh: {{theta: 0.2, d: 0.3, a: 0.1, alpha: 0.4}}}},
+            {{name: a, type: revolute, dh: {{theta: 0.3, d: 0.1, a: 0.2, alpha: 1}}}},
+            {{name: b, type: prismatic, dh: {{theta: 0.5, d: 0.2, a: 0.1, alpha: -0.7}}}},
+            {{name: c, type: revolute, dh: {{theta: 0, d: 0.1, a: 0.3, alpha: 0.2}}}},
+            {{name: d, parent: root, at: {{xyz: [0.1, 0.2, 0.3], rpy: [1, 2, 3]}}, type: revolute,
+             dh: {{theta: 1, d: 0, a: 0.2, alpha: 0.1}}}},
+            {{name: e, type: revolute, dh: {{theta: 0, d: 0.1, a: 0.1, alpha: 0.5}}}},
+            {{name: f, type: prismatic, dh: {{theta: 0, d: 0, a: 0, alpha: 0.3}}}}],
+            couplings: [{{joint: e, follows: {{a: 0.5, d: -2}}, offset: 0.1}}]}}"
+        );
+        let read = Reader::new("x").trees().couplings().read(&text);
+        let mut robot = read.unwrap_or_else(|report| panic!("{report}")).robot;
+        let place = |on: usize, xyz: [f64; 3], rpy: [f64; 3]| FixedFrame {
+            on: Some(on),
+            placement: Transform { xyz, rpy: rpy.map(Angle::new) },
+        };
+        let between = [place(3, [0.1, 0.0, 0.2], [0.1, 0.2, 0.3]), place(6, [0.0; 3], [1.0, 0.0, 2.0])];
+        let name = "loop1".to_owned();
+        robot.closed.loops = vec![ClosedLoop { name, cut, between, dependent: Vec::new() }];
+        robot
+    }
+
+    /// The equations as they are defined.
+    fn defined(equations: &Equations<'_>, cut: Cut, positions: &[f64]) -> Vec<f64> {
+        let [one, other] = equations.state(&equations.ways[0], positions).places;
+        let products = cut.perpendicular().iter().map(|&[a, b]| dot(one.axis(a), other.axis(b)));
+        difference(other.translation, one.translation).into_iter().chain(products).collect()
+    }
+
+    /// Both Jacobians against differences of what they derive, at positions where the loop is open.
+    #[test]
+    fn jacobians_are_the_derivatives_of_the_equations() {
+        const STEP: f64 = 1e-6;
+        for (convention, cut) in ["standard", "modified"].into_iter().flat_map(|it| Cut::ALL.map(|cut| (it, cut))) {
+            let robot = robot(convention, cut);
+            let equations = Equations::new(&robot.joints, robot.convention, &robot.closed.loops);
+            assert_eq!(equations.variables, [1, 2, 3, 4, 6], "the root moves both places");
+            let mut positions = vec![0.3, -0.4, 0.2, 0.7, 0.1, 0.0, 0.3];
+            equations.complete(&mut positions);
+            let (found, (_, of_open)) = (equations.jacobian(&positions), equations.open(&positions));
+            for (column, &joint) in equations.variables.iter().enumerate() {
+                let [before, after] = [-STEP, STEP].map(|step| {
+                    let mut moved = positions.clone();
+                    moved[joint] += step;
+                    equations.complete(&mut moved);
+                    (defined(&equations, cut, &moved), equations.open(&moved).0)
+                });
+                let slope = |row: usize, of: [&[f64]; 2]| (of[1][row] - of[0][row]) / (2.0 * STEP);
+                for row in 0..cut.equations() {
+                    let off = found.get(row, column) - slope(row, [&before.0, &after.0]);
+                    assert!(off.abs() < 1e-9, "{convention} {cut:?} {row} {joint}: {off}");
+                }
+                for row in 0..before.1.len() {
+                    let off = of_open.get(row, column) - equations.unit(joint) * slope(row, [&before.1, &after.1]);
+                    assert!(off.abs() < 1e-9, "{convention} {cut:?} {row} {joint}: {off}");
+                }
+            }
+        }
+    }
+
+    /// The axes of the loop are those of the first joint of the first place's own, as its link carries it: for a
+    /// modified row behind Rx(alpha) Tx(a), whatever the joint's position is.
+    #[test]
+    fn positions_are_in_the_axes_of_the_loop() {
+        let robot = robot("modified", Cut::Spherical);
+        let equations = Equations::new(&robot.joints, robot.convention, &robot.closed.loops);
+        let positions = [0.3, -0.4, 0.2, 0.7, 0.1, 0.0, 0.3];
+        let state = equations.state(&equations.ways[0], &positions);
+        let (joint, place, axis) = &state.axes[0];
+        assert_eq!((*joint, *place), (1, 0));
+        for i in 0..3 {
+            let unit = [0, 1, 2].map(|j| if i == j { 1.0 } else { 0.0 });
+            let off = difference(axis.axis(i), unit);
+            assert!(off.iter().all(|it: &f64| it.abs() < 1e-15), "{axis:?}");
+        }
     }
 }

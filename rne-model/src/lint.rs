@@ -469,7 +469,8 @@ pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], remarks:
             at(positions),
             short(*ratio)
         );
-        let help = "narrow the position limits so that the robot keeps away from there, or choose other dependent joints";
+        let help =
+            "narrow the position limits so that the robot keeps away from there, or choose other dependent joints";
         cx.report(Diagnostic::note(place, message).label("a singular configuration").help(help));
     } else if let Some((ratio, positions)) = &remarks.pivot {
         let message = format!(

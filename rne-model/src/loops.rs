@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use crate::closure::moving;
 use crate::coupling::named;
 use crate::decode::{Context, choice, read_mapping, text};
 use crate::diagnostic::Diagnostic;
@@ -13,8 +14,6 @@ use crate::schema::{end_of_loop, text_of_one_line};
 use crate::source::{quoted, six_digits};
 use crate::tree::items;
 use crate::{ClosedLoop, ClosedLoops, Convention, Cut, Entry, FixedFrame, Joint, lint, parallelogram};
-
-const SECTION: &str = "the section Closed loops of docs/robot-file.md says what a loop must be";
 
 /// A loop of a file.
 struct Written {
@@ -73,11 +72,12 @@ pub(crate) fn loops(
         dependents(cx, item, closed, joints, &taken)?;
         taken.extend(&closed.dependent);
     }
-    if joints.iter().enumerate().all(|(joint, it)| it.coupling.is_some() || taken.contains(&joint)) {
-        let message = "no joint is left that moves the robot: each is dependent or follows others";
-        return cx.refuse(at(items[0], "dependent", message.to_owned()).help(SECTION));
-    }
     match mobility::solved(joints, convention, loops.clone()) {
+        Ok(_) if joints.iter().enumerate().all(|(joint, it)| it.coupling.is_some() || taken.contains(&joint)) => {
+            let message = "the loops leave no joint that moves: the robot is rigid";
+            let help = "check the lengths and the axes; an arm of one link needs no loop";
+            cx.refuse(at(items[0], "dependent", message.to_owned()).help(help))
+        }
         Ok((closed, remarks)) => {
             lint::closed_loops(cx, items[0], joints, &remarks);
             Some((closed, remarks.joints))
@@ -133,13 +133,7 @@ fn dependent(cx: &Context, node: &Node, names: &[String]) -> Option<Vec<usize>> 
 }
 
 /// Gives the dependent joints of a parallelogram their couplings.
-fn parallelogram(
-    cx: &Context,
-    item: &Node,
-    it: &Written,
-    convention: Convention,
-    joints: &mut [Joint],
-) -> Option<()> {
+fn parallelogram(cx: &Context, item: &Node, it: &Written, convention: Convention, joints: &mut [Joint]) -> Option<()> {
     if it.cut != Cut::Revolute {
         let message = format!("a parallelogram has no {} joint; it must be `cut: revolute`", it.cut.name());
         return cx.refuse(at(item, "cut", message).label("must be `revolute`"));
@@ -187,20 +181,15 @@ fn moves(cx: &Context, item: &Node, closed: &ClosedLoop, joints: &[Joint]) -> Op
     if one != other {
         return Some(());
     }
-    let link = one.last().map_or_else(|| "`base`".to_owned(), |&joint| format!("the link of {}", quoted(&joints[joint].name)));
+    let link =
+        one.last().map_or_else(|| "`base`".to_owned(), |&joint| format!("the link of {}", quoted(&joints[joint].name)));
     let message = format!("both places of the loop {} are on {link}: no joint moves them", quoted(&closed.name));
     let help = "name two links that joints move against each other; a weld of parts of one link needs no loop";
     cx.refuse(at(item, "between", message).label("one link").help(help))
 }
 
 /// Checks the dependent joints of a loop one by one.
-fn dependents(
-    cx: &Context,
-    item: &Node,
-    closed: &ClosedLoop,
-    joints: &[Joint],
-    taken: &[usize],
-) -> Option<()> {
+fn dependents(cx: &Context, item: &Node, closed: &ClosedLoop, joints: &[Joint], taken: &[usize]) -> Option<()> {
     let moves = moving(joints, closed);
     for &joint in &closed.dependent {
         is_free(cx, item, joint, joints)?;
@@ -211,27 +200,12 @@ fn dependents(
             return cx.refuse(at(item, "dependent", message).label("named twice").help(help));
         }
         if !moves.contains(&joint) {
-            let message = format!("{name} does not move the loop {}; {} move it", quoted(&closed.name), listed(joints, &moves));
+            let message =
+                format!("{name} does not move the loop {}; {} move it", quoted(&closed.name), listed(joints, &moves));
             return cx.refuse(at(item, "dependent", message).help("name dependent joints among these"));
         }
     }
     Some(())
-}
-
-/// The joints that follow no other and that move one place of a loop and not the other.
-fn moving(joints: &[Joint], closed: &ClosedLoop) -> Vec<usize> {
-    let [one, other] = closed.between.map(|end| way(joints, end.on));
-    let shared = one.iter().zip(&other).take_while(|(a, b)| a == b).count();
-    let own = one[shared..].iter().chain(&other[shared..]);
-    let mut found: Vec<usize> = own
-        .flat_map(|&joint| match &joints[joint].coupling {
-            Some(coupling) => coupling.follows.iter().map(|(leader, _)| *leader).collect(),
-            None => vec![joint],
-        })
-        .collect();
-    found.sort_unstable();
-    found.dedup();
-    found
 }
 
 /// An error at a key of a loop.
@@ -247,9 +221,11 @@ pub(crate) fn listed(joints: &[Joint], of: &[usize]) -> String {
     format!("{}{rest}", names.join(", "))
 }
 
-/// Singular values, the largest first.
+/// Singular values, the largest first. What rounding leaves of a zero is 0.
 fn values(of: &[f64]) -> String {
-    of.iter().map(|&value| short(value)).collect::<Vec<_>>().join(", ")
+    let least = 1e-12 * of.first().copied().unwrap_or(0.0);
+    let value = |&value: &f64| short(if value < least { 0.0 } else { value });
+    of.iter().map(value).collect::<Vec<_>>().join(", ")
 }
 
 /// A number with three digits.
@@ -297,11 +273,8 @@ fn refusal(fault: &Fault, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[J
                 values(singular_values),
                 short(*size)
             );
-            let help = format!(
-                "name {rank} dependent joints among {}{}",
-                listed(joints, all),
-                suggestion(joints, choice)
-            );
+            let help =
+                format!("name {rank} dependent joints among {}{}", listed(joints, all), suggestion(joints, choice));
             at(items[group[0]], "dependent", message).label(format!("{rank} are needed")).help(help)
         }
         Fault::Undetermined { index, joints: moved, singular_values, choice } => {

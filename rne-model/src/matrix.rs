@@ -13,14 +13,6 @@ impl Matrix {
         Self { rows, columns, elements: vec![0.0; rows * columns] }
     }
 
-    pub(crate) fn rows(&self) -> usize {
-        self.rows
-    }
-
-    pub(crate) fn columns(&self) -> usize {
-        self.columns
-    }
-
     pub(crate) fn get(&self, row: usize, column: usize) -> f64 {
         self.elements[row * self.columns + column]
     }

@@ -2,7 +2,7 @@
 //! equations' Jacobian at configurations that close the loops. No formula that counts links and joints says it, because
 //! equations may repeat others, as those across the plane of a planar loop do.
 
-use crate::closure::Equations;
+use crate::closure::{Equations, moving, sorted};
 use crate::matrix::{Matrix, elimination, pivots};
 use crate::{ClosedLoop, ClosedLoops, Convention, Joint, Pivot};
 
@@ -74,8 +74,7 @@ pub(crate) fn solved(
     let found = Jacobians { all, ..found };
     found.groups().into_iter().try_for_each(|group| found.counted(group))?;
 
-    let mut passive: Vec<usize> = loops.iter().flat_map(|closed| closed.dependent.iter().copied()).collect();
-    passive.sort_unstable();
+    let passive = sorted(loops.iter().flat_map(|closed| closed.dependent.iter().copied()).collect());
     let (rows, columns) = (found.equations.rows(), found.columns_of(&passive));
     let singular = |jacobian: &Matrix| jacobian.part(&rows, &columns).singular();
     let is_regular = |jacobian: &Matrix| rank(&singular(jacobian)) == passive.len();
@@ -98,9 +97,10 @@ pub(crate) fn solved(
         let values = matrix.part(&kept, &every).singular();
         [values.last(), values.first()].map(|value| value.map_or(0.0, |(value, _)| *value))
     };
-    let singular_values = matrices.iter().map(of_kept).fold([f64::INFINITY, 0.0], |known, found| {
-        [known[0].min(found[0]), known[1].max(found[1])]
-    });
+    let singular_values = matrices
+        .iter()
+        .map(of_kept)
+        .fold([f64::INFINITY, 0.0], |known, found| [known[0].min(found[0]), known[1].max(found[1])]);
     let smallest_pivot = steps.iter().map(|step| step.2).fold(f64::INFINITY, f64::min);
     let closures: Vec<Vec<f64>> = regular.into_iter().map(|index| closures[index].clone()).collect();
 
@@ -165,7 +165,7 @@ impl Jacobians<'_> {
     fn groups(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
         for index in 0..self.loops.len() {
-            let mut own = (vec![index], self.equations.variables_of(index));
+            let mut own = (vec![index], moving(self.joints, &self.loops[index]));
             let (shared, rest): (Vec<_>, Vec<_>) =
                 groups.into_iter().partition(|(_, joints)| joints.iter().any(|joint| own.1.contains(joint)));
             for (loops, joints) in shared {
@@ -189,9 +189,7 @@ impl Jacobians<'_> {
         // the first loop whose equations add more or less to those before it than it names
         let adds = |place: usize| self.rank_of(&group[..=place]).0 - self.rank_of(&group[..place]).0;
         let wrong = (0..group.len()).find(|&place| adds(place) != named(&group[place..=place])).unwrap_or(0);
-        let mut joints: Vec<usize> = group.iter().flat_map(|&index| self.equations.variables_of(index)).collect();
-        joints.sort_unstable();
-        joints.dedup();
+        let joints = sorted(group.iter().flat_map(|&index| moving(self.joints, &self.loops[index])).collect());
         let number = singular_values.len().min(joints.len());
         let mut loops = group.clone();
         loops.swap(0, wrong);
@@ -215,8 +213,7 @@ impl Jacobians<'_> {
         let matrices: Vec<Matrix> = self.all.iter().map(|jacobian| jacobian.part(&rows, &columns)).collect();
         let is_named = |column: usize| self.loops.iter().any(|closed| closed.dependent.contains(&free[column]));
         let steps = elimination(&matrices, is_named);
-        let mut choice: Vec<usize> = steps.iter().map(|step| free[step.1]).collect();
-        choice.sort_unstable();
+        let choice = sorted(steps.iter().map(|step| free[step.1]).collect());
         if choice.len() == rank { choice } else { Vec::new() }
     }
 

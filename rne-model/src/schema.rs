@@ -20,8 +20,8 @@ use crate::source::{is_control, is_line_break, one_line, quoted, six_digits};
 use crate::tips::{first_tip, tips};
 use crate::varying::{entry, fixed, unknown_names, unknown_settings, without_effect};
 use crate::{
-    Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE,
-    Limits, Link, Motor, Robot, Row, Transform, lint, mirror, tree,
+    Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits, Link,
+    Motor, Robot, Row, Transform, lint, mirror, tree,
 };
 
 /// More than every number of 64 joints with a name of its own.
