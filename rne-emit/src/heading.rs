@@ -152,10 +152,10 @@ fn closed_loops(frames: &mut String, robot: &Robot) {
     let [least, largest] = singular_values.map(rounded);
     let _ = write!(
         frames,
-        "\norder of elimination: {order}; at {} configurations that close the loops, pivots are {} at least and \
-         singular values from {least} to {largest}",
-        closures.len(),
-        rounded(*smallest_pivot)
+        "\norder of elimination: {order}; within the limits, pivots are {} at least and singular values from {least} \
+         to {largest}, by {} configurations that close the loops and by searches from there",
+        rounded(*smallest_pivot),
+        closures.len()
     );
 }
 

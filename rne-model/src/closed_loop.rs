@@ -90,9 +90,10 @@ pub struct ClosedLoops {
     /// The positions of all joints at which the loops are closed, that were found when the file was read: up to 20,
     /// within the limits as far as such were found. The dependent joints follow from the others at each.
     pub closures: Vec<Vec<f64>>,
-    /// The smallest and the largest singular value there of the equations that are kept, by the dependent joints.
+    /// The smallest and the largest singular value of the equations that are kept, by the dependent joints, at these
+    /// closures and where a search downhill from them leads within the limits; m or 1 per rad or m.
     pub singular_values: [f64; 2],
-    /// The smallest pivot there.
+    /// The smallest pivot there, and where another such search leads: a pivot within the limits is hardly smaller.
     pub smallest_pivot: f64,
 }
 

@@ -97,26 +97,29 @@ pub(crate) fn solved(
         let values = matrix.part(&kept, &every).singular();
         [values.last(), values.first()].map(|value| value.map_or(0.0, |(value, _)| *value))
     };
-    let singular_values = matrices
-        .iter()
-        .map(of_kept)
-        .fold([f64::INFINITY, 0.0], |known, found| [known[0].min(found[0]), known[1].max(found[1])]);
-    let smallest_pivot = steps.iter().map(|step| step.2).fold(f64::INFINITY, f64::min);
     let closures: Vec<Vec<f64>> = regular.into_iter().map(|index| closures[index].clone()).collect();
-
     let equations = &found.equations;
     let at = |positions: &[f64]| of_passive(&equations.jacobian(positions));
+    let least_pivot =
+        |positions: &[f64]| pivots(&at(positions), &steps).into_iter().map(f64::abs).fold(f64::INFINITY, f64::min);
     let ratio = |positions: &[f64]| {
         let [least, largest] = of_kept(&at(positions));
         least / largest
     };
-    let pivot_ratio = |positions: &[f64]| {
-        let found = pivots(&at(positions), &steps).into_iter().map(f64::abs);
-        found.fold(f64::INFINITY, f64::min) / singular_values[1]
-    };
-    let small = |found: &(f64, Vec<f64>)| found.0 < NEARLY_SINGULAR;
-    let singular = equations.least(&closures, ratio).filter(small);
-    let pivot = if singular.is_some() { None } else { equations.least(&closures, pivot_ratio).filter(small) };
+    let singular = equations.least(&closures, ratio);
+    let pivot = equations.least(&closures, least_pivot);
+    let worst = singular.iter().map(|(_, positions)| of_kept(&at(positions)));
+    let singular_values = matrices
+        .iter()
+        .map(of_kept)
+        .chain(worst)
+        .fold([f64::INFINITY, 0.0], |known, found| [known[0].min(found[0]), known[1].max(found[1])]);
+    let at_closures = steps.iter().map(|step| step.2).fold(f64::INFINITY, f64::min);
+    let smallest_pivot = pivot.iter().map(|(pivot, _)| *pivot).fold(at_closures, f64::min);
+    let singular = singular.filter(|(ratio, _)| *ratio < NEARLY_SINGULAR);
+    let pivot = pivot
+        .map(|(pivot, positions)| (pivot / singular_values[1], positions))
+        .filter(|(ratio, _)| *ratio < NEARLY_SINGULAR && singular.is_none());
     let few = (closures.len() < CLOSURES).then_some((closures.len(), CLOSURES));
     let remarks = Remarks { few, singular, pivot, joints: equations.variables.clone() };
     let elimination = steps.iter().map(|&(equation, passive, _)| Pivot { equation, passive }).collect();

@@ -68,30 +68,45 @@ fn a_four_bar_closes_where_freudenstein_says() {
 }
 
 /// K of the four-bar by hand: p₂ - p₁ in the axes of the base, whose columns for coupler and rocker are
-/// -b (-sin(θ + β), cos(θ + β)) and c (-sin φ, cos φ). Its determinant is b c sin(φ - θ - β), the product of pivots and
-/// of singular values.
+/// -b (-sin(θ + β), cos(θ + β)) and c (-sin φ, cos φ). The smallest pivot and the smallest singular value of all
+/// configurations are found, as a walk round the crank tells on both branches.
 #[test]
 fn pivots_and_singular_values_are_those_of_the_matrix_by_hand() {
-    let robot = read(FOUR_BAR);
-    let closed = &robot.closed;
-    let (b, c) = (0.45, 0.3);
-    let (mut smallest, mut largest, mut least_pivot) = (f64::INFINITY, 0.0_f64, f64::INFINITY);
-    for closure in &closed.closures {
-        let (alpha, phi) = (closure[0] + closure[1], closure[2]);
+    let closed = read(FOUR_BAR).closed;
+    let (a, b, c, d) = (0.2, 0.45, 0.3, 0.5);
+    let [first, second] = [closed.elimination[0], closed.elimination[1]];
+    assert!(first.equation != second.equation && first.passive != second.passive);
+    // the smallest and the largest singular value and the smallest pivot at the angles of coupler and rocker
+    let of = |(alpha, phi): (f64, f64)| {
         let k = [[b * alpha.sin(), -c * phi.sin()], [-b * alpha.cos(), c * phi.cos()]];
         let determinant: f64 = k[0][0] * k[1][1] - k[0][1] * k[1][0];
         let squares: f64 = k.concat().iter().map(|it| it * it).sum();
         let root = (squares * squares - 4.0 * determinant * determinant).sqrt();
-        smallest = smallest.min(((squares - root) / 2.0).sqrt());
-        largest = largest.max(((squares + root) / 2.0).sqrt());
-        let [first, second] = [closed.elimination[0], closed.elimination[1]];
         let pivot: f64 = k[first.equation][first.passive];
-        assert_ne!((first.equation, first.passive), (second.equation, second.passive));
-        least_pivot = least_pivot.min(pivot.abs()).min((determinant / pivot).abs());
-    }
-    assert!((closed.singular_values[0] - smallest).abs() < 1e-12, "{smallest} {:?}", closed.singular_values);
-    assert!((closed.singular_values[1] - largest).abs() < 1e-12, "{largest} {:?}", closed.singular_values);
-    assert!((closed.smallest_pivot - least_pivot).abs() < 1e-12, "{least_pivot} {}", closed.smallest_pivot);
+        let pivot = pivot.abs().min((determinant / pivot).abs());
+        [((squares - root) / 2.0).sqrt(), -((squares + root) / 2.0).sqrt(), pivot]
+    };
+    let least = |angles: &[(f64, f64)]| {
+        let smaller = |known: [f64; 3], found: [f64; 3]| [0, 1, 2].map(|i| known[i].min(found[i]));
+        angles.iter().copied().map(of).fold([f64::INFINITY; 3], smaller)
+    };
+    let walk: Vec<(f64, f64)> = (0..20_000)
+        .flat_map(|step| {
+            let crank = PI * f64::from(step) / 10_000.0;
+            let (x, y) = (d - a * crank.cos(), -a * crank.sin());
+            let (p, q, r) = (2.0 * c * x, 2.0 * c * y, b * b - c * c - x * x - y * y);
+            [1.0, -1.0].map(|sign| {
+                let phi = q.atan2(p) + sign * (r / p.hypot(q)).acos();
+                ((y + c * phi.sin()).atan2(x + c * phi.cos()), phi)
+            })
+        })
+        .collect();
+    let [value, largest, pivot] = least(&walk);
+    let at_closures = least(&closed.closures.iter().map(|it| (it[0] + it[1], it[2])).collect::<Vec<_>>());
+    println!("{value} {largest} {pivot} {at_closures:?} {:?} {}", closed.singular_values, closed.smallest_pivot);
+    assert!((closed.singular_values[0] - value).abs() < 1e-4);
+    assert!(closed.singular_values[1] >= -at_closures[1] - 1e-12 && closed.singular_values[1] <= -largest + 1e-12);
+    assert!((closed.smallest_pivot - pivot).abs() < 1e-4 && at_closures[2] > 0.1);
 }
 
 /// A parallelogram as a loop without a kind: rocker = crank on the branch of the parallelogram, as the coupling of the
@@ -412,7 +427,8 @@ fn what_cannot_be_solved_is_refused_at_its_line() {
         assert!(report.contains(said), "{said}\n{report}");
         assert!(report.contains(&format!("linkage.yaml:{place}")), "{place}: {said}\n{report}");
     }
-    let format_1 = HEAD.replace("format: 2", "format: 1") + FOUR_BAR;
+    let format_1 = HEAD.replace("format: 2", "format: 1")
+        + &FOUR_BAR.replace("parent: base, ", "").replace("tool: {on: coupler}\n", "");
     let report = Reader::new("linkage.yaml").trees().couplings().loops().read(&format_1).unwrap_err().short();
     assert!(report.contains("the key `loops` needs `format: 2`"), "{report}");
 }
