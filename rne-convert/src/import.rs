@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use rne_model::{
-    Angle, Bodies, ClosedLoops, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Link, Reader,
-    Remedy, Report, Robot, Row, RunTime, Transform,
+    Angle, Bodies, ClosedLoops, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind,
+    Link, Reader, Remedy, Report, Robot, Row, RunTime, Transform,
 };
 
 use crate::chain::{Chain, Extracted, extract};

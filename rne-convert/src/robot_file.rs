@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_model::{
-    Body, ClosedLoop, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Inertia, InertiaReference, Joint,
-    JointKind, Limits, Link, Motor, Robot, Rotor, Transform, exact_digits,
+    Body, ClosedLoop, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Inertia, InertiaReference,
+    Joint, JointKind, Limits, Link, Motor, Robot, Rotor, Transform, exact_digits,
 };
 
 use crate::snap::angle_text;

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_model::{
-    Body, ClosedLoop, ClosedLoops, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Pivot, Robot, Rotor, Transform, one_line, six_digits,
+    Body, ClosedLoop, ClosedLoops, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Pivot, Robot, Rotor,
+    Transform, one_line, six_digits,
 };
 
 use super::inert;
