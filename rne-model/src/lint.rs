@@ -457,9 +457,11 @@ pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], remarks:
         let help = "if position limits leave the loops more room than this, check the lengths";
         cx.report(Diagnostic::note(place.clone(), message).label("few configurations").help(help));
     }
+    // what rounding leaves of a zero
+    let rounded = |position: f64| short(if position.abs() < 1e-9 { 0.0 } else { position });
     let at = |positions: &[f64]| {
         let shown = remarks.joints.iter().take(8);
-        let shown = shown.map(|&joint| format!("{} = {}", joints[joint].name, short(positions[joint])));
+        let shown = shown.map(|&joint| format!("{} = {}", joints[joint].name, rounded(positions[joint])));
         shown.collect::<Vec<_>>().join(", ")
     };
     if let Some((ratio, positions)) = &remarks.singular {

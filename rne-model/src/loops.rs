@@ -200,8 +200,11 @@ fn dependents(cx: &Context, item: &Node, closed: &ClosedLoop, joints: &[Joint], 
             return cx.refuse(at(item, "dependent", message).label("named twice").help(help));
         }
         if !moves.contains(&joint) {
-            let message =
-                format!("{name} does not move the loop {}; {} move it", quoted(&closed.name), listed(joints, &moves));
+            let message = format!(
+                "{name} does not move the loop {}; the joints that move it are {}",
+                quoted(&closed.name),
+                listed(joints, &moves)
+            );
             return cx.refuse(at(item, "dependent", message).help("name dependent joints among these"));
         }
     }
@@ -246,7 +249,10 @@ fn refusal(fault: &Fault, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[J
             let name = quoted(&loops[*index].name);
             let by = if *angle > 1e-9 { format!(" and turned by {} rad", short(*angle)) } else { String::new() };
             let nearest = if length.is_finite() {
-                format!("the nearest one leaves its two places {} m apart{by}", short(*length))
+                format!(
+                    "the nearest one leaves its two places {} m apart{by}",
+                    short(if *length < 1e-12 { 0.0 } else { *length })
+                )
             } else {
                 "its lengths are too large".to_owned()
             };
@@ -255,28 +261,7 @@ fn refusal(fault: &Fault, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[J
                         angles and axes with all digits, such as `pi/2`";
             at(items[*index], "between", message).label("the loop stays open").help(help)
         }
-        Fault::Count(Count { loops: group, named, rank, singular_values, size, closures, joints: all, choice }) => {
-            let names = group.iter().map(|&index| quoted(&loops[index].name)).collect::<Vec<_>>();
-            let s = if *named == 1 { "" } else { "s" };
-            let who = match &names[..] {
-                [name] => format!("the loop {name} has {named} dependent joint{s}, but its"),
-                _ => {
-                    let mut sorted = names.clone();
-                    sorted.sort_unstable();
-                    let names = sorted.join(", ");
-                    format!("the loops {names} share joints and have {named} dependent joint{s} together, but their")
-                }
-            };
-            let message = format!(
-                "{who} equations determine {rank}: this is the rank of their Jacobian at {closures} configurations \
-                 that close the loop (singular values {}; lengths in units of {} m)",
-                values(singular_values),
-                short(*size)
-            );
-            let help =
-                format!("name {rank} dependent joints among {}{}", listed(joints, all), suggestion(joints, choice));
-            at(items[group[0]], "dependent", message).label(format!("{rank} are needed")).help(help)
-        }
+        Fault::Count(count) => wrong_count(count, loops, items, joints),
         Fault::Undetermined { index, joints: moved, singular_values, choice } => {
             let message = format!(
                 "the other joints do not determine the dependent joints {}: these can move while all others are at \
@@ -293,4 +278,31 @@ fn refusal(fault: &Fault, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[J
             at(items[0], "dependent", message.to_owned()).help(help)
         }
     }
+}
+
+fn wrong_count(count: &Count, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[Joint]) -> Diagnostic {
+    let Count { loops: group, repeats, named, rank, singular_values, size, closures, joints: all, choice } = count;
+    let mut names = group.iter().map(|&index| quoted(&loops[index].name)).collect::<Vec<_>>();
+    let mended = names[0].clone();
+    names.sort_unstable();
+    let s = if *named == 1 { "" } else { "s" };
+    let who = match &names[..] {
+        [name] => format!("the loop {name} has {named} dependent joint{s}, but its"),
+        names => {
+            let names = names.join(", ");
+            format!("the loops {names} share joints and have {named} dependent joint{s} together, but their")
+        }
+    };
+    let message = format!(
+        "{who} equations determine {rank}: this is the rank of their Jacobian at {closures} configurations that close \
+         the loops (singular values {}; lengths in units of {} m)",
+        values(singular_values),
+        short(*size)
+    );
+    let help = if *repeats {
+        format!("delete the loop {mended}: its equations follow from those of the other loops")
+    } else {
+        format!("name {rank} dependent joints among {}{}", listed(joints, all), suggestion(joints, choice))
+    };
+    at(items[group[0]], "dependent", message).label(format!("{rank} are needed")).help(help)
 }

@@ -6,8 +6,9 @@ use crate::closure::{Equations, moving, sorted};
 use crate::matrix::{Matrix, elimination, pivots};
 use crate::{ClosedLoop, ClosedLoops, Convention, Joint, Pivot};
 
-/// Configurations at which the equations are looked at.
+/// Configurations at which the equations are looked at, and more in place of those where they are singular.
 const CLOSURES: usize = 20;
+const SPARE: usize = 4;
 /// A singular value below this part of the largest is zero.
 const RANK: f64 = 1e-7;
 /// A singular value, and a pivot, below this part of the largest is worth a note.
@@ -29,6 +30,8 @@ pub(crate) enum Fault {
 pub(crate) struct Count {
     /// The loops that share joints, the one to be mended first.
     pub(crate) loops: Vec<usize>,
+    /// Whether the equations of that one follow from those of the loops before it.
+    pub(crate) repeats: bool,
     /// Their dependent joints, and the rank of their equations.
     pub(crate) named: usize,
     pub(crate) rank: usize,
@@ -60,7 +63,7 @@ pub(crate) fn solved(
     loops: Vec<ClosedLoop>,
 ) -> Result<(ClosedLoops, Remarks), Fault> {
     let equations = Equations::new(joints, convention, &loops);
-    let (closures, nearest) = equations.closures(CLOSURES);
+    let (closures, nearest) = equations.closures(CLOSURES + SPARE);
     if closures.is_empty() {
         let off = |index: &usize| {
             let [length, angle] = equations.apart(*index, &nearest);
@@ -78,7 +81,8 @@ pub(crate) fn solved(
     let (rows, columns) = (found.equations.rows(), found.columns_of(&passive));
     let singular = |jacobian: &Matrix| jacobian.part(&rows, &columns).singular();
     let is_regular = |jacobian: &Matrix| rank(&singular(jacobian)) == passive.len();
-    let regular: Vec<usize> = (0..closures.len()).filter(|&index| is_regular(&found.all[index])).collect();
+    let regular = (0..closures.len()).filter(|&index| is_regular(&found.all[index]));
+    let regular: Vec<usize> = regular.take(CLOSURES).collect();
     if regular.is_empty() {
         return Err(found.undetermined(&passive, &singular(&found.all[0])));
     }
@@ -156,7 +160,8 @@ impl Jacobians<'_> {
     /// values where it is that.
     fn rank_of(&self, loops: &[usize]) -> (usize, Vec<f64>) {
         let (rows, columns) = (self.rows_of(loops), self.equations.columns());
-        let found: Vec<_> = self.all.iter().map(|jacobian| jacobian.part(&rows, &columns).singular()).collect();
+        let found: Vec<_> =
+            self.all.iter().take(CLOSURES).map(|jacobian| jacobian.part(&rows, &columns).singular()).collect();
         let ranks: Vec<usize> = found.iter().map(|singular| rank(singular)).collect();
         let times = |of: usize| ranks.iter().filter(|rank| **rank == of).count();
         let most = ranks.iter().copied().max_by_key(|&rank| (times(rank), rank)).unwrap_or(0);
@@ -197,11 +202,12 @@ impl Jacobians<'_> {
         let mut loops = group.clone();
         loops.swap(0, wrong);
         Err(Fault::Count(Count {
+            repeats: adds(wrong) == 0,
             named: named(&group),
             rank,
             singular_values: singular_values[..number].to_vec(),
             size: self.equations.size,
-            closures: self.all.len(),
+            closures: self.all.len().min(CLOSURES),
             choice: self.choice(&group, &joints, rank),
             joints,
             loops,

@@ -109,11 +109,7 @@ fn pivots_and_singular_values_are_those_of_the_matrix_by_hand() {
     assert!((closed.smallest_pivot - pivot).abs() < 1e-4 && at_closures[2] > 0.1);
 }
 
-/// A parallelogram as a loop without a kind: rocker = crank on the branch of the parallelogram, as the coupling of the
-/// loop of kind `parallelogram` says; on the other branch the bars cross.
-#[test]
-fn a_parallelogram_is_a_loop_like_others() {
-    let joints = "tool: {on: coupler}
+const BARS: &str = "tool: {on: coupler}
 joints:
   - {name: crank, type: revolute, dh: {alpha: 0, a: 0, theta: 0, d: 0}, limits: {position: [0.3, 2.8]}}
   - {name: coupler, type: revolute, dh: {alpha: 0, a: 0.3, theta: 0, d: 0}, limits: {position: [-3, 0]}}
@@ -121,14 +117,34 @@ joints:
 loops:
   - {cut: revolute, between: [{on: coupler, xyz: [0.7, 0, 0]}, {on: rocker, xyz: [0.3, 0, 0]}], dependent: [coupler, rocker]}
 ";
-    let coupled = read(&joints.replace("{cut", "{kind: parallelogram, cut"));
-    let robot = read(joints);
+
+/// A parallelogram as a loop without a kind: rocker = crank on the branch of the parallelogram, as the coupling of the
+/// loop of kind `parallelogram` says; on the other branch the bars cross.
+#[test]
+fn a_parallelogram_is_a_loop_like_others() {
+    let coupled = read(&BARS.replace("{cut", "{kind: parallelogram, cut"));
+    let robot = read(BARS);
     assert!(coupled.closed.is_empty() && robot.closed.loops[0].name == "loop1");
     let of = |joint: usize| coupled.joints[joint].coupling.clone().expect("it follows the crank");
     assert_eq!((of(1).follows, of(2).follows), (vec![(0, -1.0)], vec![(0, 1.0)]));
     for closure in &robot.closed.closures {
         assert!((closure[1] + closure[0]).abs() < 1e-10 && (closure[2] - closure[0]).abs() < 1e-10, "{closure:?}");
     }
+}
+
+/// Where all bars lie on one line, as at zero, the rank is smaller: that is no reason to refuse the loop, and others
+/// take the place of this closure.
+#[test]
+fn a_singular_configuration_is_none_of_the_closures() {
+    let free = BARS.lines().map(|line| match line.split_once(", limits") {
+        Some((line, _)) => format!("{line}}}\n"),
+        None => format!("{line}\n"),
+    });
+    let checked = checked(&free.collect::<String>()).unwrap_or_else(|report| panic!("{report}"));
+    let closures = &checked.robot.closed.closures;
+    assert_eq!(closures.len(), 20);
+    assert!(closures.iter().flatten().all(|position| *position != 0.0), "{closures:?}");
+    assert!(checked.lints.to_string().contains("the dependent joints are not determined near crank ="));
 }
 
 /// A slider-crank: crank 0.1 m, rod 0.3 m, the slide along y of frame 0.
@@ -151,12 +167,7 @@ loops:
     }
 }
 
-/// RSSR: a crank about z at the origin and a rocker about x at (0.3, 0.4, 0) with a rod of 0.5 m between two balls. The
-/// rod is three revolute joints on the crank, at one point, with axes z, x, z, and a spherical cut at the rocker: the
-/// spin about the rod is free. The rocker's angle follows from the length of the rod.
-#[test]
-fn a_spatial_loop_closes_where_its_rod_has_its_length() {
-    let rssr = "tool: {on: spin}
+const RSSR: &str = "tool: {on: spin}
 joints:
   - {name: crank, type: revolute, dh: {alpha: 0, a: 0, theta: 0, d: 0}}
   - {name: ball_z, type: revolute, dh: {alpha: 0, a: 0.1, theta: 0, d: 0}}
@@ -166,7 +177,13 @@ joints:
 loops:
   - {name: rod, cut: spherical, between: [{on: spin, xyz: [0, 0, 0.5]}, {on: rocker, xyz: [0.2, 0, 0]}], dependent: [ball_z, ball_x, rocker]}
 ";
-    let robot = read(rssr);
+
+/// RSSR: a crank about z at the origin and a rocker about x at (0.3, 0.4, 0) with a rod of 0.5 m between two balls. The
+/// rod is three revolute joints on the crank, at one point, with axes z, x, z, and a spherical cut at the rocker: the
+/// spin about the rod is free. The rocker's angle follows from the length of the rod.
+#[test]
+fn a_spatial_loop_closes_where_its_rod_has_its_length() {
+    let robot = read(RSSR);
     assert_eq!((robot.dof(), robot.closed.passive.len()), (2, 3));
     for closure in &robot.closed.closures {
         let (crank, rocker) = (closure[0], closure[4]);
@@ -177,9 +194,9 @@ loops:
         assert!((length - 0.5).abs() < 1e-12, "{closure:?}: {length}");
     }
     // without the spin as a joint the cut is a universal joint; its two axes stay perpendicular
-    let universal = rssr.replace("cut: spherical", "cut: universal").replace("ball_x, rocker", "ball_x, spin, rocker");
+    let universal = RSSR.replace("cut: spherical", "cut: universal").replace("ball_x, rocker", "ball_x, spin, rocker");
     assert_eq!(read(&universal).dof(), 1);
-    let undetermined = checked(&rssr.replace("ball_x, rocker", "ball_x, spin")).expect_err("the spin is free");
+    let undetermined = checked(&RSSR.replace("ball_x, rocker", "ball_x, spin")).expect_err("the spin is free");
     assert!(undetermined.contains("do not determine the dependent joints `spin`"), "{undetermined}");
 }
 
@@ -241,7 +258,9 @@ fn a_delta_robot_has_three_freedoms() {
     // b2 moves the first loop, not the second
     let refused = checked(&text).expect_err("b2 is no joint of the second loop");
     assert!(
-        refused.contains("`b2` does not move the loop `ac`; `a1`, `a2`, `a3`, `c1`, `c2`, `c3` move it"),
+        refused.contains(
+            "`b2` does not move the loop `ac`; the joints that move it are `a1`, `a2`, `a3`, `c1`, `c2`, `c3`"
+        ),
         "{refused}"
     );
     let text = text.replace("[a2, a3, b3]", "[a2, b2, b3]").replace("[b2, c2, c3]", "[a3, c2, c3]");
@@ -433,6 +452,16 @@ fn what_cannot_be_solved_is_refused_at_its_line() {
     assert!(report.contains("the key `loops` needs `format: 2`"), "{report}");
 }
 
+/// A second cut at the same places adds nothing.
+#[test]
+fn a_loop_that_repeats_another_is_to_be_deleted() {
+    let places = "[{on: coupler, xyz: [0.45, 0, 0]}, {on: rocker, xyz: [0.3, 0, 0]}]";
+    let again = format!("{FOUR_BAR}  - {{name: again, cut: spherical, between: {places}, dependent: [crank]}}\n");
+    let report = checked(&again).expect_err("it repeats");
+    assert!(report.contains("have 3 dependent joints together, but their equations determine 2"), "{report}");
+    assert!(report.contains("delete the loop `again`: its equations follow from those of the other loops"), "{report}");
+}
+
 /// Who does not take closed loops gets none.
 #[test]
 fn closed_loops_are_refused_where_they_are_not_taken() {
@@ -456,6 +485,9 @@ loops:
     let lints = |text: &str| checked(text).unwrap_or_else(|report| panic!("{report}")).lints.to_string();
     let noted = lints(text);
     assert!(noted.contains("the dependent joints are not determined near crank ="), "{noted}");
+    // crank and rod of one length: with the slide at 0 the crank turns freely, and such configurations do not count
+    let equal = lints(&text.replace("[0.3, 0, 0]", "[0.1, 0, 0]"));
+    assert!(equal.contains("of 20 configurations that close the loops were found"), "{equal}");
     let narrow = text.replace(
         "d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}\n  - {name: rod",
         "d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}, limits: {position: [-1, 1]}}\n  - {name: rod",
@@ -480,4 +512,19 @@ fn hostile_loops_are_refused_soon() {
     let loops: String = (0..60).map(item).collect();
     let report = checked(&format!("joints:\n{rows}loops:\n{loops}")).expect_err("they exclude each other");
     assert!(report.contains("no configuration closes the loop"), "{report}");
+}
+
+/// Whole messages: `INSTA_UPDATE=always cargo test -p rne-model --test closed_loops` writes the snapshot.
+#[test]
+fn messages() {
+    let text = [
+        FOUR_BAR.replace("[coupler, rocker]", "[rocker]"),
+        five_bar("[left, left_2, right]"),
+        FOUR_BAR.replace("0.45", "1.5"),
+        FOUR_BAR.replace("rocker, xyz: [0.3, 0, 0]", "rocker, xyz: [0.3, 0, 0], rpy: [0.001, 0, 0]"),
+        RSSR.replace("ball_x, rocker", "ball_x, spin"),
+        BARS.replace("{on: coupler, xyz: [0.7, 0, 0]}", "{on: crank}"),
+    ]
+    .map(|text| checked(&text).expect_err(&text));
+    insta::assert_snapshot!(text.join("\n\n"));
 }
