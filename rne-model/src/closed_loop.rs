@@ -108,7 +108,7 @@ pub struct Pivot {
 }
 
 impl ClosedLoops {
-    /// Whether there are none.
+    /// Whether the robot has no closed loop.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.loops.is_empty()

@@ -129,8 +129,8 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// What is not zero where the loops are open: the distances of the places, and the differences of axes that must be
-    /// the same, all free of units, and the derivatives. Products of axes would be zero at opposite axes, too.
+    /// Numbers that are zero where the loops are closed, and their derivatives: the distances of the places, and the
+    /// differences of axes that must be the same, all free of units. Products of axes are zero at opposite axes, too.
     fn open(&self, positions: &[f64]) -> (Vec<f64>, Matrix) {
         let equations: usize = self.ways.iter().map(|ways| 3 + ways.cut.differences()).sum();
         let mut derivatives = Matrix::zero(equations, self.variables.len());

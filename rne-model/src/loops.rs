@@ -257,7 +257,7 @@ fn refusal(fault: &Fault, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[J
                 "its lengths are too large".to_owned()
             };
             let message = format!("no configuration closes the loop {name}: {nearest}");
-            let help = "check the lengths and the places of `between`; a loop must close to 1e-12 of its size, so write \
+            let help = "check the lengths and the places of `between`; it must close to 1e-12 of its size, so write \
                         angles and axes with all digits, such as `pi/2`";
             at(items[*index], "between", message).label("the loop stays open").help(help)
         }

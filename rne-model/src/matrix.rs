@@ -107,7 +107,7 @@ impl Matrix {
     }
 }
 
-/// A pivot below this at some of the matrices is none.
+/// A smaller pivot, at one of the matrices or more, is zero but for rounding.
 const LEAST_PIVOT: f64 = 1e-9;
 
 /// A step of the elimination: row, column, and the smallest pivot of all matrices.

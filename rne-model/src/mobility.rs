@@ -1,5 +1,5 @@
-//! Which joints of closed loops follow from the others, and in which order they are solved for: the rank of the
-//! equations' Jacobian at configurations that close the loops. No formula that counts links and joints says it, because
+//! The joints of closed loops that follow from the others, and the order in which they are solved for, by the rank of
+//! the equations' Jacobian at configurations that close the loops. No formula that counts links and joints gives it:
 //! equations may repeat others, as those across the plane of a planar loop do.
 
 use crate::closure::{Equations, moving, sorted};
@@ -44,7 +44,7 @@ pub(crate) struct Count {
     pub(crate) choice: Vec<usize>,
 }
 
-/// What is remarkable about loops that can be solved.
+/// Remarks about loops that can be solved.
 pub(crate) struct Remarks {
     /// How many closures were found, if they are fewer than looked for.
     pub(crate) few: Option<(usize, usize)>,

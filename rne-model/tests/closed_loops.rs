@@ -12,9 +12,9 @@ const HEAD: &str = "format: 2\nname: linkage\nsource: own\nconvention: modified\
 /// round (F. Grashof).
 const FOUR_BAR: &str = "tool: {on: coupler}
 joints:
-  - {name: crank, type: revolute, dh: {alpha: 0, a: 0, theta: 0, d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}
-  - {name: coupler, type: revolute, dh: {alpha: 0, a: 0.2, theta: 0, d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}
-  - {name: rocker, parent: base, type: revolute, dh: {alpha: 0, a: 0.5, theta: 0, d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}
+  - {name: crank, type: revolute, dh: {alpha: 0, a: 0, theta: 0, d: 0}, link: {mass: 1, inertia: {}}}
+  - {name: coupler, type: revolute, dh: {alpha: 0, a: 0.2, theta: 0, d: 0}, link: {mass: 1, inertia: {}}}
+  - {name: rocker, parent: base, type: revolute, dh: {alpha: 0, a: 0.5, theta: 0, d: 0}, link: {mass: 1, inertia: {}}}
 loops:
   - name: bar
     cut: revolute
@@ -115,7 +115,8 @@ joints:
   - {name: coupler, type: revolute, dh: {alpha: 0, a: 0.3, theta: 0, d: 0}, limits: {position: [-3, 0]}}
   - {name: rocker, parent: base, type: revolute, dh: {alpha: 0, a: 0.7, theta: 0, d: 0}, limits: {position: [0.3, 2.8]}}
 loops:
-  - {cut: revolute, between: [{on: coupler, xyz: [0.7, 0, 0]}, {on: rocker, xyz: [0.3, 0, 0]}], dependent: [coupler, rocker]}
+  - {cut: revolute, between: [{on: coupler, xyz: [0.7, 0, 0]}, {on: rocker, xyz: [0.3, 0, 0]}],
+     dependent: [coupler, rocker]}
 ";
 
 /// A parallelogram as a loop without a kind: rocker = crank on the branch of the parallelogram, as the coupling of the
@@ -173,9 +174,11 @@ joints:
   - {name: ball_z, type: revolute, dh: {alpha: 0, a: 0.1, theta: 0, d: 0}}
   - {name: ball_x, type: revolute, dh: {alpha: pi/2, a: 0, theta: 0, d: 0}, limits: {position: [0.3, 2.8]}}
   - {name: spin, type: revolute, dh: {alpha: pi/2, a: 0, theta: 0, d: 0}}
-  - {name: rocker, parent: base, at: {xyz: [0.3, 0.4, 0], rpy: [0, pi/2, 0]}, type: revolute, dh: {alpha: 0, a: 0, theta: 0, d: 0}}
+  - {name: rocker, parent: base, type: revolute, at: {xyz: [0.3, 0.4, 0], rpy: [0, pi/2, 0]},
+     dh: {alpha: 0, a: 0, theta: 0, d: 0}}
 loops:
-  - {name: rod, cut: spherical, between: [{on: spin, xyz: [0, 0, 0.5]}, {on: rocker, xyz: [0.2, 0, 0]}], dependent: [ball_z, ball_x, rocker]}
+  - {name: rod, cut: spherical, between: [{on: spin, xyz: [0, 0, 0.5]}, {on: rocker, xyz: [0.2, 0, 0]}],
+     dependent: [ball_z, ball_x, rocker]}
 ";
 
 /// RSSR: a crank about z at the origin and a rocker about x at (0.3, 0.4, 0) with a rod of 0.5 m between two balls. The
@@ -241,7 +244,8 @@ fn a_delta_robot_has_three_freedoms() {
     let legs: String = ["a", "b", "c"].iter().zip(angles).map(|(name, angle)| leg(name, angle)).collect();
     let couplings = ["a", "b", "c"].map(|name| {
         format!(
-            "  - {{joint: {name}4, follows: {{{name}3: -1}}}}\n  - {{joint: {name}5, follows: {{{name}1: -1, {name}2: -1}}}}\n"
+            "  - {{joint: {name}4, follows: {{{name}3: -1}}}}
+  - {{joint: {name}5, follows: {{{name}1: -1, {name}2: -1}}}}\n"
         )
     });
     let end = |name: &str| format!("{{on: {name}5, xyz: [-0.05, 0, 0]}}");
@@ -308,7 +312,8 @@ joints:
   - {{name: right, parent: base, type: revolute, dh: {{alpha: 0, a: 0.2, theta: 0, d: 0}}}}
   - {{name: right_2, type: revolute, dh: {{alpha: 0, a: 0.3, theta: 0, d: 0}}}}
 loops:
-  - {{name: five, cut: revolute, between: [{{on: left_2, xyz: [0.4, 0, 0]}}, {{on: right_2, xyz: [0.4, 0, 0]}}], dependent: {dependent}}}
+  - {{name: five, cut: revolute, between: [{{on: left_2, xyz: [0.4, 0, 0]}}, {{on: right_2, xyz: [0.4, 0, 0]}}],
+     dependent: {dependent}}}
 "
     )
 }
@@ -476,8 +481,8 @@ fn closed_loops_are_refused_where_they_are_not_taken() {
 fn singular_configurations_within_the_limits_are_noted() {
     let text = "tool: {on: rod}
 joints:
-  - {name: crank, type: revolute, dh: {alpha: 0, a: 0, theta: 0, d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}
-  - {name: rod, type: revolute, dh: {alpha: 0, a: 0.1, theta: 0, d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}
+  - {name: crank, type: revolute, dh: {alpha: 0, a: 0, theta: 0, d: 0}, link: {mass: 1, inertia: {}}}
+  - {name: rod, type: revolute, dh: {alpha: 0, a: 0.1, theta: 0, d: 0}, link: {mass: 1, inertia: {}}}
   - {name: slide, parent: base, type: prismatic, dh: {alpha: -pi/2, a: 0, theta: 0, d: 0}, link: {mass: 1, inertia: {}}}
 loops:
   - {cut: spherical, between: [{on: rod, xyz: [0.3, 0, 0]}, {on: slide}], dependent: [crank, rod]}
@@ -489,8 +494,8 @@ loops:
     let equal = lints(&text.replace("[0.3, 0, 0]", "[0.1, 0, 0]"));
     assert!(equal.contains("of 20 configurations that close the loops were found"), "{equal}");
     let narrow = text.replace(
-        "d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}\n  - {name: rod",
-        "d: 0}, link: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}, limits: {position: [-1, 1]}}\n  - {name: rod",
+        "d: 0}, link: {mass: 1, inertia: {}}}\n  - {name: rod",
+        "d: 0}, link: {mass: 1, inertia: {}}, limits: {position: [-1, 1]}}\n  - {name: rod",
     );
     assert_ne!(narrow, text);
     assert_eq!(lints(&narrow), "");

@@ -159,7 +159,8 @@ fn closed_loops_are_checked_and_shown_and_refused_elsewhere() {
     assert!(fine(&["check", FOUR_BAR]).contains("four_bar, RRR, modified"));
     let shown = fine(&["show", FOUR_BAR]);
     for said in [
-        "loop pin, cut at a revolute joint: from (0.45, 0, 0) m on coupler to (0.3, 0, 0) m on rocker; dependent: coupler, rocker",
+        "loop pin, cut at a revolute joint: from (0.45, 0, 0) m on coupler to (0.3, 0, 0) m on rocker",
+        "; dependent: coupler, rocker",
         "order of elimination: coupler by y of pin, rocker by x of pin; within the limits, pivots are ",
         "by 20 configurations that close the loops",
     ] {
