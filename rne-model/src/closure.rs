@@ -140,7 +140,7 @@ impl<'a> Equations<'a> {
             let [one, other] = &state.places;
             residual.extend(difference(other.translation, one.translation).map(|length| length / self.size));
             let equal = ways.cut.equal();
-            equal.iter().for_each(|&axis| residual.extend(difference(other.axis(axis), one.axis(axis))));
+            residual.extend(equal.iter().flat_map(|&axis| difference(other.axis(axis), one.axis(axis))));
             if ways.cut == Cut::Universal {
                 residual.push(dot(one.axis(0), other.axis(1)));
             }
@@ -285,7 +285,7 @@ impl<'a> Equations<'a> {
             }
             let positions = self.start((start > 0).then_some(&mut random));
             let (mut off, mut found) = self.closed(positions.clone(), true, &mut work);
-            if !(off < CLOSED) {
+            if off >= CLOSED || off.is_nan() {
                 (off, found) = self.closed(positions, false, &mut work);
             }
             if off < least || start == 0 {
@@ -355,7 +355,9 @@ impl<'a> Equations<'a> {
 fn own_joints(joints: &[Joint], closed: &ClosedLoop) -> [Vec<usize>; 2] {
     let mut ways = closed.between.map(|end| way(joints, end.on));
     let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
-    ways.iter_mut().for_each(|way| drop(way.drain(..shared)));
+    for way in &mut ways {
+        way.drain(..shared);
+    }
     ways
 }
 

@@ -142,7 +142,7 @@ fn parallelogram(cx: &Context, item: &Node, it: &Written, convention: Convention
         let message = format!("found a list of {} where a list of two joints is needed", it.dependent.len());
         return cx.refuse(at(item, "dependent", message).label("two joints"));
     };
-    let couplings = match parallelogram::couplings(it.between, dependent, convention, joints) {
+    let couplings = match parallelogram::couplings(&it.between, dependent, convention, joints) {
         Ok(couplings) => couplings,
         Err(message) => {
             let help = "the section Parallelograms of docs/robot-file.md says what a loop must be";

@@ -19,7 +19,7 @@ pub(crate) enum Fault {
     /// No configuration closes this loop: where it comes nearest, its places are so far apart, m and rad.
     Open { index: usize, apart: [f64; 2] },
     /// Loops that share joints do not have as many dependent joints as their equations determine.
-    Count(Count),
+    Count(Box<Count>),
     /// These dependent joints, of this loop first, can move while all other joints are at rest.
     Undetermined { index: usize, joints: Vec<usize>, singular_values: Vec<f64>, choice: Vec<usize> },
     /// There is no pivot for each dependent joint that is one at all closures.
@@ -75,7 +75,7 @@ pub(crate) fn solved(
     let found = Jacobians { equations, all: Vec::new(), loops: &loops, joints };
     let all = closures.iter().map(|positions| found.equations.jacobian(positions)).collect();
     let found = Jacobians { all, ..found };
-    found.groups().into_iter().try_for_each(|group| found.counted(group))?;
+    found.groups().into_iter().try_for_each(|group| found.counted(&group))?;
 
     let passive = sorted(loops.iter().flat_map(|closed| closed.dependent.iter().copied()).collect());
     let (rows, columns) = (found.equations.rows(), found.columns_of(&passive));
@@ -188,10 +188,10 @@ impl Jacobians<'_> {
     }
 
     /// Refuses a group of loops with a wrong number of dependent joints.
-    fn counted(&self, group: Vec<usize>) -> Result<(), Fault> {
+    fn counted(&self, group: &[usize]) -> Result<(), Fault> {
         let named = |loops: &[usize]| loops.iter().map(|&index| self.loops[index].dependent.len()).sum::<usize>();
-        let (rank, singular_values) = self.rank_of(&group);
-        if named(&group) == rank {
+        let (rank, singular_values) = self.rank_of(group);
+        if named(group) == rank {
             return Ok(());
         }
         // the first loop whose equations add more or less to those before it than it names
@@ -199,19 +199,19 @@ impl Jacobians<'_> {
         let wrong = (0..group.len()).find(|&place| adds(place) != named(&group[place..=place])).unwrap_or(0);
         let joints = sorted(group.iter().flat_map(|&index| moving(self.joints, &self.loops[index])).collect());
         let number = singular_values.len().min(joints.len());
-        let mut loops = group.clone();
+        let mut loops = group.to_vec();
         loops.swap(0, wrong);
-        Err(Fault::Count(Count {
+        Err(Fault::Count(Box::new(Count {
             repeats: adds(wrong) == 0,
-            named: named(&group),
+            named: named(group),
             rank,
             singular_values: singular_values[..number].to_vec(),
             size: self.equations.size,
             closures: self.all.len().min(CLOSURES),
-            choice: self.choice(&group, &joints, rank),
+            choice: self.choice(group, &joints, rank),
             joints,
             loops,
-        }))
+        })))
     }
 
     /// A choice of as many dependent joints as the equations of some loops determine: of those without a motor, and of

@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-6;
 
 /// The couplings of the dependent joints, or why the loop is no parallelogram.
 pub(crate) fn couplings(
-    between: [FixedFrame; 2],
+    between: &[FixedFrame; 2],
     dependent: [usize; 2],
     convention: Convention,
     joints: &[Joint],
@@ -26,7 +26,7 @@ pub(crate) fn couplings(
     let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
     let name = |joint: usize| quoted(&joints[joint].name);
     let (mut first, mut other) = (&ways[0][shared..], &ways[1][shared..]);
-    let mut ends = between;
+    let mut ends = *between;
     if other.len() > first.len() {
         (first, other, ends) = (other, first, [ends[1], ends[0]]);
     }

@@ -84,7 +84,7 @@ fn pivots_and_singular_values_are_those_of_the_matrix_by_hand() {
         let root = (squares * squares - 4.0 * determinant * determinant).sqrt();
         let pivot: f64 = k[first.equation][first.passive];
         let pivot = pivot.abs().min((determinant / pivot).abs());
-        [((squares - root) / 2.0).sqrt(), -((squares + root) / 2.0).sqrt(), pivot]
+        [f64::midpoint(squares, -root).sqrt(), -f64::midpoint(squares, root).sqrt(), pivot]
     };
     let least = |angles: &[(f64, f64)]| {
         let smaller = |known: [f64; 3], found: [f64; 3]| [0, 1, 2].map(|i| known[i].min(found[i]));
@@ -505,7 +505,7 @@ loops:
 #[test]
 fn hostile_loops_are_refused_soon() {
     let row = |index: usize| {
-        let alpha = if index % 2 == 0 { "pi/2" } else { "-pi/2" };
+        let alpha = ["pi/2", "-pi/2"][index % 2];
         format!("  - {{name: j{index}, type: revolute, dh: {{alpha: {alpha}, a: 0.1, theta: 0, d: 0}}}}\n")
     };
     let rows: String = (0..64).map(row).collect();
