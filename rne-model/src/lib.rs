@@ -52,6 +52,8 @@ mod check;
 #[cfg(feature = "std")]
 mod closed_loop;
 #[cfg(feature = "std")]
+mod closure;
+#[cfg(feature = "std")]
 mod contact;
 #[cfg(feature = "std")]
 mod coupling;
@@ -90,11 +92,19 @@ mod link;
 #[cfg(feature = "std")]
 mod lint;
 #[cfg(feature = "std")]
+mod loops;
+#[cfg(feature = "std")]
+mod matrix;
+#[cfg(feature = "std")]
 mod matter;
 #[cfg(feature = "std")]
 mod mirror;
 #[cfg(feature = "std")]
+mod mobility;
+#[cfg(feature = "std")]
 mod parallelogram;
+#[cfg(feature = "std")]
+mod pose;
 #[cfg(feature = "std")]
 mod quantity;
 #[cfg(feature = "std")]

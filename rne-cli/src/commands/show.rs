@@ -90,7 +90,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return arguments.closed_form.run(&arguments.file, letters, |robot| arguments.rotors.of(robot));
     }
     let file = arguments.file.display().to_string();
-    let robot = arguments.rotors.robot(&arguments.file, Shape::Coupled)?;
+    let is_listing = !(arguments.base_parameters || arguments.json || arguments.equations);
+    let shape = if is_listing { Shape::Closed } else { Shape::Coupled };
+    let robot = arguments.rotors.robot(&arguments.file, shape)?;
+    if !robot.closed.is_empty() {
+        // no function has code for closed loops; what is known of them is their heading
+        return Ok(Outcome::text(letters.page(&heading::robot(&robot), PAGE)));
+    }
     if arguments.base_parameters {
         let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
         return Ok(Outcome::text(letters.page(&text, PAGE)));
