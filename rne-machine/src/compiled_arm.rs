@@ -146,7 +146,7 @@ impl CompiledArm {
         if let Some(arm) = known(&READ.lock().unwrap_or_else(PoisonError::into_inner)) {
             return Ok(arm);
         }
-        let robot = Reader::new(name).trees().couplings().read(&content.robot)?.robot;
+        let robot = Reader::new(name).trees().couplings().loops().read(&content.robot)?.robot;
         let plan = match &content.plan {
             Some(plan) => Some(PlanFile::read(name_of_plan, &String::from_utf8_lossy(plan), &robot)?),
             None => None,

@@ -209,11 +209,11 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     };
     let names = parameters.names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let checked = Reader::new(&name).trees().couplings().read(&bytes).and_then(|checked| {
+    let checked = Reader::new(&name).trees().couplings().loops().read(&bytes).and_then(|checked| {
         let known: Vec<&str> = checked.robot.parameters.iter().map(|(name, _)| name.as_str()).collect();
         match parameters.check(&known, errors) {
             _ if names.is_empty() => Ok(Some(checked)),
-            true => Reader::new(&name).trees().couplings().run_time(&names).read(&bytes).map(Some),
+            true => Reader::new(&name).trees().couplings().loops().run_time(&names).read(&bytes).map(Some),
             false => Ok(None),
         }
     });

@@ -29,6 +29,7 @@ fn robot(yaml: &[u8]) -> Robot {
     Reader::new("robot")
         .trees()
         .couplings()
+        .loops()
         .read(yaml)
         .unwrap_or_else(|report| panic!("{}", report.render(false)))
         .robot
