@@ -319,7 +319,7 @@ fn is_ours(text: &str) -> bool {
 
 /// The certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Coupled)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Closed)?;
     let robot = arguments.rotors.of(checked.robot);
     if arguments.lang == Language::C && (arguments.names || !robot.is_serial()) {
         checked.identifiers.map_err(|report| Failure::from(&report))?;

@@ -184,7 +184,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
     let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf, Shape::Coupled)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf, Shape::Closed)?;
     let robot = arguments.rotors.of(checked.robot);
     if arguments.names_joints(&robot) {
         checked.identifiers.map_err(|report| Failure::from(&report))?;

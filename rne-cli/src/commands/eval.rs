@@ -164,7 +164,10 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let robot = arguments.arm.robot_at(&arguments.at)?;
     let is_at_frame = arguments.at.frame.is_some();
+    let has_loops = !robot.closed.is_empty();
     let function = arguments.function.unwrap_or(match (&arguments.wrench, is_at_frame) {
+        _ if has_loops && !arguments.tip_wrench.is_empty() => Function::InverseDynamicsOfLoopsWithWrenches,
+        (None, false) if has_loops => Function::InverseDynamicsOfLoops,
         _ if !arguments.tip_wrench.is_empty() => Function::InverseDynamicsWithWrenches,
         (Some(_), true) => Function::WrenchTorques,
         (None, true) => Function::ForwardKinematics,
@@ -172,6 +175,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         (None, false) => Function::InverseDynamics,
     });
     arguments.at.check(function)?;
+    Arguments::has_function(function, &robot)?;
     if let Some(states) = &arguments.states {
         let file = arguments.arm.file();
         return states::Job {
@@ -185,6 +189,9 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         .run();
     }
     if let Some(states) = arguments.golden {
+        if has_loops {
+            return Err(Failure::usage("--golden writes torques of open trees; this robot has closed loops"));
+        }
         let settings: Vec<String> =
             arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
         return golden::file(&robot, states, &settings).map(Outcome::text);
@@ -244,6 +251,17 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 impl Arguments {
+    /// Whether a robot has the function: with closed loops those of loops, and no others.
+    fn has_function(function: Function, robot: &Robot) -> Result<(), Failure> {
+        match robot.closed.loops.first() {
+            Some(closed) if !function.is_of_closed_loops() => {
+                Err(Failure::usage(CompileError::HasClosedLoops { function, name: closed.name.clone() }))
+            }
+            None if function.is_of_closed_loops() => Err(Failure::usage(CompileError::NoClosedLoops { function })),
+            _ => Ok(()),
+        }
+    }
+
     /// Whether the function can be computed and traced for a robot.
     fn check(&self, function: Function, robot: &Robot) -> Result<(), Failure> {
         if self.trace && !function.returns_torques() {
