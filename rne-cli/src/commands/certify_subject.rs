@@ -331,7 +331,7 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
     }
     match program.layout() {
         Layout::Array(_, of) if matches!(*of, Layout::Number) => Ok(call),
-        Layout::Record(record @ Record::FloatingTorques, _) => {
+        Layout::Record(record @ (Record::FloatingTorques | Record::ClosureStep), _) => {
             Ok(Call { record: Some(rne_emit::record_name(prefix, record)), ..call })
         }
         _ => Err(not_called(program)),
@@ -341,8 +341,8 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
 fn not_called(program: &Program) -> Failure {
     Failure::usage(format_args!(
         "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics, \
-         gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, and \
-         inverse_dynamics_of_floating_base. {TYPED}--observer{TYPED:#} certifies the momentum observer",
+         gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, \
+         inverse_dynamics_of_floating_base and closure_step. {TYPED}--observer{TYPED:#} certifies the momentum observer",
         program.function
     ))
 }
