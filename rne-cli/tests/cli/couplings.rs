@@ -173,7 +173,7 @@ fn closed_loops_are_checked_and_shown_and_refused_elsewhere() {
         &["show", FOUR_BAR, "--symbolic"],
         &["check", "--physics", FOUR_BAR],
         &["emit", FOUR_BAR, "--lang", "c"],
-        &["export", FOUR_BAR],
+        &["export", "--urdf", FOUR_BAR],
         &["ops", FOUR_BAR],
     ] {
         let run = rne(command);
