@@ -350,6 +350,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         frames: Vec::new(),
         tips: Vec::new(),
         contacts: Vec::new(),
+        closed: rne_model::ClosedLoops::default(),
         bodies: Bodies::default(),
         at: None,
         run_time: RunTime::default(),
