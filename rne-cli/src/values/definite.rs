@@ -2,13 +2,15 @@
 //! or singular; with `physical: false` a link need not be a body.
 
 use rne::{DynArm, Payload};
-use rne_codegen::Function;
+use rne_codegen::{Argument, Function};
 use rne_model::Robot;
+
+use crate::render::physics::smallest_pivot;
 
 /// A pivot counts as negative beyond this part of the largest element: rounding does not make such a pivot.
 const NEGATIVE: f64 = 1e-9;
 
-/// A pivot of a matrix with ones on its diagonal counts as zero below this: fewer than three digits would be left.
+/// A pivot counts as zero below this part of the element of the diagonal: fewer than three digits would be left.
 const SINGULAR: f64 = 1e-13;
 
 /// The mistake in the result of a function that inverts the mass matrix, where this is singular but for rounding.
@@ -23,60 +25,39 @@ pub(crate) const NOT_DEFINITE: &str = "the mass matrix is not positive definite 
 
 /// Whether the mass matrix that a function inverts is not positive definite at a position.
 pub(crate) fn is_indefinite(robot: &Robot, function: Function, q: &[f64], payload: Option<&Payload<f64>>) -> bool {
-    inverted_mass_matrix(robot, function, q, payload).is_some_and(has_negative_direction)
+    inverted_mass_matrix(&DynArm::from_robot(robot), function, q, payload).is_some_and(has_negative_direction)
 }
 
 /// Whether the mass matrix that a function inverts is singular at a position, but for rounding.
 pub(crate) fn is_singular(robot: &Robot, function: Function, q: &[f64], payload: Option<&Payload<f64>>) -> bool {
-    inverted_mass_matrix(robot, function, q, payload).is_some_and(has_free_direction)
+    let arm = DynArm::from_robot(robot);
+    least_resistance(&arm, function, q, payload).is_some_and(|least| least < SINGULAR)
+        && !is_indefinite(robot, function, q, payload)
+}
+
+/// The [smallest pivot](smallest_pivot) of the mass matrix that a function inverts, if it inverts one.
+pub(crate) fn least_resistance(
+    arm: &DynArm,
+    function: Function,
+    q: &[f64],
+    payload: Option<&Payload<f64>>,
+) -> Option<f64> {
+    inverted_mass_matrix(arm, function, q, payload).map(smallest_pivot)
 }
 
 /// The mass matrix that a function inverts, if it inverts one: with the rows of a floating base, or with a payload.
 fn inverted_mass_matrix(
-    robot: &Robot,
+    arm: &DynArm,
     function: Function,
     q: &[f64],
     payload: Option<&Payload<f64>>,
 ) -> Option<Vec<Vec<f64>>> {
-    let arm = DynArm::from_robot(robot);
-    let matrix = || match payload {
+    let matrix = || match payload.filter(|_| function.takes(Argument::Payload)) {
         Some(payload) => arm.mass_matrix_with_payload(q, payload),
         None if function.is_of_floating_base() => arm.floating_mass_matrix(q),
         None => arm.mass_matrix(q),
     };
     function.inverts_mass().then(matrix)?.ok()
-}
-
-/// Whether some x is not zero, and xᵀ M x is, but for rounding: elimination of M in units that make its diagonal ones.
-/// False if the diagonal is not positive: what is not finite, or indefinite, is told by itself.
-fn has_free_direction(mut m: Vec<Vec<f64>>) -> bool {
-    let sizes: Vec<f64> = (0..m.len()).map(|i| m[i][i].sqrt()).collect();
-    for (row, size) in m.iter_mut().zip(&sizes) {
-        row.iter_mut().zip(&sizes).for_each(|(x, other)| *x /= size * other);
-    }
-    let mut rest: Vec<usize> = (0..m.len()).collect();
-    while !rest.is_empty() {
-        let pivot = rest.swap_remove(largest_pivot(&m, &rest));
-        if m[pivot][pivot] <= SINGULAR {
-            return m[pivot][pivot] >= -SINGULAR;
-        }
-        eliminate(&mut m, &rest, pivot);
-    }
-    false
-}
-
-/// Where the largest element of the diagonal is, among these rows.
-fn largest_pivot(m: &[Vec<f64>], rest: &[usize]) -> usize {
-    (0..rest.len()).max_by(|&a, &b| m[rest[a]][rest[a]].total_cmp(&m[rest[b]][rest[b]])).unwrap_or(0)
-}
-
-fn eliminate(m: &mut [Vec<f64>], rest: &[usize], pivot: usize) {
-    for &i in rest {
-        let factor = m[i][pivot] / m[pivot][pivot];
-        for &j in rest {
-            m[i][j] -= factor * m[pivot][j];
-        }
-    }
 }
 
 /// Whether xᵀ M x < 0 for some x: elimination with the largest pivot of the diagonal, or a rest whose diagonal is zero
@@ -92,20 +73,25 @@ fn has_negative_direction(mut m: Vec<Vec<f64>>) -> bool {
         if rest.iter().any(|&i| m[i][i] < -least) {
             return true;
         }
-        let at = largest_pivot(&m, &rest);
+        let at = (0..rest.len()).max_by(|&a, &b| m[rest[a]][rest[a]].total_cmp(&m[rest[b]][rest[b]])).unwrap_or(0);
         let pivot = rest[at];
         if m[pivot][pivot] <= least {
             return rest.iter().any(|&i| rest.iter().any(|&j| m[i][j].abs() > least));
         }
         rest.swap_remove(at);
-        eliminate(&mut m, &rest, pivot);
+        for &i in &rest {
+            let factor = m[i][pivot] / m[pivot][pivot];
+            for &j in &rest {
+                m[i][j] -= factor * m[pivot][j];
+            }
+        }
     }
     false
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{has_free_direction, has_negative_direction};
+    use super::has_negative_direction;
 
     #[test]
     fn definiteness_is_that_of_the_eigenvalues() {
@@ -121,25 +107,6 @@ mod tests {
             (vec![vec![f64::INFINITY]], false),
         ] {
             assert_eq!(has_negative_direction(matrix.clone()), is_negative, "{matrix:?}");
-        }
-    }
-    #[test]
-    fn a_free_direction_is_one_in_any_units() {
-        // J Jᵀ, and a light wrist on a heavy arm
-        let rows = [[0.1, 0.7, -0.3], [1.0 / 3.0, 0.2, 0.9], [0.1 + 1.0 / 3.0, 0.9, 0.6]];
-        let of_rank = |rank: usize| -> Vec<Vec<f64>> {
-            rows.iter().map(|a| rows.iter().map(|b| (0..rank).map(|k| a[k] * b[k]).sum::<f64>()).collect()).collect()
-        };
-        for (matrix, is_free) in [
-            (of_rank(2), true),
-            (of_rank(1), true),
-            (vec![vec![1e6, 0.9], vec![0.9, 1e-6]], false),
-            (vec![vec![1e6, 1.0], vec![1.0, 1e-6]], true),
-            (vec![vec![2.0, 1.0], vec![1.0, 2.0]], false),
-            (vec![vec![2.0, 0.0], vec![0.0, 0.0]], false),
-            (vec![vec![1.0, 2.0], vec![2.0, 1.0]], false),
-        ] {
-            assert_eq!(has_free_direction(matrix.clone()), is_free, "{matrix:?}");
         }
     }
 }
