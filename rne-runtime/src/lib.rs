@@ -19,7 +19,7 @@ pub mod batch;
 mod capability;
 #[cfg(feature = "arm")]
 mod centre_of_mass;
-#[cfg(all(feature = "arm", feature = "std"))]
+#[cfg(feature = "arm")]
 mod contact_dynamics;
 #[cfg(feature = "arm")]
 mod coriolis_matrix;
