@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::collections::HashMap;
 
 use crate::body::bodies;
-use crate::contact::contacts;
+use crate::contacts::contacts;
 use crate::coupling::{self, couplings};
 use crate::decode::{Context, Parameter, choice, list, not_negative, quantity, read_mapping, text};
 use crate::diagnostic::Diagnostic;
