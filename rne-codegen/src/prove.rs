@@ -4,7 +4,7 @@
 //! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants
 //! were rounded, so both are run in double precision at random states as well.
 
-use rne_model::{JointKind, Robot};
+use rne_model::{Angle, Robot};
 
 use crate::exact::ExactFunction;
 use crate::function::Function;
@@ -133,7 +133,7 @@ pub fn divides_by_zero(robot: &Robot, function: Function) -> bool {
 struct Value {
     number: Residue,
     turn: (Residue, Residue),
-    /// If it is the position of a revolute joint: the point where it is taken, and the joint, counted from 0.
+    /// If it is the position of a joint: the point where it is taken, and the joint, counted from 0.
     position: Option<(SamplePoint, usize)>,
 }
 
@@ -171,47 +171,44 @@ impl Real for Value {
     }
 }
 
-fn argument(robot: &Robot, point: &SamplePoint, name: Name) -> Value {
-    let kind = || robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| joint.row.kind);
-    if name.quantity == Quantity::Position && kind() == Some(JointKind::Revolute) {
-        let index = name.joint - 1;
-        let number = Value::number(point.argument(Input::new(name)));
-        return Value { turn: point.turn(index), position: Some((*point, index)), ..number };
+/// An argument. The position of a joint that slides is a length, and is the angle of a revolute joint that follows it.
+fn argument(point: &SamplePoint, name: Name) -> Value {
+    let number = Value::number(point.argument(Input::new(name)));
+    match name.joint.checked_sub(1) {
+        Some(index) if name.quantity == Quantity::Position => {
+            Value { turn: point.turn(index), position: Some((*point, index)), ..number }
+        }
+        _ => number,
     }
-    Value::number(point.argument(Input::new(name)))
 }
 
 /// The results of a program at a point.
 fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &SamplePoint) -> Option<Vec<Residue>> {
     let tip = robot.joints.len() + 1;
     let joints = |quantity| -> Vec<Value> {
-        robot.coordinates().map(|joint| argument(robot, point, Name::scalar(quantity, joint + 1))).collect()
+        robot.coordinates().map(|joint| argument(point, Name::scalar(quantity, joint + 1))).collect()
     };
-    let vector = |quantity, joint| Axis::ALL.map(|axis| argument(robot, point, Name::vector(quantity, joint, axis)));
-    let passive: Vec<Value> = robot
-        .closed
-        .passive
-        .iter()
-        .map(|joint| argument(robot, point, Name::scalar(Quantity::Position, joint + 1)))
-        .collect();
+    let vector = |quantity, joint| Axis::ALL.map(|axis| argument(point, Name::vector(quantity, joint, axis)));
+    let passive: Vec<Value> =
+        robot.closed.passive.iter().map(|joint| argument(point, Name::scalar(Quantity::Position, joint + 1))).collect();
     let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
     let tau = joints(Quantity::AppliedTorque);
     let parameters: Vec<_> = (1..=robot.run_time.names.len())
         .map(|index| Value::number(point.argument(Input::new(Name::scalar(Quantity::Parameter, index)))))
         .collect();
     let wrenches: Vec<_> =
-        (1..=robot.tip_count()).map(|tip| Name::of_tip(tip).map(|name| argument(robot, point, name))).collect();
+        (1..=robot.tip_count()).map(|tip| Name::of_tip(tip).map(|name| argument(point, name))).collect();
     let arguments = Arguments {
         wrenches: &wrenches,
         force: vector(Quantity::JointForce, tip),
         moment: vector(Quantity::JointMoment, tip),
-        payload: Name::of_payload(tip).map(|name| argument(robot, point, name)),
+        payload: Name::of_payload(tip).map(|name| argument(point, name)),
         tau: &tau,
         base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
             .map(|quantity| vector(quantity, 0)),
         velocity: vector(Quantity::OriginVelocity, 0),
-        pose: Name::of_pose().map(|name| argument(robot, point, name)),
-        base_rotation: Name::of_base_rotation().map(|name| argument(robot, point, name)),
+        pose: Name::of_pose().map(|name| argument(point, name)),
+        base_rotation: Name::of_base_rotation().map(|name| argument(point, name)),
         parameters: &parameters,
         passive: &passive,
         ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Residue::ZERO))
@@ -219,6 +216,9 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
     let constant = |name: Option<Name>, _| {
         let Some(name) = name else { return Some(Value::number(Residue::ZERO)) };
         let (number, turn) = constants.get(&name)?;
+        // A number of the table that is the offset of an angle, too, was not made as an angle.
+        let of_number = || robot.has_couplings().then(|| point.embedding().turn(&Angle::new(number.to_f64())));
+        let turn = turn.or_else(of_number);
         let turn = turn.map_or((Residue::ZERO, Residue::ZERO), |turn| (turn.sin.residue, turn.cos.residue));
         Some(Value { turn, ..Value::number(number.residue) })
     };

@@ -8,13 +8,14 @@ use crate::function::Function;
 /// No program is emitted whose torques differ more, relative to the largest.
 const LARGEST_ROUNDING: f64 = 1e-11;
 
-/// Accelerations are as much less precise as the mass matrix is badly conditioned: the PUMA 560 without the inertia of
-/// its rotors has 10⁵.
+/// Accelerations are as much less precise as the matrices that they are solved with are badly conditioned: the mass
+/// matrix of the PUMA 560 without the inertia of its rotors has 10⁵, and contacts that hold more than the robot can move
+/// have 10⁸, as their damping is 10⁻⁸ beside numbers near 1.
 const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
 
 /// The largest rounding error of a program that is emitted.
 pub(crate) const fn largest_rounding(function: Function) -> f64 {
-    if function.returns_accelerations() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
+    if function.inverts_mass() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
 }
 
 /// A reduced form of a function that was refused, so that the function has another one, or the seven steps.

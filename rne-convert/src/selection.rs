@@ -254,9 +254,13 @@ pub(crate) fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, R
 /// The joints that are held by name.
 pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Report> {
     let mut locks = HashMap::new();
-    for (name, value) in &selection.lock {
+    for (place, (name, value)) in selection.lock.iter().enumerate() {
         let index = joint(urdf, name)?;
         let joint = &urdf.joints[index];
+        if selection.lock[..place].iter().any(|(earlier, _)| earlier == name) {
+            let message = format!("the joint {} is locked twice", quoted(name));
+            return Err(urdf.source.error(&joint.span, message, "lock it once, at one value".to_owned()));
+        }
         if urdf.floats == Some(joint.child) {
             if *value != 0.0 {
                 let message = format!("the joint {} floats, and can be locked at 0 only", quoted(name));
@@ -271,10 +275,7 @@ pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize,
             return Err(urdf.source.error(&joint.span, message, None));
         }
         refuse_value(urdf, joint, *value)?;
-        if locks.insert(index, *value).is_some() {
-            let message = format!("the joint {} is locked twice", quoted(name));
-            return Err(urdf.source.error(&joint.span, message, None));
-        }
+        locks.insert(index, *value);
     }
     Ok(locks)
 }

@@ -53,8 +53,9 @@ mod check;
 mod closed_loop;
 #[cfg(feature = "std")]
 mod closure;
-#[cfg(feature = "std")]
 mod contact;
+#[cfg(feature = "std")]
+mod contacts;
 #[cfg(feature = "std")]
 mod coupling;
 #[cfg(feature = "std")]
@@ -138,7 +139,6 @@ pub use body::{Bodies, Body, UnknownBody};
 pub use check::{Checked, Reader};
 #[cfg(feature = "std")]
 pub use closed_loop::{ClosedLoop, ClosedLoops, Cut, Pivot};
-#[cfg(feature = "std")]
 pub use contact::{Contact, ContactKind};
 #[cfg(feature = "std")]
 pub use coupling::Coupling;

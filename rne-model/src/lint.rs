@@ -16,7 +16,7 @@ use crate::loops::short;
 use crate::mobility::Remarks;
 use crate::resistance::{self, Unresisted};
 use crate::source::{is_invisible, quoted, six_digits};
-use crate::{Angle, Convention, Inertia, Joint, JointKind, Limits, QuarterTurns, Transform};
+use crate::{Angle, Convention, Inertia, Joint, JointKind, Limits, Link, QuarterTurns, Transform};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
 const NEARLY: f64 = 2e-4;
@@ -249,6 +249,24 @@ pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints
             None if turns => mass_without_inertia(cx, item, index, joint),
             None => {}
         }
+    }
+}
+
+/// A floating base that no inertia resists: what its joints carry must resist it in every direction.
+pub(crate) fn floating_inertia(cx: &Context, root: &Node, base: &Link, convention: Convention, joints: &[Joint]) {
+    // joints that follow others do not move freely
+    if joints.iter().any(|joint| joint.coupling.is_some()) {
+        return;
+    }
+    cx.count((joints.len() + 6).pow(3));
+    if resistance::base_is_unresisted(convention, joints, base) {
+        let place = root.get("floating_base").and_then(|node| node.get("link")).unwrap_or(root);
+        let place = place.get("mass").unwrap_or(place).head();
+        let message = "no inertia resists the floating base when the joints move against it: in some direction, the \
+                       base then moves without any force or moment";
+        let help = "give this link its mass and inertia, or accelerations (`floating_forward_dynamics`, \
+                    `forward_dynamics_in_contact`) mean nothing";
+        cx.report(Diagnostic::lint(place, message).label("resists nothing").help(help));
     }
 }
 

@@ -1,7 +1,7 @@
-//! Joints that no inertia resists: the mass matrix is singular in every state.
+//! Joints and floating bases that no inertia resists: the mass matrix is singular in every state.
 
 use crate::robot::parent;
-use crate::{Angle, Convention, FixedFrame, Joint, JointKind, Row};
+use crate::{Angle, Convention, FixedFrame, Joint, JointKind, Link, Row};
 
 /// An inertia below this part of the largest moment that the links could have, at their distance from the base, is
 /// rounding.
@@ -10,6 +10,11 @@ const ROUNDING: f64 = 1e-12;
 /// Number of states, at irrational parts of a turn. A joint without resistance at all of them never has any, because
 /// the determinant of the mass matrix is analytic in the positions.
 const STATES: u32 = 3;
+
+/// Rows of a floating base in the mass matrix: along the axes of frame 0, then about them.
+const BASE: usize = 6;
+
+const UNIT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A joint that no inertia resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +34,7 @@ pub(crate) enum Unresisted {
 pub(crate) fn unresisted(convention: Convention, joints: &[Joint]) -> Vec<Option<Unresisted>> {
     let mut all = vec![Some(Unresisted::Alone); joints.len()];
     for state in 1..=STATES {
-        for (known, found) in all.iter_mut().zip(in_state(convention, joints, state)) {
+        for (known, found) in all.iter_mut().zip(in_state(convention, joints, None, state)) {
             *known = match (*known, found) {
                 (Some(Unresisted::Alone), Some(Unresisted::Alone)) => Some(Unresisted::Alone),
                 (Some(_), Some(_)) => Some(Unresisted::WithOthers),
@@ -40,27 +45,29 @@ pub(crate) fn unresisted(convention: Convention, joints: &[Joint]) -> Vec<Option
     all
 }
 
-fn in_state(convention: Convention, joints: &[Joint], state: u32) -> Vec<Option<Unresisted>> {
-    let (mut matrix, reach) = mass_matrix(convention, joints, state);
-    let mut found = vec![None; joints.len()];
-    for joint in (0..joints.len()).rev() {
-        let least = ROUNDING * reach[joint];
-        let alone = matrix[joint][joint];
-        found[joint] = (alone <= least).then_some(Unresisted::WithOthers);
-        if alone <= least {
+/// Whether a floating base with this link moves in some direction, while all joints move freely, without any force or
+/// moment on it.
+pub(crate) fn base_is_unresisted(convention: Convention, joints: &[Joint], base: &Link) -> bool {
+    (1..=STATES).all(|state| in_state(convention, joints, Some(base), state)[..BASE].iter().any(Option::is_some))
+}
+
+/// The rows of a floating base, if there is one, then those of the joints.
+fn in_state(convention: Convention, joints: &[Joint], base: Option<&Link>, state: u32) -> Vec<Option<Unresisted>> {
+    let (whole, reach) = mass_matrix(convention, joints, base, state);
+    let mut matrix = whole.clone();
+    let mut found = vec![None; reach.len()];
+    for row in (0..reach.len()).rev() {
+        let least = ROUNDING * reach[row];
+        let pivot = matrix[row][row];
+        if pivot <= least {
+            found[row] = Some(if whole[row][row] <= least { Unresisted::Alone } else { Unresisted::WithOthers });
             continue;
         }
-        let column: Vec<f64> = (0..joint).map(|row| matrix[row][joint]).collect();
-        for (row, a) in column.iter().enumerate() {
+        let column: Vec<f64> = (0..row).map(|before| matrix[before][row]).collect();
+        for (before, a) in column.iter().enumerate() {
             for (of, b) in column.iter().enumerate() {
-                matrix[row][of] -= a * b / alone;
+                matrix[before][of] -= a * b / pivot;
             }
-        }
-    }
-    let (matrix, _) = mass_matrix(convention, joints, state);
-    for (joint, found) in found.iter_mut().enumerate() {
-        if found.is_some() && matrix[joint][joint] <= ROUNDING * reach[joint] {
-            *found = Some(Unresisted::Alone);
         }
     }
     found
@@ -68,53 +75,54 @@ fn in_state(convention: Convention, joints: &[Joint], state: u32) -> Vec<Option<
 
 type Vector = [f64; 3];
 
-/// The mass matrix, and for each joint the moment that the links after it could have at their distance from
+/// The mass matrix, and for each row the moment that the links after it could have at their distance from
 /// the base: what rounding is relative to.
-fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let dof = joints.len();
-    let (mut matrix, mut reach) = (vec![vec![0.0; dof]; dof], vec![0.0; dof]);
+fn mass_matrix(convention: Convention, joints: &[Joint], base: Option<&Link>, state: u32) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let first = if base.is_some() { BASE } else { 0 };
+    let size = first + joints.len();
+    let (mut matrix, mut reach) = (vec![vec![0.0; size]; size], vec![0.0; size]);
     let frames = frames(convention, joints, state);
-    for (index, joint) in joints.iter().enumerate() {
-        let Frame { rotation, origin, .. } = &frames[index];
-        let link = &joint.row.link;
-        let com = add(*origin, turned(rotation, link.com));
+    let of_joints = joints.iter().zip(&frames).enumerate().map(|(index, (joint, frame))| {
+        let carriers: Vec<usize> = core::iter::successors(Some(index), |&joint| parent(joints, joint)).collect();
+        (&joint.row.link, frame.rotation, frame.origin, carriers)
+    });
+    for (link, rotation, origin, carriers) in
+        base.map(|link| (link, UNIT, [0.0; 3], Vec::new())).into_iter().chain(of_joints)
+    {
+        let com = add(origin, turned(&rotation, link.com));
         let trace = link.inertia.xx + link.inertia.yy + link.inertia.zz;
         let moment = link.has_first_moment().then_some(link.first_moment);
         let moment_size = libm::sqrt(dot(link.first_moment, link.first_moment));
         // what is no body may have any sign
         let trace = if moment.is_some() { trace.abs() } else { trace };
+        let mut about = |row: usize, axis: Vector, foot: Vector| {
+            reach[row] += link.mass * (dot(com, com) + dot(foot, foot)) + trace;
+            reach[row] += moment_size * (libm::sqrt(dot(com, com)) + libm::sqrt(dot(foot, foot)));
+            (row, cross(axis, sub(com, foot)), turned_back(&rotation, axis))
+        };
         // velocity of the centre of mass, and rotation in the link's axes, per joint that carries the link
-        let mut carriers = Vec::new();
-        let mut carrier = Some(index);
-        while let Some(joint) = carrier {
-            carriers.push(joint);
-            carrier = parent(joints, joint);
+        let mut columns: Vec<(usize, Vector, Vector)> = Vec::new();
+        for carrier in carriers {
+            let Frame { axis, foot, .. } = &frames[carrier];
+            columns.push(match joints[carrier].row.kind {
+                JointKind::Revolute => about(first + carrier, *axis, *foot),
+                JointKind::Prismatic => (first + carrier, *axis, [0.0; 3]),
+            });
         }
-        let columns: Vec<(usize, Vector, Vector)> = carriers
-            .into_iter()
-            .map(|carrier| {
-                let Frame { axis, foot, .. } = &frames[carrier];
-                match joints[carrier].row.kind {
-                    JointKind::Revolute => {
-                        let arm = sub(com, *foot);
-                        reach[carrier] += link.mass * (dot(com, com) + dot(*foot, *foot)) + trace;
-                        reach[carrier] += moment_size * (libm::sqrt(dot(com, com)) + libm::sqrt(dot(*foot, *foot)));
-                        (carrier, cross(*axis, arm), turned_back(rotation, *axis))
-                    }
-                    JointKind::Prismatic => {
-                        reach[carrier] += link.mass;
-                        (carrier, *axis, [0.0; 3])
-                    }
-                }
-            })
-            .collect();
+        if base.is_some() {
+            columns.extend(UNIT.iter().enumerate().map(|(row, axis)| (row, *axis, [0.0; 3])));
+            columns.extend(UNIT.iter().enumerate().map(|(row, axis)| about(BASE / 2 + row, *axis, [0.0; 3])));
+        }
+        for (row, _, _) in columns.iter().filter(|(_, _, w)| *w == [0.0; 3]) {
+            reach[*row] += link.mass;
+        }
         let tensor = link.inertia.rows();
         for (row, v, w) in &columns {
             let spin = tensor.map(|line| dot(line, *w));
             for (column, other_v, other_w) in &columns {
                 matrix[*row][*column] += link.mass * dot(*v, *other_v) + dot(spin, *other_w);
                 if let Some(h) = moment {
-                    let [own, other] = [w, other_w].map(|w| turned(rotation, cross(*w, h)));
+                    let [own, other] = [w, other_w].map(|w| turned(&rotation, cross(*w, h)));
                     matrix[*row][*column] += dot(*v, other) + dot(*other_v, own);
                 }
             }
@@ -136,9 +144,8 @@ fn frames(convention: Convention, joints: &[Joint], state: u32) -> Vec<Frame> {
     let mut frames: Vec<Frame> = Vec::with_capacity(joints.len());
     for (index, joint) in joints.iter().enumerate() {
         let Row { kind, dh, .. } = &joint.row;
-        let identity = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
         let carrier = parent(joints, index).and_then(|parent| frames.get(parent));
-        let (mut rotation, mut origin) = carrier.map_or(identity, |it| (it.rotation, it.origin));
+        let (mut rotation, mut origin) = carrier.map_or((UNIT, [0.0; 3]), |it| (it.rotation, it.origin));
         if let Some(FixedFrame { placement, .. }) = joint.branch {
             origin = add(origin, turned(&rotation, placement.xyz));
             rotation = product(&rotation, &turn(placement.rpy));
@@ -255,6 +262,37 @@ mod tests {
         let bar = "mass: 2, com: [-0.2, 0, 0]";
         assert_eq!(planar(&[(0.0, ""), (0.4, bar)]), [Some(Unresisted::WithOthers), None]);
         assert_eq!(planar(&[(0.0, "inertia: {zz: 0.001}"), (0.4, bar)]), [None, None]);
+    }
+
+    /// A floating base with the link `base` and legs: the key `dh` of the joint of each, and what is under `link`.
+    fn floating(base: &str, legs: &[(&str, &str)]) -> bool {
+        let mut text = format!(
+            "format: 2\nname: x\nsource: x\nconvention: modified\ngravity: [0, 0, 0]\ntool: {{on: j0}}\n\
+             floating_base: {{name: trunk, link: {{{base}}}}}\njoints:\n"
+        );
+        for (index, (dh, link)) in legs.iter().enumerate() {
+            let dh = format!("{{theta: 0, d: 0, gamma: 0, b: 0, {dh}}}");
+            let _ = writeln!(text, "  - {{name: j{index}, parent: base, type: revolute, dh: {dh}, link: {{{link}}}}}");
+        }
+        let robot = crate::Reader::new("x").trees().read(&text).unwrap().robot;
+        base_is_unresisted(robot.convention, &robot.joints, &robot.floating_base.unwrap().link)
+    }
+
+    #[test]
+    fn a_base_without_mass_needs_two_legs_on_different_axes() {
+        const BODY: &str = "mass: 2, com: [0.1, 0.2, 0.3], inertia: {xx: 0.2, yy: 0.3, zz: 0.4}";
+        let (about_z, about_y) = (("a: 0.3, alpha: 0", BODY), ("a: 0.3, alpha: pi/2", BODY));
+        assert!(!floating(BODY, &[about_z]));
+        assert!(!floating(BODY, &[("a: 0.3, alpha: 0", "")]), "the base alone is resisted, the joint is not");
+        assert!(floating("mass: 0", &[("a: 0.3, alpha: 0", "")]));
+        // it turns about the axis of its only leg
+        assert!(floating("mass: 0", &[about_z]));
+        assert!(!floating("mass: 0", &[about_z, about_y]));
+        // the base turns about one line, or about none of two that are parallel
+        assert!(floating("mass: 0", &[about_z, about_z]));
+        assert!(!floating("mass: 0", &[about_z, ("a: -0.3, alpha: 0", BODY)]));
+        // two points have six freedoms, the robot has seven
+        assert!(floating("mass: 2", &[("a: 0.3, alpha: 0", "mass: 2, com: [0.1, 0, 0]")]));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::collections::HashMap;
 
 use crate::body::bodies;
-use crate::contact::contacts;
+use crate::contacts::contacts;
 use crate::coupling::{self, couplings};
 use crate::decode::{Context, Parameter, choice, list, not_negative, quantity, read_mapping, text};
 use crate::diagnostic::Diagnostic;
@@ -104,6 +104,9 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         }
     }
     bodies.add_to(&mut joints, floating_base.as_mut());
+    if let Some(base) = floating_base.as_ref().filter(|_| !cx.has_errors()) {
+        lint::floating_inertia(cx, node, &base.link, convention, &joints);
+    }
     let run_time = cx.run_time.take();
     Some(Robot {
         name,

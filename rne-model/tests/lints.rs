@@ -423,3 +423,32 @@ fn errors_come_before_warnings() {
     );
     assert_eq!((report.errors().count(), report.warnings().count()), (1, 1));
 }
+
+/// The base of one leg turns about the axis of its joint without any moment.
+#[test]
+fn a_floating_base_that_nothing_resists() {
+    let body = "mass: 2, com: [0.1, 0.2, 0.3], inertia: {xx: 0.2, yy: 0.3, zz: 0.4}";
+    let text = |base: &str, more: &str| {
+        format!(
+            "format: 2\nname: x\nsource: x\nconvention: modified\ngravity: [0, 0, -9.81]\ntool: {{on: j1}}\n\
+             floating_base: {{name: trunk, link: {{{base}}}}}\njoints:\n  - {{name: j1, type: revolute, dh: {{theta: 0, \
+             d: 0, a: 0.3, alpha: 0}}, link: {{{body}}}}}\n{more}"
+        )
+    };
+    let said = |text: &str| Reader::new("x.yaml").trees().read(text).expect("it is right").lints;
+    let report = said(&text("mass: 0", ""));
+    let [warning] = report.diagnostics.as_slice() else { panic!("{report}") };
+    assert_eq!((warning.severity, warning.line, warning.column), (Severity::Warning, 7, 43), "{report}");
+    assert!(warning.message.starts_with("no inertia resists the floating base when the joints move"), "{report}");
+    assert!(warning.help.as_deref().unwrap_or_default().contains("give this link its mass and inertia"), "{report}");
+    // with a mass, with a leg on another axis, or with a body on it
+    let other = format!(
+        "  - {{name: j2, parent: base, type: revolute, dh: {{gamma: 0, b: 0, theta: 0, d: 0, a: 0, alpha: pi/2}}, \
+         link: {{{body}}}}}\n"
+    );
+    let carried = format!("bodies:\n  - {{name: battery, on: base, {body}}}\n");
+    for text in [text(body, ""), text("mass: 0", &other), text("mass: 0", &carried)] {
+        let report = said(&text);
+        assert!(!report.to_string().contains("resists"), "{report}");
+    }
+}

@@ -147,7 +147,7 @@ fn solve_from_the_ends<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(matrix: &mut [R], 
 }
 
 /// The first six accelerations.
-fn of_base<T: Scalar>(x: &[T]) -> BaseAcceleration<T> {
+pub(crate) fn of_base<T: Scalar>(x: &[T]) -> BaseAcceleration<T> {
     BaseAcceleration { linear: [x[0], x[1], x[2]], angular: [x[3], x[4], x[5]] }
 }
 

@@ -21,7 +21,7 @@ mod capability;
 mod centre_of_mass;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod closed_loops;
-#[cfg(all(feature = "arm", feature = "std"))]
+#[cfg(feature = "arm")]
 mod contact_dynamics;
 #[cfg(feature = "arm")]
 mod coriolis_matrix;

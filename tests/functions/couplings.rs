@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use fastrand::Rng;
-use rne_codegen::{Compiler, Form, Function};
+use rne_codegen::{Compiler, Form, Function, Reason, Refusal};
 use rne_model::{FixedFrame, Reader, Robot, Transform};
 
 use crate::arm::{Arm, Maker};
@@ -207,10 +207,8 @@ fn code_of_robots_with_followers_is_the_runtime() {
     }
 }
 
-/// The angle of a joint that follows a slide is a length of the slide too, where its offset is a coordinate of the
-/// centre of mass.
-#[test]
-fn an_angle_may_be_a_length() {
+/// A revolute joint that follows a slide; its offset is a coordinate of the centre of mass, too.
+fn winch(ratio: &str) -> Robot {
     let yaml = "
 format: 2
 name: winch
@@ -227,9 +225,15 @@ joints:
     dh: {theta: 0, d: 0, a: 0.2, alpha: 0.3}
     link: {mass: 2, com: [0.1, 0.1, 0.3], inertia: {xx: 0.5, yy: 0.8, zz: 0.8}}
 couplings:
-  - {joint: drum, follows: {slide: 1}, offset: 0.3}
+  - {joint: drum, follows: {slide: RATIO}, offset: 0.3}
 ";
-    let robot = Reader::new("winch").trees().couplings().read(yaml).expect("it is right").robot;
+    Reader::new("winch").trees().couplings().read(&yaml.replace("RATIO", ratio)).expect("it is right").robot
+}
+
+/// The angle of a joint that follows a slide is a length of the slide too, where its ratio is 1.
+#[test]
+fn an_angle_may_be_a_length() {
+    let robot = winch("1");
     for maker in Maker::CODE {
         let mut worst = Worst::default();
         compare_at_states(&Arm::by_no_choice(&robot, maker), maker, &mut worst);
@@ -237,11 +241,12 @@ couplings:
     }
 }
 
-/// The function with numbers of every link is refused by name; every other one has a form that is proved.
+/// The function with numbers of every link is refused by name; every other one has a form that is proved, also where
+/// the angle of a revolute joint is the length of a joint that slides.
 #[test]
 fn functions_of_every_link_are_refused_and_the_others_are_proved() {
-    for seed in 0..6 {
-        let (_, robot, _) = robots(seed, 4);
+    let winches = ["1", "5", "-0.37", "pi/7"].map(winch);
+    for robot in (0..6).map(|seed| robots(seed, 4).1).chain(winches) {
         let compiler = Compiler::new(&robot);
         for function in Function::OF_TREES {
             match compiler.compile(function, Form::Reduced) {
@@ -251,6 +256,8 @@ fn functions_of_every_link_are_refused_and_the_others_are_proved() {
                 }
                 Ok(program) => {
                     assert!(!function.is_of_every_link(), "{function}");
+                    let differs = |refusal: &Refusal| matches!(refusal.reason, Reason::Error(_));
+                    assert!(!program.refusals.iter().any(differs), "{function}: {:?}", program.refusals);
                     assert_eq!(program.argument_arrays()[0].elements.len(), robot.dof(), "{function}");
                 }
             }

@@ -389,6 +389,24 @@ fn contacts_behind_a_turn_about_an_axis_are_proved() {
     }
 }
 
+/// Two points of one foot hold more than it can move: the damping of their equations takes eight digits.
+#[test]
+fn redundant_contacts_have_a_reduced_form() {
+    let body = "{mass: 1.5, com: [0.1, 0.2, 0.3], inertia: {xx: 0.1, yy: 0.2, zz: 0.15}}";
+    let robot = robot(&format!(
+        "{{format: 2, name: hopper, source: own, convention: modified, gravity: [0, 0, -9.81], \
+         floating_base: {{name: trunk, link: {body}}}, joints: [{{name: hip, type: revolute, \
+         dh: {{theta: 0, d: 0, a: 0.2, alpha: 0.4}}, link: {body}}}], \
+         frames: [{{name: heel, on: hip, xyz: [0, 0.1, 0]}}, {{name: toe, on: hip, xyz: [0.2, 0, 0.1]}}], \
+         tips: [heel, toe], contacts: [{{tip: heel, kind: point}}, {{tip: toe, kind: point}}]}}"
+    ));
+    let program = Compiler::new(&robot).compile(Function::ForwardDynamicsInContact, Form::Reduced);
+    let program = program.expect("a program");
+    assert!(program.refusals.is_empty(), "{:?}", program.refusals);
+    let rounding = program.proof.expect("it is proved").rounding;
+    assert!(rounding > 1e-11 && rounding < 1e-7, "{rounding:e}");
+}
+
 /// HyQ stands still under the torques that its feet ask when they carry it, and the forces under them are its weight.
 #[test]
 fn a_quadruped_stands_on_its_feet() {

@@ -25,7 +25,7 @@ use crate::render::layout::PAGE;
 use crate::render::letters::Letters;
 use crate::render::worksheet::{self, Axes, Narrowed};
 use crate::values::choice;
-use crate::values::definite::{NOT_DEFINITE, is_indefinite};
+use crate::values::definite::{BUT_FOR_ROUNDING, NOT_DEFINITE, is_indefinite, is_singular};
 use crate::values::limits;
 use crate::values::numbers::List;
 use crate::values::state::{Given, State, TipWrench};
@@ -208,8 +208,11 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(&robot, function, index, &state.q)));
     }
+    if is_singular(&robot, function, &state.q, state.payload.as_ref()) {
+        return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
+    }
     let mut remark = limits::remark(&robot, &state.q);
-    if is_indefinite(&robot, function, &state.q) {
+    if is_indefinite(&robot, function, &state.q, state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }
     if !assumed.is_empty() {

@@ -9,7 +9,7 @@ use rne_emit::{Golden, Precision};
 use rne_model::{Contact, GoldenFile, Robot, exact_digits};
 
 use crate::outcome::Failure;
-use crate::render::physics;
+use crate::values::definite::least_resistance;
 use crate::values::random::{self, rounding};
 use crate::values::state::State;
 
@@ -32,9 +32,8 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
                 let arm = &at_frame(robot, program, &arm);
                 let numbers = state.of(program.function).numbers(arm).map_err(Failure::usage)?;
                 let is_finite = numbers.iter().all(|number| number.is_finite());
-                let is_left_out = program.function.inverts_mass()
-                    && precision == Precision::Single
-                    && !is_well_conditioned(&state, arm);
+                let least = least_resistance(arm, program.function, &state.q, state.payload.as_ref());
+                let is_left_out = least.is_some_and(|least| least <= least_of(precision));
                 let is_possible = program.function != Function::ForwardDynamicsInContact || can_hold(&numbers, arm);
                 Ok(if is_finite && is_possible && !is_left_out { numbers } else { Vec::new() })
             });
@@ -70,19 +69,22 @@ fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure>
     if is_kinematic {
         return Ok(1.0);
     }
-    let torques = state.of(Function::InverseDynamicsOnMovingBase).numbers(arm).map_err(Failure::usage)?;
+    let torques = if function.is_of_closed_loops() {
+        Function::InverseDynamicsOfLoopsWithWrenches
+    } else {
+        Function::InverseDynamicsOnMovingBase
+    };
+    let torques = state.of(torques).numbers(arm).map_err(Failure::usage)?;
     Ok(torques.iter().filter(|torque| torque.is_finite()).fold(0.0, |largest, torque| torque.abs().max(largest)))
 }
 
-/// Whether accelerations keep digits in single precision. They lose all digits at a joint that has hardly any inertia
-/// while the joints after it move freely.
-fn is_well_conditioned(state: &State, arm: &DynArm) -> bool {
-    const LEAST: f64 = 1e-3;
-    let matrix = match state.passive.as_slice() {
-        [] => arm.mass_matrix(&state.q),
-        passive => arm.mass_matrix_of_loops(&state.q, passive),
-    };
-    matrix.is_ok_and(|matrix| physics::smallest_pivot(matrix) > LEAST)
+/// The pivot of the mass matrix below which accelerations have too few digits to compare. They lose all digits at a
+/// joint, or a base, that has hardly any inertia while the joints after it move freely.
+const fn least_of(precision: Precision) -> f64 {
+    match precision {
+        Precision::Single => 1e-3,
+        Precision::Double => 1e-7,
+    }
 }
 
 /// Whether contacts can hold an arm as they should, by what its forward dynamics in contact returns: redundant ones

@@ -239,5 +239,7 @@ mod tests {
         assert_eq!(smallest_pivot(vec![vec![2.0, 1.0], vec![1.0, 2.0]]), 0.75);
         assert_eq!(smallest_pivot(vec![vec![1.0, 1.0], vec![1.0, 1.0]]), 0.0);
         assert_eq!(smallest_pivot(vec![vec![1.0, 0.0], vec![0.0, 0.0]]), 0.0);
+        // a light wrist on a heavy arm is well resisted
+        assert!((smallest_pivot(vec![vec![1e6, 0.6], vec![0.6, 1e-6]]) - 0.64).abs() < 1e-12);
     }
 }

@@ -1,20 +1,64 @@
-//! Whether a mass matrix is positive definite. The mass matrix of an arm whose links are bodies is positive definite;
-//! with `physical: false` a link need not be a body.
+//! Whether a mass matrix is positive definite. The mass matrix of a robot whose links are bodies is positive definite,
+//! or singular; with `physical: false` a link need not be a body.
 
-use rne::DynArm;
-use rne_codegen::Function;
+use rne::{DynArm, Payload};
+use rne_codegen::{Argument, Function};
 use rne_model::Robot;
+
+use crate::render::physics::smallest_pivot;
 
 /// A pivot counts as negative beyond this part of the largest element: rounding does not make such a pivot.
 const NEGATIVE: f64 = 1e-9;
+
+/// A pivot counts as zero below this part of the element of the diagonal: fewer than three digits would be left.
+const SINGULAR: f64 = 1e-13;
+
+/// The mistake in the result of a function that inverts the mass matrix, where this is singular but for rounding.
+pub(crate) const BUT_FOR_ROUNDING: &str = "the mass matrix is singular at this position, so the numbers are \
+                                           rounding errors: no inertia resists a joint, or the base, when others move \
+                                           against it; give its link mass and inertia (`rne check` names the link if \
+                                           this is so at all positions)";
 
 /// The mistake in the result of a function that inverts the mass matrix, where this is not positive definite.
 pub(crate) const NOT_DEFINITE: &str = "the mass matrix is not positive definite at this position: a link is no real \
                                        body (`physical: false`), or a payload has negative numbers";
 
-/// Whether a function inverts the mass matrix of the robot, and that is not positive definite at a position.
-pub(crate) fn is_indefinite(robot: &Robot, function: Function, q: &[f64]) -> bool {
-    function.inverts_mass() && DynArm::from_robot(robot).mass_matrix(q).is_ok_and(has_negative_direction)
+/// Whether the mass matrix that a function inverts is not positive definite at a position.
+pub(crate) fn is_indefinite(robot: &Robot, function: Function, q: &[f64], payload: Option<&Payload<f64>>) -> bool {
+    inverted_mass_matrix(&DynArm::from_robot(robot), function, q, payload).is_some_and(has_negative_direction)
+}
+
+/// Whether the mass matrix that a function inverts is singular at a position, but for rounding.
+pub(crate) fn is_singular(robot: &Robot, function: Function, q: &[f64], payload: Option<&Payload<f64>>) -> bool {
+    let arm = DynArm::from_robot(robot);
+    least_resistance(&arm, function, q, payload).is_some_and(|least| least < SINGULAR)
+        && !is_indefinite(robot, function, q, payload)
+}
+
+/// The [smallest pivot](smallest_pivot) of the mass matrix that a function inverts, if it inverts one.
+pub(crate) fn least_resistance(
+    arm: &DynArm,
+    function: Function,
+    q: &[f64],
+    payload: Option<&Payload<f64>>,
+) -> Option<f64> {
+    inverted_mass_matrix(arm, function, q, payload).map(smallest_pivot)
+}
+
+/// The mass matrix that a function inverts, if it inverts one: with the rows of a floating base, or with a payload.
+fn inverted_mass_matrix(
+    arm: &DynArm,
+    function: Function,
+    q: &[f64],
+    payload: Option<&Payload<f64>>,
+) -> Option<Vec<Vec<f64>>> {
+    let matrix = || match payload.filter(|_| function.takes(Argument::Payload)) {
+        Some(payload) => arm.mass_matrix_with_payload(q, payload),
+        None if function.is_of_floating_base() => arm.floating_mass_matrix(q),
+        None => arm.mass_matrix(q),
+    };
+    // that of closed loops depends on the positions of the dependent joints, too
+    (function.inverts_mass() && !function.is_of_closed_loops()).then(matrix)?.ok()
 }
 
 /// Whether xᵀ M x < 0 for some x: elimination with the largest pivot of the diagonal, or a rest whose diagonal is zero

@@ -388,6 +388,42 @@ fn functions_take_their_arguments_and_no_others() {
     fails(2, &["eval", PUMA, "--function", "actuator_torques", "--q", "1"], &["actuator_torques takes no --q"]);
 }
 
+/// A base without mass turns about the axis of its only leg without any moment: rounding makes accelerations of 1e15
+/// there. With a second leg on another axis, it has accelerations.
+#[test]
+fn a_mass_matrix_that_is_singular_but_for_rounding_has_no_accelerations() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let leg = |name: &str, alpha: &str| {
+        format!(
+            "  - {{name: {name}, parent: base, type: revolute, dh: {{gamma: 0, b: 0, theta: 0, d: 0, a: 0.2, \
+             alpha: {alpha}}},\n     link: {{mass: 2, com: [0.1, 0.05, 0.3], inertia: {{xx: 0.5, yy: 0.8, zz: 0.7}}}}}}\n"
+        )
+    };
+    let robot = |name: &str, legs: &str| {
+        let path = folder.path().join(name);
+        let text = format!(
+            "format: 2\nname: legs\nsource: own\nconvention: modified\ngravity: [0, 0, -9.81]\ntool: {{on: j1}}\n\
+             floating_base: {{name: trunk, link: {{mass: 0}}}}\njoints:\n{legs}"
+        );
+        fs::write(&path, text).expect("a file");
+        path.to_str().expect("UTF-8").to_owned()
+    };
+    let (one, other) = (leg("j1", "pi/2"), leg("j2", "0.7"));
+    let (hopper, biped) = (robot("hopper.yaml", &one), robot("biped.yaml", &(one + &other)));
+    let call = |file: &str, function: &str, q: &str| {
+        rne(&["eval", file, "--function", function, "--q", q, "--qd", q, "--tau", q])
+    };
+    for function in ["floating_forward_dynamics", "forward_dynamics_in_contact"] {
+        let called = call(&hopper, function, "0.3");
+        assert_eq!((called.status, called.out.as_str()), (1, ""), "{called:?}");
+        let said = format!("{function} has no result: the mass matrix is singular at this position");
+        assert!(called.err.contains(&said) && called.err.contains("`rne check` names the link"), "{called:?}");
+        assert_eq!(call(&biped, function, "0.3,0.4").status, 0, "{function}");
+    }
+    assert_eq!(call(&hopper, "forward_dynamics", "0.3").status, 0, "the base is held still");
+    assert!(fine(&["check", &hopper]).contains("no inertia resists the floating base"));
+}
+
 #[test]
 fn functions_for_reading() {
     let robot = "robots/cylindrical_rpp.yaml";

@@ -142,6 +142,8 @@ fn a_base_that_floats_in_the_file_floats() {
     assert!(told.contains("note: without --base, it is the floating base"), "{told}");
     let elsewhere = ["import", urdf, "--whole", "--tip", "tip", "--lock", "free=1"];
     fails(1, &elsewhere, &["the joint `free` floats, and can be locked at 0 only", "0 fixes the base"]);
+    let twice = ["import", urdf, "--whole", "--tip", "tip", "--lock", "free=0", "--lock", "free=0"];
+    fails(1, &twice, &["the joint `free` is locked twice", "lock it once"]);
     let both = ["import", urdf, "--whole", "--tip", "tip", "--lock", "free=0", "--floating"];
     fails(1, &both, &["the base is to float, and the joint that lets it float is locked"]);
     let arm = rne(&["import", urdf, "--tip", "tip", "--lock-others"]);

@@ -43,13 +43,25 @@ pub fn c_tests(
         let _ = writeln!(calls, "    {name}();");
     }
     let (upper, states) = (tests.prefix.to_ascii_uppercase(), tests.states(&bodies));
-    let tests_are = functions.len();
-    let (real, tolerance) = (precision.c_type(), tests.tolerance());
+    let real = precision.c_type();
     let zeros = if bodies.contains("test_zero") {
         let zero = precision.literal(0.0).unwrap_or_default();
         format!("static const {real} test_zero[{upper}_DOF] = {{{zero}}};\n")
     } else {
         String::new()
+    };
+    // a function that nothing calls is a warning
+    let helpers = [
+        ("test_largest(", largest(real)),
+        ("test_compare(", COMPARE.to_owned()),
+        ("test_tolerance", format!("static const double test_tolerance = {};\n", tests.tolerance())),
+    ];
+    let helpers: String =
+        helpers.iter().filter(|(name, _)| bodies.contains(name)).map(|(_, text)| text.as_str()).collect();
+    let tests_are = match functions.len() {
+        0 => "0 tests, as no state has results to compare".to_owned(),
+        1 => "1 test".to_owned(),
+        several => format!("{several} tests"),
     };
     format!(
         "{GUARD}\n\
@@ -57,24 +69,37 @@ pub fn c_tests(
          // Values are those of the runtime library of rne, which shares no code with this file; laws are those of\n\
          // mechanics.\n\n\
          #include <stdio.h>\n\n{states}{zeros}\nstatic unsigned test_failures = 0u;\n\n\
-         static double test_largest(const {real} *numbers, unsigned count, double largest)\n{{\n    \
-         unsigned i;\n    for (i = 0u; i < count; ++i) {{\n        \
-         const double x = (double)numbers[i];\n        \
-         largest = (x > largest) ? x : ((-x > largest) ? -x : largest);\n    }}\n    return largest;\n}}\n\n\
-         // Numbers that are to be the same, to so many parts of a scale; what is no number never is.\n\
-         static void test_compare(const char *what, unsigned state, unsigned number, double found, \
-         double expected,\n    \
-         double allowed)\n{{\n    \
-         const double error = found - expected;\n    \
-         if (!((error <= allowed) && (-error <= allowed))) {{\n        \
-         printf(\"%s, state %u, number %u: %.17g, not %.17g\\n\", what, state, number, found, expected);\n        \
-         ++test_failures;\n    }}\n}}\n\n\
-         static const double test_tolerance = {tolerance};\n{bodies}\n\
+         {helpers}{bodies}\n\
          int main(void)\n{{\n{calls}    \
-         printf(\"{tests_are} tests, %u wrong numbers\\n\", test_failures);\n    \
+         printf(\"{tests_are}, %u wrong numbers\\n\", test_failures);\n    \
          return (test_failures == 0u) ? 0 : 1;\n}}\n\n#endif\n"
     )
 }
+
+/// The function that returns the largest magnitude among numbers of a type.
+fn largest(real: &str) -> String {
+    format!(
+        "static double test_largest(const {real} *numbers, unsigned count, double largest)\n{{\n    \
+         unsigned i;\n    for (i = 0u; i < count; ++i) {{\n        \
+         const double x = (double)numbers[i];\n        \
+         largest = (x > largest) ? x : ((-x > largest) ? -x : largest);\n    }}\n    return largest;\n}}\n\n"
+    )
+}
+
+/// The function that compares a number with another.
+const COMPARE: &str = "\
+// Numbers that are to be the same, to so many parts of a scale; what is no number never is.
+static void test_compare(const char *what, unsigned state, unsigned number, double found, double expected,
+    double allowed)
+{
+    const double error = found - expected;
+    if (!((error <= allowed) && (-error <= allowed))) {
+        printf(\"%s, state %u, number %u: %.17g, not %.17g\\n\", what, state, number, found, expected);
+        ++test_failures;
+    }
+}
+
+";
 
 struct Tests<'a> {
     robot: &'a Robot,

@@ -68,3 +68,26 @@ fn angles_that_are_close_have_their_own_constants() {
         }
     }
 }
+
+/// The sine of a length of a joint that slides is a number of its own for each ratio and offset of its follower.
+#[test]
+fn another_ratio_of_a_follower_of_a_slide_is_refused() {
+    let winch = |ratio: &str, offset: &str| {
+        let link = "mass: 2, com: [0.1, 0.1, 0.3], inertia: {xx: 0.5, yy: 0.8, zz: 0.8}";
+        let text = format!(
+            "{{format: 2, name: winch, source: own, convention: modified, gravity: [0, 0, -9.81], joints: [
+            {{name: slide, type: prismatic, dh: {{theta: 0, d: 0, a: 0.2, alpha: 0}}, link: {{{link}}}}},
+            {{name: drum, type: revolute, dh: {{theta: 0, d: 0, a: 0.2, alpha: 0.3}}, link: {{{link}}}}}],
+            couplings: [{{joint: drum, follows: {{slide: {ratio}}}, offset: {offset}}}]}}"
+        );
+        Reader::new("winch").trees().couplings().read(&text).unwrap().robot
+    };
+    for (ratio, offset) in [("1", "0"), ("1", "0.3"), ("5", "0.3"), ("-0.37", "0")] {
+        let robot = winch(ratio, offset);
+        let program = unproved(&robot, &Plan::new(2), Function::InverseDynamics).unwrap();
+        assert!(is_identical(&robot, &program), "{ratio} {offset}");
+        for other in [winch("1.000001", offset), winch("1.0000000000001", offset), winch(ratio, "0.3000001")] {
+            assert!(!is_identical(&other, &program), "{ratio} {offset}");
+        }
+    }
+}
