@@ -162,7 +162,7 @@ fn the_machine_computes_closed_loops() {
         let golden: Vec<Value> =
             serde_json::from_slice(&read(&format!("tests/golden/loops/{name}.json"))).expect("JSON");
         let all = |key: &str| golden.iter().flat_map(|state| State(state).numbers(key)).collect::<Vec<f64>>();
-        let [q, passive, qd, qdd, tau, wrenches] = ["q", "passive", "qd", "qdd", "tau", "wrench"].map(|key| all(key));
+        let [q, passive, qd, qdd, tau, wrenches] = ["q", "passive", "qd", "qdd", "tau", "wrench"].map(all);
         let arguments = Numbers::new().q(Array::Rows(&q)).passive(Array::Rows(&passive)).qd(Array::Rows(&qd));
         let arguments = arguments.qdd(Array::Rows(&qdd)).tau(Array::Rows(&tau)).wrenches(Array::Rows(&wrenches));
         for function in Function::of_robot(arm.robot()) {

@@ -25,15 +25,14 @@ use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// The joints that move a place of a loop and not the other, base first: those of the first and of the second place.
 pub(crate) fn ways(robot: &Robot, closed: &ClosedLoop) -> [Vec<usize>; 2] {
-    let mut ways = [0, 1].map(|end| {
+    let ways = [0, 1].map(|end| {
         let to_base = std::iter::successors(closed.between[end].on, |&joint| robot.parent(joint));
         let mut way: Vec<usize> = to_base.collect();
         way.reverse();
         way
     });
     let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
-    ways.iter_mut().for_each(|way| drop(way.drain(..shared)));
-    ways
+    ways.each_ref().map(|way| way[shared..].to_vec())
 }
 
 /// A joint on a way: its axis, a point of it, and whether it is on the way to the first place.
@@ -251,12 +250,14 @@ impl<'s> Solved<'s> {
         for step in 0..order.len() {
             let inverse = builder.quotient(one, rows[step][step]);
             inverses.push(inverse);
-            for row in step + 1..order.len() {
-                let factor = rows[row][step] * inverse;
-                for column in step + 1..order.len() {
-                    rows[row][column] = rows[row][column] - factor * rows[step][column];
+            let (above, below) = rows.split_at_mut(step + 1);
+            let of_pivot = &above[step];
+            for (row, factors) in below.iter_mut().zip(&mut lower[step + 1..]) {
+                let factor = row[step] * inverse;
+                for (x, &pivot) in row.iter_mut().zip(of_pivot).skip(step + 1) {
+                    *x = *x - factor * pivot;
                 }
-                lower[row].push(factor);
+                factors.push(factor);
             }
         }
         let upper = rows.into_iter().enumerate().map(|(step, row)| row[step + 1..].to_vec()).collect();
