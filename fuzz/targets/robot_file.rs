@@ -21,6 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
     report.short();
     let varying = Reader::new("x.yaml").run_time(&["m"]).read(bytes);
     assert!(is_valid || varying.is_err(), "no error is forgiven at run time");
+    let _ = Reader::new("x.yaml").trees().couplings().loops().read(bytes);
     if let Ok(checked) = checked {
         let zeros = vec![0.0; checked.robot.dof()];
         let torques = DynArm::from_robot(&checked.robot).inverse_dynamics(&zeros, &zeros, &zeros);

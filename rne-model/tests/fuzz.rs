@@ -16,6 +16,9 @@ fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
     let varying = Reader::new("x.yaml").run_time(&["m", "r"]).read(bytes);
     prop_assert!(valid || varying.is_err(), "no error is forgiven at run time");
     well_formed(&varying.map_or_else(|report| report, |checked| checked.lints))?;
+    let of_all = Reader::new("x.yaml").trees().couplings().loops().read(bytes);
+    prop_assert!(!valid || of_all.is_ok(), "who takes more refuses no less");
+    well_formed(&of_all.map_or_else(|report| report, |checked| checked.lints))?;
     let most = 1000 + 100 * bytes.len();
     prop_assert!(report.work() <= most, "{} steps for {} bytes", report.work(), bytes.len());
     Ok(())
@@ -40,6 +43,36 @@ fn well_formed(report: &Report) -> Result<(), TestCaseError> {
     report.render(true);
     report.short();
     Ok(())
+}
+
+/// A file with a closed loop.
+const FOUR_BAR: &str = include_str!("../../docs/four_bar.yaml");
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_closed_loop_with_other_words_and_numbers(
+        changes in prop::collection::vec((0..100_usize, 0..24_usize), 1..4),
+    ) {
+        const PIECES: [&str; 24] = [
+            "0", "1", "-0.3", "1e300", "-1e300", "1e-300", ".inf", ".nan", "pi/2", "prismatic", "weld", "universal",
+            "spherical", "revolute", "standard", "base", "crank", "coupler", "rocker", "", "[]", "{}", "~", "pin",
+        ];
+        let mut text = FOUR_BAR.split_once("joints:").expect("a list of joints").1.to_owned();
+        for (at, piece) in changes {
+            let is_word = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+            let begins = |(at, c): (usize, char)| {
+                (is_word(c) && !text[..at].ends_with(is_word)).then_some(at)
+            };
+            let words: Vec<usize> = text.char_indices().filter_map(begins).collect();
+            let start = words[at % words.len()];
+            let end = text[start..].find(|c| !is_word(c)).map_or(text.len(), |length| start + length);
+            text.replace_range(start..end, PIECES[piece]);
+        }
+        let head = FOUR_BAR.split_once("joints:").expect("a list of joints").0;
+        survive(format!("{head}joints:{text}").as_bytes())?;
+    }
 }
 
 /// What robot files and YAML are made of.
