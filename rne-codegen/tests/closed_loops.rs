@@ -1,7 +1,7 @@
 //! Closed loops: both forms of each function, against the closed form of a four-bar linkage.
 
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Reason};
-use rne_model::{ClosedLoop, ClosedLoops, Cut, FixedFrame, Pivot, Reader, Robot, Transform};
+use rne_model::{Reader, Robot};
 
 /// A crank of 0.2 m and a coupler of 0.45 m; a rocker of 0.3 m stands 0.5 m away.
 const FOUR_BAR: &str = "
@@ -20,23 +20,20 @@ const FOUR_BAR: &str = "
          link: {mass: 0.9, com: [0.14, 0.03, 0], inertia: {zz: 0.008}}}
 ";
 
-fn tree() -> Robot {
-    Reader::new("four_bar").trees().couplings().read(FOUR_BAR.as_bytes()).expect("a robot").robot
+/// The joint between coupler and rocker.
+const LOOP: &str = "
+    loops:
+      - {name: bar, cut: revolute, between: [{on: coupler, xyz: [0.45, 0, 0]}, {on: rocker, xyz: [0.3, 0, 0]}],
+         dependent: [coupler, rocker]}
+";
+
+fn read(text: &str) -> Robot {
+    let read = Reader::new("four_bar").trees().couplings().loops().read(text.as_bytes());
+    read.unwrap_or_else(|report| panic!("{}", report.render(false))).robot
 }
 
 fn four_bar() -> Robot {
-    let mut robot = tree();
-    let place = |on, x| FixedFrame { on: Some(on), placement: Transform { xyz: [x, 0.0, 0.0], ..Transform::IDENTITY } };
-    let closed = ClosedLoop { name: "bar".to_owned(), cut: Cut::Revolute, between: [place(1, 0.45), place(2, 0.3)] };
-    let (q, [coupler, rocker]) = (0.7, closed_form(0.7));
-    robot.closed = ClosedLoops {
-        loops: vec![closed],
-        passive: vec![1, 2],
-        elimination: vec![Pivot { equation: 0, passive: 0 }, Pivot { equation: 1, passive: 1 }],
-        closures: vec![vec![q, coupler, rocker]],
-        ..ClosedLoops::default()
-    };
-    robot
+    read(&[FOUR_BAR.trim_end(), LOOP].concat())
 }
 
 /// The angles of the coupler, from the crank, and of the rocker: the triangle of the crank's end, the rocker's joint
@@ -77,7 +74,6 @@ fn run(robot: &Robot, function: Function, form: Form, state: [&[f64]; 5]) -> Vec
     let program = Compiler::new(robot).compile(function, form).unwrap_or_else(|error| panic!("{function}: {error}"));
     let is_longer = program.refusals.iter().any(|refusal| matches!(refusal.reason, Reason::Longer { .. }));
     assert!(program.form == form || is_longer, "{function}: {:?}", program.refusals);
-    println!("{function} {form}: {:?}", program.operations());
     let [q, passive, qd, qdd, tau] = state;
     let arguments = Arguments { passive, tau, wrenches: &[[0.0; 6]], ..Arguments::of_joints(q, qd, qdd, 0.0) };
     Interpreter::new(&program).run(&arguments, |x| x, f64::sin_cos).expect("all arguments")
@@ -134,7 +130,7 @@ fn functions_that_take_no_dependent_positions_are_refused() {
     let robot = four_bar();
     let error = Compiler::new(&robot).compile(Function::InverseDynamics, Form::SevenSteps).unwrap_err();
     assert!(error.to_string().contains("the loop `bar`") && error.to_string().contains("inverse_dynamics_of_loops"));
-    let open = tree();
+    let open = read(FOUR_BAR);
     let error = Compiler::new(&open).compile(Function::LoopMap, Form::SevenSteps).unwrap_err();
     assert!(error.to_string().contains("no `loops`"), "{error}");
 }

@@ -105,11 +105,10 @@ struct Good {
 
 /// A robot file, and its plan with it, unless that is among the files to be checked itself.
 fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
-    // the laws are those of the runtime, which computes no closed loops
+    // the laws are those of open trees
     let shape = if arguments.physics { Shape::Coupled } else { Shape::Closed };
     let Checked { robot, lints, .. } = robot_file::read(path, shape)?;
-    if robot.closed.is_empty()
-        && !arguments.files.contains(&plan_of(path))
+    if !arguments.files.contains(&plan_of(path))
         && let Some(read) = plan_file::read(path, &robot)?
     {
         plan_file::verify(&robot, &read)?;
@@ -129,7 +128,7 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
     const MOST_JOINTS: usize = 8;
     // of geometry alone a warning tells, and why accelerations cannot be computed
     let has_links = robot.joints.iter().any(|joint| !joint.row.link.is_empty());
-    if robot.joints.len() > MOST_JOINTS || !has_links || !robot.closed.is_empty() {
+    if robot.joints.len() > MOST_JOINTS || !has_links {
         return Ok(Vec::new());
     }
     let compiler = Compiler::new(path, robot);

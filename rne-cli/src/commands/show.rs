@@ -93,10 +93,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let is_listing = !(arguments.base_parameters || arguments.json || arguments.equations);
     let shape = if is_listing { Shape::Closed } else { Shape::Coupled };
     let robot = arguments.rotors.robot(&arguments.file, shape)?;
-    if !robot.closed.is_empty() {
-        // no function has code for closed loops; what is known of them is their heading
-        return Ok(Outcome::text(letters.page(&heading::robot(&robot), PAGE)));
-    }
+    let function = choice::of_loops(arguments.function, &robot);
     if arguments.base_parameters {
         let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
         return Ok(Outcome::text(letters.page(&text, PAGE)));
@@ -119,10 +116,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let program = match arguments.form {
         Form::SevenSteps => codegen::Compiler::new(&robot)
             .with_intermediates(&quantities)
-            .compile(arguments.function, arguments.form)
+            .compile(function, arguments.form)
             .map_err(|error| Failure::compile(&file, &error))?,
         form @ Form::Reduced if keep.is_empty() => {
-            Compiler::new(&arguments.file, &robot).without(&arguments.without).compile(arguments.function, form)?
+            Compiler::new(&arguments.file, &robot).without(&arguments.without).compile(function, form)?
         }
         form @ Form::Reduced => {
             return Err(Failure::usage(format_args!(
@@ -134,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
     let mut text = letters.page(&heading::robot(&robot), PAGE);
     let _ = writeln!(text, "\n{}", heading::counts(&program));
-    if program.outputs.len() > arguments.function.layout(Sizes::of(&robot)).len() {
+    if program.outputs.len() > function.layout(Sizes::of(&robot)).len() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
         let line = format!("{QUIET}also computed, and counted above: {}{QUIET:#}\n", words.join(", "));
         text.push_str(&letters.page(&line, PAGE));
@@ -175,7 +172,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// The inspection, as JSON or as lines.
 fn inspected(arguments: &Arguments, robot: &Robot, joint: Option<usize>) -> Result<Outcome, Failure> {
     let file = arguments.file.display().to_string();
-    let (function, form) = (arguments.function, arguments.form);
+    let (function, form) = (function, arguments.form);
     let program = match form {
         Form::SevenSteps => codegen::Compiler::new(robot)
             .with_equations()

@@ -155,6 +155,14 @@ pub(crate) fn joint_of(robot: &Robot, told: Option<&str>) -> Result<Option<usize
     Err(Failure::usage(format!("{} has no joint {told}; its joints are {joints}", robot.name)))
 }
 
+/// The torques of a robot with closed loops, where the default is asked for, the torques of an open tree.
+pub(crate) fn of_loops(function: Function, robot: &Robot) -> Function {
+    match function {
+        Function::InverseDynamics if !robot.closed.is_empty() => Function::InverseDynamicsOfLoops,
+        function => function,
+    }
+}
+
 /// The functions that a robot has something to compute for, in the order of the traits: without motors,
 /// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no `regressor`. Without
 /// named tips, a function with a wrench at each tip is the one with a wrench at the tip. Functions of a floating base
