@@ -158,10 +158,9 @@ impl Language {
 
 impl Arguments {
     /// The functions whose programs are compiled, each once, in the order of `rne emit`.
-    fn programs(&self, robot: &Robot) -> Vec<Function> {
-        let asked: Vec<Function> = self.functions.iter().map(|&function| choice::of_loops(function, robot)).collect();
+    fn programs(&self) -> Vec<Function> {
         let is_asked = |function: &Function| {
-            if self.observer { *function == Function::MomentumAndRate } else { asked.contains(function) }
+            if self.observer { *function == Function::MomentumAndRate } else { self.functions.contains(function) }
         };
         Function::ALL.into_iter().filter(is_asked).collect()
     }
@@ -326,7 +325,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         checked.identifiers.map_err(|report| Failure::from(&report))?;
     }
     let compiled = Compiler::new(&arguments.file, &robot);
-    let programs = arguments.programs(&robot).into_iter().map(|function| compiled.compile(function, arguments.form));
+    let programs = arguments.programs().into_iter().map(|function| compiled.compile(function, arguments.form));
     let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
     let subjects = arguments.subjects(&robot, &programs)?;
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(&robot));

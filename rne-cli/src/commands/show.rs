@@ -172,7 +172,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// The inspection, as JSON or as lines.
 fn inspected(arguments: &Arguments, robot: &Robot, joint: Option<usize>) -> Result<Outcome, Failure> {
     let file = arguments.file.display().to_string();
-    let (function, form) = (function, arguments.form);
+    let (function, form) = (arguments.function, arguments.form);
     let program = match form {
         Form::SevenSteps => codegen::Compiler::new(robot)
             .with_equations()
