@@ -55,6 +55,7 @@ fn pose<T: Scalar>(pose: &Pose<T>) -> Vec<T> {
     [flat(pose.rotation), pose.translation.to_vec()].concat()
 }
 
+#[allow(clippy::too_many_lines)] // an arm for each function
 pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T: Scalar>(
     robot: &impl Everything<DOF, NV, BODIES>,
     function: Function,
