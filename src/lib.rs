@@ -123,7 +123,7 @@
 #[doc(inline)]
 pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
-    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ContactDynamics,
+    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics,
     FloatingRegressor, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
     Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
@@ -134,13 +134,13 @@ pub use rne_model as model;
 pub use rne_runtime::{
     AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
-    BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, Constant, ContactDynamics, CoriolisMatrix, Dual,
-    Energy, FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives,
-    FloatingKinematics, FloatingRegressor, FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics,
-    FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics,
-    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
-    Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
-    dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, Constant,
+    ContactDynamics, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy,
+    FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, FloatingTorqueDerivatives,
+    FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError,
+    JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass,
+    ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches,
+    TorqueDerivatives, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -182,7 +182,7 @@ pub mod compiled {
     pub use rne_machine::{
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
         EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, Rollout,
-        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, WrongSize,
+        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, Sizes, WrongSize,
     };
 }
 

@@ -61,7 +61,7 @@ fn frozen_of(file: &RobotFile) -> Frozen {
             None => compiler,
         };
         for form in Form::ALL {
-            for function in Function::ALL {
+            for function in Function::OF_TREES {
                 let key = format!("{}{suffix} {form} {function}", robot.name);
                 frozen.insert(key, hash(&compiler, robot, function, form));
             }

@@ -91,7 +91,7 @@ fn measured(seed: u64) -> Vec<Sample> {
         let parts = [choices, compilation, rust, c, listing];
         Some(Sample { arm: format!("{} of {} joints", robot.name, robot.dof()), function, parts })
     };
-    Function::ALL.into_iter().filter_map(sample).collect()
+    Function::OF_TREES.into_iter().filter_map(sample).collect()
 }
 
 type Text<'a> = Box<dyn Fn() + 'a>;

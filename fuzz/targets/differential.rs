@@ -121,7 +121,7 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
     let text = arm(u)?;
     let robot = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}\n{text}"));
     let robot = Robot { rotors: u.arbitrary()?, ..robot };
-    let function = *u.choose(&Function::ALL)?;
+    let function = *u.choose(&Function::OF_TREES)?;
     let form = *u.choose(&Form::ALL)?;
     let state = State::new(u, robot.dof())?;
     // without the plans of a build: they take longer than all the rest

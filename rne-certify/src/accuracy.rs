@@ -79,6 +79,23 @@ pub fn ranges(robot: &Robot) -> Vec<Range> {
     robot.independent_joints().zip(robot.coordinate_limits()).map(range).collect()
 }
 
+/// Positions that close the loops of a robot: of the coordinates, and of the dependent joints.
+fn closures(robot: &Robot) -> Vec<(Vec<f32>, Vec<f32>)> {
+    let of = |closure: &[f64], joints: &mut dyn Iterator<Item = usize>| joints.map(|at| single(closure[at])).collect();
+    let passive = || robot.closed.passive.iter().copied();
+    let closures = robot.closed.closures.iter();
+    closures.map(|closure| (of(closure, &mut robot.coordinates()), of(closure, &mut passive()))).collect()
+}
+
+/// The positions of the dependent joints of closed loops for positions `q` of the others: those of the nearest closure
+/// that the robot file has. Empty for a robot without closed loops.
+#[must_use]
+pub fn passive(robot: &Robot, q: &[f32]) -> Vec<f32> {
+    let apart = |of: &[f32]| of.iter().zip(q).map(|(a, b)| (a - b) * (a - b)).sum::<f32>();
+    let nearest = closures(robot).into_iter().min_by(|(a, _), (b, _)| apart(a).total_cmp(&apart(b)));
+    nearest.map(|(_, passive)| passive).unwrap_or_default()
+}
+
 /// The errors of the numbers that a program returns; `None` if the interpreter cannot run it with the arguments of
 /// joints alone. `sin_cos` is that of the emitted code.
 #[must_use]
@@ -90,10 +107,14 @@ pub fn errors(
 ) -> Option<Vec<Error>> {
     let interpreter = Interpreter::new(program);
     let ranges = ranges(robot);
+    let closed = closures(robot);
     let takes_torques = program.function.takes(Argument::Torques);
-    let errors = largest_errors(sample, program.outputs.len(), |_, rng| {
+    let errors = largest_errors(sample, program.outputs.len(), |state, rng| {
         let mut between = |(low, high): (f64, f64)| single(low + (high - low) * rng.f64());
-        let q: Vec<f32> = ranges.iter().map(|range| between(range.position)).collect();
+        let q: Vec<f32> = match closed.get(state % closed.len().max(1)) {
+            Some((q, _)) => q.clone(),
+            None => ranges.iter().map(|range| between(range.position)).collect(),
+        };
         let qd: Vec<f32> = ranges.iter().map(|range| between((-range.velocity, range.velocity))).collect();
         let last = |range: &Range| if takes_torques { range.torque } else { range.acceleration };
         let last: Vec<f32> = ranges.iter().map(|range| between((-last(range), last(range)))).collect();
@@ -134,7 +155,8 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
     let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
     let enclose =
         |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
-    let [q, qd, last, parameters] = [q, qd, last, &parameters].map(enclose);
+    let passive = passive(robot, q);
+    let [q, qd, last, parameters, passive] = [q, qd, last, &parameters, &passive].map(enclose);
     let zero = Interval::exactly(0.0);
     let exactly = |x: f32| Interval::exactly(f64::from(x));
     let [fx, fy, fz, nx, ny, nz] = WRENCH.map(exactly);
@@ -149,6 +171,7 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
         base: BASE.map(|triple| triple.map(exactly)),
         velocity: VELOCITY.map(exactly),
         base_rotation: std::array::from_fn(|at| exactly(BASE_ROTATION[at / 3][at % 3])),
+        passive: &passive,
         ..Arguments::of_joints(&q, &qd, &last, zero)
     };
     interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
@@ -176,6 +199,7 @@ pub fn single_precision(
         base: BASE,
         velocity: VELOCITY,
         base_rotation: std::array::from_fn(|at| BASE_ROTATION[at / 3][at % 3]),
+        passive: &passive(robot, q),
         ..Arguments::of_joints(q, qd, last, 0.0)
     };
     interpreter.run(&arguments, single, sin_cos)

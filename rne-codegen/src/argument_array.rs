@@ -65,6 +65,7 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
         (Length::Joints, _) => {
             program.coordinates.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect()
         }
+        (Length::Passive, _) => program.passive.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect(),
         (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
         (_, Argument::BaseTwist) => Name::of_twist().map(used).into(),
         (_, Argument::BasePose) => Name::of_pose().map(used).into(),

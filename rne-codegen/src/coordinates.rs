@@ -3,9 +3,13 @@
 //! The positions of all joints are G q + offsets, with the ratios of the couplings in the constant matrix G; velocities
 //! and accelerations are G q̇ and G q̈. The torques that work on the coordinates are Gᵀ τ, the mass matrix is Gᵀ M G,
 //! with τ and M of a robot whose joints all move freely. A robot without couplings has G = 1.
+//!
+//! The dependent joints of closed loops have positions that are arguments. Their rows of G depend on the positions, and
+//! their accelerations are G q̈ + Ġ q̇; [`Closure`](crate::formulate::Closure) writes both.
 
 use rne_model::Robot;
 
+use crate::formulate::closure::ways;
 use crate::ir::{Builder, Cause, Name, Quantity, Symbol};
 
 /// The coordinates of a robot, and the joints that follow them. Joints are counted from 0.
@@ -13,23 +17,97 @@ use crate::ir::{Builder, Cause, Name, Quantity, Symbol};
 pub(crate) struct Coordinates {
     /// The joints that follow no other, in the order of q.
     joints: Vec<usize>,
-    /// For each joint the joints that it follows, with their ratios; `None` for a coordinate.
+    /// For each joint the joints that it follows by a coupling, with their ratios; `None` for a coordinate, and for a
+    /// dependent joint of closed loops.
     follows: Vec<Option<Vec<(usize, f64)>>>,
+    /// The dependent joints of closed loops.
+    passive: Vec<usize>,
+    /// For each joint the coordinates with which it moves, and by what their rates are multiplied; `None` for a
+    /// coordinate.
+    moves: Vec<Option<Vec<(usize, Ratio)>>>,
     /// For each rotor the joints with which it turns, and the link that carries it; `None` for the base.
     rotors: Vec<(Vec<usize>, Option<usize>)>,
+}
+
+/// By what a rate is multiplied where another joint moves with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ratio {
+    factor: f64,
+    /// The element of the map of closed loops: the places of a dependent joint and of a coordinate.
+    of_loop: Option<[usize; 2]>,
+}
+
+impl Ratio {
+    pub(crate) const ONE: Self = Self::constant(1.0);
+
+    pub(crate) const fn constant(factor: f64) -> Self {
+        Self { factor, of_loop: None }
+    }
+}
+
+/// The coordinates with which a joint moves: those of the loops of a dependent joint.
+fn moved(
+    (robot, linked): (&Robot, &[Vec<usize>]),
+    joints: &[usize],
+    follows: &[Option<Vec<(usize, f64)>>],
+    joint: usize,
+) -> Option<Vec<(usize, Ratio)>> {
+    let passive = &robot.closed.passive;
+    let of_passive = |joint: usize, factor: f64| match passive.iter().position(|&other| other == joint) {
+        Some(place) => {
+            let is_linked = |other: usize| linked.iter().any(|group| group.contains(&joint) && group.contains(&other));
+            let of_loop =
+                |(coordinate, &joint): (usize, &usize)| (joint, Ratio { factor, of_loop: Some([place, coordinate]) });
+            joints.iter().enumerate().filter(|(_, other)| is_linked(**other)).map(of_loop).collect::<Vec<_>>()
+        }
+        None => vec![(joint, Ratio::constant(factor))],
+    };
+    match &follows[joint] {
+        Some(follows) => Some(follows.iter().flat_map(|&(joint, ratio)| of_passive(joint, ratio)).collect()),
+        None => passive.contains(&joint).then(|| of_passive(joint, 1.0)),
+    }
+}
+
+/// The joints of loops that share joints: each list has those of loops that determine each other.
+fn linked(robot: &Robot, follows: &[Option<Vec<(usize, f64)>>]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for closed in &robot.closed.loops {
+        let joints = ways(robot, closed).concat();
+        let followed = joints.iter().flat_map(|&joint| follows[joint].iter().flatten().map(|(followed, _)| *followed));
+        let mut group: Vec<usize> = followed.chain(joints.iter().copied()).collect();
+        groups.retain(|other| {
+            let is_apart = other.iter().all(|joint| !group.contains(joint));
+            if !is_apart {
+                group.extend(other);
+            }
+            is_apart
+        });
+        groups.push(group);
+    }
+    groups
 }
 
 impl Coordinates {
     pub(crate) fn of(robot: &Robot) -> Self {
         let follows = |joint: &rne_model::Joint| joint.coupling.as_ref().map(|coupling| coupling.follows.clone());
+        let follows: Vec<_> = robot.joints.iter().map(follows).collect();
+        let (joints, passive): (Vec<usize>, _) = (robot.coordinates().collect(), robot.closed.passive.clone());
+        let linked = linked(robot, &follows);
+        let moves = (0..follows.len()).map(|joint| moved((robot, &linked), &joints, &follows, joint)).collect();
         let rotors = robot.spinning_rotors();
         let rotors = rotors.map(|(rotor, turns)| (turns.iter().map(|(joint, _)| *joint).collect(), rotor.on)).collect();
-        Self { joints: robot.coordinates().collect(), follows: robot.joints.iter().map(follows).collect(), rotors }
+        Self { joints, follows, passive, moves, rotors }
     }
 
     /// Joints none of which follows another.
     pub(crate) fn of_free_joints(joints: usize) -> Self {
-        Self { joints: (0..joints).collect(), follows: vec![None; joints], rotors: Vec::new() }
+        Self {
+            joints: (0..joints).collect(),
+            follows: vec![None; joints],
+            passive: Vec::new(),
+            moves: vec![None; joints],
+            rotors: Vec::new(),
+        }
     }
 
     /// The joints that follow no other, in the order of q.
@@ -37,12 +115,17 @@ impl Coordinates {
         &self.joints
     }
 
-    /// Whether a joint follows no other.
-    pub(crate) fn has(&self, joint: usize) -> bool {
-        self.follows[joint].is_none()
+    /// The dependent joints of closed loops, in their order.
+    pub(crate) fn passive(&self) -> &[usize] {
+        &self.passive
     }
 
-    /// The coordinates with which a joint moves, and their ratios.
+    /// Whether a joint follows no other.
+    pub(crate) fn has(&self, joint: usize) -> bool {
+        self.moves[joint].is_none()
+    }
+
+    /// The joints by whose positions a joint turns, and their ratios: it is one of these where it follows no other.
     pub(crate) fn followed(&self, joint: usize) -> Vec<(usize, f64)> {
         self.follows[joint].clone().unwrap_or_else(|| vec![(joint, 1.0)])
     }
@@ -61,18 +144,37 @@ impl Coordinates {
     /// Position, rate or acceleration of a joint: an argument of the function, or that of a follower.
     pub(crate) fn of_joint<'s>(&self, builder: &'s Builder, quantity: Quantity, joint: usize) -> Symbol<'s> {
         let argument = |joint: usize| builder.argument(Name::scalar(quantity, joint + 1));
-        let Some(follows) = &self.follows[joint] else { return argument(joint) };
+        let is_position = quantity == Quantity::Position;
+        let own = [(joint, Ratio::ONE)];
+        let followed: Vec<(usize, Ratio)> = match (&self.moves[joint], &self.follows[joint]) {
+            (None, _) | (Some(_), None) if is_position || self.has(joint) => return argument(joint),
+            (_, Some(follows)) if is_position => {
+                follows.iter().map(|&(joint, ratio)| (joint, Ratio::constant(ratio))).collect()
+            }
+            (moves, _) => moves.as_deref().unwrap_or(&own).to_vec(),
+        };
         let line = builder.joint(joint + 1);
+        let bias = (quantity == Quantity::RateDot).then(|| self.bias(builder, joint)).flatten();
         let sum = || {
-            let terms = follows.iter().map(|&(followed, ratio)| scaled(argument(followed), ratio));
-            terms.reduce(|sum, term| sum + term).unwrap_or_else(|| builder.zero())
+            let terms = followed.iter().map(|&(followed, ratio)| scaled(argument(followed), ratio));
+            terms.chain(bias).reduce(|sum, term| sum + term).unwrap_or_else(|| builder.zero())
         };
         quantity.of_follower().map_or_else(sum, |quantity| builder.by(None, || line.scalar(quantity, sum)))
     }
 
+    /// The acceleration of a joint where no coordinate accelerates, Ġ q̇; `None` where closed loops do not move it.
+    pub(crate) fn bias<'s>(&self, builder: &'s Builder, joint: usize) -> Option<Symbol<'s>> {
+        let place = |joint: usize| self.passive.iter().position(|&other| other == joint);
+        let terms = self
+            .followed(joint)
+            .into_iter()
+            .filter_map(|(followed, ratio)| Some(scaled(builder.loop_bias(place(followed)?), Ratio::constant(ratio))));
+        terms.reduce(|sum, term| sum + term)
+    }
+
     /// The torque or force of the actuator of a joint: an argument; a follower has no actuator.
     pub(crate) fn applied<'s>(&self, builder: &'s Builder, joint: usize) -> Symbol<'s> {
-        match self.follows[joint] {
+        match self.moves[joint] {
             None => builder.argument(Name::scalar(Quantity::AppliedTorque, joint + 1)),
             Some(_) => builder.constant(0.0, Cause::Arithmetic),
         }
@@ -84,7 +186,7 @@ impl Coordinates {
         &self,
         of_joints: &[T],
         plus: impl Fn(T, T) -> T,
-        times: impl Fn(T, f64) -> T,
+        times: impl Fn(T, Ratio) -> T,
     ) -> Vec<T> {
         if self.is_every_joint() {
             return of_joints.to_vec();
@@ -95,6 +197,19 @@ impl Coordinates {
                 .fold(own, |sum, (follower, ratio)| plus(sum, times(of_joints[follower].clone(), ratio)))
         };
         self.joints.iter().map(of_coordinate).collect()
+    }
+
+    /// One number for each coordinate and then for each dependent joint, from one for each joint: couplings alone are
+    /// gathered.
+    pub(crate) fn of_tree<'s>(&self, of_joints: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
+        let of_joint = |&joint: &usize| {
+            let followers = self.follows.iter().enumerate().flat_map(|(follower, follows)| {
+                let of_joint = follows.iter().flatten().filter(|(followed, _)| *followed == joint);
+                of_joint.map(move |(_, ratio)| (follower, Ratio::constant(*ratio)))
+            });
+            followers.fold(of_joints[joint], |sum, (follower, ratio)| sum + scaled(of_joints[follower], ratio))
+        };
+        self.joints.iter().chain(&self.passive).map(of_joint).collect()
     }
 
     /// Gives a result its name, where it is gathered from several joints: what one of them has loses that name.
@@ -122,11 +237,11 @@ impl Coordinates {
         }
         let element = |row: usize, column: usize| upper[row.min(column)][row.max(column) - row.min(column)];
         let moved = |coordinate: usize| {
-            std::iter::once((coordinate, 1.0)).chain(self.followers(coordinate)).collect::<Vec<(usize, f64)>>()
+            std::iter::once((coordinate, Ratio::ONE)).chain(self.followers(coordinate)).collect::<Vec<_>>()
         };
         let gathered = |row: usize, column: usize| {
             let (rows, columns) = (moved(row), moved(column));
-            let of_row = |&(row, of_row): &(usize, f64)| {
+            let of_row = |&(row, of_row): &(usize, Ratio)| {
                 let terms = columns.iter().map(move |&(column, ratio)| (element(row, column), ratio));
                 let terms = terms.map(|(element, ratio)| scaled(element, ratio));
                 terms.reduce(|sum, term| sum + term).map(|sum| scaled(sum, of_row))
@@ -158,18 +273,18 @@ impl Coordinates {
     }
 
     /// The joints that follow a coordinate, with their ratios.
-    fn followers(&self, coordinate: usize) -> impl Iterator<Item = (usize, f64)> {
-        let ratio = move |follows: &Vec<(usize, f64)>| {
-            follows.iter().find(|(followed, _)| *followed == coordinate).map(|(_, ratio)| *ratio)
+    fn followers(&self, coordinate: usize) -> impl Iterator<Item = (usize, Ratio)> {
+        let of_joint = move |(joint, moves): (usize, &Option<Vec<(usize, Ratio)>>)| {
+            let with_it = moves.iter().flatten().filter(move |(followed, _)| *followed == coordinate);
+            with_it.map(move |(_, ratio)| (joint, *ratio)).collect::<Vec<_>>()
         };
-        let of_joint = move |(joint, follows): (usize, &Option<Vec<(usize, f64)>>)| {
-            follows.as_ref().and_then(ratio).map(|ratio| (joint, ratio))
-        };
-        self.follows.iter().enumerate().filter_map(of_joint)
+        self.moves.iter().enumerate().flat_map(of_joint)
     }
 }
 
 /// A number times a ratio.
-pub(crate) fn scaled(x: Symbol<'_>, ratio: f64) -> Symbol<'_> {
-    if ratio.abs() == 1.0 { x.signed(ratio < 0.0) } else { x * x.builder.constant(ratio, Cause::Arithmetic) }
+pub(crate) fn scaled(x: Symbol<'_>, Ratio { factor, of_loop }: Ratio) -> Symbol<'_> {
+    let builder = x.builder;
+    let x = of_loop.map_or(x, |[passive, coordinate]| x * builder.loop_map(passive, coordinate));
+    if factor.abs() == 1.0 { x.signed(factor < 0.0) } else { x * builder.constant(factor, Cause::Arithmetic) }
 }

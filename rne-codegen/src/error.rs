@@ -58,6 +58,18 @@ pub enum CompileError {
         /// The name of a joint that follows others.
         follower: String,
     },
+    /// A function that takes no positions of dependent joints, of a robot with closed loops.
+    HasClosedLoops {
+        /// The function.
+        function: Function,
+        /// The name of a loop.
+        name: String,
+    },
+    /// A function of closed loops, of a robot that has none.
+    NoClosedLoops {
+        /// The function.
+        function: Function,
+    },
     /// A plan with a choice that the robot does not offer.
     PlanDoesNotFit {
         /// The robot's name.
@@ -275,6 +287,24 @@ impl fmt::Display for CompileError {
                 f,
                 "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler \
                  can compile in reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
+            ),
+            Self::HasClosedLoops { function, name } => write!(
+                f,
+                "`{function}` is not computed for robots with closed loops, and the robot has the loop `{name}`: the \
+                 positions of its dependent joints are arguments, too. Use `{}`",
+                match function {
+                    Function::MassMatrix => "mass_matrix_of_loops",
+                    Function::ForwardDynamics => "forward_dynamics_of_loops",
+                    Function::InverseDynamicsWithWrench | Function::InverseDynamicsWithWrenches => {
+                        "inverse_dynamics_of_loops_with_wrenches"
+                    }
+                    _ => "inverse_dynamics_of_loops",
+                }
+            ),
+            Self::NoClosedLoops { function } => write!(
+                f,
+                "`{function}` is of robots with closed loops; this robot file has no `loops` with a cut joint that is \
+                 solved for. The section Closed loops of docs/robot-file.md says how to write one"
             ),
             Self::OfEveryLink { function, follower } => write!(
                 f,

@@ -11,6 +11,8 @@ use crate::values::{Contraction, Negated, Value, ValueId, Values};
 pub struct Arguments<'a, T> {
     /// Joint positions, rad or m.
     pub q: &'a [T],
+    /// Positions of the dependent joints of closed loops.
+    pub passive: &'a [T],
     /// Joint rates.
     pub qd: &'a [T],
     /// Joint accelerations.
@@ -45,6 +47,7 @@ impl<'a, T: Copy> Arguments<'a, T> {
         let zeros = [zero; 3];
         Self {
             q,
+            passive: &[],
             qd,
             qdd,
             force: zeros,
@@ -67,6 +70,8 @@ pub struct Interpreter {
     values: Values,
     /// The joints, counted from 1, that the elements of joint arguments belong to.
     coordinates: Vec<usize>,
+    /// The dependent joints, counted from 1.
+    passive: Vec<usize>,
     outputs: Vec<ValueId>,
 }
 
@@ -103,6 +108,7 @@ impl Interpreter {
         Self {
             values: program.values.clone(),
             coordinates: program.coordinates.clone(),
+            passive: program.passive.clone(),
             outputs: program.outputs.iter().map(|output| output.value).collect(),
         }
     }
@@ -136,7 +142,9 @@ impl Interpreter {
                 _ => turn.insert((angle, sin_cos(number(angle)))).1,
             };
             let number = match value {
-                Value::Argument => arguments.input(self.values.name(id)?, &self.coordinates, &sin_cos)?,
+                Value::Argument => {
+                    arguments.input(self.values.name(id)?, [&self.coordinates, &self.passive], &sin_cos)?
+                }
                 Value::Constant(number) => constant(self.values.name(id), number)?,
                 Value::Sine(angle) => turned(angle).0,
                 Value::Cosine(angle) => turned(angle).1,
@@ -161,11 +169,15 @@ impl Interpreter {
 
 impl<T: Copy> Arguments<'_, T> {
     /// The argument with this name. Arguments that are sines and cosines belong to the joint positions.
-    fn input(&self, name: Name, coordinates: &[usize], sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
+    fn input(&self, name: Name, joints: [&[usize]; 2], sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
+        let [coordinates, passive] = joints;
         let place = || coordinates.binary_search(&name.joint).ok();
         match name.quantity {
             Quantity::Sine => Some(sin_cos(*self.q.get(place()?)?).0),
             Quantity::Cosine => Some(sin_cos(*self.q.get(place()?)?).1),
+            Quantity::Position if passive.contains(&name.joint) => {
+                self.passive.get(passive.binary_search(&name.joint).ok()?).copied()
+            }
             _ => self.get(name, place),
         }
     }

@@ -52,7 +52,7 @@ pub use expression::{Expression, ExpressionKind};
 pub use factorization::Factorization;
 pub use function::{
     Answer, AnswerTable, Argument, ArgumentPart, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit,
-    Own, Record, Returned, Shape,
+    Own, Record, Returned, Shape, Sizes,
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::{
@@ -146,6 +146,13 @@ impl<'r> Compiler<'r> {
             && function.is_of_every_link()
         {
             return Err(CompileError::OfEveryLink { function, follower: joint.name.clone() });
+        }
+        match robot.closed.loops.first() {
+            Some(closed) if !function.is_of_closed_loops() => {
+                return Err(CompileError::HasClosedLoops { function, name: closed.name.clone() });
+            }
+            None if function.is_of_closed_loops() => return Err(CompileError::NoClosedLoops { function }),
+            _ => {}
         }
         if form == Form::SevenSteps {
             return seven_steps_within(LARGEST, robot, function, &self.intermediates, self.explains);

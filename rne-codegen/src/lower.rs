@@ -77,6 +77,8 @@ pub(crate) fn lower(
         dof: heading.robot.dof(),
         joints: heading.robot.joints.len(),
         coordinates: heading.robot.coordinates().map(|joint| joint + 1).collect(),
+        passive: heading.robot.closed.passive.iter().map(|joint| joint + 1).collect(),
+        equations_of_loops: heading.robot.closed.equations(),
         parameters: heading.robot.run_time.names.len(),
         function: heading.function,
         tips: heading.robot.tip_names().into_iter().map(str::to_owned).collect(),

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::CompileError;
 use crate::equation::Equation;
 use crate::expression::Expression;
-use crate::function::{Form, Function, Layout};
+use crate::function::{Form, Function, Layout, Sizes};
 use crate::ir::{Causes, FoldReport, Name, Operator, Place, Sign};
 use crate::reduced::{Algorithm, JointFrame, Parameters};
 use crate::refusal::Refusal;
@@ -24,6 +24,10 @@ pub struct Program {
     pub joints: usize,
     /// The joints that follow no other, counted from 1, in the order of the elements of q.
     pub coordinates: Vec<usize>,
+    /// The dependent joints of closed loops, counted from 1.
+    pub passive: Vec<usize>,
+    /// How many equations the closed loops have.
+    pub equations_of_loops: usize,
     /// Number of parameters that are known at run time only.
     pub parameters: usize,
     /// The function.
@@ -213,7 +217,13 @@ impl Program {
     /// The shape of what it returns.
     #[must_use]
     pub fn layout(&self) -> Layout {
-        self.function.layout(self.dof, self.tips.len())
+        self.function.layout(self.sizes())
+    }
+
+    /// What the lengths of its arrays are.
+    #[must_use]
+    pub fn sizes(&self) -> Sizes {
+        Sizes { dof: self.dof, tips: self.tips.len(), passive: self.passive.len(), equations: self.equations_of_loops }
     }
 
     /// Refuses two variables of one name. Names are compared as the text that a language sees, with the variables that

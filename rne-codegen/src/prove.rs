@@ -49,7 +49,9 @@ impl<'r> Reference<'r> {
         function: Function,
         seven_steps: impl Fn(Function) -> Result<Program, CompileError>,
     ) -> Result<Self, CompileError> {
-        let motion = if function.entry().is_of_motion { Some(seven_steps(Function::InverseDynamics)?) } else { None };
+        let of_motion =
+            if function.is_of_closed_loops() { Function::InverseDynamicsOfLoops } else { Function::InverseDynamics };
+        let motion = if function.entry().is_of_motion { Some(seven_steps(of_motion)?) } else { None };
         Ok(Self { robot, faithful: seven_steps(function)?, motion })
     }
 
@@ -187,6 +189,8 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
         robot.coordinates().map(|joint| argument(point, Name::scalar(quantity, joint + 1))).collect()
     };
     let vector = |quantity, joint| Axis::ALL.map(|axis| argument(point, Name::vector(quantity, joint, axis)));
+    let passive: Vec<Value> =
+        robot.closed.passive.iter().map(|joint| argument(point, Name::scalar(Quantity::Position, joint + 1))).collect();
     let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
     let tau = joints(Quantity::AppliedTorque);
     let parameters: Vec<_> = (1..=robot.run_time.names.len())
@@ -206,6 +210,7 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
         pose: Name::of_pose().map(|name| argument(point, name)),
         base_rotation: Name::of_base_rotation().map(|name| argument(point, name)),
         parameters: &parameters,
+        passive: &passive,
         ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Residue::ZERO))
     };
     let constant = |name: Option<Name>, _| {
@@ -264,7 +269,7 @@ fn positions(limits: Option<(f64, f64)>) -> (f64, f64) {
 }
 
 /// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
-/// without limits, |q̇| ≤ 2, |q̈| ≤ 4.
+/// without limits, |q̇| ≤ 2, |q̈| ≤ 4. Closed loops are at positions that close them.
 #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
 fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Program, states: usize) -> Vec<Errors> {
     let mut all = Vec::with_capacity(states);
@@ -276,20 +281,26 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
     let parameters_in_single: Vec<f32> = parameters.iter().map(|&value| value as f32).collect();
     let parameters: Vec<f64> = parameters_in_single.iter().copied().map(f64::from).collect();
     let mut rng = fastrand::Rng::with_seed(2024);
-    for _ in 0..states {
+    for state_index in 0..states {
         // numbers of single precision, so that both precisions are given the same state
         let mut between = |low: f64, high: f64| f64::from((low + (high - low) * rng.f64()) as f32);
+        // where no loop is closed, its equations may be nearly singular
+        let closures = &robot.closed.closures;
+        let closure = closures.get(state_index % closures.len().max(1));
+        let closed = |closure: &Vec<f64>, joint: usize| f64::from(closure[joint] as f32);
         let q: Vec<f64> = robot
             .coordinates()
             .map(|joint| {
                 let (low, high) = positions(robot.joints[joint].limits.position);
-                between(low, high)
+                closure.map_or_else(|| between(low, high), |closure| closed(closure, joint))
             })
             .collect();
+        let passive: Vec<f64> =
+            closure.map(|it| robot.closed.passive.iter().map(|&joint| closed(it, joint)).collect()).unwrap_or_default();
         let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
         let (qd, qdd, wrench) = (random(2.0), random(4.0), [5.0, -3.0, 2.0]);
         let wrenches = at_tips(robot, wrench);
-        let arguments = state([&q, &qd, &qdd], wrench, &wrenches, PAYLOAD, &parameters);
+        let arguments = state([&q, &passive, &qd, &qdd], wrench, &wrenches, PAYLOAD, &parameters);
         let [expected, found] =
             [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
         let largest = |torques: &[f64]| torques.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
@@ -305,11 +316,11 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
         };
         let single = |code: &Interpreter| {
             let round = |values: &[f64]| values.iter().map(|&x| x as f32).collect::<Vec<f32>>();
-            let (q, qd, qdd) = (round(&q), round(&qd), round(&qdd));
+            let [q, passive, qd, qdd] = [&q, &passive, &qd, &qdd].map(|numbers| round(numbers));
             let wrench = wrench.map(|x| x as f32);
             let payload = PAYLOAD.map(|x| x as f32);
             let wrenches = at_tips(robot, wrench);
-            let arguments = state([&q, &qd, &qdd], wrench, &wrenches, payload, &parameters_in_single);
+            let arguments = state([&q, &passive, &qd, &qdd], wrench, &wrenches, payload, &parameters_in_single);
             let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
         };
@@ -329,7 +340,7 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
 
 /// Arguments of any function: forces and the motion of the base are all of one vector.
 fn state<'a, T: Copy>(
-    [q, qd, qdd]: [&'a [T]; 3],
+    [q, passive, qd, qdd]: [&'a [T]; 4],
     vector: [T; 3],
     wrenches: &'a [[T; 6]],
     payload: [T; 10],
@@ -347,6 +358,7 @@ fn state<'a, T: Copy>(
         pose: [x, y, z, y, z, x, z, x, y, x, y, z],
         base_rotation: [x, y, z, z, x, y, y, z, x],
         parameters,
+        passive,
         ..Arguments::of_joints(q, qd, qdd, x)
     }
 }

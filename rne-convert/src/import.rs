@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use rne_model::{
-    Angle, Bodies, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind, Link, Reader,
-    Remedy, Report, Robot, Row, RunTime, Transform,
+    Angle, Bodies, ClosedLoops, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind,
+    Link, Reader, Remedy, Report, Robot, Row, RunTime, Transform,
 };
 
 use crate::chain::{Chain, Extracted, extract};
@@ -350,10 +350,10 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         frames: Vec::new(),
         tips: Vec::new(),
         contacts: Vec::new(),
-        closed: rne_model::ClosedLoops::default(),
         bodies: Bodies::default(),
         at: None,
         run_time: RunTime::default(),
+        closed: ClosedLoops::default(),
         rotors: false,
     }
 }

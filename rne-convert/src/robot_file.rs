@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_model::{
-    Body, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Inertia, InertiaReference, Joint,
-    JointKind, Limits, Link, Motor, Robot, Rotor, Transform, exact_digits,
+    Body, ClosedLoop, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Inertia, InertiaReference,
+    Joint, JointKind, Limits, Link, Motor, Robot, Rotor, Transform, exact_digits,
 };
 
 use crate::snap::angle_text;
@@ -110,6 +110,19 @@ pub fn write(robot: &Robot) -> String {
         let follows = ratios(follows);
         let offset = if *offset == 0.0 { String::new() } else { format!(", offset: {}", exact_digits(*offset)) };
         let _ = writeln!(text, "  - {{joint: {}, follows: {{{follows}}}{offset}}}", scalar(name));
+    }
+    if !robot.closed.is_empty() {
+        text.push_str("\nloops:\n");
+    }
+    for ClosedLoop { name, cut, between, dependent } in &robot.closed.loops {
+        let [one, other] = between.map(|FixedFrame { on, placement }| {
+            let on = on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name));
+            format!("{{on: {on}{}}}", place(&placement))
+        });
+        let dependent = dependent.iter().map(|&joint| scalar(&robot.joints[joint].name)).collect::<Vec<_>>();
+        let _ = writeln!(text, "  - name: {}\n    cut: {}", scalar(name), cut.name());
+        noted(&mut text, &format!("    between: [{one}, {other}]"), "m, rad");
+        let _ = writeln!(text, "    dependent: [{}]", dependent.join(", "));
     }
     if !robot.drives.is_empty() {
         text.push_str("\nmotors:\n");

@@ -298,7 +298,7 @@ impl Scanner<'_> {
         }
         if (name, name_of_parent) == ("loop", "robot") {
             let message = "the robot has a closed loop, which the import does not convert".to_owned();
-            let help = "delete the element `loop` to import the tree without it; a robot file describes parallelograms \
+            let help = "delete the element `loop` to import the tree without it; a robot file describes closed loops \
                         in `loops`";
             return Err(self.source.error(place, message, help.to_owned()));
         }

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_model::{
-    Body, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Robot, Rotor, Transform, one_line,
+    Body, ClosedLoop, ClosedLoops, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, Pivot, Robot, Rotor,
+    Transform, one_line, six_digits,
 };
 
 use super::inert;
@@ -21,8 +22,8 @@ pub struct Heading {
     /// The source of the numbers.
     pub source: String,
     /// The convention of its table, and gravity: a line each. Of a tree also a line for each row that does not begin at
-    /// the link frame of its parent, and one for the tip. A line for each follower, for each named tip and for each
-    /// body.
+    /// the link frame of its parent, and one for the tip. A line for each follower and each closed loop, for each named
+    /// tip and for each body.
     pub frames: String,
     /// The base, and the tool of a serial arm: a line each, if they are not the identity.
     pub ends: Vec<String>,
@@ -71,6 +72,7 @@ impl Heading {
             let end = if *offset == 0.0 { String::new() } else { format!(" + {offset}").replace("+ -", "- ") };
             let _ = write!(frames, "\n{} follows: q{} = {terms}{end}", one_line(&joint.name), index + 1);
         }
+        closed_loops(&mut frames, robot);
         for Drive { name, turns, rotor } in &robot.drives {
             let _ = write!(frames, "\nmotor {} turns with {}", one_line(name), terms(turns));
             if let Some(Rotor { axis: [x, y, z], on, inertia }) = rotor {
@@ -118,6 +120,60 @@ impl Heading {
     pub(super) fn mark(robot: &Robot) -> String {
         format!("{GENERATED}`{}`; do not edit.", robot.name)
     }
+}
+
+/// A line for each closed loop, and one for how they are solved.
+fn closed_loops(frames: &mut String, robot: &Robot) {
+    let ClosedLoops { loops, passive, elimination, closures, singular_values, smallest_pivot } = &robot.closed;
+    let named = |joints: &[usize]| joints.iter().map(|&joint| carrier(robot, Some(joint))).collect::<Vec<_>>();
+    for ClosedLoop { name, cut, between, dependent } in loops {
+        let [one, other] = between.map(|FixedFrame { on, placement: Transform { xyz: [x, y, z], rpy } }| {
+            let turned = match rpy.map(|turn| angle(&turn)) {
+                turns if turns.iter().all(|turn| turn == "0") => String::new(),
+                [roll, pitch, yaw] => format!(" roll pitch yaw ({roll}, {pitch}, {yaw}) rad"),
+            };
+            format!("({x}, {y}, {z}) m{turned} on {}", carrier(robot, on))
+        });
+        let _ = write!(
+            frames,
+            "\nloop {}, cut at a {} joint: from {one} to {other}; dependent: {}",
+            one_line(name),
+            cut.name(),
+            named(dependent).join(", ")
+        );
+    }
+    if loops.is_empty() {
+        return;
+    }
+    let step = |step: &Pivot| {
+        format!("{} by {}", carrier(robot, passive.get(step.passive).copied()), equation(loops, step.equation))
+    };
+    let order = elimination.iter().map(step).collect::<Vec<_>>().join(", ");
+    let rounded = |value: f64| six_digits(format!("{value:.2e}").parse().unwrap_or(value));
+    let [least, largest] = singular_values.map(rounded);
+    let _ = write!(
+        frames,
+        "\norder of elimination: {order}; within the limits, pivots are {} at least and singular values from {least} \
+         to {largest}, by {} configurations that close the loops and by searches from there",
+        rounded(*smallest_pivot),
+        closures.len()
+    );
+}
+
+/// An equation of closed loops, counted through all of them: `x of knee`, `y·z of knee`.
+fn equation(loops: &[ClosedLoop], mut index: usize) -> String {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    for ClosedLoop { name, cut, .. } in loops {
+        if index < cut.equations() {
+            let what = match index.checked_sub(3) {
+                None => AXES[index].to_owned(),
+                Some(pair) => cut.perpendicular()[pair].map(|axis| AXES[axis]).join("·"),
+            };
+            return format!("{what} of {}", one_line(name));
+        }
+        index -= cut.equations();
+    }
+    String::new()
 }
 
 /// Σ ratio · q

@@ -53,7 +53,7 @@ mod tests {
     fn variables_of_the_renderers_are_reserved() {
         let robot = rne_model::Robot::from_yaml(rne_robots::find("planar2").unwrap().yaml).unwrap();
         let compiler = Compiler::new(&robot);
-        for function in Function::ALL {
+        for function in Function::OF_TREES {
             let program = compiler.compile(function, Form::SevenSteps).unwrap();
             let reserved: Vec<_> = program.reserved_names().collect();
             let arrays = program.argument_arrays().into_iter().chain(crate::c::inputs(&program));

@@ -180,7 +180,7 @@ fn rustfmt_has_nothing_to_change() {
     }
     for (robot, programs) in emitted() {
         // all functions of a robot that is shipped
-        if programs.len() == Function::ALL.len() {
+        if programs.len() == Function::OF_TREES.len() {
             let text = rne_emit::rust_file_with_sin_cos(robot, programs) + &rne_emit::rust_joints(robot);
             let mut rustfmt = Command::new("rustfmt")
                 .args(["--edition", "2024", "--check", "--config-path", "/dev/null"])
@@ -229,7 +229,7 @@ fn emitted_files_build_alone_without_std() {
     let mut library = "#![no_std]\n#![deny(warnings)]\n".to_owned();
     let files = [rne_emit::rust_file, rne_emit::rust_file_with_sin_cos];
     let is_small = |robot: &Robot| shipped::is_exhaustive() || robot.dof() <= 3 || robot.name == "puma560";
-    let all = emitted().iter().filter(|(_, programs)| programs.len() == Function::ALL.len());
+    let all = emitted().iter().filter(|(_, programs)| programs.len() == Function::OF_TREES.len());
     for (robot, programs) in all.filter(|(robot, _)| is_small(robot)) {
         let module = format!("{}_{}", robot.name, programs[0].form);
         let is_reduced = programs[0].form == Form::Reduced;

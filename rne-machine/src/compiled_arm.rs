@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Layout, Target};
+use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Layout, Sizes, Target};
 use rne_model::{FrameId, Reader, Robot, UnknownFrame, plan_of, read_file};
 use rne_runtime::VectorUnit;
 use rne_runtime::machine::Destination;
@@ -146,7 +146,7 @@ impl CompiledArm {
         if let Some(arm) = known(&READ.lock().unwrap_or_else(PoisonError::into_inner)) {
             return Ok(arm);
         }
-        let robot = Reader::new(name).trees().couplings().read(&content.robot)?.robot;
+        let robot = Reader::new(name).trees().couplings().loops().read(&content.robot)?.robot;
         let plan = match &content.plan {
             Some(plan) => Some(PlanFile::read(name_of_plan, &String::from_utf8_lossy(plan), &robot)?),
             None => None,
@@ -240,7 +240,7 @@ impl CompiledArm {
     /// The shape of what a function returns for this arm.
     #[must_use]
     pub fn layout(&self, function: Function) -> Layout {
-        function.layout(self.dof(), self.0.robot.tip_count())
+        function.layout(Sizes::of(&self.0.robot))
     }
 
     /// How its functions are computed.

@@ -47,7 +47,7 @@ pub use compiled_arm::{CompiledArm, RobotFiles};
 pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use results::Derivatives;
-pub use rne_codegen::{Argument, Form, Function, Layout, Record};
+pub use rne_codegen::{Argument, Form, Function, Layout, Record, Sizes};
 pub use rne_search::{PlanFile, SearchError, SearchOptions};
 pub use rollout::{FrictionWidth, Rollout, RolloutError, RolloutLimits};
 pub use search::SearchProgress;

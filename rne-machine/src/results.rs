@@ -67,6 +67,20 @@ pub struct AccelerationsAndWrenches<T> {
     pub wrenches_on_robot: Vec<Wrench<T>>,
 }
 
+/// A number per dependent joint of closed loops.
+pub type PassiveVector<T> = Vec<T>;
+/// A row per dependent joint, with a number per joint.
+pub type PassiveRows<T> = Matrix<T>;
+
+/// A Newton step towards closed loops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosureStep<T> {
+    /// Positions of the dependent joints after the step.
+    pub passive: Vec<T>,
+    /// What is left of the equations before it.
+    pub residual: Vec<T>,
+}
+
 /// ∂τ/∂q and ∂τ/∂q̇.
 pub type TorqueDerivatives<T> = Derivatives<T>;
 
@@ -129,4 +143,5 @@ records! {
     Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau }
     BaseAcceleration { linear, angular } FloatingAccelerations { base, qdd }
     AccelerationsAndWrenches { accelerations, wrenches_on_robot } FloatingTorqueDerivatives { dq, dqd, domega }
+    ClosureStep { passive, residual }
 }

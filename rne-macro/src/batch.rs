@@ -116,7 +116,7 @@ fn answers(function: Function, sizes: &Sizes) -> Vec<Answer> {
 impl Sizes {
     fn of(dof: usize, tips: usize) -> Self {
         let size = |size| Literal::usize_unsuffixed(size).into_token_stream();
-        Self { dof: size(dof), velocities: size(Length::Velocities.of(dof, tips)), tips: size(tips) }
+        Self { dof: size(dof), velocities: size(Length::OF_BASE + dof), tips: size(tips) }
     }
 
     fn unknown() -> Self {

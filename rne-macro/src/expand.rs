@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Algorithm, Capability, Compiler, Form, Program};
+use rne_codegen::{Algorithm, Capability, Compiler, Form, Program, Sizes};
 use rne_model::{Checked, Reader, Report, Robot};
 use rne_search::{Fingerprint, PlanFile};
 use syn::{Data, DeriveInput};
@@ -44,8 +44,8 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;
         Some((robot, programs))
     });
-    let tips = compiled.as_ref().map(|(robot, _)| robot.tip_count());
-    let target = Target::new(&item, &attribute, tips);
+    let sizes = compiled.as_ref().map(|(robot, _)| Sizes::of(robot));
+    let target = Target::new(&item, &attribute, sizes);
     let code = match &compiled {
         Some((robot, programs)) => {
             if let (Capability::InverseDynamics, Some(limit), Some(program)) =
@@ -209,11 +209,11 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     };
     let names = parameters.names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let checked = Reader::new(&name).trees().couplings().read(&bytes).and_then(|checked| {
+    let checked = Reader::new(&name).trees().couplings().loops().read(&bytes).and_then(|checked| {
         let known: Vec<&str> = checked.robot.parameters.iter().map(|(name, _)| name.as_str()).collect();
         match parameters.check(&known, errors) {
             _ if names.is_empty() => Ok(Some(checked)),
-            true => Reader::new(&name).trees().couplings().run_time(&names).read(&bytes).map(Some),
+            true => Reader::new(&name).trees().couplings().loops().run_time(&names).read(&bytes).map(Some),
             false => Ok(None),
         }
     });

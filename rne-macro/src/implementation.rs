@@ -2,7 +2,7 @@
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
-use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape};
+use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape, Sizes};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
@@ -18,10 +18,11 @@ pub(crate) struct Target<'a> {
     pub(crate) inline: bool,
     /// The number of tips of the robot, or a parameter for it.
     pub(crate) tips: TokenStream,
+    /// The number of dependent joints of its closed loops, or a parameter for it.
+    passive: TokenStream,
+    /// The number of their equations, or a parameter for it.
+    equations: TokenStream,
 }
-
-/// The parameter for the number of tips of a robot that is not known.
-const UNKNOWN_TIPS: &str = "__TIPS";
 
 /// The constants of a type.
 struct Constants {
@@ -36,13 +37,22 @@ struct Constants {
 }
 
 impl<'a> Target<'a> {
-    /// The target of a derive; `None` for a number of tips that is not known.
-    pub(crate) fn new(item: &'a DeriveInput, attribute: &'a Attribute, tips: Option<usize>) -> Self {
-        let tips = tips.map_or_else(
-            || Ident::new(UNKNOWN_TIPS, Span::call_site()).into_token_stream(),
-            |tips| Literal::usize_unsuffixed(tips).into_token_stream(),
-        );
-        Self { item, krate: &attribute.krate, inline: attribute.inline, tips }
+    /// The target of a derive; `None` for a robot that is not known.
+    pub(crate) fn new(item: &'a DeriveInput, attribute: &'a Attribute, sizes: Option<Sizes>) -> Self {
+        let number = |unknown: &str, size: fn(Sizes) -> usize| {
+            sizes.map_or_else(
+                || Ident::new(unknown, Span::call_site()).into_token_stream(),
+                |sizes| Literal::usize_unsuffixed(size(sizes)).into_token_stream(),
+            )
+        };
+        Self {
+            item,
+            krate: &attribute.krate,
+            inline: attribute.inline,
+            tips: number("__TIPS", |sizes| sizes.tips),
+            passive: number("__PASSIVE", |sizes| sizes.passive),
+            equations: number("__EQUATIONS", |sizes| sizes.equations),
+        }
     }
 }
 
@@ -60,6 +70,13 @@ impl Target<'_> {
                 let (constants, joints) = (self.constants(&Constants::of(robot, programs)), self.joints(robot));
                 let motors = self.motors(robot);
                 quote!(#constants #joints #motors)
+            }
+            // with which no robot has `InverseDynamics`
+            Capability::ClosedLoops => {
+                let (constants, joints) = (self.constants(&Constants::of(robot, programs)), self.joints(robot));
+                let (motors, counts) = (self.motors(robot), self.counts(programs));
+                let passive = self.passive_joints(robot);
+                quote!(#constants #joints #motors #counts #passive)
             }
             Capability::TipWrenches => {
                 let (counts, tips) = (self.counts(programs), self.tips(robot));
@@ -96,6 +113,10 @@ impl Target<'_> {
             | Capability::ContactDynamics
             | Capability::FloatingInverseDynamicsDerivatives => quote!(#dof, #velocities, #tips),
             Capability::CentroidalMomentum => quote!(#dof, #velocities),
+            Capability::ClosedLoops => {
+                let (passive, equations) = (&self.passive, &self.equations);
+                quote!(#dof, #passive, #equations, #tips)
+            }
             Capability::FloatingRegressor => {
                 let bodies = bodies(dof);
                 quote!(#dof, #velocities, #bodies)
@@ -108,7 +129,7 @@ impl Target<'_> {
     /// Writes a stub for a robot that is not known: every use of it compiles, so that the mistake that is reported
     /// stays the only one. The trait is implemented for every number of joints.
     pub(crate) fn stub(&self, capability: Capability, joints: usize) -> TokenStream {
-        let constants = if capability == Capability::InverseDynamics {
+        let constants = if matches!(capability, Capability::InverseDynamics | Capability::ClosedLoops) {
             let (constants, joints) = (self.constants(&Constants::unknown(joints)), self.joints_stub());
             quote!(#constants #joints)
         } else {
@@ -123,6 +144,10 @@ impl Target<'_> {
         }
         if capability == Capability::FloatingRegressor {
             generics.params.push(syn::parse_quote!(const __BODIES: ::core::primitive::usize));
+        }
+        if capability == Capability::ClosedLoops {
+            generics.params.push(syn::parse_quote!(const __PASSIVE: ::core::primitive::usize));
+            generics.params.push(syn::parse_quote!(const __EQUATIONS: ::core::primitive::usize));
         }
         if capability.has_tips() {
             generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
@@ -291,12 +316,13 @@ impl Target<'_> {
 
     /// The arguments of a function and their types, references of the given lifetime, in which `T` is the scalar.
     fn arguments(&self, function: Function, dof: &TokenStream, lifetime: &TokenStream) -> Vec<(Ident, TokenStream)> {
-        let (krate, tips) = (self.krate, &self.tips);
+        let (krate, tips, passive) = (self.krate, &self.tips, &self.passive);
         let name_and_type = |argument: &Argument| {
             let (name, kind) = match argument {
                 Argument::Sines => ("sin", quote!([T; #dof])),
                 Argument::Cosines => ("cos", quote!([T; #dof])),
                 Argument::Positions => ("q", quote!([T; #dof])),
+                Argument::Passive => ("passive", quote!([T; #passive])),
                 Argument::Rates => ("qd", quote!([T; #dof])),
                 Argument::Accelerations => ("qdd", quote!([T; #dof])),
                 Argument::Torques => ("tau", quote!([T; #dof])),
@@ -356,6 +382,14 @@ impl Target<'_> {
                         let tips = &self.tips;
                         quote!([#of; #tips])
                     }
+                    Length::Passive => {
+                        let passive = &self.passive;
+                        quote!([#of; #passive])
+                    }
+                    Length::Equations => {
+                        let equations = &self.equations;
+                        quote!([#of; #equations])
+                    }
                     Length::Fixed(length) => {
                         let length = Literal::usize_unsuffixed(*length);
                         quote!([#of; #length])
@@ -368,6 +402,10 @@ impl Target<'_> {
                     Record::AccelerationsAndWrenches => {
                         let tips = &self.tips;
                         quote!(#krate::#name<#dof, #tips, T>)
+                    }
+                    Record::ClosureStep => {
+                        let (passive, equations) = (&self.passive, &self.equations);
+                        quote!(#krate::#name<#passive, #equations, T>)
                     }
                     Record::FloatingTorqueDerivatives => {
                         let velocities = velocities(dof);
@@ -455,6 +493,25 @@ impl Target<'_> {
         (kind, value)
     }
 
+    /// The constants of closed loops.
+    fn passive_joints(&self, robot: &Robot) -> TokenStream {
+        let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let (ident, vis, passive, equations) = (&self.item.ident, self.visibility(), &self.passive, &self.equations);
+        let names: Vec<&str> = robot.closed.passive.iter().map(|&joint| robot.joints[joint].name.as_str()).collect();
+        let about = format!("Names of the dependent joints of closed loops.{}", description::values(&names));
+        quote! {
+            #[automatically_derived]
+            impl #impl_generics #ident #type_generics #where_clause {
+                /// Number of dependent joints of closed loops.
+                #vis const PASSIVE: ::core::primitive::usize = #passive;
+                /// Number of equations of closed loops.
+                #vis const EQUATIONS: ::core::primitive::usize = #equations;
+                #[doc = #about]
+                #vis const PASSIVE_NAMES: [&'static ::core::primitive::str; #passive] = [#(#names),*];
+            }
+        }
+    }
+
     fn constants(&self, constants: &Constants) -> TokenStream {
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
         let (ident, vis) = (&self.item.ident, self.visibility());
@@ -505,6 +562,7 @@ impl Constants {
     fn of(robot: &Robot, programs: &[Program]) -> Self {
         let of_joints = robot.coordinate_limits();
         let limits = || of_joints.iter();
+        let torques = programs.iter().find(|program| program.function.returns_torques());
         Self {
             description: Some(description::robot(robot)),
             name: robot.name.clone(),
@@ -514,7 +572,7 @@ impl Constants {
                 .collect(),
             velocity_limits: limits().map(|limits| limits.velocity.unwrap_or(f64::INFINITY)).collect(),
             effort_limits: limits().map(|limits| limits.effort.unwrap_or(f64::INFINITY)).collect(),
-            operations: programs.first().map(Program::operations).unwrap_or_default(),
+            operations: torques.map(Program::operations).unwrap_or_default(),
         }
     }
 
@@ -545,7 +603,8 @@ fn bodies(dof: &TokenStream) -> TokenStream {
 /// A length for a number of joints, which does not depend on the tips; `unknown` if that is a parameter.
 fn length(length: Length, dof: &TokenStream, unknown: TokenStream) -> TokenStream {
     let dof = dof.to_string().parse::<usize>();
-    dof.map_or(unknown, |dof| Literal::usize_unsuffixed(length.of(dof, 0)).into_token_stream())
+    let of = |dof| length.of(Sizes { dof, tips: 0, passive: 0, equations: 0 });
+    dof.map_or(unknown, |dof| Literal::usize_unsuffixed(of(dof)).into_token_stream())
 }
 
 /// A number that reads back as the same bits, or infinity.

@@ -331,6 +331,19 @@ pub fn derive_contact_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ContactDynamics, input.into()).into()
 }
 
+/// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.
+///
+/// The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. Other derives
+/// refuse such a robot; so the constants `DOF`, `NAME`, `JOINT_NAMES` and the limits come with this one, beside
+/// `PASSIVE`, `EQUATIONS` and `PASSIVE_NAMES`.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics). The type gets a constant with the operations of
+/// each method, `LOOP_MAP_OPERATIONS` and so on.
+#[proc_macro_derive(ClosedLoops, attributes(robot))]
+pub fn derive_closed_loops(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::ClosedLoops, input.into()).into()
+}
+
 /// Implements the trait `FloatingInverseDynamicsDerivatives` for a struct: the derivatives of the wrench on a base that
 /// nothing holds and of the torques.
 ///

@@ -44,7 +44,8 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         | Capability::FloatingEnergy
         | Capability::FloatingKinematics
         | Capability::ContactDynamics
-        | Capability::FloatingInverseDynamicsDerivatives => &[],
+        | Capability::FloatingInverseDynamicsDerivatives
+        | Capability::ClosedLoops => &[],
     }
 }
 

@@ -57,7 +57,12 @@ impl<'a> Reader<'a> {
     /// A reader of a file that messages call `name`, usually its path.
     #[must_use]
     pub const fn new(name: &'a str) -> Self {
-        Self { name, run_time: Vec::new(), settings: Vec::new(), takes: Takes { trees: false, couplings: false } }
+        Self {
+            name,
+            run_time: Vec::new(),
+            settings: Vec::new(),
+            takes: Takes { trees: false, couplings: false, loops: false },
+        }
     }
 
     /// These parameters of the file, each once, stay free until run time. The robot is that of their values in the
@@ -89,6 +94,15 @@ impl<'a> Reader<'a> {
     #[must_use]
     pub fn couplings(mut self) -> Self {
         self.takes.couplings = true;
+        self
+    }
+
+    /// Robots with closed loops are read, too: [`Robot::closed`] has their equations, and the positions of their
+    /// dependent joints are no coordinates. Without this they are refused at their line, because not every function of
+    /// rne takes them. Parallelograms are couplings.
+    #[must_use]
+    pub fn loops(mut self) -> Self {
+        self.takes.loops = true;
         self
     }
 

@@ -11,6 +11,9 @@
 //! weld        p₂ - p₁ = 0,  y₁·z₂ = 0,  z₁·x₂ = 0,  x₁·y₂ = 0
 //! ```
 //!
+//! z₁ and z₂ of a revolute cut have one direction, and so have the axes of a weld: at opposite ones the equations hold,
+//! too, but the loop is assembled otherwise than the places say.
+//!
 //! p₂ - p₁ is in the axes of the loop: those of the first joint that moves one place and not the other, as its link
 //! carries it, before the joint turns.
 
@@ -25,6 +28,8 @@ pub struct ClosedLoop {
     pub cut: Cut,
     /// The two places that it joins, x₁ y₁ z₁ and x₂ y₂ z₂, each on a link of the tree.
     pub between: [FixedFrame; 2],
+    /// The joints that its list `dependent` names, counted from 0, in the order of the file.
+    pub dependent: Vec<usize>,
 }
 
 /// The joint that closes a loop.
@@ -41,6 +46,20 @@ pub enum Cut {
 }
 
 impl Cut {
+    /// All of them, in the order in which documents list them.
+    pub const ALL: [Self; 4] = [Self::Revolute, Self::Spherical, Self::Universal, Self::Weld];
+
+    /// Its name in robot files: `revolute`, …
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Revolute => "revolute",
+            Self::Spherical => "spherical",
+            Self::Universal => "universal",
+            Self::Weld => "weld",
+        }
+    }
+
     /// The axes of the first and of the second place (0 to 2 for x to z) whose products are zero.
     #[must_use]
     pub const fn perpendicular(self) -> &'static [[usize; 2]] {
@@ -68,11 +87,13 @@ pub struct ClosedLoops {
     pub passive: Vec<usize>,
     /// The order of elimination: one equation for each dependent joint.
     pub elimination: Vec<Pivot>,
-    /// The positions of all joints at which the loops are closed, that were found when the file was read.
+    /// The positions of all joints at which the loops are closed, that were found when the file was read: up to 20,
+    /// within the limits as far as such were found. The dependent joints follow from the others at each.
     pub closures: Vec<Vec<f64>>,
-    /// The smallest and the largest singular value there of the equations that are kept, by the dependent joints.
+    /// The smallest and the largest singular value of the equations that are kept, by the dependent joints, at these
+    /// closures and where a search downhill from them leads within the limits; m or 1 per rad or m.
     pub singular_values: [f64; 2],
-    /// The smallest pivot there.
+    /// The smallest pivot there, and where another such search leads: a pivot within the limits is hardly smaller.
     pub smallest_pivot: f64,
 }
 
@@ -87,7 +108,7 @@ pub struct Pivot {
 }
 
 impl ClosedLoops {
-    /// Whether there are none.
+    /// Whether the robot has no closed loop.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.loops.is_empty()

@@ -42,7 +42,7 @@ pub fn mappings(text: &str) -> Vec<Mapping> {
         && let Some(root) = document::parse(text, document::ROBOT_FILE, &problems)
     {
         let cx = Context::new(text, &problems, &[]);
-        let _ = schema::robot(&cx, &root, schema::Takes { trees: true, couplings: true });
+        let _ = schema::robot(&cx, &root, schema::Takes { trees: true, couplings: true, loops: true });
         mappings = cx.mappings.take();
     }
     let _ = problems.finish("", text);

@@ -51,6 +51,8 @@ mod body;
 mod check;
 #[cfg(feature = "std")]
 mod closed_loop;
+#[cfg(feature = "std")]
+mod closure;
 mod contact;
 #[cfg(feature = "std")]
 mod contacts;
@@ -91,11 +93,19 @@ mod link;
 #[cfg(feature = "std")]
 mod lint;
 #[cfg(feature = "std")]
+mod loops;
+#[cfg(feature = "std")]
+mod matrix;
+#[cfg(feature = "std")]
 mod matter;
 #[cfg(feature = "std")]
 mod mirror;
 #[cfg(feature = "std")]
+mod mobility;
+#[cfg(feature = "std")]
 mod parallelogram;
+#[cfg(feature = "std")]
+mod pose;
 #[cfg(feature = "std")]
 mod quantity;
 #[cfg(feature = "std")]

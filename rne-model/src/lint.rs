@@ -12,6 +12,8 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
 use crate::expression::Names as _;
 use crate::inertia::principal_moments;
+use crate::loops::short;
+use crate::mobility::Remarks;
 use crate::resistance::{self, Unresisted};
 use crate::source::{is_invisible, quoted, six_digits};
 use crate::{Angle, Convention, Inertia, Joint, JointKind, Limits, Link, QuarterTurns, Transform};
@@ -211,7 +213,9 @@ pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [
 }
 
 /// Checks the joints' inertias together: joints that nothing resists, and masses whose inertia is forgotten.
-pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints: &[Joint]) {
+///
+/// The joints `of_loops` are moved by closed loops, too, and inertia behind these resists them.
+pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints: &[Joint], of_loops: &[usize]) {
     let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
     // a base that floats has a mass
     let is_geometry = root.get("floating_base").is_none();
@@ -234,6 +238,7 @@ pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints
     let mut turns = false;
     for (index, ((item, joint), unresisted)) in items.iter().zip(joints).zip(unresisted).enumerate() {
         turns |= joint.row.kind == JointKind::Revolute;
+        let unresisted = unresisted.filter(|_| !of_loops.contains(&index));
         match unresisted {
             // which asks for the mass of a sliding joint
             Some(unresisted) if joint.row.kind == JointKind::Prismatic => {
@@ -460,6 +465,43 @@ pub(crate) fn width_beside_displacement(cx: &Context, width: &Node) {
     let message = "rne ignores `coulomb_width` because `coulomb_displacement` is given: the friction then changes its \
                    sign over the displacement, and not with the speed";
     cx.report(Diagnostic::lint(width.head(), message).label("not used").help("keep only one of the two keys"));
+}
+
+/// Closed loops that were found closed in few configurations, and singular ones within the limits.
+pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], remarks: &Remarks) {
+    let place = item.get("dependent").unwrap_or(item).head();
+    if let Some((found, wanted)) = remarks.few {
+        let message = format!("{found} of {wanted} configurations that close the loops were found");
+        let help = "if position limits leave the loops more room than this, check the lengths";
+        cx.report(Diagnostic::note(place.clone(), message).label("few configurations").help(help));
+    }
+    // what rounding leaves of a zero
+    let rounded = |position: f64| short(if position.abs() < 1e-9 { 0.0 } else { position });
+    let at = |positions: &[f64]| {
+        let shown = remarks.joints.iter().take(8);
+        let shown = shown.map(|&joint| format!("{} = {}", joints[joint].name, rounded(positions[joint])));
+        shown.collect::<Vec<_>>().join(", ")
+    };
+    if let Some((ratio, positions)) = &remarks.singular {
+        let message = format!(
+            "the dependent joints are not determined near {}: the smallest singular value of their equations is {} of \
+             the largest there",
+            at(positions),
+            short(*ratio)
+        );
+        let help =
+            "narrow the position limits so that the robot keeps away from there, or choose other dependent joints";
+        cx.report(Diagnostic::note(place, message).label("a singular configuration").help(help));
+    } else if let Some((ratio, positions)) = &remarks.pivot {
+        let message = format!(
+            "a pivot of the equations of the loops is {} of their largest singular value near {}: the order of \
+             elimination is fixed",
+            short(*ratio),
+            at(positions)
+        );
+        let help = "narrow the position limits so that the robot keeps away from there";
+        cx.report(Diagnostic::note(place, message).label("a small pivot").help(help));
+    }
 }
 
 /// Parameters that no number uses; of a run-time parameter that is an error.

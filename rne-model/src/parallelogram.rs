@@ -7,104 +7,26 @@
 //! are one line, as in palletisers: the loop has two freedoms then. The angle of a side in the plane is the sum of the
 //! positions of the joints that turn it, counted about one direction, and its angle where all positions are 0.
 
-use crate::coupling::named;
-use crate::decode::{Context, choice, read_mapping, text};
-use crate::diagnostic::Diagnostic;
-use crate::document::{Content, Node};
-use crate::frame::joint_names;
-use crate::robot::parent;
-use crate::schema::end_of_loop;
+use crate::pose::{Pose, axis_at_zero, cross, difference, dot, link_at_zero, way};
 use crate::source::{quoted, six_digits};
-use crate::tree::items;
-use crate::{Convention, Coupling, Entry, FixedFrame, Joint, JointKind, Transform};
+use crate::{Convention, Coupling, FixedFrame, Joint, JointKind};
 
 /// Lengths that differ by less than this part of the longer one, and directions by less than this, are equal: tables
 /// have six digits.
 const TOLERANCE: f64 = 1e-6;
 
-/// A loop of a file.
-struct Loop {
-    between: [FixedFrame; 2],
-    dependent: [usize; 2],
-}
-
-/// Reads the list `loops` of a file whose root is `root`, and gives the dependent joints their couplings.
-pub(crate) fn loops(
-    cx: &Context,
-    root: &Node,
-    (format, convention): (u32, Convention),
-    joints: &mut [Joint],
-) -> Option<()> {
-    let help = "begin each loop with a dash, as in the section Parallelograms of docs/robot-file.md";
-    let items = items(cx, root, ("loops", format), "loops", help)?;
-    let names = joint_names(root);
-    for item in items {
-        let it = closed_loop(cx, item, &names)?;
-        let on_ways = it.between.iter().flat_map(|end| way(joints, end.on)).collect::<Vec<_>>();
-        let is_length = |entry: &Entry| matches!(entry, Entry::A(joint) | Entry::D(joint) if on_ways.contains(joint));
-        if cx.run_time.borrow().entries.iter().any(|(entry, _)| is_length(entry)) {
-            let message = "a length of the loop varies at run time; the lengths of a parallelogram must be fixed";
-            return cx.refuse(Diagnostic::error(item.head(), message).label("varies at run time"));
-        }
-        let couplings = match couplings(&it, convention, joints) {
-            Ok(couplings) => couplings,
-            Err(message) => {
-                let place = item.get("between").unwrap_or(item).head();
-                let help = "the section Parallelograms of docs/robot-file.md says what a loop must be";
-                return cx.refuse(Diagnostic::error(place, message).label("no parallelogram").help(help));
-            }
-        };
-        for (joint, coupling) in couplings {
-            let taken = match &joints[joint] {
-                Joint { coupling: Some(_), .. } => "follows other joints already",
-                Joint { motor: Some(_), .. } => "has a `motor`, but the loop moves it",
-                _ => {
-                    joints[joint].coupling = Some(coupling);
-                    continue;
-                }
-            };
-            let message = format!("the dependent joint {} {taken}", quoted(&names[joint]));
-            let place = item.get("dependent").unwrap_or(item).head();
-            return cx.refuse(Diagnostic::error(place, message).help("name other dependent joints of the loop"));
-        }
-    }
-    Some(())
-}
-
-fn closed_loop(cx: &Context, node: &Node, names: &[String]) -> Option<Loop> {
-    read_mapping!(cx, node, "a loop", {
-        _name: optional "name" text,
-        _kind: required "kind" |cx, node| choice(cx, node, "kind", &[("parallelogram", ())]),
-        _cut: required "cut" |cx, node| choice(cx, node, "cut joint", &[("revolute", ())]),
-        between: required "between" |cx, node| pair(cx, node, "two places", |cx, node| end_of_loop(cx, node, names)),
-        dependent: required "dependent" |cx, node| pair(cx, node, "two joints", |cx, node| {
-            let name = text(cx, node)?;
-            named(cx, &name, node.span.clone(), names, "dependent")
-        }),
-    });
-    Some(Loop { between, dependent })
-}
-
-fn pair<T>(cx: &Context, node: &Node, what: &str, read: impl Fn(&Context, &Node) -> Option<T>) -> Option<[T; 2]> {
-    match &node.content {
-        Content::Sequence(items) if items.len() == 2 => {
-            let [one, other] = [&items[0], &items[1]].map(|item| read(cx, item));
-            Some([one?, other?])
-        }
-        _ => {
-            let message = format!("found {} where a list of {what} is needed", node.described());
-            cx.refuse(Diagnostic::error(node.head(), message).label(what.to_owned()))
-        }
-    }
-}
-
 /// The couplings of the dependent joints, or why the loop is no parallelogram.
-fn couplings(it: &Loop, convention: Convention, joints: &[Joint]) -> Result<[(usize, Coupling); 2], String> {
-    let ways = it.between.map(|end| way(joints, end.on));
+pub(crate) fn couplings(
+    between: &[FixedFrame; 2],
+    dependent: [usize; 2],
+    convention: Convention,
+    joints: &[Joint],
+) -> Result<[(usize, Coupling); 2], String> {
+    let ways = between.map(|end| way(joints, end.on));
     let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
     let name = |joint: usize| quoted(&joints[joint].name);
     let (mut first, mut other) = (&ways[0][shared..], &ways[1][shared..]);
-    let mut ends = it.between;
+    let mut ends = *between;
     if other.len() > first.len() {
         (first, other, ends) = (other, first, [ends[1], ends[0]]);
     }
@@ -126,34 +48,34 @@ fn couplings(it: &Loop, convention: Convention, joints: &[Joint]) -> Result<[(us
             name(slides)
         ));
     }
-    let axis = |joint: usize| joint_axis(joints, convention, joint);
-    let z = axis(a).rotation_z();
+    let axis = |joint: usize| axis_at_zero(joints, convention, joint);
+    let z = axis(a).axis(2);
     let mut signs = Vec::new();
     for &joint in &all {
-        let cosine = dot(axis(joint).rotation_z(), z);
+        let cosine = dot(axis(joint).axis(2), z);
         if 1.0 - cosine.abs() > TOLERANCE * TOLERANCE {
             return Err(format!("the axes of the joints {} and {} are not parallel", name(a), name(joint)));
         }
         signs.push((joint, cosine.signum()));
     }
-    let cut = ends.map(|end| link_pose(joints, convention, end.on).then(&Pose::of(&end.placement)));
-    if cut.iter().any(|cut| 1.0 - dot(cut.rotation_z(), z).abs() > TOLERANCE * TOLERANCE) {
+    let cut = ends.map(|end| link_at_zero(joints, convention, end.on).then(&Pose::of(&end.placement)));
+    if cut.iter().any(|cut| 1.0 - dot(cut.axis(2), z).abs() > TOLERANCE * TOLERANCE) {
         return Err(format!(
             "the axis of the cut joint, z of `between`, is not parallel to that of the joint {}",
             name(a)
         ));
     }
     // sides from axis to axis, each on its link, where all positions are 0: V0 V1, V1 V2; V3 V2, V0 V3
-    let between = |from: [f64; 3], to: [f64; 3]| [0, 1, 2].map(|i| to[i] - from[i]);
+    let side = |from: [f64; 3], to: [f64; 3]| difference(to, from);
     let [first_end, other_end] = cut.map(|cut| cut.translation);
     let sides = [
-        between(axis(a).translation, axis(b).translation),
-        between(axis(b).translation, first_end),
-        between(axis(d).translation, other_end),
-        between(axis(a).translation, axis(d).translation),
+        side(axis(a).translation, axis(b).translation),
+        side(axis(b).translation, first_end),
+        side(axis(d).translation, other_end),
+        side(axis(a).translation, axis(d).translation),
     ];
     if let Some(c) = c {
-        let apart = in_plane(between(axis(a).translation, axis(c).translation), z);
+        let apart = in_plane(side(axis(a).translation, axis(c).translation), z);
         if length(apart) > TOLERANCE * length(sides[0]) {
             return Err(format!(
                 "the axes of the joints {} and {} must be one line, because both ways to the cut joint have two joints",
@@ -190,7 +112,7 @@ fn couplings(it: &Loop, convention: Convention, joints: &[Joint]) -> Result<[(us
         terms[0].push((c, -sign(c)));
         terms[1].push((c, sign(c)));
     }
-    solved(it.dependent, &terms, [angle(1, 3), angle(2, 0)])
+    solved(dependent, &terms, [angle(1, 3), angle(2, 0)])
         .map(|solutions| solutions.map(|(joint, coupling)| (joint, without_followers(coupling, joints))))
         .ok_or_else(|| {
             let listed = all.iter().map(|&joint| name(joint)).collect::<Vec<_>>().join(", ");
@@ -256,86 +178,6 @@ fn without_followers(coupling: Coupling, joints: &[Joint]) -> Coupling {
     found
 }
 
-/// The joints that move a link, base first.
-fn way(joints: &[Joint], on: Option<usize>) -> Vec<usize> {
-    let mut way: Vec<usize> = std::iter::successors(on, |&joint| parent(joints, joint)).collect();
-    way.reverse();
-    way
-}
-
-/// A rotation, by rows, and a translation.
-#[derive(Clone, Copy)]
-struct Pose {
-    rotation: [[f64; 3]; 3],
-    translation: [f64; 3],
-}
-
-impl Pose {
-    const IDENTITY: Self =
-        Self { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation: [0.0; 3] };
-
-    /// A turn about an axis of the frame.
-    fn turn(axis: usize, sin: f64, cos: f64) -> Self {
-        let mut pose = Self::IDENTITY;
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        (pose.rotation[i][i], pose.rotation[i][j]) = (cos, -sin);
-        (pose.rotation[j][i], pose.rotation[j][j]) = (sin, cos);
-        pose
-    }
-
-    fn shift(translation: [f64; 3]) -> Self {
-        Self { translation, ..Self::IDENTITY }
-    }
-
-    fn of(transform: &Transform) -> Self {
-        let turn = |axis: usize| Self::turn(axis, transform.rpy[axis].sin, transform.rpy[axis].cos);
-        Self::shift(transform.xyz).then(&turn(2)).then(&turn(1)).then(&turn(0))
-    }
-
-    fn then(&self, next: &Self) -> Self {
-        let product = |row: [f64; 3], column: usize| (0..3).map(|k| row[k] * next.rotation[k][column]).sum();
-        Self {
-            rotation: self.rotation.map(|row| [0, 1, 2].map(|column| product(row, column))),
-            translation: [0, 1, 2].map(|i| self.translation[i] + dot(self.rotation[i], next.translation)),
-        }
-    }
-
-    fn rotation_z(&self) -> [f64; 3] {
-        self.rotation.map(|row| row[2])
-    }
-}
-
-/// The frame at a joint, z along its axis, in frame 0, where all positions are 0.
-fn joint_axis(joints: &[Joint], convention: Convention, joint: usize) -> Pose {
-    let of_parent = link_pose(joints, convention, parent(joints, joint));
-    let begins = joints[joint].branch.map_or(Pose::IDENTITY, |branch| Pose::of(&branch.placement));
-    let (dh, start) = (&joints[joint].row.dh, of_parent.then(&begins));
-    match convention {
-        Convention::Standard => start,
-        Convention::Modified => {
-            start.then(&Pose::turn(0, dh.alpha.sin, dh.alpha.cos)).then(&Pose::shift([dh.a, 0.0, 0.0]))
-        }
-    }
-}
-
-/// The frame of a link, in frame 0, where all positions are 0.
-fn link_pose(joints: &[Joint], convention: Convention, link: Option<usize>) -> Pose {
-    let Some(link) = link else { return Pose::IDENTITY };
-    let dh = &joints[link].row.dh;
-    let screw = Pose::turn(2, dh.theta.sin, dh.theta.cos).then(&Pose::shift([0.0, 0.0, dh.d]));
-    let pose = joint_axis(joints, convention, link).then(&screw);
-    match convention {
-        Convention::Standard => {
-            pose.then(&Pose::shift([dh.a, 0.0, 0.0])).then(&Pose::turn(0, dh.alpha.sin, dh.alpha.cos))
-        }
-        Convention::Modified => pose,
-    }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 fn length(v: [f64; 3]) -> f64 {
     dot(v, v).sqrt()
 }
@@ -349,12 +191,7 @@ fn in_plane(v: [f64; 3], z: [f64; 3]) -> [f64; 3] {
 /// The angle about z from one vector to another, rad: a multiple of π/2 is exact.
 fn turn(from: [f64; 3], to: [f64; 3], z: [f64; 3]) -> f64 {
     let [from, to] = [from, to].map(|v| in_plane(v, z));
-    let cross = [1, 2, 0].map(|i: usize| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        from[j] * to[k] - from[k] * to[j]
-    });
-    // component i of the product stands at i - 1
-    let angle = dot([cross[2], cross[0], cross[1]], z).atan2(dot(from, to));
+    let angle = dot(cross(from, to), z).atan2(dot(from, to));
     let right = crate::angle::nearest_right_angle(angle);
     if (angle - right).abs() < 1e-12 { right + 0.0 } else { angle }
 }

@@ -14,14 +14,14 @@ use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::floating_base::{self, name_of_base};
 use crate::frame::{carrier, frames};
 use crate::link::link;
-use crate::parallelogram::loops;
+use crate::loops::loops;
 use crate::quantity::Quantity;
 use crate::source::{is_control, is_line_break, one_line, quoted, six_digits};
 use crate::tips::{first_tip, tips};
 use crate::varying::{entry, fixed, unknown_names, unknown_settings, without_effect};
 use crate::{
-    Angle, ClosedLoops, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE,
-    Limits, Link, Motor, Robot, Row, Transform, lint, mirror, tree,
+    Angle, Convention, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits, Link,
+    Motor, Robot, Row, Transform, lint, mirror, tree,
 };
 
 /// More than every number of 64 joints with a name of its own.
@@ -32,6 +32,7 @@ const MAX_PARAMETERS: usize = 2000;
 pub(crate) struct Takes {
     pub(crate) trees: bool,
     pub(crate) couplings: bool,
+    pub(crate) loops: bool,
 }
 
 /// A whole robot file.
@@ -74,7 +75,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     }
     let contacts = contacts(cx, node, format, (&frames, &tips))?;
     couplings(cx, node, format, &mut joints)?;
-    loops(cx, node, (format, convention), &mut joints)?;
+    let (closed, of_loops) = loops(cx, node, (format, convention), &mut joints, takes.loops)?;
     let drives = drives(cx, node, format, &joints)?;
     let mut bodies = bodies(cx, node, format, &joints)?;
     let mut floating_base = floating_base::floating_base(cx, node, format)?;
@@ -85,7 +86,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     // Where something else is wrong it may be that which has no effect.
     if !cx.has_errors() {
         without_effect(cx);
-        lint::inertias(cx, node, convention, &joints);
+        lint::inertias(cx, node, convention, &joints, &of_loops);
         lint::placeholders(cx, node, &joints);
         lint::missing_friction(cx, node);
         mirror::twins(cx, node, &joints);
@@ -103,7 +104,8 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         }
     }
     bodies.add_to(&mut joints, floating_base.as_mut());
-    if let Some(base) = floating_base.as_ref().filter(|_| !cx.has_errors()) {
+    // joints of closed loops do not move freely
+    if let Some(base) = floating_base.as_ref().filter(|_| !cx.has_errors() && closed.is_empty()) {
         lint::floating_inertia(cx, node, &base.link, convention, &joints);
     }
     let run_time = cx.run_time.take();
@@ -127,7 +129,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         bodies,
         at: None,
         run_time,
-        closed: ClosedLoops::default(),
+        closed,
         rotors: false,
     })
 }

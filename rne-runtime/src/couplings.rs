@@ -23,7 +23,8 @@ pub(crate) struct Couplings<S> {
 impl Couplings<f64> {
     pub(crate) fn of(robot: &Robot) -> Self {
         let follows = |joint: &rne_model::Joint| joint.coupling.as_ref().map(|coupling| coupling.follows.clone());
-        Self { coordinates: robot.coordinates().collect(), follows: robot.joints.iter().map(follows).collect() }
+        let coordinates = (0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_none()).collect();
+        Self { coordinates, follows: robot.joints.iter().map(follows).collect() }
     }
 
     #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose

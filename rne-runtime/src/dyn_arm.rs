@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use rne_model::{Contact, Convention, FixedFrame, Joint, Link, Model, Motor, Robot, Row, Transform};
 
 use crate::at_tip::AtTip;
+use crate::closed_loops::Loops;
 use crate::couplings::Couplings;
 use crate::link_frame::{Chain, LinkFrame, Table};
 use crate::link_state::JointMotions;
@@ -17,6 +18,9 @@ use crate::{BaseMotion, Constant, Payload, Scalar, Wrench, WrongLength};
 
 /// [`Arm`](crate::Arm) for a number of joints known at run time: the same recursion, the same bits, with slices for
 /// arrays.
+///
+/// Functions of closed loops take the positions of the dependent joints, too. The other functions are those of the open
+/// tree: their slices have an element for each joint that follows no other by a coupling, in the order of the joints.
 ///
 /// Slices run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +44,8 @@ pub struct DynArm<S = f64> {
     pub(crate) tips: Vec<FixedFrame<S>>,
     /// The tips that are held.
     pub(crate) contacts: Vec<Contact>,
+    /// The closed loops.
+    pub(crate) closed: Loops<S>,
 }
 
 /// The seven steps of one state of a [`DynArm`], in the axes of form P.
@@ -71,6 +77,7 @@ impl DynArm {
             at,
             tips: robot.wrench_frames(),
             contacts: robot.contacts.clone(),
+            closed: Loops::of(robot),
             ..parts
         }
     }
@@ -106,6 +113,7 @@ impl<S: Constant> DynArm<S> {
             at: None,
             tips: vec![table.tip()],
             contacts: Vec::new(),
+            closed: Loops::none(),
         }
     }
 
@@ -128,7 +136,8 @@ impl<S: Constant> DynArm<S> {
         Self { rotors: true, ..self }
     }
 
-    /// Number of coordinates: of the joints that follow no other.
+    /// Number of coordinates: of the joints that follow no other by a coupling. Dependent joints of closed loops count
+    /// as joints of the open tree.
     #[must_use]
     pub fn dof(&self) -> usize {
         self.couplings.dof()
@@ -399,6 +408,7 @@ impl DynArm<f64> {
             at,
             tips: self.tips.iter().map(|tip| tip.to_f32()).collect(),
             contacts: self.contacts.clone(),
+            closed: self.closed.to_f32(),
             ..DynArm::of_table(table, self.gravity.map(|x| x as f32), self.base.to_f32())
         }
     }

@@ -52,7 +52,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
     /// The acceleration of a tip by that of the centre of mass of its link, where the base turns and nothing else of it
     /// accelerates.
-    fn tip_acceleration<T: Scalar>(
+    pub(crate) fn tip_acceleration<T: Scalar>(
         self,
         (q, qd): (&[T], &[T]),
         omega: &[T; 3],

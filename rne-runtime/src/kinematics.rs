@@ -160,6 +160,24 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.jacobian_from(base, self.placements(base, q).as_ref()).0
     }
 
+    /// Axes and origin of a place on a link, in frame 0, and its Jacobian there.
+    #[cfg(feature = "std")]
+    #[allow(clippy::type_complexity)] // axes, origin, rows
+    pub(crate) fn placed<T: Scalar>(self, place: &FixedFrame<S>, q: &[T]) -> (Matrix3<T>, Vector3<T>, [J::Of<T>; 6]) {
+        let start = Placement::identity();
+        let links = self.placements(start, q);
+        let at_place = Mechanism { at: Some(place), ..self };
+        let (rows, origin) = at_place.jacobian_from(start, links.as_ref());
+        (at_place.tip(start, links.as_ref()).rotation, origin, rows)
+    }
+
+    /// The axes of a joint in frame 0, turned with its link where the table is modified.
+    #[cfg(feature = "std")]
+    pub(crate) fn axes_of_joint<T: Scalar>(self, joint: usize, q: &[T]) -> Matrix3<T> {
+        let start = Placement::identity();
+        self.joint_frame(joint, start, self.placements(start, q).as_ref()).rotation
+    }
+
     /// The Jacobian when frame 0 is at `base`, and the origin of the frame.
     ///
     /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0; of a joint that does not

@@ -19,6 +19,8 @@ pub mod batch;
 mod capability;
 #[cfg(feature = "arm")]
 mod centre_of_mass;
+#[cfg(all(feature = "arm", feature = "std"))]
+mod closed_loops;
 #[cfg(feature = "arm")]
 mod contact_dynamics;
 #[cfg(feature = "arm")]
@@ -112,11 +114,11 @@ pub use batch::{
     BatchMassMatrix, BatchScalar, LengthMismatch, VectorUnit,
 };
 pub use capability::{
-    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, ContactDynamics,
-    CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor,
-    FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
-    TorqueDerivatives, frame_index,
+    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, ClosedLoops,
+    ClosureStep, ContactDynamics, CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy,
+    FloatingKinematics, FloatingRegressor, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase,
+    PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

@@ -13,7 +13,7 @@ impl<const DOF: usize> Arm<DOF> {
     /// # Errors
     /// Everything that is wrong with the text, or that it describes another number of joints than `DOF`.
     pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
-        Ok(Self::from_robot(&of_text(text)?)?)
+        Ok(Self::from_robot(&reader("<yaml>").read(text)?.robot)?)
     }
 
     /// The robot of a robot file. A relative `path` starts at the working directory.
@@ -21,7 +21,7 @@ impl<const DOF: usize> Arm<DOF> {
     /// # Errors
     /// When the file cannot be read, everything that is wrong with it, or another number of joints than `DOF`.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, LoadError> {
-        Ok(Self::from_robot(&read(path.as_ref())?)?)
+        Ok(Self::from_robot(&read(path.as_ref(), false)?)?)
     }
 
     /// The robot of a robot file that has been read.
@@ -48,7 +48,7 @@ impl DynArm {
     /// # Errors
     /// Everything that is wrong with the text.
     pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
-        Ok(Self::from_robot(&of_text(text)?))
+        Ok(Self::from_robot(&reader("<yaml>").loops().read(text)?.robot))
     }
 
     /// The robot of a robot file. A relative `path` starts at the working directory.
@@ -56,18 +56,16 @@ impl DynArm {
     /// # Errors
     /// When the file cannot be read, or everything that is wrong with it.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, LoadError> {
-        Ok(Self::from_robot(&read(path.as_ref())?))
+        Ok(Self::from_robot(&read(path.as_ref(), true)?))
     }
 }
 
-fn read(path: &Path) -> Result<Robot, LoadError> {
+fn read(path: &Path, loops: bool) -> Result<Robot, LoadError> {
     let bytes = read_file(path);
     let bytes = bytes.map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
-    Ok(reader(&path.display().to_string()).read(&bytes)?.robot)
-}
-
-fn of_text(text: &str) -> Result<Robot, LoadError> {
-    Ok(reader("<yaml>").read(text)?.robot)
+    let name = path.display().to_string();
+    let reader = if loops { reader(&name).loops() } else { reader(&name) };
+    Ok(reader.read(&bytes)?.robot)
 }
 
 fn reader(name: &str) -> Reader<'_> {

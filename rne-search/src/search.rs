@@ -71,7 +71,7 @@ pub fn search(
     let reduced = Reduced { operations, accuracy, plan };
 
     let mut rewritten = BTreeMap::new();
-    for function in Function::ALL {
+    for function in Function::of_robot(robot) {
         let place = options.rewrite.iter().position(|&other| other == function);
         let known = at_hand.get(&function);
         if place.is_none() && known.is_none() || divides_by_zero(robot, function) {

@@ -20,7 +20,7 @@ pub(crate) const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 fn programs(robot: &Robot, plans: &PlanSet, form: Form) -> Vec<Program> {
     let compiler = rne_codegen::Compiler::new(robot).with_plans(plans);
     let compiled = |function| compiler.compile(function, form).unwrap_or_else(|error| panic!("{error}"));
-    Function::ALL.map(compiled).to_vec()
+    Function::OF_TREES.map(compiled).to_vec()
 }
 
 pub(crate) fn read(path: &str) -> String {

@@ -130,6 +130,14 @@ impl Driver<'_> {
         }
         for function in functions {
             let arguments = match function {
+                // no function of trees
+                Function::ClosureStep
+                | Function::LoopMap
+                | Function::LoopMapRateTimesVelocity
+                | Function::InverseDynamicsOfLoops
+                | Function::InverseDynamicsOfLoopsWithWrenches
+                | Function::MassMatrixOfLoops
+                | Function::ForwardDynamicsOfLoops => unreachable!("closed loops have tests of their own"),
                 Function::InverseDynamics
                 | Function::Regressor
                 | Function::InverseDynamicsDerivatives

@@ -27,7 +27,7 @@ const TOLERANCES: [f64; 2] = [1e-13, 1e-9];
 
 /// States of each of some robots: with all functions in both forms a million, or a sample.
 fn count(robots: usize) -> usize {
-    let of_a_state = robots * Function::ALL.len() * Form::ALL.len();
+    let of_a_state = robots * Function::OF_TREES.len() * Form::ALL.len();
     if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 1_000_000_usize.div_ceil(of_a_state) } else { 20 }
 }
 
@@ -158,7 +158,7 @@ fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], count: usize) -> Se
         // a base without mass may turn against its joints: the mass matrix is singular in every state
         let is_solvable =
             |it: &Function| robot.floating_base.is_some() || !(it.is_of_floating_base() && it.inverts_mass());
-        for function in Function::ALL.into_iter().filter(is_solvable) {
+        for function in Function::OF_TREES.into_iter().filter(is_solvable) {
             let what = format!("{name}, {function}, {form}");
             let tolerance = TOLERANCES[usize::from(function.divides().is_some())];
             let program = compiler.compile(function, *form).unwrap_or_else(|why| panic!("{what}: {why}"));
@@ -203,8 +203,8 @@ pub(crate) fn compare_all(robots: &[Forms]) {
             });
         }
     });
-    let evaluations = robots.len() * Function::ALL.len() * Form::ALL.len() * count;
-    println!("{} robots, {} functions, 2 forms, {count} states: {evaluations}", robots.len(), Function::ALL.len());
+    let evaluations = robots.len() * Function::OF_TREES.len() * Form::ALL.len() * count;
+    println!("{} robots, {} functions, 2 forms, {count} states: {evaluations}", robots.len(), Function::OF_TREES.len());
     for (pair, (numbers, differing, worst)) in all.into_inner().expect("no panic").0 {
         println!("{pair}: {numbers} numbers, {differing} differ, by {worst:.1e} of the largest at most");
     }

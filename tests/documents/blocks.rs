@@ -20,6 +20,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
             "tree",
             "gripper",
             "palletiser",
+            "four_bar",
             "wam7_motors",
             "two_hands",
             "dual_arm",
@@ -60,7 +61,7 @@ fn block(name: &str) -> String {
             let list: Vec<&str> = file.lines().skip_while(|line| !line.starts_with("motors:")).collect();
             format!("```yaml\n{}\n```\n", list.join("\n"))
         }
-        "desk_arm" | "tree" | "gripper" | "palletiser" | "dual_arm" | "satellite" | "two_bars" => {
+        "desk_arm" | "tree" | "gripper" | "palletiser" | "four_bar" | "dual_arm" | "satellite" | "two_bars" => {
             format!("```yaml\n{}```\n", read(&root().join(format!("docs/{name}.yaml"))))
         }
         "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),

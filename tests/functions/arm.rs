@@ -129,7 +129,7 @@ pub(crate) struct Arm {
 impl Arm {
     /// By the choices of a build without a plan file.
     pub(crate) fn new(robot: &Robot, maker: Maker) -> Self {
-        let functions = || Function::ALL.iter().map(|_| OnceLock::new()).collect();
+        let functions = || Function::OF_TREES.iter().map(|_| OnceLock::new()).collect();
         let code = |form| Code { form, plans: OnceLock::new(), functions: functions() };
         let code = match maker {
             Maker::Runtime => None,
@@ -175,7 +175,7 @@ impl Arm {
     }
 
     fn compiled<'a>(&self, code: &'a Code, function: Function) -> &'a (Program, Interpreter) {
-        let index = Function::ALL.iter().position(|other| *other == function).expect("all are in it");
+        let index = Function::OF_TREES.iter().position(|other| *other == function).expect("all are in it");
         code.functions[index].get_or_init(|| {
             let program = match code.form {
                 Form::SevenSteps => Compiler::new(&self.robot).compile(function, code.form),
@@ -220,7 +220,7 @@ impl Arm {
         let (_, interpreter) = self.compiled(code, function);
         let numbers = interpreter.run(&arguments, |constant| Number(T::from_f64(constant)), sin_cos);
         let numbers: Vec<T> = numbers.expect("one per joint").into_iter().map(|Number(x)| x).collect();
-        assert_eq!(numbers.len(), function.layout(self.robot.dof(), self.robot.tip_count()).len());
+        assert_eq!(numbers.len(), function.layout(rne_codegen::Sizes::of(&self.robot)).len());
         numbers
     }
 
@@ -381,6 +381,14 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
     };
     let wrenches = at_tips(arm.tips().len(), wrench);
     let numbers = match function {
+        // no function of trees
+        Function::ClosureStep
+        | Function::LoopMap
+        | Function::LoopMapRateTimesVelocity
+        | Function::InverseDynamicsOfLoops
+        | Function::InverseDynamicsOfLoopsWithWrenches
+        | Function::MassMatrixOfLoops
+        | Function::ForwardDynamicsOfLoops => unreachable!("closed loops have tests of their own"),
         Function::InverseDynamicsWithWrenches => arm.inverse_dynamics_with_wrenches(q, qd, qdd, &wrenches),
         Function::ForwardDynamicsWithWrenches => arm.forward_dynamics_with_wrenches(q, qd, tau, &wrenches),
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),

@@ -106,7 +106,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
 /// Compares all functions of an arm at a state.
 pub(crate) fn compare(arm: &Arm, maker: Maker, given: &Given<'_, f64>, tolerance: f64, worst: &mut Worst) {
     let takes = |function: &Function| !(arm.robot.has_couplings() && function.is_of_every_link());
-    for function in Function::ALL.into_iter().filter(takes) {
+    for function in Function::OF_TREES.into_iter().filter(takes) {
         let found = arm.numbers(function, given);
         worst.see(function.name(), error(arm, maker, function, given, &found, tolerance));
     }

@@ -8,6 +8,7 @@ mod base_states;
 mod case;
 mod centre_of_mass;
 mod check;
+mod closed_loops;
 mod compiled_trees;
 #[path = "../c_code/compiler.rs"]
 mod compiler;

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use fastrand::Rng;
 use rne::{BaseMotion, ForwardDynamics, MassMatrix, Wrench};
-use rne_codegen::{Form, Function, Program};
+use rne_codegen::{Form, Function, Program, Sizes};
 use rne_emit::Precision;
 use rne_model::Robot;
 
@@ -142,7 +142,7 @@ fn is_asked_for(seed: u64, form: Form) -> bool {
 fn every_function_is_the_runtime(form: Form) {
     let worst = of_each(&(0..ARMS).filter(|&seed| is_asked_for(seed, form)).collect::<Vec<_>>(), |seed, worst| {
         let arm = arm(seed, form);
-        for function in Function::ALL {
+        for function in Function::OF_TREES {
             names_are_distinct(arm.program(function));
         }
         let state = state(&mut Rng::with_seed(seed), arm.robot.dof());
@@ -165,7 +165,7 @@ fn every_reduced_function_of_random_arms_is_the_runtime() {
 fn c_code_is_the_runtime(name: &str, arms: &[(Form, &Arm)], compiler: &Compiler) {
     let dof = arms.first().map_or(0, |(_, arm)| arm.robot.dof());
     let unit = |(index, (form, arm)): (usize, &(Form, &Arm))| {
-        let programs = Function::ALL.map(|function| arm.program(function).clone());
+        let programs = Function::OF_TREES.map(|function| arm.program(function).clone());
         Unit::new(&arm.robot, &programs, Precision::Double, format!("{form}_{index}"))
     };
     let units: Vec<Unit> = arms.iter().enumerate().map(unit).collect();
@@ -174,8 +174,8 @@ fn c_code_is_the_runtime(name: &str, arms: &[(Form, &Arm)], compiler: &Compiler)
     let words = Driver { name, units: &units, dof }.run(compiler, &states);
     let mut found = words.into_iter().map(f64::from_bits);
     for (state, (form, arm)) in states.iter().flat_map(|state| arms.iter().map(move |arm| (state, arm))) {
-        for function in Function::ALL {
-            let found: Vec<f64> = found.by_ref().take(function.layout(dof, 1).len()).collect();
+        for function in Function::OF_TREES {
+            let found: Vec<f64> = found.by_ref().take(function.layout(Sizes::of(&arm.robot)).len()).collect();
             let maker = Maker::Code(*form);
             at(state, |given| equality::error(arm, maker, function, given, &found, tolerance(*form)));
         }

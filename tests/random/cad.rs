@@ -115,7 +115,8 @@ fn no_arm_is_refused_in_the_reduced_form() {
         let yaml = yaml(seed, most);
         let robot = Robot::from_yaml(&yaml).unwrap_or_else(|report| panic!("{report}\n{yaml}"));
         // all functions of every eighth that is short
-        let functions = if seed % 8 == 0 && robot.dof() < 5 { &Function::ALL[..] } else { &Function::TORQUES[..1] };
+        let functions =
+            if seed % 8 == 0 && robot.dof() < 5 { &Function::OF_TREES[..] } else { &Function::TORQUES[..1] };
         plain += left_plain(&robot, functions);
     }
     assert_eq!(plain, 0, "some plan can be proved for each");
@@ -125,7 +126,7 @@ fn no_arm_is_refused_in_the_reduced_form() {
 fn a_tensor_about_the_origin_is_no_obstacle() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/random/files/about_origin.yaml");
     let robot = Robot::from_yaml(&std::fs::read_to_string(path).expect("a robot file")).expect("a robot");
-    assert_eq!(left_plain(&robot, &Function::ALL), 0);
+    assert_eq!(left_plain(&robot, &Function::OF_TREES), 0);
     // the plans that needs a root is made all the same
     assert!(PlanSet::default_of(&robot).plan.turned_last_frame);
 }

@@ -8,7 +8,7 @@ use datafusion::common::{Result, ScalarValue, exec_err, internal_err, plan_err};
 use datafusion::logical_expr::{
     ColumnarValue, Documentation, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature,
 };
-use rne::compiled::{Argument as Input, Arguments, CompiledArm, Destination, Function, Layout};
+use rne::compiled::{Argument as Input, Arguments, CompiledArm, Destination, Function, Layout, Sizes};
 
 use crate::argument::{self, Argument};
 use crate::call::{Call, key};
@@ -29,7 +29,7 @@ impl Computation {
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let is_left_out = |input: &Input| matches!(input, Input::Sines | Input::Cosines | Input::Payload);
         let is_there = move |function: &Function| !function.arguments().iter().any(is_left_out);
-        Function::ALL.iter().copied().filter(is_there).map(Self::Of).chain([Self::Residual])
+        Function::OF_TREES.iter().copied().filter(is_there).map(Self::Of).chain([Self::Residual])
     }
 
     pub(crate) fn name(self) -> &'static str {
@@ -51,8 +51,8 @@ impl Computation {
 
     fn layout(self, dof: usize) -> Layout {
         match self {
-            Self::Of(function) => function.layout(dof, 1),
-            Self::Residual => Function::InverseDynamics.layout(dof, 1),
+            Self::Of(function) => function.layout(Sizes { dof, tips: 1, passive: 0, equations: 0 }),
+            Self::Residual => Function::InverseDynamics.layout(Sizes { dof, tips: 1, passive: 0, equations: 0 }),
         }
     }
 
@@ -73,7 +73,7 @@ impl Computation {
             };
         }
         let run = |arm: &CompiledArm, function: Function| {
-            let mut numbers = vec![0.0; states * function.layout(arm.dof(), 1).len()];
+            let mut numbers = vec![0.0; states * function.layout(Sizes::of(arm.robot())).len()];
             arm.run(function, states, &given, Destination::Rows(&mut numbers)).map_err(external)?;
             Ok(numbers)
         };

@@ -11,7 +11,7 @@ use datafusion::arrow::datatypes::{DataType, Field, Float64Type, Int64Type};
 use datafusion::common::Result;
 use datafusion::datasource::MemTable;
 use datafusion::prelude::SessionContext;
-use rne::compiled::{Arguments, CompiledArm, Destination, Function};
+use rne::compiled::{Arguments, CompiledArm, Destination, Function, Sizes};
 use rne_datafusion::{Robots, register};
 use sha2::{Digest, Sha256};
 
@@ -155,7 +155,7 @@ async fn columns_lists_and_slices_give_the_numbers_of_the_arm() -> Result<()> {
     ] {
         let array = rne::compiled::Array::Rows;
         let given = Arguments::new().q(array(&q)).qd(array(&qd)).qdd(array(&qdd));
-        let mut expected = vec![0.0; states * function.layout(joints, 1).len()];
+        let mut expected = vec![0.0; states * function.layout(Sizes { dof: joints, tips: 1, passive: 0, equations: 0 }).len()];
         arm.run(function, states, &given, Destination::Rows(&mut expected)).expect("it computes");
         let columns: Vec<String> = arguments.iter().map(|name| of(name)).collect();
         for arguments in [arguments.join(", "), columns.join(", ")] {
@@ -232,7 +232,7 @@ async fn a_base_that_floats_has_its_functions() -> Result<()> {
             "dq dqd domega",
         ),
     ] {
-        let mut expected = vec![0.0; states * function.layout(2, 1).len()];
+        let mut expected = vec![0.0; states * function.layout(Sizes { dof: 2, tips: 1, passive: 0, equations: 0 }).len()];
         arm.run(function, states, &all, Destination::Rows(&mut expected)).expect("it computes");
         let call = format!("{function}('{key}', {arguments})");
         let found = one(&context, &format!("SELECT {call} AS it FROM log")).await?;

@@ -7,7 +7,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rne::compiled::{CompiledArm, Form, Function, PlanFile};
-use rne_codegen::{Argument, Compiler};
+use rne_codegen::{Argument, Compiler, Sizes};
 use rne_model::{Convention, Joint, Robot};
 
 use crate::arrays::Given;
@@ -125,6 +125,19 @@ impl Arm {
         Ok(Given { name, parts: &[], elements: self.arm.dof(), value })
     }
 
+    /// Positions of the dependent joints of closed loops: an array, or a dict by their names.
+    pub(crate) fn of_passive<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        let robot = self.robot();
+        let names = robot.closed.passive.iter().map(|&joint| robot.joints[joint].name.as_str()).collect::<Vec<_>>();
+        let elements = names.len();
+        let value = if value.is_instance_of::<PyDict>() {
+            in_order(value, names, name, "dependent joint")?
+        } else {
+            value.clone()
+        };
+        Ok(Given { name, parts: &[], elements, value })
+    }
+
     /// The name that the keyword `frame` has; a TypeError lists the names where it is not a text.
     pub(crate) fn frame_name(&self, frame: &Bound<'_, PyAny>) -> PyResult<String> {
         frame.extract().map_err(|_| {
@@ -137,21 +150,21 @@ impl Arm {
     /// A wrench at each tip: a dict by the names of the tips, or an array of shape (tips, 6) or (N, tips, 6).
     pub(crate) fn of_tips<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
         let tips = self.robot().tip_names();
-        let elements = Argument::Wrenches.elements(self.arm.dof(), tips.len());
+        let elements = Argument::Wrenches.elements(Sizes::of(self.robot()));
         let value = value.py().import("rne.names")?.call_method1("of_tips", (value, tips, name))?;
         Ok(Given { name, parts: &[], elements, value })
     }
 
     /// The pose of a base: homogeneous matrices as the twelve numbers of the functions.
     pub(crate) fn of_pose<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let elements = Argument::BasePose.elements(self.arm.dof(), self.robot().tip_count());
+        let elements = Argument::BasePose.elements(Sizes::of(self.robot()));
         let value = value.py().import("rne.names")?.call_method1("of_pose", (value, name))?;
         Ok(Given { name, parts: &[], elements, value })
     }
 
     /// A rotation matrix: an array of shape (3, 3) or (N, 3, 3).
     pub(crate) fn of_rotation<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let elements = Argument::BaseRotation.elements(self.arm.dof(), self.robot().tip_count());
+        let elements = Argument::BaseRotation.elements(Sizes::of(self.robot()));
         let value = value.py().import("rne.names")?.call_method1("of_rotation", (value, name))?;
         Ok(Given { name, parts: &[], elements, value })
     }
@@ -244,6 +257,50 @@ impl Arm {
     #[getter]
     fn joints(&self) -> Vec<&str> {
         self.robot().independent_joints().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// The names of the dependent joints of closed loops, in the order of `passive`.
+    #[getter]
+    fn passive_joints(&self) -> Vec<&str> {
+        self.robot().closed.passive.iter().map(|&joint| self.robot().joints[joint].name.as_str()).collect()
+    }
+
+    /// Positions at which the closed loops are closed: a list of pairs of `q` and `passive`, found when the file was
+    /// read. They serve as guesses for `close`.
+    #[getter]
+    fn closures(&self) -> Vec<(Vec<f64>, Vec<f64>)> {
+        let robot = self.robot();
+        let of = |closure: &[f64], joints: &mut dyn Iterator<Item = usize>| joints.map(|at| closure[at]).collect();
+        let closures = robot.closed.closures.iter();
+        let pair = |it: &Vec<f64>| {
+            (of(it, &mut robot.coordinates()), of(it, &mut robot.closed.passive.iter().copied()))
+        };
+        closures.map(pair).collect()
+    }
+
+    /// Closes the loops of a robot from a guess: five steps of Newton's method.
+    ///
+    /// `q`: shape (n,) or (N, n). `guess`: positions of the dependent joints, shape (p,) or (N, p), or a dict by their
+    /// names. Returns the positions of the dependent joints, and what is left of the equations there: shapes (p,) and
+    /// (e,), or (N, p) and (N, e). What is left says whether the loops are closed: below 1e-12 from a good guess.
+    #[pyo3(signature = (q, guess, *, parameters=None))]
+    fn close<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        guess: &Bound<'py, PyAny>,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let step = |passive: &Bound<'py, PyAny>| -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+            let given = vec![self.of_joints("q", q)?, self.of_passive("guess", passive)?];
+            self.compute(py, Function::ClosureStep, given, parameters, None)?.extract()
+        };
+        let mut passive = guess.clone();
+        for _ in 0..5 {
+            passive = step(&passive)?.0;
+        }
+        let (_, residual) = step(&passive)?;
+        Ok(PyTuple::new(py, [passive, residual])?.into_any())
     }
 
     /// The joints that follow others: a dict of the name of each to the ratios, by the names of the joints that it

@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use rne_codegen::{Argument, Function};
+use rne_codegen::{Argument, Function, Sizes};
 
 use crate::arm::Arm;
 use crate::arrays::Given;
@@ -28,6 +28,10 @@ macro_rules! about {
     };
     (BaseRotation) => {
         "`base_rotation`: shape (3, 3) or (N, 3, 3).\n\n"
+    };
+    (Passive) => {
+        "`passive`: shape (p,) or (N, p), the positions of the dependent joints in their order, or a dict by their \
+         names; `close` finds them.\n\n"
     };
     (Payload) => {
         "`payload`: shape (10,) or (N, 10); `rne.payload` makes one. A point mass has the first four numbers alone: \
@@ -113,6 +117,16 @@ macro_rules! returned {
         "the acceleration of the base, linear then angular, of shape (6,) or (N, 6), those of the joints, of shape \
          (n,) or (N, n), and the wrenches on the robot, of shape (tips, 6) or (N, tips, 6); `out` is one array of \
          shape (6 + n + 6 tips,) or (N, 6 + n + 6 tips)."
+    };
+    (PassiveVector) => {
+        "shape (p,) or (N, p), p of the dependent joints."
+    };
+    (PassiveRows) => {
+        "shape (p, n) or (N, p, n), p of the dependent joints."
+    };
+    (ClosureStep) => {
+        "the positions after the step, of shape (p,) or (N, p), and what is left of the equations before it, of shape \
+         (e,) or (N, e); `out` is one array of shape (p + e,) or (N, p + e)."
     };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
@@ -394,6 +408,9 @@ macro_rules! given {
     ($arm:ident, $argument:ident: Wrenches) => {
         $arm.of_tips(stringify!($argument), $argument)?
     };
+    ($arm:ident, $argument:ident: Passive) => {
+        $arm.of_passive(stringify!($argument), $argument)?
+    };
     ($arm:ident, $argument:ident: BaseRotation) => {
         $arm.of_rotation(stringify!($argument), $argument)?
     };
@@ -404,7 +421,7 @@ macro_rules! given {
         Given {
             name: stringify!($argument),
             parts: $parts,
-            elements: Argument::$kind.elements($arm.arm.dof(), $arm.robot().tip_count()),
+            elements: Argument::$kind.elements(Sizes::of($arm.robot())),
             value: $argument.clone(),
         }
     };

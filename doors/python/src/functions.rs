@@ -29,7 +29,8 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
                 | Record::FloatingTorques
                 | Record::FloatingAccelerations
                 | Record::AccelerationsAndWrenches
-                | Record::FloatingTorqueDerivatives,
+                | Record::FloatingTorqueDerivatives
+                | Record::ClosureStep,
                 parts,
             ) => {
                 shape.push(2);
@@ -45,7 +46,8 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
         Record::FloatingTorques
         | Record::FloatingAccelerations
         | Record::AccelerationsAndWrenches
-        | Record::FloatingTorqueDerivatives,
+        | Record::FloatingTorqueDerivatives
+        | Record::ClosureStep,
         _,
     ) = layout
     {
@@ -131,12 +133,16 @@ fn evaluate_in<'py, T: Element + Number>(
             };
             Ok(PyTuple::new(py, [of(0)?, of(1)?])?.into_any())
         }
-        Layout::Record(Record::FloatingTorques | Record::FloatingAccelerations, _) => {
+        Layout::Record(
+            record @ (Record::FloatingTorques | Record::FloatingAccelerations | Record::ClosureStep), _
+        ) => {
+            let first = if record == Record::ClosureStep { arm.robot().closed.passive.len() } else { 6 };
+            let first = isize::try_from(first)?;
             let of = |from: isize, to: isize| {
                 let part = PySlice::new(py, from, to, 1).into_any();
                 result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
             };
-            Ok(PyTuple::new(py, [of(0, 6)?, of(6, isize::MAX)?])?.into_any())
+            Ok(PyTuple::new(py, [of(0, first)?, of(first, isize::MAX)?])?.into_any())
         }
         Layout::Record(Record::AccelerationsAndWrenches, _) => {
             let of = |from: usize, to: usize| {

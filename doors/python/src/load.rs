@@ -204,7 +204,7 @@ impl Origin {
     /// The table as a reader of this origin reads it, with its lints.
     pub(crate) fn read(&self, name: &str, text: &[u8]) -> Result<Checked, Report> {
         let names: Vec<&str> = self.run_time.iter().map(String::as_str).collect();
-        let reader = Reader::new(name).trees().couplings().run_time(&names);
+        let reader = Reader::new(name).trees().couplings().loops().run_time(&names);
         let reader = self.settings.iter().fold(reader, |reader, (name, value)| reader.setting(name, *value));
         reader.read(text)
     }

@@ -7,7 +7,7 @@ use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyTuple};
 use rne::compiled::{CompiledArm, FrictionWidth, Number, Rollout, RolloutLimits};
-use rne_codegen::Argument;
+use rne_codegen::{Argument, Sizes};
 use rne_model::Robot;
 
 use crate::arm::Arm;
@@ -80,7 +80,7 @@ impl Arm {
         given.extend(payload.map(|payload| Given {
             name: "payload",
             parts: &[],
-            elements: Argument::Payload.elements(dof, self.robot().tip_count()),
+            elements: Argument::Payload.elements(Sizes::of(self.robot())),
             value: payload.clone(),
         }));
         given.extend(self.given_parameters(py, parameters)?);

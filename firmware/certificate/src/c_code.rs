@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 use rne_certify::board;
 use rne_certify::cycles::Core;
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record};
+use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record, Sizes};
 use rne_emit::{Precision, Prefix, c_code};
 use rne_model::Robot;
 use rne_search::PlanFile;
@@ -97,7 +97,7 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Res
     let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
     let robot = Robot::from_yaml(&text).map_err(|report| anyhow!("{report}"))?;
     let plans = choice_of(&file, &robot)?;
-    let all = if name == "puma560" { &Function::ALL[..] } else { &Function::ALL[..1] };
+    let all = if name == "puma560" { &Function::OF_TREES[..] } else { &Function::OF_TREES[..1] };
     let kind: Form = form.parse().map_err(|_| anyhow!("no form is called {form}"))?;
     let compiler = Compiler::new(&robot).with_plans(plans);
     let programs: Result<Vec<_>, _> = all.iter().map(|&function| compiler.compile(function, kind)).collect();
@@ -190,6 +190,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Sines => "sines[number]",
         Argument::Cosines => "cosines[number]",
         Argument::Positions => "s.q",
+        Argument::Passive => "passive",
         Argument::Rates => "s.qd",
         Argument::Accelerations | Argument::Torques => "s.qdd",
         Argument::Wrench => "force, moment",
@@ -202,7 +203,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Wrenches => "(const float[1][6]){{force[0], force[1], force[2], moment[0], moment[1], moment[2]}}",
     });
     let arguments = arguments.collect::<Vec<_>>().join(", ");
-    let layout = function.layout(dof, 1);
+    let layout = function.layout(Sizes { dof, tips: 1, passive: 0, equations: 0 });
     let count = layout.len();
     Ok(match &layout {
         Layout::Number => format!(

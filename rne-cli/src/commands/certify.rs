@@ -319,7 +319,7 @@ fn is_ours(text: &str) -> bool {
 
 /// The certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Coupled)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Closed)?;
     let robot = arguments.rotors.of(checked.robot);
     if arguments.lang == Language::C && (arguments.names || !robot.is_serial()) {
         checked.identifiers.map_err(|report| Failure::from(&report))?;
@@ -329,7 +329,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
     let subjects = arguments.subjects(&robot, &programs)?;
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(&robot));
-    let call = |subject: &Subject| subject.call(prefix.as_str(), robot.dof());
+    let call = |subject: &Subject| subject.call(prefix.as_str(), &robot);
     let calls: Vec<Call> = subjects.iter().map(call).collect::<Result<_, _>>()?;
     let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
     let version = match arguments.lang {

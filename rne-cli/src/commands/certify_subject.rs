@@ -43,7 +43,8 @@ impl Subject<'_> {
 
     /// The call on the board; an error where a program takes other arguments than arrays of joints, or returns no
     /// plain array.
-    pub(super) fn call(&self, prefix: &str, dof: usize) -> Result<Call, Failure> {
+    pub(super) fn call(&self, prefix: &str, robot: &Robot) -> Result<Call, Failure> {
+        let dof = robot.dof();
         if dof > board::MOST_JOINTS {
             return Err(Failure::usage(format_args!(
                 "rne certify takes arms with at most {} joints; this arm has {dof}",
@@ -51,7 +52,10 @@ impl Subject<'_> {
             )));
         }
         Ok(match self {
-            Self::Program(program) => program_call(program, prefix)?,
+            Self::Program(program) => {
+                let rest = vec![0.0; dof];
+                program_call(program, prefix, &accuracy::passive(robot, &rest))?
+            }
             Self::Observer(_, low_pass) => low_pass.call(prefix, dof),
             Self::Joints(function) => function.call(prefix, dof),
         })
@@ -205,6 +209,9 @@ fn fixed(function: Function) -> String {
              (rad/s²) and the acceleration {acceleration} (m/s²), and gravity is {gravity} (m/s²)."
         );
     }
+    if function.takes(Argument::Passive) {
+        words.push_str(" At each state the dependent joints close the loops.");
+    }
     if function.takes(Argument::BaseTwist) {
         let [velocity, omega] = [accuracy::VELOCITY, accuracy::BASE[0]].map(|triple| list(&triple));
         let _ = write!(
@@ -256,7 +263,7 @@ fn turns(dof: usize, name: &str, of: impl Fn(f32) -> f32) -> String {
 
 /// The call of a function with arrays of a state of the board, and with the payload, the wrenches and the motion of the
 /// base of [`accuracy`].
-fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
+fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call, Failure> {
     let function = program.function;
     let numbers = |numbers: &[f32]| numbers.iter().map(|x| format!("{x:?}f")).collect::<Vec<_>>().join(", ");
     let name = format!("{prefix}_{function}");
@@ -264,6 +271,11 @@ fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
     for argument in function.arguments() {
         let (kind, name) = match argument {
             Argument::Positions => ("const float *", "s->q"),
+            Argument::Passive => {
+                let passive = numbers(passive);
+                call.before.push(format!("const float passive[{}] = {{{passive}}};", program.passive.len()));
+                ("const float *", "passive")
+            }
             Argument::Rates => ("const float *", "s->qd"),
             Argument::Accelerations | Argument::Torques => ("const float *", "s->qdd"),
             Argument::Payload => {
@@ -319,7 +331,7 @@ fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
     }
     match program.layout() {
         Layout::Array(_, of) if matches!(*of, Layout::Number) => Ok(call),
-        Layout::Record(record @ Record::FloatingTorques, _) => {
+        Layout::Record(record @ (Record::FloatingTorques | Record::ClosureStep), _) => {
             Ok(Call { record: Some(rne_emit::record_name(prefix, record)), ..call })
         }
         _ => Err(not_called(program)),
@@ -329,8 +341,8 @@ fn program_call(program: &Program, prefix: &str) -> Result<Call, Failure> {
 fn not_called(program: &Program) -> Failure {
     Failure::usage(format_args!(
         "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics, \
-         gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, and \
-         inverse_dynamics_of_floating_base. {TYPED}--observer{TYPED:#} certifies the momentum observer",
+         gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, \
+         inverse_dynamics_of_floating_base and closure_step. {TYPED}--observer{TYPED:#} certifies the momentum observer",
         program.function
     ))
 }

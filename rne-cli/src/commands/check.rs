@@ -105,8 +105,11 @@ struct Good {
 
 /// A robot file, and its plan with it, unless that is among the files to be checked itself.
 fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
-    let Checked { robot, lints, .. } = robot_file::read(path, Shape::Coupled)?;
-    if !arguments.files.contains(&plan_of(path))
+    // the laws are those of the runtime, which computes no closed loops
+    let shape = if arguments.physics { Shape::Coupled } else { Shape::Closed };
+    let Checked { robot, lints, .. } = robot_file::read(path, shape)?;
+    if robot.closed.is_empty()
+        && !arguments.files.contains(&plan_of(path))
         && let Some(read) = plan_file::read(path, &robot)?
     {
         plan_file::verify(&robot, &read)?;
@@ -126,7 +129,7 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
     const MOST_JOINTS: usize = 8;
     // of geometry alone a warning tells, and why accelerations cannot be computed
     let has_links = robot.joints.iter().any(|joint| !joint.row.link.is_empty());
-    if robot.joints.len() > MOST_JOINTS || !has_links {
+    if robot.joints.len() > MOST_JOINTS || !has_links || !robot.closed.is_empty() {
         return Ok(Vec::new());
     }
     let compiler = Compiler::new(path, robot);

@@ -184,7 +184,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
     let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
-    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf, Shape::Coupled)?;
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names, of_urdf, Shape::Closed)?;
     let robot = arguments.rotors.of(checked.robot);
     if arguments.names_joints(&robot) {
         checked.identifiers.map_err(|report| Failure::from(&report))?;
@@ -319,11 +319,17 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         // tips are there for their wrenches
         [] => {
             Function::TORQUES.contains(function)
+                || *function == Function::InverseDynamicsOfLoops
                 || (*function == Function::InverseDynamicsWithWrenches && !robot.tips.is_empty())
         }
         asked => asked.contains(&FunctionOrAll::One(*function)),
     };
-    Function::ALL.into_iter().filter(is_asked).collect()
+    // a function by its name is refused by the compiler, which says why the robot has it not
+    let of_robot: Vec<Function> = match asked.as_slice() {
+        [] => Function::of_robot(robot).collect(),
+        _ => Function::ALL.to_vec(),
+    };
+    of_robot.into_iter().filter(is_asked).collect()
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {

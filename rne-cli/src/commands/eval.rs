@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::DynArm;
-use rne_codegen::{Argument, CompileError, Function, Layout, Record, Step};
+use rne_codegen::{Argument, CompileError, Function, Layout, Record, Sizes, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_model::Robot;
 use serde_json::{Value, json};
@@ -64,6 +64,9 @@ pub(crate) struct Arguments {
     /// A wrench at the tip N of `tips`; may be repeated
     #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
     tip_wrench: Vec<TipWrench>,
+    /// Dependent joints of closed loops [default: closed]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    passive: Option<List>,
     /// Angular velocity of the base, rad/s [default: 0]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
@@ -87,14 +90,14 @@ pub(crate) struct Arguments {
     base_rotation: Option<List>,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
+        "function", "q", "passive", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
         "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "trace", "json", "csv",
         "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "q", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
+        "q", "passive", "qd", "qdd", "tau", "wrench", "tip_wrench", "payload", "base_omega", "base_omega_dot",
         "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "golden", "trace", "axes",
         "joint", "step", "json", "csv", "compare", "digits",
     ])]
@@ -161,7 +164,10 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let robot = arguments.arm.robot_at(&arguments.at)?;
     let is_at_frame = arguments.at.frame.is_some();
+    let has_loops = !robot.closed.is_empty();
     let function = arguments.function.unwrap_or(match (&arguments.wrench, is_at_frame) {
+        _ if has_loops && !arguments.tip_wrench.is_empty() => Function::InverseDynamicsOfLoopsWithWrenches,
+        (None, false) if has_loops => Function::InverseDynamicsOfLoops,
         _ if !arguments.tip_wrench.is_empty() => Function::InverseDynamicsWithWrenches,
         (Some(_), true) => Function::WrenchTorques,
         (None, true) => Function::ForwardKinematics,
@@ -169,6 +175,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         (None, false) => Function::InverseDynamics,
     });
     arguments.at.check(function)?;
+    Arguments::has_function(function, &robot)?;
     if let Some(states) = &arguments.states {
         let file = arguments.arm.file();
         return states::Job {
@@ -182,6 +189,9 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         .run();
     }
     if let Some(states) = arguments.golden {
+        if has_loops {
+            return Err(Failure::usage("--golden writes torques of open trees; this robot has closed loops"));
+        }
         let settings: Vec<String> =
             arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
         return golden::file(&robot, states, &settings).map(Outcome::text);
@@ -198,11 +208,11 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(&robot, function, index, &state.q)));
     }
-    if is_singular(&robot, function, &state.q, state.payload.as_ref()) {
+    if is_singular(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
     }
     let mut remark = limits::remark(&robot, &state.q);
-    if is_indefinite(&robot, function, &state.q, state.payload.as_ref()) {
+    if is_indefinite(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }
     if !assumed.is_empty() {
@@ -212,7 +222,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         };
         let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
-    let result = || grouped(&function.layout(robot.dof(), robot.tip_count()), &numbers);
+    let result = || grouped(&function.layout(Sizes::of(&robot)), &numbers);
     if !arguments.trace {
         if arguments.json {
             return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });
@@ -244,6 +254,17 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 impl Arguments {
+    /// Whether a robot has the function: with closed loops those of loops, and no others.
+    fn has_function(function: Function, robot: &Robot) -> Result<(), Failure> {
+        match robot.closed.loops.first() {
+            Some(closed) if !function.is_of_closed_loops() => {
+                Err(Failure::usage(CompileError::HasClosedLoops { function, name: closed.name.clone() }))
+            }
+            None if function.is_of_closed_loops() => Err(Failure::usage(CompileError::NoClosedLoops { function })),
+            _ => Ok(()),
+        }
+    }
+
     /// Whether the function can be computed and traced for a robot.
     fn check(&self, function: Function, robot: &Robot) -> Result<(), Failure> {
         if self.trace && !function.returns_torques() {
@@ -303,6 +324,7 @@ impl Arguments {
     fn given(&self, function: Function) -> Given<'_> {
         Given {
             q: self.q.as_ref(),
+            passive: self.passive.as_ref(),
             qd: self.qd.as_ref(),
             qdd: self.qdd.as_ref(),
             tau: self.tau.as_ref(),

@@ -280,9 +280,12 @@ fn of_base_and_tips() -> impl Iterator<Item = (&'static str, String)> {
         Argument::BaseTwist => "--base-velocity --base-omega",
         Argument::BasePose => "--base-pose",
         Argument::BaseRotation => "--base-rotation",
+        Argument::Passive => "--passive",
         Argument::Wrench | Argument::Payload | Argument::Sines | Argument::Cosines => "",
     };
-    let is_more = |function: &Function| function.is_of_floating_base() || function.takes(Argument::Wrenches);
+    let is_more = |function: &Function| {
+        function.is_of_floating_base() || function.takes(Argument::Wrenches) || function.takes(Argument::Passive)
+    };
     let functions = Function::ALL.into_iter().filter(is_more).filter(|function| function.arguments().len() > 1);
     functions
         .map(move |function| (function.name(), function.arguments().iter().map(option).collect::<Vec<_>>().join(" ")))

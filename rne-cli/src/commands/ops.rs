@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut savings = String::new();
     let mut failures: Vec<Failure> = Vec::new();
     for path in plan_file::robots(&arguments.files) {
-        let outcome = arguments.rotors.robot(path, Shape::Coupled).and_then(|robot| {
+        let outcome = arguments.rotors.robot(path, Shape::Closed).and_then(|robot| {
             let compiler = Compiler::new(path, &robot).without(&arguments.without);
             if arguments.tricks {
                 savings.push_str(&tricks(&robot, compiler.plans()?, terminal::room()));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne_codegen::plan::Trick;
-use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
+use rne_codegen::{self as codegen, Form, Function, Quantity, Sizes, Step};
 use rne_emit::Selection;
 use rne_inspection::Inspection;
 use rne_model::Robot;
@@ -90,7 +90,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return arguments.closed_form.run(&arguments.file, letters, |robot| arguments.rotors.of(robot));
     }
     let file = arguments.file.display().to_string();
-    let robot = arguments.rotors.robot(&arguments.file, Shape::Coupled)?;
+    let is_listing = !(arguments.base_parameters || arguments.json || arguments.equations);
+    let shape = if is_listing { Shape::Closed } else { Shape::Coupled };
+    let robot = arguments.rotors.robot(&arguments.file, shape)?;
+    if !robot.closed.is_empty() {
+        // no function has code for closed loops; what is known of them is their heading
+        return Ok(Outcome::text(letters.page(&heading::robot(&robot), PAGE)));
+    }
     if arguments.base_parameters {
         let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
         return Ok(Outcome::text(letters.page(&text, PAGE)));
@@ -128,7 +134,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
     let mut text = letters.page(&heading::robot(&robot), PAGE);
     let _ = writeln!(text, "\n{}", heading::counts(&program));
-    if program.outputs.len() > arguments.function.layout(robot.dof(), robot.tip_count()).len() {
+    if program.outputs.len() > arguments.function.layout(Sizes::of(&robot)).len() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
         let line = format!("{QUIET}also computed, and counted above: {}{QUIET:#}\n", words.join(", "));
         text.push_str(&letters.page(&line, PAGE));

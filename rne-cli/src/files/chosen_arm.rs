@@ -182,7 +182,7 @@ impl ChosenArm {
     /// The robot without the payload, seen from a frame.
     pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<Robot, Failure> {
         let names_frame = at.frame.is_some() || self.carried.payload_on.is_some();
-        at.of(self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Coupled)?)
+        at.of(self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Closed)?)
     }
 
     fn read(&self, frames: Frames, shape: Shape) -> Result<Robot, Failure> {

@@ -18,8 +18,10 @@ pub(crate) enum Shape {
     /// Serial arms and trees. Couplings are refused at their line.
     #[allow(dead_code)] // TODO
     Tree,
-    /// Serial arms and trees, whose joints may follow others.
+    /// Serial arms and trees, whose joints may follow others. Closed loops are refused at their line.
     Coupled,
+    /// Every robot that a file can describe.
+    Closed,
 }
 
 /// A valid robot with its lints. The path `-` is standard input.
@@ -124,6 +126,7 @@ fn checked(name: &str, bytes: &[u8], (settings, run_time): Parameters<'_>, shape
         Shape::Chain => Reader::new(name),
         Shape::Tree => Reader::new(name).trees(),
         Shape::Coupled => Reader::new(name).trees().couplings(),
+        Shape::Closed => Reader::new(name).trees().couplings().loops(),
     };
     let reader = plain().run_time(run_time);
     let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));

@@ -44,6 +44,16 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
                     Labels::Joints => joints.clone(),
                     Labels::BaseAndJoints => OF_BASE.map(str::to_owned).into_iter().chain(joints.clone()).collect(),
                     Labels::Names(names) => names.iter().map(|&name| name.to_owned()).collect(),
+                    Labels::Passive => {
+                        let passive = robot.closed.passive.iter();
+                        passive.map(|&joint| robot.joints[joint].name.clone()).collect()
+                    }
+                    Labels::Equations => {
+                        let equations = robot.closed.loops.iter().flat_map(|closed| {
+                            (1..=closed.cut.equations()).map(move |equation| format!("{} {equation}", closed.name))
+                        });
+                        equations.collect()
+                    }
                     Labels::OfTips(names) => {
                         let tips = robot.tip_names().into_iter();
                         tips.flat_map(|tip| names.iter().map(move |name| format!("{tip} {name}"))).collect()
@@ -111,6 +121,10 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
             let elements = InertiaElement::ALL.map(|element| exact_digits(*element.of(inertia))).join(", ");
             let _ = writeln!(text, "{QUIET}and the inertia xx, yy, zz, xy, xz, yz = {elements} kg m²{QUIET:#}");
         }
+    }
+    if takes(Argument::Passive) {
+        let passive = state.passive.iter().copied().map(exact_digits).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "{QUIET}the dependent joints of the loops are at ({passive}) rad or m{QUIET:#}");
     }
     if takes(Argument::BaseVelocity) {
         let omega = list(&state.base.omega);
@@ -278,7 +292,7 @@ pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize, q: &[f
         let name = robot.independent_joints().nth(index).map_or("", |joint| &joint.name);
         format!("joint {} ({name})", index + 1)
     };
-    if is_indefinite(robot, function, q, None) {
+    if is_indefinite(robot, function, [q, &[]], None) {
         return format!("the result of {function} is not finite: {NOT_DEFINITE}");
     }
     if let Some(meaning) = function.divides() {

@@ -163,7 +163,7 @@ pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let (has_couplings, has_tips) = (robot.has_couplings(), !robot.tips.is_empty());
     let floats = robot.floating_base.is_some();
-    Function::ALL.into_iter().filter(move |function| {
+    Function::of_robot(robot).filter(move |function| {
         (*function != Function::ActuatorTorques || has_motors)
             && !(has_couplings && function.is_of_every_link())
             && if function.is_of_floating_base() {

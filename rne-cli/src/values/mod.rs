@@ -1,6 +1,7 @@
 //! Values of options and arguments: numbers, states, choices, options of logs.
 
 pub(crate) mod choice;
+pub(crate) mod closure;
 pub(crate) mod definite;
 pub(crate) mod limits;
 pub(crate) mod log_arguments;

@@ -26,7 +26,16 @@ pub(crate) const fn rounding(precision: Precision) -> fn(f64) -> f64 {
 /// A state of an arm, and what acts on it: rad, m, kg, N.
 pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     let dof = robot.dof();
-    let [q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect());
+    let [mut q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect::<Vec<f64>>());
+    // loops are closed in few positions
+    let mut passive = Vec::new();
+    let closures = &robot.closed.closures;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a place in a list
+    let place = if closures.is_empty() { 0 } else { random.number(1000.0).abs() as usize % closures.len() };
+    if let Some(closure) = closures.get(place) {
+        let of = |joints: &mut dyn Iterator<Item = usize>| joints.map(|joint| closure[joint]).collect();
+        (q, passive) = (of(&mut robot.coordinates()), of(&mut robot.closed.passive.iter().copied()));
+    }
     let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
     let base = random.base();
     // no rotation, but the energy is linear in these numbers
@@ -39,5 +48,5 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     // hundredths, which single precision rounds: the code and the runtime agree for a rotation
     let base_rotation = BASE_ROTATION.map(|row| row.map(|x| (f64::from(x) * 100.0).round() / 100.0));
     let function = Function::InverseDynamics;
-    State { function, q, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation }
+    State { function, q, passive, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation }
 }

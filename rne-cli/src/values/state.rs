@@ -10,6 +10,7 @@ use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
 
 use crate::outcome::Failure;
+use crate::values::closure;
 use crate::values::numbers::List;
 
 const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -18,6 +19,7 @@ const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Given<'a> {
     pub(crate) q: Option<&'a List>,
+    pub(crate) passive: Option<&'a List>,
     pub(crate) qd: Option<&'a List>,
     pub(crate) qdd: Option<&'a List>,
     pub(crate) tau: Option<&'a List>,
@@ -75,6 +77,8 @@ impl<'a> Given<'a> {
 pub(crate) struct State {
     pub(crate) function: Function,
     pub(crate) q: Vec<f64>,
+    /// Positions of the dependent joints of closed loops.
+    pub(crate) passive: Vec<f64>,
     pub(crate) qd: Vec<f64>,
     pub(crate) qdd: Vec<f64>,
     pub(crate) tau: Vec<f64>,
@@ -97,6 +101,14 @@ impl State {
         let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
         let of_joints = |name, list, kind| argument(function, name, list, kind, robot.dof(), &per_joint);
         let q = of_joints("--q", given.q, Positions)?;
+        let passive = match (&q, given.passive) {
+            (Some(q), None) if function.takes(Argument::Passive) => closure::closed(robot, q)?,
+            (_, list) => {
+                let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
+                let each = format!("one number for each dependent joint of {}: {}", robot.name, names.join(", "));
+                argument(function, "--passive", list, Argument::Passive, names.len(), &each)?.unwrap_or_default()
+            }
+        };
         let qd = of_joints("--qd", given.qd, Rates)?;
         let qdd = of_joints("--qdd", given.qdd, Accelerations)?;
         let tau = of_joints("--tau", given.tau, Torques)?;
@@ -139,7 +151,7 @@ impl State {
         };
         let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
         let pose = pose_of_base(function, given.base_pose)?;
-        Ok(Self { function, q, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation })
+        Ok(Self { function, q, passive, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation })
     }
 
     /// The velocity of a base that nothing holds.
@@ -154,7 +166,7 @@ impl State {
 
     /// The function's result, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
-        let Self { q, qd, qdd, tau, wrenches, base, pose, base_rotation, .. } = self;
+        let Self { q, passive, qd, qdd, tau, wrenches, base, pose, base_rotation, .. } = self;
         let twist = &self.twist();
         let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
@@ -168,6 +180,9 @@ impl State {
             };
             (q) => {
                 q
+            };
+            (passive) => {
+                passive
             };
             (qd) => {
                 qd
@@ -238,7 +253,7 @@ impl<E: Told> Told for Vec<E> {
     }
 }
 
-/// The wrench on a floating base and the torques, or its acceleration and those of the joints.
+/// The wrench on a floating base and the torques, or its acceleration and those of the joints; a step of closed loops.
 impl<E: Told> Told for (E, Vec<f64>) {
     fn tell(&self, numbers: &mut Vec<f64>) {
         self.0.tell(numbers);

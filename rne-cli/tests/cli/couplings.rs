@@ -151,3 +151,33 @@ fn limits_of_a_follower_are_in_the_code() {
     let checked = rne(&["check", with("effort: 5")]);
     assert!(checked.out.contains("the effort limit of `finger_b` limits no torque"), "{checked:?}");
 }
+
+const FOUR_BAR: &str = "docs/four_bar.yaml";
+
+#[test]
+fn closed_loops_are_checked_and_shown_and_refused_elsewhere() {
+    assert!(fine(&["check", FOUR_BAR]).contains("four_bar, RRR, modified"));
+    let shown = fine(&["show", FOUR_BAR]);
+    for said in [
+        "loop pin, cut at a revolute joint: from (0.45, 0, 0) m on coupler to (0.3, 0, 0) m on rocker",
+        "; dependent: coupler, rocker",
+        "order of elimination: coupler by y of pin, rocker by x of pin; within the limits, pivots are ",
+        "by 20 configurations that close the loops",
+    ] {
+        assert!(shown.contains(said), "{said}\n{shown}");
+    }
+    let refused = ["docs/four_bar.yaml:13:5", "the robot has closed loops, which are not supported here"];
+    for command in [
+        &["eval", FOUR_BAR, "--q", "0.3"][..],
+        &["show", FOUR_BAR, "--json"],
+        &["show", FOUR_BAR, "--symbolic"],
+        &["check", "--physics", FOUR_BAR],
+        &["emit", FOUR_BAR, "--lang", "c"],
+        &["export", "--urdf", FOUR_BAR],
+        &["ops", FOUR_BAR],
+    ] {
+        let run = rne(command);
+        let said = format!("{}{}", run.out, run.err);
+        assert!(run.status == 1 && refused.iter().all(|part| said.contains(part)), "{command:?}\n{said}");
+    }
+}

@@ -311,7 +311,7 @@ impl<'s> Placement<'s> {
     }
 
     /// With a constant translation.
-    fn constant(builder: &'s Builder, transform: &Transform) -> Self {
+    pub(crate) fn constant(builder: &'s Builder, transform: &Transform) -> Self {
         let translation = transform.xyz.map(|x| builder.constant(x, Cause::Arithmetic));
         let [roll, pitch, yaw] = transform.rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
         let turn = |axis, turn| turned(builder, axis, turn, Cause::Arithmetic);

@@ -61,8 +61,13 @@ impl<'s> Joint<'_, 's> {
 
     /// R_i: how the joint is mounted, then Rz(θ_i).
     pub(crate) fn rotation(&self) -> Matrix<'s> {
-        let about_z = turned(self.lines.builder, Axis::Z, self.sine_and_cosine(), Cause::TurnAboutZ);
+        let about_z = self.turn();
         self.lines.matrix(Quantity::Rotation, || self.link.mount.rotation * about_z)
+    }
+
+    /// Rz(θ_i)
+    pub(crate) fn turn(&self) -> Matrix<'s> {
+        turned(self.lines.builder, Axis::Z, self.sine_and_cosine(), Cause::TurnAboutZ)
     }
 
     /// Sine and cosine of the constant θ.

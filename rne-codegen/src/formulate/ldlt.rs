@@ -29,7 +29,7 @@ impl<'a> System<'a> {
         coordinates: &'a Coordinates,
         parents: impl Iterator<Item = Option<usize>>,
     ) -> Self {
-        let of_base = if function.is_of_floating_base() { Length::Velocities.of(0, 0) } else { 0 };
+        let of_base = if function.is_of_floating_base() { Length::OF_BASE } else { 0 };
         Self { coordinates, parents: parents.collect(), of_base }
     }
 

@@ -4,6 +4,7 @@ pub(crate) mod actuation;
 pub(crate) mod arm;
 pub(crate) mod centre_of_mass;
 pub(crate) mod centroid;
+pub(crate) mod closure;
 pub(crate) mod contact;
 pub(crate) mod energy;
 pub(crate) mod floating;
@@ -19,6 +20,7 @@ pub(crate) mod spin;
 pub(crate) mod tips;
 
 pub(crate) use arm::{Arm, Body, Link, Mount};
+pub(crate) use closure::Closure;
 pub(crate) use contact::Contacts;
 pub(crate) use floating::{
     base_rotation, floating_derivatives, floating_forward_dynamics, floating_mass_matrix, on_base,
@@ -55,12 +57,17 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         | Function::InverseDynamicsOnMovingBase
         | Function::GravityTorquesWithPayload
         | Function::BiasTorquesWithPayload
-        | Function::InverseDynamicsWithWrenches => derivation.torques(),
-        Function::MassMatrix | Function::MassMatrixWithPayload => {
+        | Function::InverseDynamicsWithWrenches
+        | Function::InverseDynamicsOfLoops
+        | Function::InverseDynamicsOfLoopsWithWrenches => derivation.torques(),
+        Function::MassMatrix | Function::MassMatrixWithPayload | Function::MassMatrixOfLoops => {
             mass_matrix(derivation.coordinates(), &derivation.upper_half())
         }
         Function::CoriolisMatrix => derivation.coriolis_matrix(),
-        Function::ForwardDynamics | Function::ForwardDynamicsWithPayload | Function::ForwardDynamicsWithWrenches => {
+        Function::ForwardDynamics
+        | Function::ForwardDynamicsWithPayload
+        | Function::ForwardDynamicsWithWrenches
+        | Function::ForwardDynamicsOfLoops => {
             forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), derivation.tau())
         }
         Function::ForwardKinematics => derivation.tip_pose(),
@@ -108,6 +115,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::FloatingInverseDynamicsDerivatives => {
             floating_derivatives(builder, derivation.coordinates(), derivation.floating_torques())
         }
+        Function::ClosureStep => closure::step(builder, robot),
+        Function::LoopMap => closure::map(builder, derivation.coordinates()),
+        Function::LoopMapRateTimesVelocity => closure::bias(builder, derivation.coordinates()),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -130,6 +140,9 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn new(builder: &'s Builder, robot: &'r Robot, function: Function) -> Self {
         let arm = Arm::new(builder, robot);
         let joints = robot.joints.len();
+        if function.is_of_closed_loops() && function != Function::ClosureStep {
+            Closure::keep(builder, robot, function.takes(Argument::Rates));
+        }
         let turn_of = |quantity, joint| builder.argument(Name::scalar(quantity, joint + 1));
         let of_joint = |quantity, joint| arm.coordinates.of_joint(builder, quantity, joint);
         let vector = |quantity, joint| vector(builder, quantity, joint);
@@ -142,7 +155,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
             turn: (function.takes(Argument::Sines) && arm.coordinates.has(joint))
                 .then(|| (turn_of(Quantity::Sine, joint), turn_of(Quantity::Cosine, joint))),
             qd: given(Argument::Rates, Quantity::Rate, joint, Cause::AtRest),
-            qdd: given(Argument::Accelerations, Quantity::RateDot, joint, Cause::NoAcceleration),
+            // closed loops accelerate their dependent joints
+            qdd: match arm.coordinates.bias(builder, joint) {
+                Some(bias) if !function.takes(Argument::Accelerations) => bias,
+                _ => given(Argument::Accelerations, Quantity::RateDot, joint, Cause::NoAcceleration),
+            },
         };
         let states = (0..joints).map(state).collect();
         let tip = if let Some(payload) = Payload::argument(builder, joints) {

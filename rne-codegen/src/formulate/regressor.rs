@@ -20,7 +20,7 @@ use crate::function::Length;
 use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// Rows of the base.
-const OF_BASE: usize = Length::Velocities.of(0, 0);
+const OF_BASE: usize = Length::OF_BASE;
 
 /// The ten elements of each link in each row.
 type Rows<'s> = Vec<Vec<[Symbol<'s>; PER_LINK]>>;

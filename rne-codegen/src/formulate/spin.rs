@@ -11,7 +11,7 @@
 
 use rne_model::{Convention, Robot};
 
-use crate::coordinates::scaled;
+use crate::coordinates::{Ratio, scaled};
 use crate::formulate::JointState;
 use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
@@ -56,7 +56,7 @@ impl<'s> Spin<'s> {
         let builder = self.inertia.builder;
         let line = builder.joint(self.turns.first().map_or(0, |(joint, _)| joint + 1));
         line.within(quantity, || {
-            let terms = self.turns.iter().map(|&(joint, n)| scaled(of_joint(&states[joint]), n));
+            let terms = self.turns.iter().map(|&(joint, n)| scaled(of_joint(&states[joint]), Ratio::constant(n)));
             let sum = terms.reduce(|sum, term| sum + term).unwrap_or_else(|| builder.zero());
             builder.name(name(quantity, &self.turns, self.number), sum)
         })
@@ -71,7 +71,7 @@ impl<'s> Spin<'s> {
     /// or the accelerations of both.
     pub(crate) fn resistance(&self, joint: usize, spin: Symbol<'s>, carrier: Vector<'s>) -> Option<Symbol<'s>> {
         let (_, n) = *self.turns.iter().find(|(other, _)| *other == joint)?;
-        Some(scaled(self.inertia * spin + self.inertia * self.axis.dot(carrier), n))
+        Some(scaled(self.inertia * spin + self.inertia * self.axis.dot(carrier), Ratio::constant(n)))
     }
 
     /// Jm s (s + 2 a · ω)

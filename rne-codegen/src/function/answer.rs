@@ -43,6 +43,10 @@ pub enum Labels {
     Joints,
     /// x, y, z of the base, then about x, y, z, then the names of the joints.
     BaseAndJoints,
+    /// The names of the dependent joints of closed loops.
+    Passive,
+    /// The equations of closed loops.
+    Equations,
     /// Each of these for each tip, with its name.
     OfTips(&'static [&'static str]),
     /// These.

@@ -1,6 +1,6 @@
 //! The arguments of functions, and the arrays that they are passed in.
 
-use super::Length;
+use super::{Length, Sizes};
 use crate::quantity::Quantity;
 
 /// An argument of a function.
@@ -34,6 +34,8 @@ pub enum Argument {
     BasePose,
     /// Axes of the base in the world.
     BaseRotation,
+    /// Positions of the dependent joints of closed loops.
+    Passive,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -57,6 +59,8 @@ macro_rules! argument_parts {
         q: Positions, Joints, Position, "Joint positions, rad or m.";
         qd: Rates, Joints, Rate, "Joint velocities, rad/s or m/s.";
         qdd: Accelerations, Joints, RateDot, "Joint accelerations, rad/s² or m/s².";
+        passive: Passive, Passive, Position,
+            "Positions of the dependent joints of the closed loops, rad or m, in the order of the joints.";
         tau: Torques, Joints, AppliedTorque, "Joint torques, N m or N.";
         sin: Sines, Joints, Sine, "Sines of the joint positions.";
         cos: Cosines, Joints, Cosine, "Cosines of the joint positions.";
@@ -127,24 +131,10 @@ impl Argument {
         }
     }
 
-    /// Numbers that it has for a state of an arm with `dof` joints and `tips` tips.
+    /// Numbers that it has for a state of a robot.
     #[must_use]
-    pub fn elements(self, dof: usize, tips: usize) -> usize {
-        let of_one: usize = self.parts().map(|part| part.length.of(dof, tips)).sum();
-        if self.is_of_each_tip() { tips * of_one } else { of_one }
-    }
-}
-
-impl Length {
-    /// The length for `dof` joints and `tips` tips.
-    #[must_use]
-    pub const fn of(self, dof: usize, tips: usize) -> usize {
-        match self {
-            Self::Joints => dof,
-            Self::Velocities => 6 + dof,
-            Self::Bodies => 1 + dof,
-            Self::Tips => tips,
-            Self::Fixed(length) => length,
-        }
+    pub fn elements(self, sizes: Sizes) -> usize {
+        let of_one: usize = self.parts().map(|part| part.length.of(sizes)).sum();
+        if self.is_of_each_tip() { sizes.tips * of_one } else { of_one }
     }
 }

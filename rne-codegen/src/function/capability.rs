@@ -50,6 +50,8 @@ named! {
         ContactDynamics = "ContactDynamics",
         /// Derivatives of the torques and of the wrench on a base that nothing holds.
         FloatingInverseDynamicsDerivatives = "FloatingInverseDynamicsDerivatives",
+        /// The robot with closed loops.
+        ClosedLoops = "ClosedLoops",
     }
 }
 

@@ -1,5 +1,7 @@
 //! The shape of what a function returns.
 
+use rne_model::Robot;
+
 /// How the numbers that a function returns are grouped, for any number of joints and tips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -22,6 +24,7 @@ const ROWS: Shape = Shape::Array(Length::Fixed(6), &VELOCITIES);
 const BASE_ACCELERATION: Shape = Shape::Record(Record::BaseAcceleration, &[TRIPLE, TRIPLE]);
 const ACCELERATIONS: Shape = Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]);
 const ROWS_BY_JOINT: Shape = Shape::Array(Length::Velocities, &VECTOR);
+const PASSIVE: Shape = Shape::Array(Length::Passive, &Shape::Number);
 const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
 
 /// The shapes of results, by the names that they have in the list of functions.
@@ -73,6 +76,12 @@ pub enum Returned {
     AccelerationsAndWrenches,
     /// Six rows of the base and one per joint, in three matrices: with a column per joint, the same, and three columns.
     FloatingTorqueDerivatives,
+    /// A number per dependent joint of the loops.
+    PassiveVector,
+    /// A row per dependent joint, with a column per joint.
+    PassiveRows,
+    /// A number per dependent joint, and one per equation of the loops.
+    ClosureStep,
 }
 
 impl Returned {
@@ -105,6 +114,11 @@ impl Returned {
                 Record::FloatingTorqueDerivatives,
                 &[ROWS_BY_JOINT, ROWS_BY_JOINT, Shape::Array(Length::Velocities, &TRIPLE)],
             ),
+            Self::PassiveVector => &PASSIVE,
+            Self::PassiveRows => &Shape::Array(Length::Passive, &VECTOR),
+            Self::ClosureStep => {
+                &Shape::Record(Record::ClosureStep, &[PASSIVE, Shape::Array(Length::Equations, &Shape::Number)])
+            }
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -123,8 +137,53 @@ pub enum Length {
     Bodies,
     /// One element per tip.
     Tips,
+    /// One element per dependent joint of the closed loops.
+    Passive,
+    /// One element per equation of the closed loops.
+    Equations,
     /// As many for every robot.
     Fixed(usize),
+}
+
+/// What the lengths of arrays are for a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// How many coordinates it has.
+    pub dof: usize,
+    /// How many tips.
+    pub tips: usize,
+    /// How many dependent joints its closed loops have.
+    pub passive: usize,
+    /// How many equations.
+    pub equations: usize,
+}
+
+impl Sizes {
+    /// Those of a robot.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        let closed = &robot.closed;
+        Self { dof: robot.dof(), tips: robot.tip_count(), passive: closed.passive.len(), equations: closed.equations() }
+    }
+}
+
+impl Length {
+    /// The length for a robot.
+    #[must_use]
+    pub const fn of(self, sizes: Sizes) -> usize {
+        match self {
+            Self::Joints => sizes.dof,
+            Self::Velocities => Self::OF_BASE + sizes.dof,
+            Self::Bodies => 1 + sizes.dof,
+            Self::Tips => sizes.tips,
+            Self::Passive => sizes.passive,
+            Self::Equations => sizes.equations,
+            Self::Fixed(length) => length,
+        }
+    }
+
+    /// How many velocities a base has that nothing holds.
+    pub const OF_BASE: usize = 6;
 }
 
 impl Shape {
@@ -138,14 +197,14 @@ impl Shape {
         }
     }
 
-    /// The shape for `dof` joints and `tips` tips.
+    /// The shape for a robot.
     #[must_use]
-    pub fn layout(&self, dof: usize, tips: usize) -> Layout {
+    pub fn layout(&self, sizes: Sizes) -> Layout {
         match self {
             Self::Number => Layout::Number,
-            Self::Array(length, of) => Layout::Array(length.of(dof, tips), Box::new(of.layout(dof, tips))),
+            Self::Array(length, of) => Layout::Array(length.of(sizes), Box::new(of.layout(sizes))),
             Self::Record(record, parts) => {
-                Layout::Record(*record, parts.iter().map(|part| part.layout(dof, tips)).collect())
+                Layout::Record(*record, parts.iter().map(|part| part.layout(sizes)).collect())
             }
         }
     }
@@ -183,6 +242,8 @@ pub enum Record {
     AccelerationsAndWrenches,
     /// By q, by q̇ and by the angular velocity of the base.
     FloatingTorqueDerivatives,
+    /// Positions of the dependent joints, and what is left of the equations before the step.
+    ClosureStep,
 }
 
 impl Record {
@@ -199,6 +260,7 @@ impl Record {
             Self::FloatingAccelerations => "FloatingAccelerations",
             Self::AccelerationsAndWrenches => "AccelerationsAndWrenches",
             Self::FloatingTorqueDerivatives => "FloatingTorqueDerivatives",
+            Self::ClosureStep => "ClosureStep",
         }
     }
 
@@ -215,6 +277,7 @@ impl Record {
             Self::FloatingAccelerations => &["base", "qdd"],
             Self::AccelerationsAndWrenches => &["accelerations", "wrenches_on_robot"],
             Self::FloatingTorqueDerivatives => &["dq", "dqd", "domega"],
+            Self::ClosureStep => &["passive", "residual"],
         }
     }
 }

@@ -3,6 +3,7 @@
 mod answer;
 mod argument;
 mod capability;
+mod closed_loops;
 mod entry;
 mod fixed_base;
 mod floating_base;
@@ -19,7 +20,7 @@ pub use argument::{Argument, ArgumentPart};
 pub use capability::Capability;
 use entry::Signature;
 pub use entry::{Entry, Own};
-pub use layout::{Layout, Length, Record, Returned, Shape};
+pub use layout::{Layout, Length, Record, Returned, Shape, Sizes};
 pub use table::Function;
 use table::{SIGNATURES, TABLE};
 
@@ -33,6 +34,35 @@ impl Function {
         Self::GravityTorques,
         Self::BiasTorques,
     ];
+
+    /// The functions of a robot without closed loops.
+    pub const OF_TREES: [Self; Self::trees()] = {
+        let (mut functions, mut index, mut found) = ([Self::InverseDynamics; Self::trees()], 0, 0);
+        while index < Self::ALL.len() {
+            if !Self::ALL[index].is_of_closed_loops() {
+                functions[found] = Self::ALL[index];
+                found += 1;
+            }
+            index += 1;
+        }
+        functions
+    };
+
+    /// How many functions a robot without closed loops has.
+    const fn trees() -> usize {
+        let (mut index, mut found) = (0, 0);
+        while index < Self::ALL.len() {
+            found += !Self::ALL[index].is_of_closed_loops() as usize;
+            index += 1;
+        }
+        found
+    }
+
+    /// The functions that a robot has: those of its closed loops, or all others.
+    pub fn of_robot(robot: &Robot) -> impl Iterator<Item = Self> + use<> {
+        let has_loops = !robot.closed.is_empty();
+        Self::ALL.into_iter().filter(move |function| function.is_of_closed_loops() == has_loops)
+    }
 
     /// Its entry in the table, which stands at its place.
     pub const fn entry(self) -> &'static Entry {
@@ -134,6 +164,7 @@ impl Function {
     pub fn of_plan(robot: &Robot) -> Self {
         match robot.floating_base {
             Some(_) => Self::InverseDynamicsOfFloatingBase,
+            _ if !robot.closed.is_empty() => Self::InverseDynamicsOfLoops,
             _ => Self::InverseDynamics,
         }
     }
@@ -148,6 +179,12 @@ impl Function {
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
         self.capability().has_velocities() || matches!(self.capability(), Capability::FloatingEnergy)
+    }
+
+    /// Whether it is a function of a robot with closed loops.
+    #[must_use]
+    pub const fn is_of_closed_loops(self) -> bool {
+        matches!(self.capability(), Capability::ClosedLoops)
     }
 
     /// Whether rotors that belong to the arm change what it returns.
@@ -169,10 +206,10 @@ impl Function {
         SIGNATURES[self as usize].returned.shape()
     }
 
-    /// The shape of its result for `dof` joints and `tips` tips.
+    /// The shape of its result for a robot.
     #[must_use]
-    pub fn layout(self, dof: usize, tips: usize) -> Layout {
-        self.shape().layout(dof, tips)
+    pub fn layout(self, sizes: Sizes) -> Layout {
+        self.shape().layout(sizes)
     }
 
     /// How its numbers are laid out for reading.

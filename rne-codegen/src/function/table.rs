@@ -4,6 +4,7 @@
 //! `formulate`, and the runtime's own implementation. A new function is the last line, whatever its capability, so that
 //! the others keep their places, which are the ids of the C library.
 
+use super::closed_loops::CLOSED_LOOPS;
 use super::fixed_base::FIXED_BASE;
 use super::floating_base::FLOATING_BASE;
 use super::{Argument, Entry, Returned, Signature};
@@ -256,6 +257,42 @@ macro_rules! functions {
                  velocity of the base. The base in axes of frame 0, in which its acceleration less gravity stays the \
                  same; so its position and orientation do not enter. The derivative by the accelerations is \
                  floating_mass_matrix.";
+            ClosureStep = closure_step(q: Positions, passive: Passive) -> ClosureStep:
+                "One Newton step towards closed loops: better positions of the dependent joints, and what is left.",
+                "passive: positions of the dependent joints (rad, prismatic: m), a guess. passive of the result: after \
+                 the step. residual: the equations of the loops at the guess, loop by loop: p₂ - p₁ of the two places \
+                 (m), in the axes of the loop, then the products of axes that must be perpendicular. Where the guess \
+                 is singular, the numbers are not finite.";
+            LoopMap = loop_map(q: Positions, passive: Passive) -> PassiveRows:
+                "The matrix G of closed loops: the velocities of the dependent joints are G q̇.",
+                "passive: positions of the dependent joints that close the loops, as close finds them. map[i][j]: \
+                 velocity of dependent joint i per velocity of joint j. Its transpose maps torques of dependent joints to \
+                 torques of q. In a singular position the numbers are not finite.";
+            LoopMapRateTimesVelocity =
+                loop_map_rate_times_velocity(q: Positions, passive: Passive, qd: Rates) -> PassiveVector:
+                "Accelerations of the dependent joints of closed loops where the others do not accelerate: Ġ q̇.",
+                "passive: as in loop_map. acceleration: rad/s², prismatic: m/s². Their accelerations are G q̈ plus these.";
+            InverseDynamicsOfLoops = inverse_dynamics_of_loops(
+                q: Positions, passive: Passive, qd: Rates, qdd: Accelerations
+            ) -> Vector:
+                "Torques of a robot with closed loops, of the joints that move by themselves.",
+                "passive: as in loop_map. tau: what the actuators of the joints of q must deliver, Gᵀ times the torques of \
+                 the tree; the dependent joints have no actuators.";
+            InverseDynamicsOfLoopsWithWrenches = inverse_dynamics_of_loops_with_wrenches(
+                q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, wrenches: Wrenches
+            ) -> Vector:
+                "Torques of a robot with closed loops when it exerts a force and a moment at each tip.",
+                "passive: as in loop_map. wrenches: as in inverse_dynamics_with_wrenches. tau: as in \
+                 inverse_dynamics_of_loops.";
+            MassMatrixOfLoops = mass_matrix_of_loops(q: Positions, passive: Passive) -> Matrix:
+                "The mass matrix of a robot with closed loops, of the joints that move by themselves: symmetric.",
+                "passive: as in loop_map. mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and \
+                 without gravity; kg m², kg m or kg.";
+            ForwardDynamicsOfLoops = forward_dynamics_of_loops(
+                q: Positions, passive: Passive, qd: Rates, tau: Torques
+            ) -> Vector:
+                "Accelerations of a robot with closed loops for torques `tau` of the joints that move by themselves.",
+                "passive: as in loop_map. qdd: of the joints of q; those of the dependent joints are G q̈ + Ġ q̇.";
         }
     };
 }
@@ -290,9 +327,15 @@ functions!(signatures);
 pub(super) const TABLE: [&Entry; Function::ALL.len()] = {
     let (mut entries, mut found) = ([&FIXED_BASE[0]; Function::ALL.len()], [false; Function::ALL.len()]);
     let mut index = 0;
-    while index < FIXED_BASE.len() + FLOATING_BASE.len() {
-        let of_floating = index >= FIXED_BASE.len();
-        let entry = if of_floating { &FLOATING_BASE[index - FIXED_BASE.len()] } else { &FIXED_BASE[index] };
+    let floating = FIXED_BASE.len() + FLOATING_BASE.len();
+    while index < floating + CLOSED_LOOPS.len() {
+        let entry = if index >= floating {
+            &CLOSED_LOOPS[index - floating]
+        } else if index >= FIXED_BASE.len() {
+            &FLOATING_BASE[index - FIXED_BASE.len()]
+        } else {
+            &FIXED_BASE[index]
+        };
         assert!(!entry.output.is_empty() && !entry.listed.is_empty());
         assert!(!found[entry.function as usize]);
         (entries[entry.function as usize], found[entry.function as usize]) = (entry, true);

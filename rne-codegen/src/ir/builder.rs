@@ -35,6 +35,8 @@ pub(crate) struct Builder {
     pub(crate) moving: Cell<Moving>,
     /// Whether what is being written gets no names: other formulas have the same quantities in other axes.
     is_unnamed: Cell<bool>,
+    /// The map of closed loops by rows, and the accelerations of the dependent joints where no coordinate accelerates.
+    of_loops: RefCell<(Vec<Vec<Ref>>, Vec<Ref>)>,
 }
 
 impl Builder {
@@ -59,6 +61,7 @@ impl Builder {
             by: Cell::new(None),
             moving: Cell::default(),
             is_unnamed: Cell::default(),
+            of_loops: RefCell::default(),
         }
     }
 
@@ -70,6 +73,7 @@ impl Builder {
     /// Clears the graph, to use another embedding of the numbers.
     pub(crate) fn restart(&mut self, embedding: Embedding) {
         self.graph.get_mut().clear(embedding);
+        self.of_loops.take();
     }
 
     fn embedding(&self) -> Embedding {
@@ -171,6 +175,28 @@ impl Builder {
     /// The zero vector, with its cause.
     pub(crate) fn zeros(&self, cause: Cause) -> Vector<'_> {
         Vector([self.constant(0.0, cause); 3])
+    }
+
+    /// Keeps the map of closed loops, for those who multiply by it.
+    pub(crate) fn keep_loop_map(&self, map: &[Vec<Symbol<'_>>]) {
+        self.of_loops.borrow_mut().0 = map.iter().map(|row| row.iter().map(|x| x.at).collect()).collect();
+    }
+
+    /// Keeps the accelerations of the dependent joints where no coordinate accelerates.
+    pub(crate) fn keep_loop_bias(&self, bias: &[Symbol<'_>]) {
+        self.of_loops.borrow_mut().1 = bias.iter().map(|x| x.at).collect();
+    }
+
+    /// An element of the map of closed loops: zero before it is kept.
+    pub(crate) fn loop_map(&self, passive: usize, coordinate: usize) -> Symbol<'_> {
+        let at = self.of_loops.borrow().0.get(passive).and_then(|row| row.get(coordinate)).copied();
+        at.map_or_else(|| self.zero(), |at| self.symbol(at))
+    }
+
+    /// The acceleration of a dependent joint where no coordinate accelerates: zero before it is kept.
+    pub(crate) fn loop_bias(&self, passive: usize) -> Symbol<'_> {
+        let at = self.of_loops.borrow().1.get(passive).copied();
+        at.map_or_else(|| self.zero(), |at| self.symbol(at))
     }
 
     /// Gives a symbol a name. A constant of the table takes its name as cause, so that a fold can say what was zero.

@@ -4,8 +4,8 @@ use rne_model::Robot;
 
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
-use crate::formulate::{self, Contacts, Outputs, centroid, contact, square, torque_by};
-use crate::function::Function;
+use crate::formulate::{self, Closure, Contacts, Outputs, centroid, contact, square, torque_by};
+use crate::function::{Argument, Function};
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::{torques, torques_of_floating_base};
 use crate::reduced::crba::ExpressedIn;
@@ -65,7 +65,9 @@ impl Algorithm {
             | Function::BiasTorques
             | Function::InverseDynamicsWithWrenches
             | Function::InverseDynamicsOfFloatingBase
-            | Function::FloatingBias => &[Algorithm::Rnea],
+            | Function::FloatingBias
+            | Function::InverseDynamicsOfLoops
+            | Function::InverseDynamicsOfLoopsWithWrenches => &[Algorithm::Rnea],
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload]
             }
@@ -84,7 +86,9 @@ impl Algorithm {
             | Function::CentroidalBias
             | Function::CentroidalMomentum
             | Function::ForwardDynamicsInContact
-            | Function::FloatingInverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS],
+            | Function::FloatingInverseDynamicsDerivatives
+            | Function::MassMatrixOfLoops
+            | Function::ForwardDynamicsOfLoops => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -115,7 +119,10 @@ impl Algorithm {
             | Function::FloatingKineticEnergy
             | Function::FloatingPotentialEnergy
             | Function::TipJacobians
-            | Function::TipAccelerations => &[],
+            | Function::TipAccelerations
+            | Function::ClosureStep
+            | Function::LoopMap
+            | Function::LoopMapRateTimesVelocity => &[],
         }
     }
 
@@ -130,7 +137,9 @@ impl Algorithm {
                 robot.joints.len() < MANY
             }
             Self::Rnea | Self::UnturnedPayload | Self::Crba(_) => true,
-            Self::Aba(_) => !robot.has_rotors() && !robot.has_couplings() && !robot.has_spinning_rotors(),
+            Self::Aba(_) => {
+                !robot.has_rotors() && !robot.has_couplings() && robot.closed.is_empty() && !robot.has_spinning_rotors()
+            }
         };
         Self::of(function).iter().copied().filter(|&algorithm| is_worth(algorithm)).collect()
     }
@@ -162,6 +171,9 @@ impl Algorithm {
 #[allow(clippy::too_many_lines)] // an arm for each way
 pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) -> Option<Outputs<'s>> {
     let builder = arm.builder;
+    if builder.function.is_of_closed_loops() {
+        Closure::keep(builder, robot, builder.function.takes(Argument::Rates));
+    }
     let coordinates = &arm.joint_frames.coordinates;
     let joints = coordinates.joints();
     let upper_half = || coordinates.upper_half(builder, mass_matrix(arm, algorithm));
@@ -187,7 +199,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             let [momenta, rates] = momentum::momentum_and_rate(arm);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
-        (Function::MassMatrix | Function::MassMatrixWithPayload, _) => {
+        (Function::MassMatrix | Function::MassMatrixWithPayload | Function::MassMatrixOfLoops, _) => {
             formulate::mass_matrix(coordinates, &upper_half())
         }
         (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &system(), &upper_half()),
@@ -195,7 +207,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             by_joint(Quantity::RateDot, aba::forward_dynamics(arm).1)
         }
         (
-            Function::ForwardDynamics | Function::ForwardDynamicsWithPayload | Function::ForwardDynamicsWithWrenches,
+            Function::ForwardDynamics
+            | Function::ForwardDynamicsWithPayload
+            | Function::ForwardDynamicsWithWrenches
+            | Function::ForwardDynamicsOfLoops,
             _,
         ) => {
             let (upper, bias) = (upper_half(), coordinates.torques(&recursion(arm, algorithm)));
@@ -250,7 +265,9 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             | Function::BiasTorques
             | Function::GravityTorquesWithPayload
             | Function::BiasTorquesWithPayload
-            | Function::InverseDynamicsWithWrenches,
+            | Function::InverseDynamicsWithWrenches
+            | Function::InverseDynamicsOfLoops
+            | Function::InverseDynamicsOfLoopsWithWrenches,
             algorithm,
         ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
         (Function::InverseDynamicsOfFloatingBase | Function::FloatingBias, _) => of_floating_base(),

@@ -112,7 +112,12 @@ impl<'s> Arm<'_, 's> {
             Moving::AsGiven if builder.function.takes(Argument::Accelerations) => {
                 self.of_joint(Quantity::RateDot, joint)
             }
-            _ => builder.zero(),
+            // closed loops accelerate their dependent joints
+            Moving::AsGiven => {
+                let bias = self.joint_frames.coordinates.bias(builder, joint);
+                bias.map_or_else(|| builder.zero(), |bias| bias.signed(self.rows()[joint].reversed))
+            }
+            Moving::OneAccelerates(_) => builder.zero(),
         }
     }
 

@@ -40,7 +40,7 @@ pub(crate) fn all() -> Vec<Robot> {
 pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
     static SHIPPED: OnceLock<Vec<String>> = OnceLock::new();
     let names = SHIPPED.get_or_init(|| shipped().into_iter().map(|robot| robot.name).collect());
-    let functions = if names.contains(&robot.name) { &Function::ALL[..] } else { &Function::TORQUES };
+    let functions = if names.contains(&robot.name) { &Function::OF_TREES[..] } else { &Function::TORQUES };
     functions
         .iter()
         .map(|&function| Compiler::new(robot).compile(function, Form::SevenSteps).expect("finite constants"))
@@ -63,7 +63,7 @@ pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
         let program = Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced);
         program.unwrap_or_else(|error| panic!("{error}"))
     };
-    let mut programs = Function::ALL.map(|function| compiled(&plans, function)).to_vec();
+    let mut programs = Function::OF_TREES.map(|function| compiled(&plans, function)).to_vec();
     programs.push(compiled(&PlanSet::from(plans.plan.clone()), Function::InverseDynamics));
     programs
 }
@@ -76,7 +76,7 @@ pub(crate) fn compiled() -> Vec<(Robot, Vec<Program>)> {
     });
     let reduced = shipped().into_iter().flat_map(|robot| {
         let programs = reduced_programs(&robot);
-        let (reduced, planned) = programs.split_at(Function::ALL.len());
+        let (reduced, planned) = programs.split_at(Function::OF_TREES.len());
         // functions of one name are in different files
         [(robot.clone(), reduced.to_vec()), (robot, planned.to_vec())]
     });

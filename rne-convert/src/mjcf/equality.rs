@@ -21,7 +21,7 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
         }
         if element.name != "joint" {
             let message = format!("the equality `{}` closes a loop, which the import does not convert", element.name);
-            let help = "delete it to import the tree without this closed loop; a robot file describes parallelograms \
+            let help = "delete it to import the tree without this closed loop; a robot file describes closed loops \
                         in `loops`";
             return Err(equality.refused(message, help.to_owned()));
         }

@@ -169,6 +169,36 @@ fn the_robot_file_is_for_people() {
     insta::assert_snapshot!(plain(&text).text);
 }
 
+/// A loop of each kind of cut, on the base and on links, with names that need quotation marks.
+#[test]
+fn closed_loops_come_back() {
+    let four_bar = include_str!("../../../docs/four_bar.yaml");
+    let other =
+        four_bar.replace("coupler", "\"rod: 2\"").replace("xyz: [0.3, 0, 0]", "xyz: [0.3, 0, 0], rpy: [0, 0, pi/2]");
+    let spherical = four_bar.replace("cut: revolute ", "cut: spherical ").replace("name: pin", "name: \"1\"");
+    let shaft =
+        "format: 2\nname: shaft\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\ntool: {on: a}\njoints:
+  - {name: a, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}}
+  - {name: b, parent: base, at: {rpy: [0.6, 0, 0]}, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}}
+loops: [{name: shaft, cut: universal, between: [{on: a}, {on: b}], dependent: [b]}]\n";
+    let held = "format: 2\nname: held\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:
+  - {name: a, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}}
+  - {name: b, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: -pi/2}}
+  - {name: c, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}}
+  - {name: d, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}}
+loops: [{cut: weld, between: [{on: base, rpy: [1, 0.2, 0]}, {on: d}], dependent: [b, c, d]}]\n";
+    for text in [four_bar, &other, &spherical, shaft, held] {
+        let read = |text: &str| {
+            let read = Reader::new("loops").trees().couplings().loops().read(text);
+            read.unwrap_or_else(|report| panic!("{report}\n{text}")).robot
+        };
+        let robot = read(text);
+        assert!(!robot.closed.is_empty() && !robot.is_chain());
+        let written = robot_file::write(&robot);
+        assert_eq!(read(&written), robot, "{written}");
+    }
+}
+
 #[test]
 fn all_texts_of_a_robot_come_back() {
     let mut robot = plain(&pendulum("")).robot;

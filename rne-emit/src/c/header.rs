@@ -230,6 +230,9 @@ const fn about(record: Record) -> &'static str {
             "Force and moment on the base and torques, by positions, velocities and angular velocity of the base; axes \
              of frame 0."
         }
+        Record::ClosureStep => {
+            "Positions of the dependent joints after a Newton step, and what is left of the equations before it."
+        }
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

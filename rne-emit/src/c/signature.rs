@@ -108,6 +108,7 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::FloatingAccelerations => "floating_accelerations",
         Record::AccelerationsAndWrenches => "accelerations_and_wrenches",
         Record::FloatingTorqueDerivatives => "floating_torque_derivatives",
+        Record::ClosureStep => "closure_step",
     };
     format!("{prefix}_{name}")
 }

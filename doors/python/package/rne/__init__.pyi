@@ -329,7 +329,44 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats, Floats]:
         """Derivatives of `inverse_dynamics_of_floating_base` by q, by q̇ and by the angular velocity of the base."""
+    def closure_step(
+        self, q: Joints, passive: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """One Newton step towards closed loops: better positions of the dependent joints, and what is left."""
+    def loop_map(
+        self, q: Joints, passive: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The matrix G of closed loops: the velocities of the dependent joints are G q̇."""
+    def loop_map_rate_times_velocity(
+        self, q: Joints, passive: Joints, qd: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Accelerations of the dependent joints of closed loops where the others do not accelerate: Ġ q̇."""
+    def inverse_dynamics_of_loops(
+        self, q: Joints, passive: Joints, qd: Joints, qdd: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques of a robot with closed loops, of the joints that move by themselves."""
+    def inverse_dynamics_of_loops_with_wrenches(
+        self, q: Joints, passive: Joints, qd: Joints, qdd: Joints, wrenches: ArrayLike | dict[str, ArrayLike], *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques of a robot with closed loops when it exerts a force and a moment at each tip."""
+    def mass_matrix_of_loops(
+        self, q: Joints, passive: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The mass matrix of a robot with closed loops, of the joints that move by themselves: symmetric."""
+    def forward_dynamics_of_loops(
+        self, q: Joints, passive: Joints, qd: Joints, tau: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Accelerations of a robot with closed loops for torques `tau` of the joints that move by themselves."""
     # <!-- end -->
+    @property
+    def passive_joints(self) -> list[str]:
+        """The names of the dependent joints of closed loops, in the order of `passive`."""
+    @property
+    def closures(self) -> list[tuple[list[float], list[float]]]:
+        """Positions at which the closed loops are closed: a list of pairs of `q` and `passive`, found when the file was read."""
+    def close(self, q: Joints, guess: Joints, *, parameters: Parameters = ...) -> tuple[Floats, Floats]:
+        """Closes the loops of a robot from a guess: five steps of Newton's method."""
     def rollout(
         self, q: Joints, qd: Joints, tau: Joints, step: float, *,
         friction: bool | float | None = ..., limits: bool | str | Sequence[str] | None = ...,

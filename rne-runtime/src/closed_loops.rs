@@ -1,0 +1,368 @@
+//! Robots with closed loops: the open tree, moved and loaded by the joints that move by themselves.
+//!
+//! ```text
+//! K (q̇, ṗ) = 0                 rows: R_Lᵀ (v₂ - v₁);  (b × a)·(ω₂ - ω₁)
+//! K (q̈, p̈) + k = 0             k: R_Lᵀ (a₂ - a₁);  (b × a)·(ω̇₂ - ω̇₁) + (ω₂ - ω₁)·((ω₂ × b) × a + b × (ω₁ × a))
+//! ṗ = G q̇,  p̈ = G q̈ + Ġ q̇     G = -K_p⁻¹ K_q,  Ġ q̇ = -K_p⁻¹ k
+//! τ = Gᵀ τ_tree                M = (1, G)ᵀ M_tree (1, G)
+//! ```
+//!
+//! The Jacobians and accelerations are those of the two places of each loop, in axes of frame 0, and R_L are the axes of
+//! the loop there. The equations that are kept, and their order, are those of the robot file.
+
+use nalgebra::{Matrix3, Vector3};
+use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};
+
+use crate::{Constant, DynArm, Scalar, Wrench, WrongLength};
+
+/// The loops of a robot.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Loops<S> {
+    cuts: Vec<(Cut, [FixedFrame<S>; 2])>,
+    /// For each loop the joint whose axes it has, and the link that carries this joint.
+    axes: Vec<Option<usize>>,
+    /// The places of the coordinates and of the dependent joints among the joints that follow none by a coupling.
+    coordinates: Vec<usize>,
+    passive: Vec<usize>,
+    elimination: Vec<Pivot>,
+}
+
+impl Loops<f64> {
+    pub(crate) fn of(robot: &Robot) -> Self {
+        let ClosedLoops { loops, passive, elimination, .. } = &robot.closed;
+        let of_tree: Vec<usize> = (0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_none()).collect();
+        let place = |joint: usize| of_tree.iter().position(|&other| other == joint);
+        let way = |on: Option<usize>| {
+            let mut way: Vec<usize> = std::iter::successors(on, |&joint| robot.parent(joint)).collect();
+            way.reverse();
+            way
+        };
+        let first_joint = |between: &[FixedFrame; 2]| {
+            let [one, other] = between.map(|place| way(place.on));
+            let shared = one.iter().zip(&other).take_while(|(a, b)| a == b).count();
+            one.get(shared).or_else(|| other.get(shared)).copied()
+        };
+        Self {
+            cuts: loops.iter().map(|closed| (closed.cut, closed.between)).collect(),
+            axes: loops.iter().map(|closed| first_joint(&closed.between)).collect(),
+            coordinates: robot.coordinates().filter_map(place).collect(),
+            passive: passive.iter().copied().filter_map(place).collect(),
+            elimination: elimination.clone(),
+        }
+    }
+
+    pub(crate) fn to_f32(&self) -> Loops<f32> {
+        let Self { cuts, axes, coordinates, passive, elimination } = self.clone();
+        let cuts = cuts.into_iter().map(|(cut, between)| (cut, between.map(FixedFrame::to_f32))).collect();
+        Loops { cuts, axes, coordinates, passive, elimination }
+    }
+}
+
+impl<S> Loops<S> {
+    pub(crate) const fn none() -> Self {
+        Self {
+            cuts: Vec::new(),
+            axes: Vec::new(),
+            coordinates: Vec::new(),
+            passive: Vec::new(),
+            elimination: Vec::new(),
+        }
+    }
+
+    /// One number for each joint of the tree that follows none by a coupling.
+    fn of_tree<T: Scalar>(&self, of_coordinates: &[T], of_passive: &[T]) -> Vec<T> {
+        let mut all = vec![T::zero(); self.coordinates.len() + self.passive.len()];
+        for (&place, &x) in self.coordinates.iter().zip(of_coordinates).chain(self.passive.iter().zip(of_passive)) {
+            all[place] = x;
+        }
+        all
+    }
+}
+
+/// The equations of the loops in one state.
+struct Equations<T> {
+    residuals: Vec<T>,
+    /// A column for each joint of the tree that follows none by a coupling.
+    rows: Vec<Vec<T>>,
+    biases: Vec<T>,
+}
+
+impl<S: Constant> DynArm<S> {
+    /// How many dependent joints its closed loops have.
+    #[must_use]
+    pub fn passive_joints(&self) -> usize {
+        self.closed.passive.len()
+    }
+
+    /// As [`ClosedLoops::closure_step`](crate::ClosedLoops::closure_step): the positions of the dependent joints after
+    /// a Newton step, and what is left of the equations before it.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn closure_step<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<(Vec<T>, Vec<T>), WrongLength> {
+        let equations = self.equations(q, passive, None)?;
+        let changes = self.solved(&equations.rows, &equations.residuals);
+        Ok((passive.iter().zip(changes).map(|(&p, change)| p + change).collect(), equations.residuals))
+    }
+
+    /// As [`ClosedLoops::loop_map`](crate::ClosedLoops::loop_map): a row for each dependent joint.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn loop_map<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
+        Ok(self.map_of(&self.equations(q, passive, None)?))
+    }
+
+    /// As [`ClosedLoops::loop_map_rate_times_velocity`](crate::ClosedLoops::loop_map_rate_times_velocity).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn loop_map_rate_times_velocity<T: Scalar>(
+        &self,
+        q: &[T],
+        passive: &[T],
+        qd: &[T],
+    ) -> Result<Vec<T>, WrongLength> {
+        let rates = product(&self.loop_map(q, passive)?, self.of_closed("qd", qd)?);
+        let equations = self.equations(q, passive, Some((qd, &rates)))?;
+        Ok(self.solved(&equations.rows, &equations.biases))
+    }
+
+    /// As [`ClosedLoops::inverse_dynamics_of_loops`](crate::ClosedLoops::inverse_dynamics_of_loops).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn inverse_dynamics_of_loops<T: Scalar>(
+        &self,
+        q: &[T],
+        passive: &[T],
+        qd: &[T],
+        qdd: &[T],
+    ) -> Result<Vec<T>, WrongLength> {
+        let free = vec![Wrench::zero(); self.tips().len()];
+        self.inverse_dynamics_of_loops_with_wrenches(q, passive, qd, qdd, &free)
+    }
+
+    /// As [`ClosedLoops::inverse_dynamics_of_loops_with_wrenches`](
+    /// crate::ClosedLoops::inverse_dynamics_of_loops_with_wrenches): `wrenches` at the [tips](Self::tips).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint or tip.
+    pub fn inverse_dynamics_of_loops_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T],
+        passive: &[T],
+        qd: &[T],
+        qdd: &[T],
+        wrenches: &[Wrench<T>],
+    ) -> Result<Vec<T>, WrongLength> {
+        let map = self.loop_map(q, passive)?;
+        let bias = self.loop_map_rate_times_velocity(q, passive, qd)?;
+        let rates = product(&map, qd);
+        let accelerations: Vec<T> =
+            product(&map, self.of_closed("qdd", qdd)?).into_iter().zip(bias).map(|(a, b)| a + b).collect();
+        let [q, qd, qdd] =
+            [(q, passive), (qd, &rates), (qdd, &accelerations)].map(|(own, other)| self.closed.of_tree(own, other));
+        let of_tree = self.inverse_dynamics_with_wrenches(&q, &qd, &qdd, wrenches)?;
+        Ok(self.by_coordinates(&map, &of_tree))
+    }
+
+    /// As [`ClosedLoops::mass_matrix_of_loops`](crate::ClosedLoops::mass_matrix_of_loops), by rows.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn mass_matrix_of_loops<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
+        let map = self.loop_map(q, passive)?;
+        let of_tree = self.mass_matrix(&self.closed.of_tree(q, passive))?;
+        let columns: Vec<Vec<T>> = of_tree.iter().map(|row| self.by_coordinates(&map, row)).collect();
+        let column = |at: usize| self.by_coordinates(&map, &columns.iter().map(|row| row[at]).collect::<Vec<_>>());
+        let mut matrix: Vec<Vec<T>> = (0..q.len()).map(column).collect();
+        for row in 1..matrix.len() {
+            let (above, rest) = matrix.split_at_mut(row);
+            rest[0].iter_mut().zip(above).for_each(|(element, upper)| *element = upper[row]);
+        }
+        Ok(matrix)
+    }
+
+    /// As [`ClosedLoops::forward_dynamics_of_loops`](crate::ClosedLoops::forward_dynamics_of_loops).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn forward_dynamics_of_loops<T: Scalar>(
+        &self,
+        q: &[T],
+        passive: &[T],
+        qd: &[T],
+        tau: &[T],
+    ) -> Result<Vec<T>, WrongLength> {
+        let still = vec![T::zero(); q.len()];
+        let bias = self.inverse_dynamics_of_loops(q, passive, qd, &still)?;
+        let mut rows = self.mass_matrix_of_loops(q, passive)?;
+        let mut x: Vec<T> = self.of_closed("tau", tau)?.iter().zip(bias).map(|(&tau, bias)| tau - bias).collect();
+        let mut inverse = vec![T::zero(); rows.len()];
+        crate::ldlt::factor(&mut rows, &mut inverse);
+        crate::ldlt::solve(&rows, &inverse, &mut x);
+        Ok(x)
+    }
+
+    fn of_closed<'a, T>(&self, argument: &'static str, values: &'a [T]) -> Result<&'a [T], WrongLength> {
+        has_length(argument, values, self.closed.coordinates.len())
+    }
+
+    /// Gᵀ of numbers of the tree: those of the coordinates, and what their dependent joints add.
+    fn by_coordinates<T: Scalar>(&self, map: &[Vec<T>], of_tree: &[T]) -> Vec<T> {
+        let of_coordinate = |(at, &place): (usize, &usize)| {
+            let passive = self.closed.passive.iter().zip(map);
+            passive.fold(of_tree[place], |sum, (&passive, row)| sum + row[at] * of_tree[passive])
+        };
+        self.closed.coordinates.iter().enumerate().map(of_coordinate).collect()
+    }
+
+    fn map_of<T: Scalar>(&self, equations: &Equations<T>) -> Vec<Vec<T>> {
+        let column = |&place: &usize| {
+            self.solved(&equations.rows, &equations.rows.iter().map(|row| row[place]).collect::<Vec<_>>())
+        };
+        let columns: Vec<Vec<T>> = self.closed.coordinates.iter().map(column).collect();
+        (0..self.closed.passive.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+    }
+
+    /// -K_p⁻¹ b, by dependent joint: Gauss's elimination in the order of the robot file.
+    fn solved<T: Scalar>(&self, rows: &[Vec<T>], b: &[T]) -> Vec<T> {
+        let Loops { passive, elimination, .. } = &self.closed;
+        let system = elimination.iter().map(|row| {
+            let elements = elimination.iter().map(|column| rows[row.equation][passive[column.passive]]);
+            elements.chain([b[row.equation]]).collect::<Vec<T>>()
+        });
+        let mut system: Vec<Vec<T>> = system.collect();
+        let size = system.len();
+        for step in 0..size {
+            let (above, below) = system.split_at_mut(step + 1);
+            let pivot = &above[step];
+            for row in below {
+                let factor = row[step] / pivot[step];
+                row.iter_mut().zip(pivot).skip(step).for_each(|(x, &by)| *x -= factor * by);
+            }
+        }
+        let mut x = vec![T::zero(); size];
+        for step in (0..size).rev() {
+            let row = &system[step];
+            let known = (step + 1..size).fold(row[size], |sum, at| sum - row[at] * x[at]);
+            x[step] = known / row[step];
+        }
+        let mut by_joint = x.clone();
+        for (pivot, x) in elimination.iter().zip(x) {
+            by_joint[pivot.passive] = -x;
+        }
+        by_joint
+    }
+
+    /// The equations in a state; without rates they have no biases.
+    fn equations<T: Scalar>(
+        &self,
+        q: &[T],
+        passive: &[T],
+        rates: Option<(&[T], &[T])>,
+    ) -> Result<Equations<T>, WrongLength> {
+        has_length("passive", passive, self.closed.passive.len())?;
+        let q = self.couplings.of_joints(&self.closed.of_tree(self.of_closed("q", q)?, passive)).into_owned();
+        let zero = vec![T::zero(); q.len()];
+        let qd = match rates {
+            Some((qd, passive)) => {
+                self.couplings.of_joints(&self.closed.of_tree(self.of_closed("qd", qd)?, passive)).into_owned()
+            }
+            None => zero.clone(),
+        };
+        let mut equations = Equations { residuals: Vec::new(), rows: Vec::new(), biases: Vec::new() };
+        for ((cut, between), &joint) in self.closed.cuts.iter().zip(&self.closed.axes) {
+            let places = between.each_ref().map(|place| self.place(place, &q, &qd));
+            let [one, other] = &places;
+            let loop_axes = joint.map_or_else(Matrix3::identity, |joint| self.axes_of(joint, &q)).transpose();
+            let apart = loop_axes * (other.origin - one.origin);
+            equations.residuals.extend(apart.iter().copied());
+            let falling = loop_axes * (other.acceleration - one.acceleration);
+            equations.biases.extend(falling.iter().copied());
+            let difference = |row: usize| -> Vec<T> {
+                let rows = places.each_ref().map(|place| &place.jacobian[row]);
+                rows[1].iter().zip(rows[0]).map(|(&b, &a)| b - a).collect()
+            };
+            let [linear, angular] = [0, 3].map(|first| [0, 1, 2].map(|axis| difference(first + axis)));
+            let along = |axis: &Vector3<T>, rows: &[Vec<T>; 3]| -> Vec<T> {
+                (0..rows[0].len()).map(|at| axis.dot(&Vector3::new(rows[0][at], rows[1][at], rows[2][at]))).collect()
+            };
+            for axis in loop_axes.row_iter() {
+                equations.rows.push(along(&axis.transpose(), &linear));
+            }
+            for &[a, b] in cut.perpendicular() {
+                let (a, b) = (one.axes.column(a).into_owned(), other.axes.column(b).into_owned());
+                let normal = b.cross(&a);
+                equations.residuals.push(a.dot(&b));
+                equations.rows.push(along(&normal, &angular));
+                let moving = other.omega.cross(&b).cross(&a) + b.cross(&one.omega.cross(&a));
+                let turning = normal.dot(&(other.omega_dot - one.omega_dot));
+                equations.biases.push(turning + moving.dot(&(other.omega - one.omega)));
+            }
+        }
+        Ok(equations)
+    }
+}
+
+/// A place of a loop in axes of frame 0, where nothing accelerates.
+struct Place<T> {
+    axes: Matrix3<T>,
+    origin: Vector3<T>,
+    /// Linear, then angular rows.
+    jacobian: [Vec<T>; 6],
+    omega: Vector3<T>,
+    omega_dot: Vector3<T>,
+    acceleration: Vector3<T>,
+}
+
+impl<S: Constant> DynArm<S> {
+    fn place<T: Scalar>(&self, place: &FixedFrame<S>, q: &[T], qd: &[T]) -> Place<T> {
+        let rest = [T::zero(); 3];
+        let identity = Matrix3::identity();
+        let mechanism = self.mechanism();
+        let (axes, origin, rows) = mechanism.placed(place, q);
+        let omega = Vector3::new(dot(&rows[3], qd), dot(&rows[4], qd), dot(&rows[5], qd));
+        let [x, y, z, about_x, about_y, about_z] = mechanism.tip_acceleration((q, qd), &rest, identity, place);
+        Place {
+            axes,
+            origin,
+            jacobian: self.couplings.rows(rows),
+            omega,
+            omega_dot: Vector3::new(about_x, about_y, about_z),
+            acceleration: Vector3::new(x, y, z),
+        }
+    }
+
+    /// The axes of a joint where its link is not turned, in axes of frame 0.
+    fn axes_of<T: Scalar>(&self, joint: usize, q: &[T]) -> Matrix3<T> {
+        let mut still = q.to_vec();
+        let row = &self.rows()[joint];
+        if row.kind == JointKind::Revolute {
+            still[joint] = T::zero();
+        }
+        let turned = self.mechanism().axes_of_joint(joint, &still);
+        let (sin, cos) = (row.dh.theta.sin.to::<T>(), row.dh.theta.cos.to::<T>());
+        let (zero, one) = (T::zero(), T::one());
+        match self.convention() {
+            rne_model::Convention::Standard => turned,
+            rne_model::Convention::Modified => turned * Matrix3::new(cos, sin, zero, -sin, cos, zero, zero, zero, one),
+        }
+    }
+}
+
+fn has_length<'a, T>(argument: &'static str, values: &'a [T], expected: usize) -> Result<&'a [T], WrongLength> {
+    if values.len() == expected {
+        return Ok(values);
+    }
+    Err(WrongLength { argument, expected, found: values.len() })
+}
+
+fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
+}
+
+fn product<T: Scalar>(rows: &[Vec<T>], x: &[T]) -> Vec<T> {
+    rows.iter().map(|row| dot(row, x)).collect()
+}

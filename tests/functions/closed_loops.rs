@@ -1,0 +1,179 @@
+//! Closed loops: every function of real and of random mechanisms, by every maker, beside golden values that another
+//! program has made by virtual work on the closed kinematics, at 60 digits (`xtask/loops.py`).
+
+use rne::compiled::{Arguments as Numbers, Array, CompiledArm, Destination};
+use rne::{DynArm, VectorUnit, Wrench};
+use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
+use rne_model::{Reader, Robot};
+use serde_json::Value;
+
+/// Of the largest number of a function.
+const TOLERANCE: f64 = 1e-9;
+
+/// Robots with golden values of their own.
+const ROBOTS: [&str; 11] = [
+    "four_bar",
+    "six_bar",
+    "planar_leg_linkage",
+    "five_bar",
+    "delta",
+    "cassie_like",
+    "digit_like",
+    "g1_ankle",
+    "ankle_by_foot",
+    "palletiser",
+    "bennett",
+];
+
+fn robot(yaml: &[u8]) -> Robot {
+    Reader::new("robot")
+        .trees()
+        .couplings()
+        .loops()
+        .read(yaml)
+        .unwrap_or_else(|report| panic!("{}", report.render(false)))
+        .robot
+}
+
+fn read(path: &str) -> Vec<u8> {
+    let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// A state of a golden file.
+struct State<'a>(&'a Value);
+
+impl State<'_> {
+    fn numbers(&self, key: &str) -> Vec<f64> {
+        fn flat(value: &Value, numbers: &mut Vec<f64>) {
+            match value {
+                Value::Array(values) => values.iter().for_each(|value| flat(value, numbers)),
+                value => numbers.push(value.as_f64().expect("a number")),
+            }
+        }
+        let mut numbers = Vec::new();
+        flat(&self.0[key], &mut numbers);
+        numbers
+    }
+
+    /// What a function returns, and what its error is measured by.
+    fn expected(&self, function: Function) -> (Vec<f64>, f64) {
+        let numbers = match function {
+            Function::ClosureStep => self.numbers("passive"),
+            Function::LoopMap => self.numbers("loop_map"),
+            Function::LoopMapRateTimesVelocity => self.numbers("passive_accelerations_bias"),
+            Function::InverseDynamicsOfLoops => self.numbers("inverse_dynamics"),
+            Function::InverseDynamicsOfLoopsWithWrenches => self.numbers("inverse_dynamics_with_wrench"),
+            Function::MassMatrixOfLoops => self.numbers("mass_matrix"),
+            Function::ForwardDynamicsOfLoops => self.numbers("forward_dynamics"),
+            other => unreachable!("{other} is of no closed loop"),
+        };
+        let largest = |numbers: &[f64]| numbers.iter().fold(1.0_f64, |largest, x| largest.max(x.abs()));
+        let scale = match function {
+            // a large wrench may need a small torque
+            Function::InverseDynamicsOfLoopsWithWrenches => largest(&numbers).max(largest(&self.numbers("wrench"))),
+            _ => largest(&numbers),
+        };
+        (numbers, scale)
+    }
+
+    fn is_near(&self, function: Function, found: &[f64], maker: &str) {
+        let (expected, scale) = self.expected(function);
+        // behind the positions stand the equations, which are closed
+        let (found, rest) = found.split_at(expected.len());
+        assert!(rest.iter().all(|left| left.abs() < 1e-12), "{maker}, {function}: {rest:?} are left");
+        for (found, expected) in found.iter().zip(&expected) {
+            let error = (found - expected).abs() / scale;
+            assert!(error < TOLERANCE, "{maker}, {function}: {found} and not {expected}");
+        }
+    }
+}
+
+fn of_runtime(arm: &DynArm, function: Function, state: &State<'_>) -> Vec<f64> {
+    let [q, passive, qd, qdd, tau, wrench] =
+        ["q", "passive", "qd", "qdd", "tau", "wrench"].map(|key| state.numbers(key));
+    let wrench = Wrench { force: [wrench[0], wrench[1], wrench[2]], moment: [wrench[3], wrench[4], wrench[5]] };
+    let [q, passive, qd, qdd, tau] = [&q, &passive, &qd, &qdd, &tau].map(Vec::as_slice);
+    let numbers = match function {
+        Function::ClosureStep => arm.closure_step(q, passive).map(|(passive, residual)| [passive, residual].concat()),
+        Function::LoopMap => arm.loop_map(q, passive).map(|rows| rows.concat()),
+        Function::LoopMapRateTimesVelocity => arm.loop_map_rate_times_velocity(q, passive, qd),
+        Function::InverseDynamicsOfLoops => arm.inverse_dynamics_of_loops(q, passive, qd, qdd),
+        Function::InverseDynamicsOfLoopsWithWrenches => {
+            arm.inverse_dynamics_of_loops_with_wrenches(q, passive, qd, qdd, &[wrench])
+        }
+        Function::MassMatrixOfLoops => arm.mass_matrix_of_loops(q, passive).map(|rows| rows.concat()),
+        Function::ForwardDynamicsOfLoops => arm.forward_dynamics_of_loops(q, passive, qd, tau),
+        other => unreachable!("{other} is of no closed loop"),
+    };
+    numbers.expect("one number per joint")
+}
+
+fn check(name: &str, robot: &Robot, states: &[Value]) {
+    let (arm, compiler) = (DynArm::from_robot(robot), Compiler::new(robot));
+    for function in Function::of_robot(robot) {
+        for state in states.iter().map(State) {
+            state.is_near(function, &of_runtime(&arm, function, &state), &format!("{name}, runtime"));
+        }
+        for form in Form::ALL {
+            let program = compiler.compile(function, form).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let interpreter = Interpreter::new(&program);
+            for state in states.iter().map(State) {
+                let [q, passive, qd, qdd, tau] = ["q", "passive", "qd", "qdd", "tau"].map(|key| state.numbers(key));
+                let wrench: [f64; 6] = state.numbers("wrench").try_into().expect("six numbers");
+                let arguments = Arguments {
+                    passive: &passive,
+                    tau: &tau,
+                    wrenches: &[wrench],
+                    ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
+                };
+                let found = interpreter.run(&arguments, |x| x, f64::sin_cos).expect("all arguments");
+                state.is_near(function, &found, &format!("{name}, {form}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn real_mechanisms_are_those_of_virtual_work() {
+    for name in ROBOTS {
+        let robot = robot(&read(&format!("benches/trees/loops/{name}.yaml")));
+        let golden: Vec<Value> =
+            serde_json::from_slice(&read(&format!("tests/golden/loops/{name}.json"))).expect("JSON");
+        check(name, &robot, &golden);
+    }
+}
+
+#[test]
+fn random_mechanisms_are_those_of_virtual_work() {
+    let golden: Vec<Value> = serde_json::from_slice(&read("tests/golden/loops/random.json")).expect("JSON");
+    for (index, entry) in golden.iter().enumerate() {
+        let robot = robot(entry["yaml"].as_str().expect("a text").as_bytes());
+        check(&format!("random mechanism {index}"), &robot, entry["states"].as_array().expect("states"));
+    }
+}
+
+/// The machine computes what the interpreter does, for many states at once.
+#[test]
+fn the_machine_computes_closed_loops() {
+    for name in ["g1_ankle", "cassie_like"] {
+        let path = format!("{}/benches/trees/loops/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let arm = CompiledArm::from_file(path).expect("a robot file").in_form(Form::Reduced);
+        let golden: Vec<Value> =
+            serde_json::from_slice(&read(&format!("tests/golden/loops/{name}.json"))).expect("JSON");
+        let all = |key: &str| golden.iter().flat_map(|state| State(state).numbers(key)).collect::<Vec<f64>>();
+        let [q, passive, qd, qdd, tau, wrenches] = ["q", "passive", "qd", "qdd", "tau", "wrench"].map(|key| all(key));
+        let arguments = Numbers::new().q(Array::Rows(&q)).passive(Array::Rows(&passive)).qd(Array::Rows(&qd));
+        let arguments = arguments.qdd(Array::Rows(&qdd)).tau(Array::Rows(&tau)).wrenches(Array::Rows(&wrenches));
+        for function in Function::of_robot(arm.robot()) {
+            let width = arm.layout(function).len();
+            let mut numbers = vec![f64::NAN; golden.len() * width];
+            let compiled = arm.function(function).expect("a function that compiles");
+            let results = Destination::Rows(&mut numbers);
+            compiled.run(VectorUnit::widest(), golden.len(), &arguments, results).expect("arrays of one length");
+            for (state, found) in golden.iter().map(State).zip(numbers.chunks(width)) {
+                state.is_near(function, found, &format!("{name}, machine"));
+            }
+        }
+    }
+}
