@@ -9,7 +9,7 @@ use crate::function::Function;
 const LARGEST_ROUNDING: f64 = 1e-11;
 
 /// Accelerations are as much less precise as the matrices that they are solved with are badly conditioned: the mass
-/// matrix of the PUMA 560 without the inertia of its rotors has 10⁵, and contacts that hold more than the robot can move
+/// matrix of the PUMA 560 without the inertia of its rotors has 10⁵. Contacts that hold more than the robot can move
 /// have 10⁸, as their damping is 10⁻⁸ beside numbers near 1.
 const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
 

@@ -104,7 +104,8 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
         }
     }
     bodies.add_to(&mut joints, floating_base.as_mut());
-    if let Some(base) = floating_base.as_ref().filter(|_| !cx.has_errors()) {
+    // joints of closed loops do not move freely
+    if let Some(base) = floating_base.as_ref().filter(|_| !cx.has_errors() && closed.is_empty()) {
         lint::floating_inertia(cx, node, &base.link, convention, &joints);
     }
     let run_time = cx.run_time.take();

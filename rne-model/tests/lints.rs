@@ -431,8 +431,8 @@ fn a_floating_base_that_nothing_resists() {
     let text = |base: &str, more: &str| {
         format!(
             "format: 2\nname: x\nsource: x\nconvention: modified\ngravity: [0, 0, -9.81]\ntool: {{on: j1}}\n\
-             floating_base: {{name: trunk, link: {{{base}}}}}\njoints:\n  - {{name: j1, type: revolute, dh: {{theta: 0, \
-             d: 0, a: 0.3, alpha: 0}}, link: {{{body}}}}}\n{more}"
+             floating_base: {{name: trunk, link: {{{base}}}}}\njoints:\n  - {{name: j1, type: revolute, \
+             dh: {{theta: 0, d: 0, a: 0.3, alpha: 0}}, link: {{{body}}}}}\n{more}"
         )
     };
     let said = |text: &str| Reader::new("x.yaml").trees().read(text).expect("it is right").lints;

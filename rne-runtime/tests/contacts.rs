@@ -19,7 +19,8 @@ fn robot(contacts: &str) -> (Arm<JOINTS>, DynArm) {
          {{name: other, parent: base, type: prismatic, dh: {{gamma: 0, b: 0, theta: 0.2, d: 0, a: -0.1, alpha: -0.4}}, \
          {link}}}], frames: [\
          {{name: foot, on: knee, xyz: [0.4, 0, 0.1]}}, \
-         {{name: heel, on: other, xyz: [0, 0.1, 0]}}, {{name: toe, on: other, xyz: [0, -0.2, 0.1], rpy: [0.4, 0, 0.2]}}], \
+         {{name: heel, on: other, xyz: [0, 0.1, 0]}}, \
+         {{name: toe, on: other, xyz: [0, -0.2, 0.1], rpy: [0.4, 0, 0.2]}}], \
          tips: [foot, heel, toe], contacts: [{contacts}]}}"
     );
     (Arm::from_yaml(&text).expect("a robot"), DynArm::from_yaml(&text).expect("a robot"))

@@ -208,11 +208,11 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(&robot, function, index, &state.q)));
     }
-    if is_singular(&robot, function, &state.q, state.payload.as_ref()) {
+    if is_singular(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
     }
     let mut remark = limits::remark(&robot, &state.q);
-    if is_indefinite(&robot, function, &state.q, state.payload.as_ref()) {
+    if is_indefinite(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }
     if !assumed.is_empty() {

@@ -32,7 +32,7 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
                 let arm = &at_frame(robot, program, &arm);
                 let numbers = state.of(program.function).numbers(arm).map_err(Failure::usage)?;
                 let is_finite = numbers.iter().all(|number| number.is_finite());
-                let least = least_resistance(arm, program.function, &state.q, state.payload.as_ref());
+                let least = least_resistance(arm, program.function, [&state.q, &state.passive], state.payload.as_ref());
                 let is_left_out = least.is_some_and(|least| least <= least_of(precision));
                 let is_possible = program.function != Function::ForwardDynamicsInContact || can_hold(&numbers, arm);
                 Ok(if is_finite && is_possible && !is_left_out { numbers } else { Vec::new() })

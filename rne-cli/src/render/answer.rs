@@ -292,7 +292,7 @@ pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize, q: &[f
         let name = robot.independent_joints().nth(index).map_or("", |joint| &joint.name);
         format!("joint {} ({name})", index + 1)
     };
-    if is_indefinite(robot, function, q, None) {
+    if is_indefinite(robot, function, [q, &[]], None) {
         return format!("the result of {function} is not finite: {NOT_DEFINITE}");
     }
     if let Some(meaning) = function.divides() {

@@ -23,38 +23,50 @@ pub(crate) const BUT_FOR_ROUNDING: &str = "the mass matrix is singular at this p
 pub(crate) const NOT_DEFINITE: &str = "the mass matrix is not positive definite at this position: a link is no real \
                                        body (`physical: false`), or a payload has negative numbers";
 
-/// Whether the mass matrix that a function inverts is not positive definite at a position.
-pub(crate) fn is_indefinite(robot: &Robot, function: Function, q: &[f64], payload: Option<&Payload<f64>>) -> bool {
-    inverted_mass_matrix(&DynArm::from_robot(robot), function, q, payload).is_some_and(has_negative_direction)
+/// Whether the mass matrix that a function inverts is not positive definite at a position: q, and the dependent joints
+/// of closed loops.
+pub(crate) fn is_indefinite(
+    robot: &Robot,
+    function: Function,
+    joints: [&[f64]; 2],
+    payload: Option<&Payload<f64>>,
+) -> bool {
+    inverted_mass_matrix(&DynArm::from_robot(robot), function, joints, payload).is_some_and(has_negative_direction)
 }
 
 /// Whether the mass matrix that a function inverts is singular at a position, but for rounding.
-pub(crate) fn is_singular(robot: &Robot, function: Function, q: &[f64], payload: Option<&Payload<f64>>) -> bool {
+pub(crate) fn is_singular(
+    robot: &Robot,
+    function: Function,
+    joints: [&[f64]; 2],
+    payload: Option<&Payload<f64>>,
+) -> bool {
     let arm = DynArm::from_robot(robot);
-    least_resistance(&arm, function, q, payload).is_some_and(|least| least < SINGULAR)
-        && !is_indefinite(robot, function, q, payload)
+    least_resistance(&arm, function, joints, payload).is_some_and(|least| least < SINGULAR)
+        && !is_indefinite(robot, function, joints, payload)
 }
 
 /// The [smallest pivot](smallest_pivot) of the mass matrix that a function inverts, if it inverts one.
 pub(crate) fn least_resistance(
     arm: &DynArm,
     function: Function,
-    q: &[f64],
+    joints: [&[f64]; 2],
     payload: Option<&Payload<f64>>,
 ) -> Option<f64> {
-    inverted_mass_matrix(arm, function, q, payload).map(smallest_pivot)
+    inverted_mass_matrix(arm, function, joints, payload).map(smallest_pivot)
 }
 
 /// The mass matrix that a function inverts, if it inverts one: with the rows of a floating base, or with a payload.
 fn inverted_mass_matrix(
     arm: &DynArm,
     function: Function,
-    q: &[f64],
+    [q, passive]: [&[f64]; 2],
     payload: Option<&Payload<f64>>,
 ) -> Option<Vec<Vec<f64>>> {
     let matrix = || match payload.filter(|_| function.takes(Argument::Payload)) {
         Some(payload) => arm.mass_matrix_with_payload(q, payload),
         None if function.is_of_floating_base() => arm.floating_mass_matrix(q),
+        None if function.is_of_closed_loops() => arm.mass_matrix_of_loops(q, passive),
         None => arm.mass_matrix(q),
     };
     // that of closed loops depends on the positions of the dependent joints, too

@@ -396,7 +396,8 @@ fn a_mass_matrix_that_is_singular_but_for_rounding_has_no_accelerations() {
     let leg = |name: &str, alpha: &str| {
         format!(
             "  - {{name: {name}, parent: base, type: revolute, dh: {{gamma: 0, b: 0, theta: 0, d: 0, a: 0.2, \
-             alpha: {alpha}}},\n     link: {{mass: 2, com: [0.1, 0.05, 0.3], inertia: {{xx: 0.5, yy: 0.8, zz: 0.7}}}}}}\n"
+             alpha: {alpha}}},\n     \
+             link: {{mass: 2, com: [0.1, 0.05, 0.3], inertia: {{xx: 0.5, yy: 0.8, zz: 0.7}}}}}}\n"
         )
     };
     let robot = |name: &str, legs: &str| {
