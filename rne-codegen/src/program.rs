@@ -220,7 +220,7 @@ impl Program {
         self.function.layout(self.sizes())
     }
 
-    /// What the lengths of its arrays are.
+    /// The lengths of its arrays.
     #[must_use]
     pub fn sizes(&self) -> Sizes {
         Sizes { dof: self.dof, tips: self.tips.len(), passive: self.passive.len(), equations: self.equations_of_loops }

@@ -397,7 +397,8 @@ quantities! {
     LoopMap:                    "map",       Column,    8, true,  "", "", "velocity of joint i per velocity of joint j";
     LoopBias:                   "bias",      Joint,     8, true,  "", "rad/s²|m/s²",
         "acceleration of joint i where the joints that move by themselves do not accelerate";
-    ClosedPosition:             "closed",    Joint,     8, true,  "", "rad|m", "position of joint i after a Newton step";
+    ClosedPosition:             "closed",    Joint,     8, true,  "", "rad|m",
+        "position of joint i after a Newton step";
     Residual:                   "left",      Joint,     8, true,  "", "", "what is left of equation i of the loops";
 }
 

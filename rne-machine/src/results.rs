@@ -77,7 +77,7 @@ pub type PassiveRows<T> = Matrix<T>;
 pub struct ClosureStep<T> {
     /// Positions of the dependent joints after the step.
     pub passive: Vec<T>,
-    /// What is left of the equations before it.
+    /// The residual of the equations before it.
     pub residual: Vec<T>,
 }
 

@@ -600,21 +600,21 @@ pub trait ContactDynamics<const DOF: usize, const NV: usize, const TIPS: usize> 
 pub struct ClosureStep<const PASSIVE: usize, const EQUATIONS: usize, T> {
     /// Positions of the dependent joints, rad or m.
     pub passive: [T; PASSIVE],
-    /// What is left of the equations of the loops, loop by loop: p₂ - p₁ of the two places, m, in the axes of the loop,
+    /// The residual of the equations of the loops, loop by loop: p₂ - p₁ of the two places, m, in the axes of the loop,
     /// then the products of the axes that must be perpendicular.
     pub residual: [T; EQUATIONS],
 }
 
 /// A robot with closed loops: an ankle that two rods drive, a four-bar linkage, a delta robot.
 ///
-/// `q`, `qd`, `qdd` and `tau` have `DOF` elements, of the joints that move by themselves. `passive` has the positions of
-/// the `PASSIVE` dependent joints, in the order of the robot file. They must close the loops:
-/// [`close`](Self::close) finds them, and its residual says how well. Where they do not close the loops, the other
-/// functions return numbers that mean nothing. In a singular position, where the dependent joints are not determined,
-/// the numbers are not finite.
+/// `q`, `qd`, `qdd` and `tau` have `DOF` elements, of the joints that move by themselves. `passive` has the positions
+/// of the `PASSIVE` dependent joints, in the order of the robot file. They must close the loops: [`close`](Self::close)
+/// finds them, and its residual says how well. Where they do not close the loops, the other functions return numbers
+/// that mean nothing. In a singular position, where the dependent joints are not determined, the numbers are not
+/// finite.
 ///
-/// `EQUATIONS` is the number of equations of all loops: 5 of a revolute cut, 3 of a spherical one, 4 of a universal one,
-/// 6 of a weld. The equations are solved in the order that the robot file determines, without a search for pivots;
+/// `EQUATIONS` is the number of equations of all loops: 5 of a revolute cut, 3 of a spherical one, 4 of a universal
+/// one, 6 of a weld. The equations are solved in the order that the robot file determines, without a search for pivots;
 /// `rne show` prints the order.
 ///
 /// Source of the equations: W. Khalil, J.-F. Kleinfinger, "Dynamic modeling of closed-loop robots", 1987.
@@ -624,8 +624,8 @@ pub trait ClosedLoops<const DOF: usize, const PASSIVE: usize, const EQUATIONS: u
     #[must_use]
     fn closure_step<T: Scalar>(&self, q: &[T; DOF], passive: &[T; PASSIVE]) -> ClosureStep<PASSIVE, EQUATIONS, T>;
 
-    /// Closes the loops from a guess: five steps of Newton's method, without a branch, and what is left of the equations
-    /// at the result.
+    /// Closes the loops from a guess by five steps of Newton's method, without a branch. The result has the residual of
+    /// the equations at its positions.
     ///
     /// The residual says whether the loops are closed: its elements are below 1e-12 m (`f64`) from a guess within some
     /// tenths of a radian, and large where no position closes them. A loop can be closed in several ways, such as a

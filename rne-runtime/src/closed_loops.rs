@@ -7,8 +7,8 @@
 //! τ = Gᵀ τ_tree                M = (1, G)ᵀ M_tree (1, G)
 //! ```
 //!
-//! The Jacobians and accelerations are those of the two places of each loop, in axes of frame 0, and R_L are the axes of
-//! the loop there. The equations that are kept, and their order, are those of the robot file.
+//! The Jacobians and accelerations are those of the two places of each loop, in axes of frame 0, and R_L are the axes
+//! of the loop there. The equations that are kept, and their order, are those of the robot file.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};

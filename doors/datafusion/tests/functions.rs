@@ -129,6 +129,11 @@ fn numbers(column: &ArrayRef) -> Vec<f64> {
     }
 }
 
+/// The sizes of an arm with these joints and one tip.
+const fn sizes(dof: usize) -> Sizes {
+    Sizes { dof, tips: 1, passive: 0, equations: 0 }
+}
+
 /// The numbers of a part of a record, which may be a record itself.
 fn of_record(column: &ArrayRef) -> Vec<f64> {
     match column.data_type() {
@@ -155,7 +160,7 @@ async fn columns_lists_and_slices_give_the_numbers_of_the_arm() -> Result<()> {
     ] {
         let array = rne::compiled::Array::Rows;
         let given = Arguments::new().q(array(&q)).qd(array(&qd)).qdd(array(&qdd));
-        let mut expected = vec![0.0; states * function.layout(Sizes { dof: joints, tips: 1, passive: 0, equations: 0 }).len()];
+        let mut expected = vec![0.0; states * function.layout(sizes(joints)).len()];
         arm.run(function, states, &given, Destination::Rows(&mut expected)).expect("it computes");
         let columns: Vec<String> = arguments.iter().map(|name| of(name)).collect();
         for arguments in [arguments.join(", "), columns.join(", ")] {
@@ -232,7 +237,7 @@ async fn a_base_that_floats_has_its_functions() -> Result<()> {
             "dq dqd domega",
         ),
     ] {
-        let mut expected = vec![0.0; states * function.layout(Sizes { dof: 2, tips: 1, passive: 0, equations: 0 }).len()];
+        let mut expected = vec![0.0; states * function.layout(sizes(2)).len()];
         arm.run(function, states, &all, Destination::Rows(&mut expected)).expect("it computes");
         let call = format!("{function}('{key}', {arguments})");
         let found = one(&context, &format!("SELECT {call} AS it FROM log")).await?;

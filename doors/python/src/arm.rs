@@ -272,9 +272,8 @@ impl Arm {
         let robot = self.robot();
         let of = |closure: &[f64], joints: &mut dyn Iterator<Item = usize>| joints.map(|at| closure[at]).collect();
         let closures = robot.closed.closures.iter();
-        let pair = |it: &Vec<f64>| {
-            (of(it, &mut robot.coordinates()), of(it, &mut robot.closed.passive.iter().copied()))
-        };
+        let pair =
+            |it: &Vec<f64>| (of(it, &mut robot.coordinates()), of(it, &mut robot.closed.passive.iter().copied()));
         closures.map(pair).collect()
     }
 

@@ -133,9 +133,7 @@ fn evaluate_in<'py, T: Element + Number>(
             };
             Ok(PyTuple::new(py, [of(0)?, of(1)?])?.into_any())
         }
-        Layout::Record(
-            record @ (Record::FloatingTorques | Record::FloatingAccelerations | Record::ClosureStep), _
-        ) => {
+        Layout::Record(record @ (Record::FloatingTorques | Record::FloatingAccelerations | Record::ClosureStep), _) => {
             let first = if record == Record::ClosureStep { arm.robot().closed.passive.len() } else { 6 };
             let first = isize::try_from(first)?;
             let of = |from: isize, to: isize| {

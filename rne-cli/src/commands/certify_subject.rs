@@ -342,7 +342,8 @@ fn not_called(program: &Program) -> Failure {
     Failure::usage(format_args!(
         "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics, \
          gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, \
-         inverse_dynamics_of_floating_base and closure_step. {TYPED}--observer{TYPED:#} certifies the momentum observer",
+         inverse_dynamics_of_floating_base and closure_step. {TYPED}--observer{TYPED:#} certifies the momentum \
+         observer",
         program.function
     ))
 }

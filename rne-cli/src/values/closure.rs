@@ -7,7 +7,7 @@ use crate::outcome::Failure;
 
 /// Newton steps from one guess: some are far away.
 const STEPS: usize = 50;
-/// What may be left of an equation, m or a product of axes.
+/// The largest residual of an equation of a closed loop, m or a product of axes.
 const CLOSED: f64 = 1e-12;
 
 /// Positions of the dependent joints for positions `q` of the others: from the closures of the robot file, the nearest

@@ -1,8 +1,8 @@
 //! The equations of closed loops, and the motion of their dependent joints.
 //!
-//! A loop closes where two places of the tree meet. Its equations r = 0 are those of [`rne_model::closed_loop`]; both
-//! ways to the places begin at the last link that they share, which may be held still, so all vectors are in axes of the
-//! loop:
+//! A loop closes where two places of the tree meet. [`ClosedLoops`](rne_model::ClosedLoops) has its equations r = 0.
+//! Both ways to the places begin at the last link that they share, which may be held still. All vectors are in axes of
+//! the loop:
 //!
 //! ```text
 //! r                  p₂ - p₁;                 a·b
@@ -10,8 +10,8 @@
 //! K̇ (q̇, ṗ)           p̈₂ - p̈₁;                (b × a)·(ω̇₂ - ω̇₁) + (ω₂ - ω₁)·((ω₂ × b) × a + b × (ω₁ × a))
 //! ```
 //!
-//! a is an axis of the first place and b one of the second. With K = [K_q K_p] of the joints that move by themselves and
-//! of the dependent ones, G = -K_p⁻¹ K_q, Ġ q̇ = -K_p⁻¹ K̇ (q̇, ṗ), and a Newton step is p - K_p⁻¹ r. One equation is kept
+//! a is an axis of the first place and b one of the second. With K = [K_q K_p] of the joints that move by themselves
+//! and of the dependent ones, G = -K_p⁻¹ K_q, Ġ q̇ = -K_p⁻¹ K̇ (q̇, ṗ), and a Newton step is p - K_p⁻¹ r. One equation is kept
 //! for each dependent joint; [`ClosedLoops::elimination`](rne_model::ClosedLoops) is their order. There are no pivots
 //! to search for: a singular position divides by zero, and the numbers are not finite then.
 
@@ -59,7 +59,7 @@ struct Motion<'s> {
 pub(crate) struct Closure<'s> {
     builder: &'s Builder,
     loops: Vec<Ways<'s>>,
-    /// What is left of each equation.
+    /// The residual of each equation.
     residuals: Vec<Symbol<'s>>,
     /// K by rows, a column for each joint of the tree that follows no other by a coupling.
     rows: Vec<Vec<Symbol<'s>>>,
@@ -72,7 +72,7 @@ struct Ways<'s> {
 }
 
 impl<'s> Closure<'s> {
-    /// Of an arm in these positions.
+    /// Writes the equations of an arm in these positions.
     pub(crate) fn of(arm: &Arm<'s>, robot: &Robot, states: &[JointState<'s>]) -> Self {
         let (builder, coordinates) = (arm.builder, &arm.coordinates);
         let mut closure = Self { builder, loops: Vec::new(), residuals: Vec::new(), rows: Vec::new() };
@@ -289,7 +289,7 @@ impl<'s> Solved<'s> {
     }
 }
 
-/// A Newton step: the positions of the dependent joints behind it, and what is left of the equations before it.
+/// A Newton step: the positions of the dependent joints after it, and what is left of the equations before it.
 pub(crate) fn step<'s>(builder: &'s Builder, robot: &Robot) -> Outputs<'s> {
     let (closure, changes) = builder.unnamed(|| {
         let arm = Arm::new(builder, robot);

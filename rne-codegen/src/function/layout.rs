@@ -145,7 +145,7 @@ pub enum Length {
     Fixed(usize),
 }
 
-/// What the lengths of arrays are for a robot.
+/// The lengths of the arrays of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
     /// How many coordinates it has.
@@ -159,7 +159,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Those of a robot.
+    /// The sizes of a robot.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let closed = &robot.closed;
