@@ -439,7 +439,12 @@ fn argument(
 /// The error of an option that a function does not take, with the functions that do.
 fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
     // --payload chooses the others
-    let is_named = |other: &Function| other.takes(kind) && other.capability() != Capability::PayloadDynamics;
+    // no robot has functions of closed loops and others
+    let is_named = |other: &Function| {
+        other.takes(kind)
+            && other.capability() != Capability::PayloadDynamics
+            && other.is_of_closed_loops() == function.is_of_closed_loops()
+    };
     let others: Vec<String> = Function::ALL.iter().filter(|other| is_named(other)).map(ToString::to_string).collect();
     let hint = match others.as_slice() {
         [only] => format!("; {only} does"),
