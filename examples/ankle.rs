@@ -7,7 +7,7 @@ use rne::ClosedLoops;
 struct Ankle; // q: motor_left, motor_right; the dependent joints: pitch, roll and those of the rods
 
 fn main() {
-    let (q, qd, qdd) = ([0.15, -0.1], [1.2, -0.8], [3.0, 5.0]); // rad, rad/s, rad/s²
+    let (q, qd, qdd): ([f64; 2], [f64; 2], [f64; 2]) = ([0.15, -0.1], [1.2, -0.8], [3.0, 5.0]); // rad, rad/s, rad/s²
 
     // the positions of the dependent joints, from a guess; the residual says whether the loops are closed
     let closed = Ankle.close(&q, &[0.0; Ankle::PASSIVE]);

@@ -87,13 +87,11 @@ fn closures(robot: &Robot) -> Vec<(Vec<f32>, Vec<f32>)> {
     closures.map(|closure| (of(closure, &mut robot.coordinates()), of(closure, &mut passive()))).collect()
 }
 
-/// The positions of the dependent joints of closed loops for positions `q` of the others: those of the nearest closure
-/// that the robot file has. Empty for a robot without closed loops.
+/// Positions of the dependent joints of closed loops, for states of the other joints that need not close them: those of
+/// the first closure that the robot file has. Empty for a robot without closed loops.
 #[must_use]
-pub fn passive(robot: &Robot, q: &[f32]) -> Vec<f32> {
-    let apart = |of: &[f32]| of.iter().zip(q).map(|(a, b)| (a - b) * (a - b)).sum::<f32>();
-    let nearest = closures(robot).into_iter().min_by(|(a, _), (b, _)| apart(a).total_cmp(&apart(b)));
-    nearest.map(|(_, passive)| passive).unwrap_or_default()
+pub fn passive(robot: &Robot) -> Vec<f32> {
+    closures(robot).into_iter().next().map(|(_, passive)| passive).unwrap_or_default()
 }
 
 /// The errors of the numbers that a program returns; `None` if the interpreter cannot run it with the arguments of
@@ -111,15 +109,15 @@ pub fn errors(
     let takes_torques = program.function.takes(Argument::Torques);
     let errors = largest_errors(sample, program.outputs.len(), |state, rng| {
         let mut between = |(low, high): (f64, f64)| single(low + (high - low) * rng.f64());
-        let q: Vec<f32> = match closed.get(state % closed.len().max(1)) {
-            Some((q, _)) => q.clone(),
-            None => ranges.iter().map(|range| between(range.position)).collect(),
+        let (q, passive) = match closed.get(state % closed.len().max(1)) {
+            Some(closure) => closure.clone(),
+            None => (ranges.iter().map(|range| between(range.position)).collect(), Vec::new()),
         };
         let qd: Vec<f32> = ranges.iter().map(|range| between((-range.velocity, range.velocity))).collect();
         let last = |range: &Range| if takes_torques { range.torque } else { range.acceleration };
         let last: Vec<f32> = ranges.iter().map(|range| between((-last(range), last(range)))).collect();
-        let found = single_precision(robot, &interpreter, [&q, &qd, &last], &sin_cos)?;
-        Some((found, enclosed(robot, &interpreter, [&q, &qd, &last])?))
+        let found = single_precision(robot, &interpreter, [&q, &passive, &qd, &last], &sin_cos)?;
+        Some((found, enclosed(robot, &interpreter, [&q, &passive, &qd, &last])?))
     });
     // the constant 0 is exact, and has no name
     let is_zero = |id| program.values.name(id).is_none() && matches!(program.values.get(id), Value::Constant(_));
@@ -151,12 +149,15 @@ pub(crate) fn largest_errors(
 }
 
 /// Intervals that enclose the exact numbers that a program returns; the last array are accelerations or torques.
-pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: [&[f32]; 3]) -> Option<Vec<Interval>> {
+pub(crate) fn enclosed(
+    robot: &Robot,
+    interpreter: &Interpreter,
+    [q, passive, qd, last]: [&[f32]; 4],
+) -> Option<Vec<Interval>> {
     let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
     let enclose =
         |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
-    let passive = passive(robot, q);
-    let [q, qd, last, parameters, passive] = [q, qd, last, &parameters, &passive].map(enclose);
+    let [q, qd, last, parameters, passive] = [q, qd, last, &parameters, passive].map(enclose);
     let zero = Interval::exactly(0.0);
     let exactly = |x: f32| Interval::exactly(f64::from(x));
     let [fx, fy, fz, nx, ny, nz] = WRENCH.map(exactly);
@@ -183,7 +184,7 @@ pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, [q, qd, last]: 
 pub fn single_precision(
     robot: &Robot,
     interpreter: &Interpreter,
-    [q, qd, last]: [&[f32]; 3],
+    [q, passive, qd, last]: [&[f32]; 4],
     sin_cos: impl Fn(f32) -> (f32, f32),
 ) -> Option<Vec<f32>> {
     let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
@@ -199,7 +200,7 @@ pub fn single_precision(
         base: BASE,
         velocity: VELOCITY,
         base_rotation: std::array::from_fn(|at| BASE_ROTATION[at / 3][at % 3]),
-        passive: &passive(robot, q),
+        passive,
         ..Arguments::of_joints(q, qd, last, 0.0)
     };
     interpreter.run(&arguments, single, sin_cos)

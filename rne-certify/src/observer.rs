@@ -63,7 +63,7 @@ impl LowPass {
         let mut observer = Observer::new(robot.dof(), self);
         for number in [number + board::STATES, number] {
             let [q, qd, tau] = board::state(number, robot.dof());
-            observer.update(&single_precision(robot, interpreter, [&q, &qd, &tau], &sin_cos)?);
+            observer.update(&single_precision(robot, interpreter, [&q, &[], &qd, &tau], &sin_cos)?);
         }
         Some(observer.external)
     }
@@ -98,8 +98,8 @@ impl LowPass {
                 .map(|signal| -> Vec<f32> { waves.iter().map(|wave| single(signal(wave, time))).collect() });
             let tau = ranges.iter().map(|range| single((2.0 * rng.f64() - 1.0) * range.torque));
             let tau: Vec<f32> = tau.collect();
-            found.update(&single_precision(robot, &interpreter, [&q, &qd, &tau], &sin_cos)?);
-            exact.update(&enclosed(robot, &interpreter, [&q, &qd, &tau])?);
+            found.update(&single_precision(robot, &interpreter, [&q, &[], &qd, &tau], &sin_cos)?);
+            exact.update(&enclosed(robot, &interpreter, [&q, &[], &qd, &tau])?);
             Some((found.external.clone(), exact.external.clone()))
         })
     }

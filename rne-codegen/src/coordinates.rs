@@ -9,7 +9,6 @@
 
 use rne_model::Robot;
 
-use crate::formulate::closure::ways;
 use crate::ir::{Builder, Cause, Name, Quantity, Symbol};
 
 /// The coordinates of a robot, and the joints that follow them. Joints are counted from 0.
@@ -72,7 +71,7 @@ fn moved(
 fn linked(robot: &Robot, follows: &[Option<Vec<(usize, f64)>>]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for closed in &robot.closed.loops {
-        let joints = ways(robot, closed).concat();
+        let joints = robot.ways_of_loop(closed).concat();
         let followed = joints.iter().flat_map(|&joint| follows[joint].iter().flatten().map(|(followed, _)| *followed));
         let mut group: Vec<usize> = followed.chain(joints.iter().copied()).collect();
         groups.retain(|other| {

@@ -17,7 +17,8 @@
 //! p₂ - p₁ is in the axes of the loop: those of the first joint that moves one place and not the other, as its link
 //! carries it, before the joint turns.
 
-use crate::FixedFrame;
+use crate::pose::own_joints;
+use crate::{FixedFrame, Robot};
 
 /// A closed loop: `loops` of a robot file, without the parallelograms, which are couplings.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,6 +106,14 @@ pub struct Pivot {
     pub equation: usize,
     /// The place of the joint in [`ClosedLoops::passive`].
     pub passive: usize,
+}
+
+impl Robot {
+    /// The joints that move a place of a loop and not the other, base first: those of the first and of the second place.
+    #[must_use]
+    pub fn ways_of_loop(&self, closed: &ClosedLoop) -> [Vec<usize>; 2] {
+        own_joints(&self.joints, &closed.between)
+    }
 }
 
 impl ClosedLoops {

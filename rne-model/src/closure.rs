@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use crate::matrix::Matrix;
-use crate::pose::{Pose, axis_on_link, cross, difference, dot, link_behind_axis, way};
+use crate::pose::{Pose, axis_on_link, cross, difference, dot, link_behind_axis, own_joints};
 use crate::{ClosedLoop, Convention, Cut, Joint, JointKind};
 
 /// A loop is closed where its equations are off by less, lengths as parts of the loops' size.
@@ -101,7 +101,7 @@ impl<'a> Equations<'a> {
             for (joint, place, axis) in &state.axes {
                 let (velocity, rotation) = self.motion(*joint, *place, axis, &state.places[*place]);
                 let along = turns.iter().map(|turn| dot(*turn, rotation));
-                self.enter(&mut jacobian, start, *joint, velocity.into_iter().chain(along));
+                self.enter(&mut jacobian, start, *joint, |_| 1.0, velocity.into_iter().chain(along));
             }
         }
         jacobian
@@ -117,13 +117,20 @@ impl<'a> Equations<'a> {
     }
 
     /// Adds the column of a joint to those of the variables that it follows.
-    fn enter(&self, matrix: &mut Matrix, start: usize, joint: usize, column: impl Iterator<Item = f64>) {
+    fn enter(
+        &self,
+        matrix: &mut Matrix,
+        start: usize,
+        joint: usize,
+        unit: impl Fn(usize) -> f64,
+        column: impl Iterator<Item = f64>,
+    ) {
         let own = [(joint, 1.0)];
         let of = self.joints[joint].coupling.as_ref().map_or(&own[..], |coupling| &coupling.follows);
         for (row, value) in column.enumerate() {
             for (variable, ratio) in of {
                 if let Ok(at) = self.variables.binary_search(variable) {
-                    matrix.add(start + row, at, ratio * value);
+                    matrix.add(start + row, at, ratio * unit(*variable) * value);
                 }
             }
         }
@@ -146,11 +153,11 @@ impl<'a> Equations<'a> {
             }
             for (joint, place, axis) in &state.axes {
                 let (velocity, rotation) = self.motion(*joint, *place, axis, &state.places[*place]);
-                let by = self.unit(*joint);
                 let turned = equal.iter().flat_map(|&axis| cross(rotation, state.places[*place].axis(axis)));
                 let product = (ways.cut == Cut::Universal).then(|| dot(cross(other.axis(1), one.axis(0)), rotation));
                 let column = velocity.into_iter().map(|v| v / self.size).chain(turned).chain(product);
-                self.enter(&mut derivatives, start, *joint, column.map(|value| by * value));
+                // a follower moves as far as its leader does
+                self.enter(&mut derivatives, start, *joint, |leader| self.unit(leader), column);
             }
         }
         (residual, derivatives)
@@ -351,23 +358,13 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// The joints that move one place of a loop and not the other, base first.
-fn own_joints(joints: &[Joint], closed: &ClosedLoop) -> [Vec<usize>; 2] {
-    let mut ways = closed.between.map(|end| way(joints, end.on));
-    let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
-    for way in &mut ways {
-        way.drain(..shared);
-    }
-    ways
-}
-
 /// The joints that follow no other and that move the places of a loop against each other, in the order of the joints.
 pub(crate) fn moving(joints: &[Joint], closed: &ClosedLoop) -> Vec<usize> {
     let of_joint = |joint: usize| match &joints[joint].coupling {
         Some(coupling) => coupling.follows.iter().map(|(leader, _)| *leader).collect(),
         None => vec![joint],
     };
-    sorted(own_joints(joints, closed).into_iter().flatten().flat_map(of_joint).collect())
+    sorted(own_joints(joints, &closed.between).into_iter().flatten().flat_map(of_joint).collect())
 }
 
 /// In their order, each once.
@@ -379,7 +376,7 @@ pub(crate) fn sorted(mut joints: Vec<usize>) -> Vec<usize> {
 
 impl Ways {
     fn new(joints: &[Joint], convention: Convention, closed: &ClosedLoop) -> Self {
-        let ways = own_joints(joints, closed);
+        let ways = own_joints(joints, &closed.between);
         let first = ways.iter().flatten().next();
         let start = first.map_or(Pose::IDENTITY, |&joint| axis_on_link(joints, convention, joint).turned_back());
         Self { cut: closed.cut, places: closed.between.map(|end| Pose::of(&end.placement)), joints: ways, start }

@@ -7,7 +7,7 @@
 //! are one line, as in palletisers: the loop has two freedoms then. The angle of a side in the plane is the sum of the
 //! positions of the joints that turn it, counted about one direction, and its angle where all positions are 0.
 
-use crate::pose::{Pose, axis_at_zero, cross, difference, dot, link_at_zero, way};
+use crate::pose::{Pose, axis_at_zero, cross, difference, dot, link_at_zero, own_joints};
 use crate::source::{quoted, six_digits};
 use crate::{Convention, Coupling, FixedFrame, Joint, JointKind};
 
@@ -22,10 +22,9 @@ pub(crate) fn couplings(
     convention: Convention,
     joints: &[Joint],
 ) -> Result<[(usize, Coupling); 2], String> {
-    let ways = between.map(|end| way(joints, end.on));
-    let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
+    let ways = own_joints(joints, between);
     let name = |joint: usize| quoted(&joints[joint].name);
-    let (mut first, mut other) = (&ways[0][shared..], &ways[1][shared..]);
+    let (mut first, mut other) = (&ways[0][..], &ways[1][..]);
     let mut ends = *between;
     if other.len() > first.len() {
         (first, other, ends) = (other, first, [ends[1], ends[0]]);

@@ -1,7 +1,7 @@
 //! Placements as numbers, and the frames of a row.
 
 use crate::robot::parent;
-use crate::{Convention, Joint, JointKind, Transform};
+use crate::{Convention, FixedFrame, Joint, JointKind, Transform};
 
 /// A rotation, by rows, and a translation.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +103,13 @@ pub(crate) fn way(joints: &[Joint], on: Option<usize>) -> Vec<usize> {
     let mut way: Vec<usize> = std::iter::successors(on, |&joint| parent(joints, joint)).collect();
     way.reverse();
     way
+}
+
+/// The joints that move one place on the links of a tree and not the other, base first.
+pub(crate) fn own_joints(joints: &[Joint], between: &[FixedFrame; 2]) -> [Vec<usize>; 2] {
+    let ways = between.map(|place| way(joints, place.on));
+    let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
+    ways.map(|way| way[shared..].to_vec())
 }
 
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

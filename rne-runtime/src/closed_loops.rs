@@ -32,19 +32,9 @@ impl Loops<f64> {
         let ClosedLoops { loops, passive, elimination, .. } = &robot.closed;
         let of_tree: Vec<usize> = (0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_none()).collect();
         let place = |joint: usize| of_tree.iter().position(|&other| other == joint);
-        let way = |on: Option<usize>| {
-            let mut way: Vec<usize> = std::iter::successors(on, |&joint| robot.parent(joint)).collect();
-            way.reverse();
-            way
-        };
-        let first_joint = |between: &[FixedFrame; 2]| {
-            let [one, other] = between.map(|place| way(place.on));
-            let shared = one.iter().zip(&other).take_while(|(a, b)| a == b).count();
-            one.get(shared).or_else(|| other.get(shared)).copied()
-        };
         Self {
             cuts: loops.iter().map(|closed| (closed.cut, closed.between)).collect(),
-            axes: loops.iter().map(|closed| first_joint(&closed.between)).collect(),
+            axes: loops.iter().map(|closed| robot.ways_of_loop(closed).concat().first().copied()).collect(),
             coordinates: robot.coordinates().filter_map(place).collect(),
             passive: passive.iter().copied().filter_map(place).collect(),
             elimination: elimination.clone(),

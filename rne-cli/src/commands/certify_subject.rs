@@ -52,10 +52,7 @@ impl Subject<'_> {
             )));
         }
         Ok(match self {
-            Self::Program(program) => {
-                let rest = vec![0.0; dof];
-                program_call(program, prefix, &accuracy::passive(robot, &rest))?
-            }
+            Self::Program(program) => program_call(program, prefix, &accuracy::passive(robot))?,
             Self::Observer(_, low_pass) => low_pass.call(prefix, dof),
             Self::Joints(function) => function.call(prefix, dof),
         })
@@ -67,7 +64,8 @@ impl Subject<'_> {
         match self {
             Self::Program(program) => {
                 let [q, qd, qdd] = board::state(number, robot.dof());
-                accuracy::single_precision(robot, &Interpreter::new(program), [&q, &qd, &qdd], sin_cos)
+                let passive = accuracy::passive(robot);
+                accuracy::single_precision(robot, &Interpreter::new(program), [&q, &passive, &qd, &qdd], sin_cos)
             }
             Self::Observer(program, low_pass) => low_pass.result(robot, &Interpreter::new(program), number, sin_cos),
             Self::Joints(function) => Some(function.result_at(number, robot.dof())),

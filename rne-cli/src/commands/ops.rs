@@ -91,6 +91,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             if arguments.tricks {
                 savings.push_str(&tricks(&robot, compiler.plans()?, terminal::room()));
             } else {
+                let has_loops = !robot.closed.is_empty();
+                if let Some(&other) = arguments.functions.iter().find(|it| it.is_of_closed_loops() != has_loops) {
+                    compiler.compile(other, Form::SevenSteps)?;
+                }
                 let functions: Vec<Function> = choice::functions_of(&robot)
                     .filter(|function| arguments.functions.is_empty() || arguments.functions.contains(function))
                     .collect();

@@ -149,6 +149,8 @@ fn every_function_is_that_of_single_states() {
         for state in &mut states {
             if let Some(mass) = place("m") {
                 state[mass] = state[mass].abs();
+                // a body
+                state[mass + 4..mass + 7].iter_mut().for_each(|moment| *moment = 3.0 + moment.abs());
             }
             // rotations, row by row
             for prefix in ["base_rotation", "pose_"] {

@@ -23,18 +23,6 @@ use crate::formulate::arm::{Placement, identity};
 use crate::formulate::{Arm, Frame, Joint, JointState, Outputs};
 use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
-/// The joints that move a place of a loop and not the other, base first: those of the first and of the second place.
-pub(crate) fn ways(robot: &Robot, closed: &ClosedLoop) -> [Vec<usize>; 2] {
-    let ways = [0, 1].map(|end| {
-        let to_base = std::iter::successors(closed.between[end].on, |&joint| robot.parent(joint));
-        let mut way: Vec<usize> = to_base.collect();
-        way.reverse();
-        way
-    });
-    let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();
-    ways.each_ref().map(|way| way[shared..].to_vec())
-}
-
 /// A joint on a way: its axis, a point of it, and whether it is on the way to the first place.
 struct Station<'s> {
     joint: usize,
@@ -151,7 +139,7 @@ impl<'s> Closure<'s> {
 
 impl<'s> Ways<'s> {
     fn of(arm: &Arm<'s>, robot: &Robot, states: &[JointState<'s>], closed: &ClosedLoop) -> Self {
-        let both = ways(robot, closed);
+        let both = robot.ways_of_loop(closed);
         // the axes of the loop are those of this joint where it is mounted
         let axes = both.iter().flatten().next().map(|&joint| arm.links[joint].mount);
         let start = |rotation, lever| match axes {
