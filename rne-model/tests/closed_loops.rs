@@ -533,3 +533,44 @@ fn messages() {
     .map(|text| checked(&text).expect_err(&text));
     insta::assert_snapshot!(text.join("\n\n"));
 }
+
+/// A joint in radians that follows a slide moves as far as the slide does: the search for closures takes steps in metres
+/// for both.
+#[test]
+fn a_follower_in_radians_of_a_slide_closes() {
+    let text = "
+format: 2
+name: m
+source: x
+convention: modified
+gravity: [0, 0, -9.81]
+tool: {on: k5}
+joints:
+  - {name: k0, type: revolute, dh: {theta: -1.9317, d: -0.8962, a: 0.3174, alpha: -1.5707}}
+  - {name: k1, type: revolute, dh: {theta: -0.8313, d: -0.9585, a: -0.1516, alpha: 1.5707}}
+  - {name: k2, type: prismatic, dh: {theta: 1.6805, d: -0.5900, a: 1.2095, alpha: -1.5707}}
+  - {name: k3, type: prismatic, dh: {theta: 2.6659, d: -1.6854, a: 0.4758, alpha: 1.5707}}
+  - {name: k4, type: revolute, dh: {theta: -0.2627, d: 1.1098, a: 0.2239, alpha: 0.0, gamma: 0.8648, b: -1.2685}}
+  - {name: k5, type: revolute, dh: {theta: -2.8046, d: -0.0916, a: -0.2830, alpha: 1.5707}}
+couplings: [{joint: k0, follows: {k3: 1.7525}, offset: 0.0}]
+loops:
+  - name: l0
+    cut: universal
+    between:
+      - {on: base, xyz: [0.1799, 1.9487, 1.5778], rpy: [-0.0713, -1.3394, -0.3253]}
+      - {on: k5, xyz: [1.9592, -0.5403, 3.1157], rpy: [-2.0687, -0.1467, 0.7817]}
+    dependent: [k1, k2, k4, k5]
+";
+    let read = Reader::new("m").trees().couplings().loops().read(text.as_bytes());
+    let robot = read.unwrap_or_else(|report| panic!("{}", report.render(false))).robot;
+    assert_eq!(robot.closed.passive, [1, 2, 4, 5]);
+}
+
+#[test]
+fn loops_on_a_floating_base_are_refused() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/four_bar.yaml")).expect("a file");
+    let floating = format!("{text}floating_base: {{name: trunk, link: {{mass: 3}}}}\n");
+    let report = Reader::new("m").trees().couplings().loops().read(floating.as_bytes()).expect_err("not supported");
+    let message = report.render(false);
+    assert!(message.contains("closed loops and a `floating_base`") && message.contains("m:13:5"), "{message}");
+}

@@ -29,6 +29,9 @@ pub(crate) struct Loops<S> {
 
 impl Loops<f64> {
     pub(crate) fn of(robot: &Robot) -> Self {
+        if robot.closed.is_empty() {
+            return Self::none();
+        }
         let ClosedLoops { loops, passive, elimination, .. } = &robot.closed;
         let of_tree: Vec<usize> = (0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_none()).collect();
         let place = |joint: usize| of_tree.iter().position(|&other| other == joint);

@@ -234,14 +234,24 @@ fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>
         (Quantity::LinearMomentum, _) => "N s",
         (Quantity::CentroidalMoment, _) if program.function.takes(Argument::BaseTwist) => "N m s",
         (Quantity::BaseMoment | Quantity::CentroidalMoment, _) => "N m",
+        // a distance of two places, or a product of axes
+        (Quantity::Residual, _) => "m or 1",
         (Quantity::BaseForce, _) | (_, None) => "N",
+        (Quantity::ClosedPosition, Some(joint)) => match robot.joints[joint].row.kind {
+            JointKind::Revolute => "rad",
+            JointKind::Prismatic => "m",
+        },
+        (Quantity::LoopBias, Some(joint)) => match robot.joints[joint].row.kind {
+            JointKind::Revolute => "rad/s²",
+            JointKind::Prismatic => "m/s²",
+        },
         (_, Some(joint)) if program.function.returns_accelerations() => match robot.joints[joint].row.kind {
             JointKind::Revolute => "rad/s²",
             JointKind::Prismatic => "m/s²",
         },
         (_, Some(joint)) => robot.joints[joint].row.kind.effort_unit(),
     };
-    let is_of_base = matches!(name.quantity, Quantity::BaseForce | Quantity::BaseMoment);
+    let is_of_base = matches!(name.quantity, Quantity::BaseForce | Quantity::BaseMoment | Quantity::Residual);
     (name.to_string(), joint.filter(|_| !is_of_base), unit)
 }
 

@@ -1,6 +1,6 @@
 //! Robots some of whose joints follow others.
 
-use crate::call::{fails, fine, folder, rne};
+use crate::call::{fails, fine, folder, rne, rne_reading};
 use crate::certify::has_tools;
 use std::fmt::Write as _;
 
@@ -153,6 +153,38 @@ fn limits_of_a_follower_are_in_the_code() {
 }
 
 const FOUR_BAR: &str = "docs/four_bar.yaml";
+
+/// The angle of the crank leads to torques, with and without the positions of the dependent joints.
+#[test]
+fn closed_loops_are_computed() {
+    let torque = |more: &[&str]| -> f64 {
+        let arguments = [&["eval", FOUR_BAR, "--q", "0.3", "--qd", "1", "--qdd", "2", "--json"][..], more].concat();
+        let json: serde_json::Value = serde_json::from_str(&fine(&arguments)).expect("JSON");
+        json["result"][0].as_f64().expect("a torque")
+    };
+    let closed = torque(&[]);
+    let given = torque(&["--passive", "0.23838309638800434,1.3098110088633859"]);
+    assert!((closed - given).abs() < 1e-12 * closed.abs(), "{closed} {given}");
+    // of two closures the positions that are given decide, and open ones are told of
+    let open = rne(&["eval", FOUR_BAR, "--q", "0.3", "--qd", "1", "--passive", "5,-7"]);
+    assert!(open.status == 0 && open.err.contains("--passive does not close the loops"), "{open:?}");
+    fails(2, &["eval", FOUR_BAR, "--q", "0.3", "--passive", "1"], &["--passive needs 2 numbers, not 1"]);
+    fails(2, &["eval", FOUR_BAR, "--q", "0.3", "--function", "mass_matrix"], &["Use `mass_matrix_of_loops`"]);
+    fails(2, &["eval", "planar2", "--q", "0,0", "--function", "loop_map"], &["of robots with closed loops"]);
+    let functions = fine(&["ops", FOUR_BAR]);
+    assert!(functions.contains("closure_step") && !functions.contains(" mass_matrix "), "{functions}");
+    assert!(rne(&["ops", FOUR_BAR, "--function", "mass_matrix"]).status != 0, "no function of loops");
+}
+
+/// A table of states has a column for each dependent joint.
+#[test]
+fn states_of_closed_loops_have_their_columns() {
+    let ankle = "benches/trees/loops/g1_ankle.yaml";
+    let header = "q1,q2,passive1,passive2,passive3,passive4,passive5,passive6";
+    let states = format!("{header}\n0.1,0.1,0,0,0,0,0,0\n");
+    let called = rne_reading(&["eval", ankle, "--function", "mass_matrix_of_loops", "--states", "-"], &states);
+    assert!(called.status == 0 && called.out.lines().count() == 2, "{called:?}");
+}
 
 #[test]
 fn closed_loops_are_checked_and_shown_and_refused_elsewhere() {

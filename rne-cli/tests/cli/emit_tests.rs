@@ -7,13 +7,16 @@ use std::process::{Command, Output};
 use crate::call::{ROOT, fails, fine, folder};
 
 /// Motors that choose by a sign; a joint that slides, a modified table and accelerations that are divided; parameters.
-const ROBOTS: [&[&str]; 5] = [
+const ROBOTS: [&[&str]; 7] = [
     &["robots/puma560.yaml", "--rotors"],
     &["robots/stanford.yaml"],
     &["robots/puma560_mdh.yaml", "--form", "reduced"],
     &["docs/desk_arm.yaml", "--run-time", "upper,fore"],
     // numbers of the table that several steps need
     &["docs/every-key.yaml", "--run-time", "upper,rod"],
+    // closed loops
+    &["docs/four_bar.yaml"],
+    &["benches/trees/loops/g1_ankle.yaml", "--form", "reduced"],
 ];
 
 /// Every second robot, with the two ways to write its code in turns; each with both where all is asked for.
