@@ -100,7 +100,8 @@ pub(crate) fn stubs() -> String {
             Returned::TorqueDerivatives
             | Returned::MomentumAndRate
             | Returned::FloatingTorques
-            | Returned::FloatingAccelerations => "tuple[Floats, Floats]",
+            | Returned::FloatingAccelerations
+            | Returned::ClosureStep => "tuple[Floats, Floats]",
             Returned::AccelerationsAndWrenches | Returned::FloatingTorqueDerivatives => "tuple[Floats, Floats, Floats]",
             _ => "Floats",
         };
@@ -142,7 +143,8 @@ pub(crate) fn functions() -> String {
          |---|---|---|---|---|---|---|---|\n",
     );
     for capability in Capability::ALL {
-        for function in capability.functions() {
+        // the PUMA 560 has no closed loops
+        for function in capability.functions().filter(|function| !function.is_of_closed_loops()) {
             let count = |form| {
                 Compiler::new(&robot).with_plans(&plans).compile(function, form).expect("finite constants").operations()
             };

@@ -88,7 +88,7 @@ fn rust_passes_its_tests() {
         let output = tested_rust(&folder, &code, &[]);
         assert!(output.status.success(), "{robot:?}: {}", said(&output));
         let tests = code.matches("#[test]").count();
-        assert!(tests >= 27 && said(&output).contains(&format!("{tests} passed; 0 failed")), "{}", said(&output));
+        assert!(tests >= 6 && said(&output).contains(&format!("{tests} passed; 0 failed")), "{}", said(&output));
     }
     // tests change nothing else, and those of a crate without `std` have it
     let plain = fine(&["emit", "robots/planar2.yaml"]);

@@ -330,19 +330,23 @@ class Arm:
     ) -> tuple[Floats, Floats, Floats]:
         """Derivatives of `inverse_dynamics_of_floating_base` by q, by q̇ and by the angular velocity of the base."""
     def closure_step(
-        self, q: Joints, passive: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+        self, q: Joints, passive: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """One Newton step towards closed loops: better positions of the dependent joints, and what is left."""
     def loop_map(
-        self, q: Joints, passive: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+        self, q: Joints, passive: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The matrix G of closed loops: the velocities of the dependent joints are G q̇."""
     def loop_map_rate_times_velocity(
-        self, q: Joints, passive: Joints, qd: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+        self, q: Joints, passive: Joints, qd: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations of the dependent joints of closed loops where the others do not accelerate: Ġ q̇."""
     def inverse_dynamics_of_loops(
-        self, q: Joints, passive: Joints, qd: Joints, qdd: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+        self, q: Joints, passive: Joints, qd: Joints, qdd: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques of a robot with closed loops, of the joints that move by themselves."""
     def inverse_dynamics_of_loops_with_wrenches(
@@ -351,11 +355,13 @@ class Arm:
     ) -> Floats:
         """Torques of a robot with closed loops when it exerts a force and a moment at each tip."""
     def mass_matrix_of_loops(
-        self, q: Joints, passive: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+        self, q: Joints, passive: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The mass matrix of a robot with closed loops, of the joints that move by themselves: symmetric."""
     def forward_dynamics_of_loops(
-        self, q: Joints, passive: Joints, qd: Joints, tau: Joints, *, parameters: Parameters = ..., out: Floats | None = ...,
+        self, q: Joints, passive: Joints, qd: Joints, tau: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations of a robot with closed loops for torques `tau` of the joints that move by themselves."""
     # <!-- end -->
