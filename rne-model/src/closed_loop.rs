@@ -109,7 +109,7 @@ pub struct Pivot {
 }
 
 impl Robot {
-    /// The joints that move a place of a loop and not the other, base first: those of the first and of the second place.
+    /// The joints that move one place of a loop and not the other, base first: for the first and for the second place.
     #[must_use]
     pub fn ways_of_loop(&self, closed: &ClosedLoop) -> [Vec<usize>; 2] {
         own_joints(&self.joints, &closed.between)

@@ -534,8 +534,8 @@ fn messages() {
     insta::assert_snapshot!(text.join("\n\n"));
 }
 
-/// A joint in radians that follows a slide moves as far as the slide does: the search for closures takes steps in metres
-/// for both.
+/// A joint in radians that follows a slide moves as far as the slide does: the search for closures takes steps in
+/// metres for both.
 #[test]
 fn a_follower_in_radians_of_a_slide_closes() {
     let text = "

@@ -12,8 +12,8 @@
 //!
 //! a is an axis of the first place and b one of the second. With K = [K_q K_p] of the joints that move by themselves
 //! and of the dependent ones, G = -K_p⁻¹ K_q, Ġ q̇ = -K_p⁻¹ K̇ (q̇, ṗ), and a Newton step is p - K_p⁻¹ r. One equation is
-//! kept for each dependent joint; [`ClosedLoops::elimination`](rne_model::ClosedLoops) is their order. There are no pivots
-//! to search for: a singular position divides by zero, and the numbers are not finite then.
+//! kept for each dependent joint; [`ClosedLoops::elimination`](rne_model::ClosedLoops) is their order. There are no
+//! pivots to search for: a singular position divides by zero, and the numbers are not finite then.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::{ClosedLoop, FixedFrame, Pivot, Robot};
