@@ -177,3 +177,39 @@ fn the_machine_computes_closed_loops() {
         }
     }
 }
+
+/// Motors that move a mechanism in a circle do no work: it comes back with the energy that it had.
+#[test]
+fn a_closed_motion_takes_no_work() {
+    const POINTS: u32 = 128;
+    for name in ROBOTS {
+        let robot = robot(&read(&format!("benches/trees/loops/{name}.yaml")));
+        let golden: Vec<Value> =
+            serde_json::from_slice(&read(&format!("tests/golden/loops/{name}.json"))).expect("JSON");
+        let (middle, mut passive) = (State(&golden[0]).numbers("q"), State(&golden[0]).numbers("passive"));
+        let arm = DynArm::from_robot(&robot);
+        let program =
+            Compiler::new(&robot).compile(Function::InverseDynamicsOfLoops, Form::Reduced).expect("a program");
+        let interpreter = Interpreter::new(&program);
+        let (mut work, mut spent) = (0.0, 0.0_f64);
+        for point in 0..POINTS {
+            // one turn in 2π s; each joint with a phase of its own
+            let time = std::f64::consts::TAU * f64::from(point) / f64::from(POINTS);
+            let motion = |joint: usize| {
+                let (sine, cosine) = (time + 0.7 * joint as f64).sin_cos();
+                [middle[joint] + 0.05 * sine, 0.05 * cosine, -0.05 * sine]
+            };
+            let [q, qd, qdd] =
+                [0, 1, 2].map(|order| (0..middle.len()).map(|joint| motion(joint)[order]).collect::<Vec<f64>>());
+            for _ in 0..8 {
+                passive = arm.closure_step(&q, &passive).expect("one number per joint").0;
+            }
+            let arguments = Arguments { passive: &passive, ..Arguments::of_joints(&q, &qd, &qdd, 0.0) };
+            let tau = interpreter.run(&arguments, |x| x, f64::sin_cos).expect("all arguments");
+            let power: f64 = tau.iter().zip(&qd).map(|(tau, qd)| tau * qd).sum();
+            work += power;
+            spent += power.abs();
+        }
+        assert!(work.abs() < TOLERANCE * spent, "{name}: {work:e} of {spent:e}");
+    }
+}
