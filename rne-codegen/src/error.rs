@@ -288,19 +288,22 @@ impl fmt::Display for CompileError {
                 "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler \
                  can compile in reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
             ),
-            Self::HasClosedLoops { function, name } => write!(
-                f,
-                "`{function}` is not computed for robots with closed loops, and the robot has the loop `{name}`: the \
-                 positions of its dependent joints are arguments, too. Use `{}`",
+            Self::HasClosedLoops { function, name } => {
+                write!(
+                    f,
+                    "`{function}` is not computed for robots with closed loops, and the robot has the loop `{name}`: \
+                     the positions of its dependent joints are arguments, too. "
+                )?;
                 match function {
-                    Function::MassMatrix => "mass_matrix_of_loops",
-                    Function::ForwardDynamics => "forward_dynamics_of_loops",
+                    Function::MassMatrix => f.write_str("Use `mass_matrix_of_loops`"),
+                    Function::ForwardDynamics => f.write_str("Use `forward_dynamics_of_loops`"),
                     Function::InverseDynamicsWithWrench | Function::InverseDynamicsWithWrenches => {
-                        "inverse_dynamics_of_loops_with_wrenches"
+                        f.write_str("Use `inverse_dynamics_of_loops_with_wrenches`")
                     }
-                    _ => "inverse_dynamics_of_loops",
+                    Function::InverseDynamics => f.write_str("Use `inverse_dynamics_of_loops`"),
+                    _ => f.write_str("docs/closed-loops.md lists the functions of closed loops"),
                 }
-            ),
+            }
             Self::NoClosedLoops { function } => write!(
                 f,
                 "`{function}` is of robots with closed loops; this robot file has no `loops` with a cut joint that is \

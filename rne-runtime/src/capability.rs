@@ -627,8 +627,9 @@ pub trait ClosedLoops<const DOF: usize, const PASSIVE: usize, const EQUATIONS: u
     /// Closes the loops from a guess by five steps of Newton's method, without a branch. The result has the residual of
     /// the equations at its positions.
     ///
-    /// The residual says whether the loops are closed: its elements are below 1e-12 m (`f64`) from a guess within some
-    /// tenths of a radian, and large where no position closes them. A loop can be closed in several ways, such as a
+    /// The residual says whether the loops are closed: from the positions of the last control cycle it is at rounding.
+    /// From a guess some tenths of a radian off, five steps may leave 1e-8 m or fail. It stays large where no position
+    /// closes the loops. A loop can be closed in several ways, such as a
     /// four-bar linkage with its elbow up or down; the guess decides which of them is found.
     #[must_use]
     fn close<T: Scalar>(&self, q: &[T; DOF], guess: &[T; PASSIVE]) -> ClosureStep<PASSIVE, EQUATIONS, T> {

@@ -196,7 +196,7 @@ fn a_closed_motion_takes_no_work() {
             // one turn in 2π s; each joint with a phase of its own
             let time = std::f64::consts::TAU * f64::from(point) / f64::from(POINTS);
             let motion = |joint: usize| {
-                let (sine, cosine) = (time + 0.7 * joint as f64).sin_cos();
+                let (sine, cosine) = (time + 0.7 * f64::from(u32::try_from(joint).expect("small"))).sin_cos();
                 [middle[joint] + 0.05 * sine, 0.05 * cosine, -0.05 * sine]
             };
             let [q, qd, qdd] =

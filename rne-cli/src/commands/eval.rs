@@ -25,7 +25,6 @@ use crate::render::layout::PAGE;
 use crate::render::letters::Letters;
 use crate::render::worksheet::{self, Axes, Narrowed};
 use crate::values::choice;
-use crate::values::closure;
 use crate::values::definite::{BUT_FOR_ROUNDING, NOT_DEFINITE, is_indefinite, is_singular};
 use crate::values::limits;
 use crate::values::numbers::List;
@@ -65,7 +64,7 @@ pub(crate) struct Arguments {
     /// A wrench at the tip N of `tips`; may be repeated
     #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
     tip_wrench: Vec<TipWrench>,
-    /// Dependent joints of loops [default: solved]
+    /// Guess of the dependent joints of closed loops
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     passive: Option<List>,
     /// Angular velocity of the base, rad/s [default: 0]
@@ -213,7 +212,6 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
     }
     let mut remark = limits::remark(&robot, &state.q);
-    remark.push_str(&closure::remark(&arm, &state));
     if is_indefinite(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }

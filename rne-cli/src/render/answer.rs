@@ -123,8 +123,10 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
         }
     }
     if takes(Argument::Passive) {
-        let passive = state.passive.iter().copied().map(exact_digits).collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "{QUIET}the dependent joints of the loops are at ({passive}) rad or m{QUIET:#}");
+        let passive = robot.closed.passive.iter().zip(&state.passive);
+        let named = passive.map(|(&joint, &at)| format!("{} = {}", robot.joints[joint].name, exact_digits(at)));
+        let named = named.collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "{QUIET}the dependent joints of the loops are at {named} (rad, prismatic: m){QUIET:#}");
     }
     if takes(Argument::BaseVelocity) {
         let omega = list(&state.base.omega);

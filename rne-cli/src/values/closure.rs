@@ -3,19 +3,69 @@
 use std::f64::consts::TAU;
 
 use rne::DynArm;
-use rne_codegen::{Argument, Function};
 use rne_model::{JointKind, Robot};
 
 use crate::outcome::Failure;
-use crate::values::state::State;
 
 /// Newton steps from one guess: some are far away.
 const STEPS: usize = 50;
 /// The largest residual of an equation of a closed loop, m or a product of axes.
 const CLOSED: f64 = 1e-12;
+/// How far the other joints move between two closures on the way from a reference, rad or m.
+const STRIDE: f64 = 0.05;
+/// Strides of the longest way.
+const STRIDES: f64 = 1000.0;
 
-/// The largest residual of loops that count as closed, where a caller gives the positions with some digits.
-const OPEN: f64 = 1e-6;
+/// Positions of the dependent joints for positions `q` of the others: the closure that a guess leads to. Without a
+/// guess, the closure that is reached from the first configuration of the robot file, without a jump to another
+/// assembly; where no way leads there, from the other configurations.
+pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<Vec<f64>, Failure> {
+    let arm = DynArm::from_robot(robot);
+    let found = match guess {
+        Some(guess) => newton(&arm, q, guess.to_vec()),
+        None => robot.closed.closures.iter().find_map(|closure| {
+            let of = |joints: &mut dyn Iterator<Item = usize>| joints.map(|at| closure[at]).collect::<Vec<f64>>();
+            let start = of(&mut robot.coordinates());
+            continued(&arm, [&start, q], of(&mut robot.closed.passive.iter().copied()))
+        }),
+    };
+    let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
+    let failure = || {
+        let what = if guess.is_some() { "another guess" } else { "a guess" };
+        Failure::usage(format_args!(
+            "no positions of {} were found that close the loops of {} at these positions --q. Give {what} with \
+             --passive, or other positions",
+            names.join(", "),
+            robot.name
+        ))
+    };
+    found.map(|passive| without_turns(robot, passive)).ok_or_else(failure)
+}
+
+/// The closure that Newton's method finds from a guess.
+fn newton(arm: &DynArm, q: &[f64], mut passive: Vec<f64>) -> Option<Vec<f64>> {
+    for _ in 0..STEPS {
+        let (next, residual) = arm.closure_step(q, &passive).ok()?;
+        if residual.iter().all(|left| left.abs() < CLOSED) {
+            return Some(passive);
+        }
+        passive = next;
+    }
+    None
+}
+
+/// The closure at the end of a straight way of the other joints, stride by stride.
+fn continued(arm: &DynArm, [from, to]: [&[f64]; 2], mut passive: Vec<f64>) -> Option<Vec<f64>> {
+    let longest = from.iter().zip(to).fold(0.0_f64, |longest, (a, b)| longest.max((b - a).abs()));
+    let strides = (longest / STRIDE).ceil().clamp(1.0, STRIDES);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most a thousand
+    for stride in 1..=strides as u32 {
+        let part = f64::from(stride) / strides;
+        let q: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + part * (b - a)).collect();
+        passive = newton(arm, if part == 1.0 { to } else { &q }, passive)?;
+    }
+    Some(passive)
+}
 
 /// Positions without whole turns.
 fn without_turns(robot: &Robot, passive: Vec<f64>) -> Vec<f64> {
@@ -24,57 +74,4 @@ fn without_turns(robot: &Robot, passive: Vec<f64>) -> Vec<f64> {
         JointKind::Prismatic => position,
     };
     passive.into_iter().zip(&robot.closed.passive).map(of_joint).collect()
-}
-
-/// Positions of the dependent joints for positions `q` of the others: from the closures of the robot file, the nearest
-/// first.
-pub(crate) fn closed(robot: &Robot, q: &[f64]) -> Result<Vec<f64>, Failure> {
-    let (arm, coordinates) = (DynArm::from_robot(robot), robot.coordinates().collect::<Vec<_>>());
-    let mut guesses: Vec<(f64, Vec<f64>)> = robot
-        .closed
-        .closures
-        .iter()
-        .map(|closure| {
-            let apart = coordinates.iter().zip(q).map(|(&joint, q)| (closure[joint] - q).powi(2)).sum();
-            (apart, robot.closed.passive.iter().map(|&joint| closure[joint]).collect())
-        })
-        .collect();
-    guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut least = f64::INFINITY;
-    for (_, mut passive) in guesses {
-        for _ in 0..STEPS {
-            // a list of another length than the joints is refused elsewhere
-            let Ok((next, residual)) = arm.closure_step(q, &passive) else { return Ok(passive) };
-            let left = largest(&residual);
-            if left < CLOSED {
-                return Ok(without_turns(robot, passive));
-            }
-            least = least.min(left);
-            passive = next;
-        }
-    }
-    let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
-    Err(Failure::usage(format_args!(
-        "no positions of {} were found that close the loops of {} at these positions --q: {least:.2e} m are left. Give \
-         a guess with --passive, or other positions",
-        names.join(", "),
-        robot.name
-    )))
-}
-
-/// The remark on positions of dependent joints that do not close the loops; empty where they do.
-pub(crate) fn remark(arm: &DynArm, State { function, q, passive, .. }: &State) -> String {
-    // its residual is a part of the result of a step
-    if *function == Function::ClosureStep || !function.takes(Argument::Passive) {
-        return String::new();
-    }
-    let left = arm.closure_step(q, passive).map_or(0.0, |(_, residual)| largest(&residual));
-    if left < OPEN {
-        return String::new();
-    }
-    format!("note: --passive does not close the loops: {left:.2e} m are left, so these numbers mean nothing\n")
-}
-
-fn largest(residual: &[f64]) -> f64 {
-    residual.iter().fold(0.0, |largest, x| if x.is_nan() { f64::INFINITY } else { f64::max(largest, x.abs()) })
 }

@@ -101,14 +101,7 @@ impl State {
         let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
         let of_joints = |name, list, kind| argument(function, name, list, kind, robot.dof(), &per_joint);
         let q = of_joints("--q", given.q, Positions)?;
-        let passive = match (&q, given.passive) {
-            (Some(q), None) if function.takes(Argument::Passive) => closure::closed(robot, q)?,
-            (_, list) => {
-                let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
-                let each = format!("one number for each dependent joint of {}: {}", robot.name, names.join(", "));
-                argument(function, "--passive", list, Argument::Passive, names.len(), &each)?.unwrap_or_default()
-            }
-        };
+        let passive = passive(function, given.passive, q.as_deref(), robot)?;
         let qd = of_joints("--qd", given.qd, Rates)?;
         let qdd = of_joints("--qdd", given.qdd, Accelerations)?;
         let tau = of_joints("--tau", given.tau, Torques)?;
@@ -291,6 +284,22 @@ macro_rules! records {
 records! {
     Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd }
     BaseAcceleration { linear, angular } DynFloatingTorqueDerivatives { dq, dqd, domega }
+}
+
+/// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step
+/// takes the given ones as they are.
+fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &Robot) -> Result<Vec<f64>, Failure> {
+    let Some(q) = q.filter(|_| function.takes(Argument::Passive) || list.is_some()) else { return Ok(Vec::new()) };
+    let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
+    let each = format!("one number for each dependent joint of {}: {}", robot.name, names.join(", "));
+    let given = match list {
+        Some(_) => argument(function, "--passive", list, Argument::Passive, names.len(), &each)?,
+        None => None,
+    };
+    match given {
+        Some(given) if function == Function::ClosureStep => Ok(given),
+        given => closure::closed(robot, q, given.as_deref()),
+    }
 }
 
 /// The numbers of a payload in words.
