@@ -6,7 +6,7 @@ Run it in the folder that has benches/trees/loops/g1_ankle.yaml: python examples
 import numpy as np
 import rne
 
-arm = rne.Arm("benches/trees/loops/g1_ankle.yaml")
+arm = rne.load("benches/trees/loops/g1_ankle.yaml")
 q, qd, qdd = np.array([0.15, -0.1]), np.array([1.2, -0.8]), np.array([3.0, 5.0])  # of the motors
 
 # the positions of the dependent joints, from a guess; the residual says whether the loops are closed

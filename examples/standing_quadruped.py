@@ -6,7 +6,7 @@ Run it in the folder that has docs/standing_hyq.yaml: python examples/standing_q
 import numpy as np
 import rne
 
-arm = rne.Arm("docs/standing_hyq.yaml")
+arm = rne.load("docs/standing_hyq.yaml")
 level = np.eye(3)  # the axes of the trunk are those of the world
 
 # hips level, knees bent; each leg is hip abduction, hip flexion, knee, rad

@@ -291,7 +291,7 @@ impl Arm {
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let step = |passive: &Bound<'py, PyAny>| -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-            let given = vec![self.of_joints("q", q)?, self.of_passive("guess", passive)?];
+            let given = vec![self.of_joints("q", q)?, self.of_passive("passive", passive)?];
             self.compute(py, Function::ClosureStep, given, parameters, None)?.extract()
         };
         let mut passive = guess.clone();
