@@ -214,8 +214,8 @@ impl Jacobians<'_> {
         })))
     }
 
-    /// A choice of as many dependent joints as the equations of some loops determine: of those without a motor, and of
-    /// those that are named already if possible. Empty if there is none.
+    /// Chooses as many dependent joints as the equations of some loops determine. None of them has a motor, and joints
+    /// that `dependent` names come first. The list is empty if no choice is possible.
     fn choice(&self, loops: &[usize], joints: &[usize], rank: usize) -> Vec<usize> {
         let free: Vec<usize> = joints.iter().copied().filter(|&joint| self.joints[joint].motor.is_none()).collect();
         let (rows, columns) = (self.rows_of(loops), self.columns_of(&free));

@@ -7,7 +7,7 @@ use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
 use rne_model::{Reader, Robot};
 use serde_json::Value;
 
-/// Of the largest number of a function.
+/// The largest error that is allowed, relative to the largest number that the function returns.
 const TOLERANCE: f64 = 1e-9;
 
 /// Robots with golden values of their own.

@@ -88,7 +88,7 @@ fn largest(real: &str) -> String {
 
 /// The function that compares a number with another.
 const COMPARE: &str = "\
-// Numbers that are to be the same, to so many parts of a scale; what is no number never is.
+// Compares a number with the expected one: the difference may be `allowed` at most. NaN is always wrong.
 static void test_compare(const char *what, unsigned state, unsigned number, double found, double expected,
     double allowed)
 {
