@@ -124,9 +124,10 @@
 pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
-    CoriolisMatrix, Energy, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics,
-    FloatingRegressor, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    CoriolisMatrix, Energy, FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingInverseDynamicsDerivatives,
+    FloatingKinematics, FloatingRegressor, ForwardDynamics, FrameKinematics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
+    Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -135,12 +136,13 @@ pub use rne_runtime::{
     AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, Constant,
-    ContactDynamics, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy,
-    FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, FloatingTorqueDerivatives,
-    FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, JointOrderError,
-    JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass,
-    ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches,
-    TorqueDerivatives, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    ContactDynamics, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
+    FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
+    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
+    InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix,
+    MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics,
+    Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
+    dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

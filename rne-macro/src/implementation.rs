@@ -117,6 +117,10 @@ impl Target<'_> {
                 let (passive, equations) = (&self.passive, &self.equations);
                 quote!(#dof, #passive, #equations, #tips)
             }
+            Capability::FloatingClosedLoops => {
+                let passive = &self.passive;
+                quote!(#dof, #passive, #velocities, #tips)
+            }
             Capability::FloatingRegressor => {
                 let bodies = bodies(dof);
                 quote!(#dof, #velocities, #bodies)
@@ -145,8 +149,10 @@ impl Target<'_> {
         if capability == Capability::FloatingRegressor {
             generics.params.push(syn::parse_quote!(const __BODIES: ::core::primitive::usize));
         }
-        if capability == Capability::ClosedLoops {
+        if matches!(capability, Capability::ClosedLoops | Capability::FloatingClosedLoops) {
             generics.params.push(syn::parse_quote!(const __PASSIVE: ::core::primitive::usize));
+        }
+        if capability == Capability::ClosedLoops {
             generics.params.push(syn::parse_quote!(const __EQUATIONS: ::core::primitive::usize));
         }
         if capability.has_tips() {

@@ -344,6 +344,18 @@ pub fn derive_closed_loops(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ClosedLoops, input.into()).into()
 }
 
+/// Implements the trait `FloatingClosedLoops` for a struct: a robot with closed loops whose base nothing holds.
+///
+/// It belongs beside [`ClosedLoops`](macro@ClosedLoops), whose functions close the loops, and with which `DOF`,
+/// `PASSIVE`, names and limits come. The tips are the same.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics). The type gets a constant with the operations of
+/// each method, `FLOATING_MASS_MATRIX_OF_LOOPS_OPERATIONS` and so on.
+#[proc_macro_derive(FloatingClosedLoops, attributes(robot))]
+pub fn derive_floating_closed_loops(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingClosedLoops, input.into()).into()
+}
+
 /// Implements the trait `FloatingInverseDynamicsDerivatives` for a struct: the derivatives of the wrench on a base that
 /// nothing holds and of the torques.
 ///

@@ -45,7 +45,8 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         | Capability::FloatingKinematics
         | Capability::ContactDynamics
         | Capability::FloatingInverseDynamicsDerivatives
-        | Capability::ClosedLoops => &[],
+        | Capability::ClosedLoops
+        | Capability::FloatingClosedLoops => &[],
     }
 }
 

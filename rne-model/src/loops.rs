@@ -65,11 +65,6 @@ pub(crate) fn loops(
         let message = "the robot has closed loops, which are not supported here";
         return cx.refuse(Diagnostic::error(items[0].head(), message).label("a closed loop").help(help));
     }
-    if !loops.is_empty() && root.get("floating_base").is_some() {
-        let message = "the robot has closed loops and a `floating_base`, and no function of rne takes both yet";
-        let help = "delete `floating_base`: the functions of closed loops are those of a robot on a fixed base";
-        return cx.refuse(Diagnostic::error(items[0].head(), message).label("on a floating base").help(help));
-    }
     let mut taken = Vec::new();
     for (index, (closed, item)) in loops.iter().zip(&items).enumerate() {
         names_differ(cx, item, &loops[..index], closed)?;

@@ -13,7 +13,8 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};
 
-use crate::{Constant, DynArm, Scalar, Wrench, WrongLength};
+use crate::floating_base::{BASE, of_base, solve_from_the_ends, turning};
+use crate::{BaseAcceleration, BaseMotion, Constant, DynArm, Scalar, Wrench, WrongLength};
 
 /// The loops of a robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +72,9 @@ impl<S> Loops<S> {
         all
     }
 }
+
+/// G, and positions, velocities and accelerations of the joints of the tree that follow none by a coupling.
+type OfTree<T> = (Vec<Vec<T>>, [Vec<T>; 3]);
 
 /// The equations of the loops in one state.
 struct Equations<T> {
@@ -149,13 +153,7 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         wrenches: &[Wrench<T>],
     ) -> Result<Vec<T>, WrongLength> {
-        let map = self.loop_map(q, passive)?;
-        let bias = self.loop_map_rate_times_velocity(q, passive, qd)?;
-        let rates = product(&map, qd);
-        let accelerations: Vec<T> =
-            product(&map, self.of_closed("qdd", qdd)?).into_iter().zip(bias).map(|(a, b)| a + b).collect();
-        let [q, qd, qdd] =
-            [(q, passive), (qd, &rates), (qdd, &accelerations)].map(|(own, other)| self.closed.of_tree(own, other));
+        let (map, [q, qd, qdd]) = self.of_open_tree(q, passive, qd, qdd)?;
         let of_tree = self.inverse_dynamics_with_wrenches(&q, &qd, &qdd, wrenches)?;
         Ok(self.by_coordinates(&map, &of_tree))
     }
@@ -167,14 +165,7 @@ impl<S: Constant> DynArm<S> {
     pub fn mass_matrix_of_loops<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
         let map = self.loop_map(q, passive)?;
         let of_tree = self.mass_matrix(&self.closed.of_tree(q, passive))?;
-        let columns: Vec<Vec<T>> = of_tree.iter().map(|row| self.by_coordinates(&map, row)).collect();
-        let column = |at: usize| self.by_coordinates(&map, &columns.iter().map(|row| row[at]).collect::<Vec<_>>());
-        let mut matrix: Vec<Vec<T>> = (0..q.len()).map(column).collect();
-        for row in 1..matrix.len() {
-            let (above, rest) = matrix.split_at_mut(row);
-            rest[0].iter_mut().zip(above).for_each(|(element, upper)| *element = upper[row]);
-        }
-        Ok(matrix)
+        Ok(self.projected(&map, 0, &of_tree))
     }
 
     /// As [`ClosedLoops::forward_dynamics_of_loops`](crate::ClosedLoops::forward_dynamics_of_loops).
@@ -196,6 +187,87 @@ impl<S: Constant> DynArm<S> {
         crate::ldlt::factor(&mut rows, &mut inverse);
         crate::ldlt::solve(&rows, &inverse, &mut x);
         Ok(x)
+    }
+
+    /// As [`FloatingClosedLoops::inverse_dynamics_of_floating_loops`](
+    /// crate::FloatingClosedLoops::inverse_dynamics_of_floating_loops), with one of `wrenches` for each of the
+    /// [tips](Self::tips): the wrench on the base, and the torques.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint or tip.
+    pub fn inverse_dynamics_of_floating_loops<T: Scalar>(
+        &self,
+        q: &[T],
+        passive: &[T],
+        qd: &[T],
+        qdd: &[T],
+        base: &BaseMotion<T>,
+        wrenches: &[Wrench<T>],
+    ) -> Result<(Wrench<T>, Vec<T>), WrongLength> {
+        let (map, [q, qd, qdd]) = self.of_open_tree(q, passive, qd, qdd)?;
+        let (wrench, of_tree) = self.inverse_dynamics_of_floating_base(&q, &qd, &qdd, base, wrenches)?;
+        Ok((wrench, self.by_coordinates(&map, &of_tree)))
+    }
+
+    /// As [`FloatingClosedLoops::floating_mass_matrix_of_loops`](
+    /// crate::FloatingClosedLoops::floating_mass_matrix_of_loops): 6 + n rows.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn floating_mass_matrix_of_loops<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
+        let map = self.loop_map(q, passive)?;
+        let of_tree = self.floating_mass_matrix(&self.closed.of_tree(q, passive))?;
+        Ok(self.projected(&map, BASE, &of_tree))
+    }
+
+    /// As [`FloatingClosedLoops::floating_forward_dynamics_of_loops`](
+    /// crate::FloatingClosedLoops::floating_forward_dynamics_of_loops), with one of `wrenches` for each of the
+    /// [tips](Self::tips): the acceleration of the base, and those of the joints.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint or tip.
+    pub fn floating_forward_dynamics_of_loops<T: Scalar>(
+        &self,
+        q: &[T],
+        passive: &[T],
+        qd: &[T],
+        tau: &[T],
+        omega: &[T; 3],
+        wrenches: &[Wrench<T>],
+    ) -> Result<(BaseAcceleration<T>, Vec<T>), WrongLength> {
+        let still = vec![T::zero(); q.len()];
+        let (Wrench { force, moment }, of_joints) =
+            self.inverse_dynamics_of_floating_loops(q, passive, qd, &still, &turning(omega), wrenches)?;
+        let bias = force.into_iter().chain(moment).chain(of_joints);
+        let applied = [T::zero(); BASE].into_iter().chain(self.of_closed("tau", tau)?.iter().copied());
+        let mut x: Vec<T> = applied.zip(bias).map(|(applied, bias)| applied - bias).collect();
+        let mut matrix = self.floating_mass_matrix_of_loops(q, passive)?;
+        solve_from_the_ends(&mut matrix, &mut vec![T::zero(); x.len()], &mut x);
+        Ok((of_base(&x), x.split_off(BASE)))
+    }
+
+    fn of_open_tree<T: Scalar>(&self, q: &[T], passive: &[T], qd: &[T], qdd: &[T]) -> Result<OfTree<T>, WrongLength> {
+        let map = self.loop_map(q, passive)?;
+        let bias = self.loop_map_rate_times_velocity(q, passive, qd)?;
+        let rates = product(&map, qd);
+        let accelerations: Vec<T> =
+            product(&map, self.of_closed("qdd", qdd)?).into_iter().zip(bias).map(|(a, b)| a + b).collect();
+        let of_tree =
+            [(q, passive), (qd, &rates), (qdd, &accelerations)].map(|(own, other)| self.closed.of_tree(own, other));
+        Ok((map, of_tree))
+    }
+
+    /// The symmetric matrix of the coordinates, by that of the tree: `of_base` rows and columns stay as they are.
+    fn projected<T: Scalar>(&self, map: &[Vec<T>], of_base: usize, of_tree: &[Vec<T>]) -> Vec<Vec<T>> {
+        let gathered = |row: &[T]| [&row[..of_base], &self.by_coordinates(map, &row[of_base..])].concat();
+        let columns: Vec<Vec<T>> = of_tree.iter().map(|row| gathered(row)).collect();
+        let column = |at: usize| gathered(&columns.iter().map(|row| row[at]).collect::<Vec<_>>());
+        let mut matrix: Vec<Vec<T>> = (0..of_base + self.closed.coordinates.len()).map(column).collect();
+        for row in 1..matrix.len() {
+            let (above, rest) = matrix.split_at_mut(row);
+            rest[0].iter_mut().zip(above).for_each(|(element, upper)| *element = upper[row]);
+        }
+        matrix
     }
 
     fn of_closed<'a, T>(&self, argument: &'static str, values: &'a [T]) -> Result<&'a [T], WrongLength> {

@@ -135,7 +135,11 @@ fn fill<T: Scalar, R: AsMut<[T]>, V: AsRef<[T]>>(
 }
 
 /// Makes the solution x of M x = b from b; `inverse` is a place for the reciprocals of D.
-fn solve_from_the_ends<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(matrix: &mut [R], inverse: &mut [T], x: &mut [T]) {
+pub(crate) fn solve_from_the_ends<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(
+    matrix: &mut [R],
+    inverse: &mut [T],
+    x: &mut [T],
+) {
     matrix.reverse();
     for row in matrix.iter_mut() {
         row.as_mut().reverse();

@@ -115,10 +115,10 @@ pub use batch::{
 };
 pub use capability::{
     AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, ClosedLoops,
-    ClosureStep, ContactDynamics, CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingEnergy,
-    FloatingKinematics, FloatingRegressor, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
+    ClosureStep, ContactDynamics, CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
+    FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques, ForwardDynamics, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate,
+    MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;

@@ -381,14 +381,6 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
     };
     let wrenches = at_tips(arm.tips().len(), wrench);
     let numbers = match function {
-        // no function of trees
-        Function::ClosureStep
-        | Function::LoopMap
-        | Function::LoopMapRateTimesVelocity
-        | Function::InverseDynamicsOfLoops
-        | Function::InverseDynamicsOfLoopsWithWrenches
-        | Function::MassMatrixOfLoops
-        | Function::ForwardDynamicsOfLoops => unreachable!("closed loops have tests of their own"),
         Function::InverseDynamicsWithWrenches => arm.inverse_dynamics_with_wrenches(q, qd, qdd, &wrenches),
         Function::ForwardDynamicsWithWrenches => arm.forward_dynamics_with_wrenches(q, qd, tau, &wrenches),
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
@@ -464,6 +456,7 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::MomentumAndRateWithPayload => {
             arm.momentum_and_rate_with_payload(q, qd, tau, payload).map(|numbers| numbers.concat())
         }
+        other => unreachable!("{other} is of closed loops, which have tests of their own"),
     };
     numbers.expect("one per joint")
 }

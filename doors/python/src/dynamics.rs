@@ -189,66 +189,38 @@ macro_rules! method {
     (MomentumAndRate $($rest:tt)*) => {
         loaded! { MomentumAndRate MomentumAndRateWithPayload $($rest)* }
     };
+    // without wrenches no tip exerts anything
     (FloatingBias $name:ident (q: Positions, qd: Rates, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*) => {
-        of_floating_base! { FloatingBias $name (q, qd) $($rest)* }
+        of_floating_base! { FloatingBias $name (q: Positions, qd: Rates) $($rest)* }
     };
     (
         FloatingForwardDynamics $name:ident
             (q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*
     ) => {
-        of_floating_base! { FloatingForwardDynamics $name (q, qd, tau) $($rest)* }
+        of_floating_base! { FloatingForwardDynamics $name (q: Positions, qd: Rates, tau: Torques) $($rest)* }
     };
-    // a base whose motion is not given stands still
     (
         $variant:ident $name:ident
-            (q: Positions, qd: Rates, qdd: Accelerations, base: Base $(, $wrenches:ident: Wrenches)?)
-            $returned:ident $summary:literal $details:literal
+            (q: Positions, passive: Passive, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches)
+            $($rest:tt)*
     ) => {
-        #[pymethods]
-        impl Arm {
-            #[doc = $summary]
-            ///
-            #[doc = $details]
-            /// Each vector of the base has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the
-            /// robot's own.
-            ///
-            $(#[doc = about!(Wrenches)]
-            #[doc = concat!("Without `", stringify!($wrenches), "` no tip exerts anything.\n\n")])?
-            #[doc = concat!("Returns ", returned!($returned))]
-            #[pyo3(signature = (q, qd, qdd, $($wrenches=None,)? *, base_omega=None, base_omega_dot=None,
-                base_acceleration=None, base_gravity=None, parameters=None, out=None))]
-            fn $name<'py>(
-                &self,
-                py: Python<'py>,
-                q: &Bound<'py, PyAny>,
-                qd: &Bound<'py, PyAny>,
-                qdd: &Bound<'py, PyAny>,
-                $($wrenches: Option<&Bound<'py, PyAny>>,)?
-                base_omega: Option<&Bound<'py, PyAny>>,
-                base_omega_dot: Option<&Bound<'py, PyAny>>,
-                base_acceleration: Option<&Bound<'py, PyAny>>,
-                base_gravity: Option<&Bound<'py, PyAny>>,
-                parameters: Option<&Bound<'py, PyAny>>,
-                out: Option<&Bound<'py, PyAny>>,
-            ) -> PyResult<Bound<'py, PyAny>> {
-                let zero = PyTuple::new(py, [0.0; 3])?.into_any();
-                let gravity = PyTuple::new(py, self.robot().gravity)?.into_any();
-                let joints = [self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("qdd", qdd)?];
-                let base = [
-                    ("base_omega", base_omega.unwrap_or(&zero)),
-                    ("base_omega_dot", base_omega_dot.unwrap_or(&zero)),
-                    ("base_acceleration", base_acceleration.unwrap_or(&zero)),
-                    ("base_gravity", base_gravity.unwrap_or(&gravity)),
-                ];
-                let base = base.map(|(name, value)| Given { name, parts: &[], elements: 3, value: value.clone() });
-                #[allow(unused_mut)] // a function without tips
-                let mut given: Vec<_> = joints.into_iter().chain(base).collect();
-                $(
-                    let nothing = PyDict::new(py).into_any();
-                    given.push(self.of_tips(stringify!($wrenches), $wrenches.unwrap_or(&nothing))?);
-                )?
-                self.compute(py, Function::$variant, given, parameters, out)
-            }
+        of_floating_base! {
+            $variant $name (q: Positions, passive: Passive, qd: Rates, tau: Torques) $($rest)*
+        }
+    };
+    (
+        $variant:ident $name:ident
+            (q: Positions, qd: Rates, qdd: Accelerations, base: Base $(, $wrenches:ident: Wrenches)?) $($rest:tt)*
+    ) => {
+        on_moving_base! { $variant $name (q: Positions, qd: Rates, qdd: Accelerations) ($($wrenches)?) $($rest)* }
+    };
+    (
+        $variant:ident $name:ident
+            (q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches)
+            $($rest:tt)*
+    ) => {
+        on_moving_base! {
+            $variant $name (q: Positions, passive: Passive, qd: Rates, qdd: Accelerations) (wrenches) $($rest)*
         }
     };
     (
@@ -277,10 +249,66 @@ macro_rules! method {
     };
 }
 
+/// A function of a base that moves; a base whose motion is not given stands still.
+macro_rules! on_moving_base {
+    (
+        $variant:ident $name:ident
+            ($($argument:ident: $kind:ident),*) ($($wrenches:ident)?)
+            $returned:ident $summary:literal $details:literal
+    ) => {
+        #[pymethods]
+        impl Arm {
+            #[doc = $summary]
+            ///
+            #[doc = $details]
+            /// Each vector of the base has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the
+            /// robot's own.
+            ///
+            #[doc = concat!($(about!($kind)),*)]
+            $(#[doc = about!(Wrenches)]
+            #[doc = concat!("Without `", stringify!($wrenches), "` no tip exerts anything.\n\n")])?
+            #[doc = concat!("Returns ", returned!($returned))]
+            #[pyo3(signature = ($($argument,)* $($wrenches=None,)? *, base_omega=None, base_omega_dot=None,
+                base_acceleration=None, base_gravity=None, parameters=None, out=None))]
+            #[allow(clippy::too_many_arguments)] // those of Python
+            fn $name<'py>(
+                &self,
+                py: Python<'py>,
+                $($argument: &Bound<'py, PyAny>,)*
+                $($wrenches: Option<&Bound<'py, PyAny>>,)?
+                base_omega: Option<&Bound<'py, PyAny>>,
+                base_omega_dot: Option<&Bound<'py, PyAny>>,
+                base_acceleration: Option<&Bound<'py, PyAny>>,
+                base_gravity: Option<&Bound<'py, PyAny>>,
+                parameters: Option<&Bound<'py, PyAny>>,
+                out: Option<&Bound<'py, PyAny>>,
+            ) -> PyResult<Bound<'py, PyAny>> {
+                let zero = PyTuple::new(py, [0.0; 3])?.into_any();
+                let gravity = PyTuple::new(py, self.robot().gravity)?.into_any();
+                let joints = [$(given!(self, $argument: $kind)),*];
+                let base = [
+                    ("base_omega", base_omega.unwrap_or(&zero)),
+                    ("base_omega_dot", base_omega_dot.unwrap_or(&zero)),
+                    ("base_acceleration", base_acceleration.unwrap_or(&zero)),
+                    ("base_gravity", base_gravity.unwrap_or(&gravity)),
+                ];
+                let base = base.map(|(name, value)| Given { name, parts: &[], elements: 3, value: value.clone() });
+                #[allow(unused_mut)] // a function without tips
+                let mut given: Vec<_> = joints.into_iter().chain(base).collect();
+                $(
+                    let nothing = PyDict::new(py).into_any();
+                    given.push(self.of_tips(stringify!($wrenches), $wrenches.unwrap_or(&nothing))?);
+                )?
+                self.compute(py, Function::$variant, given, parameters, out)
+            }
+        }
+    };
+}
+
 /// A function of a base that turns and that nothing holds; without wrenches no tip exerts anything.
 macro_rules! of_floating_base {
     (
-        $variant:ident $name:ident ($($of_joints:ident),*) $returned:ident $summary:literal $details:literal
+        $variant:ident $name:ident ($($argument:ident: $kind:ident),*) $returned:ident $summary:literal $details:literal
     ) => {
         #[pymethods]
         impl Arm {
@@ -289,14 +317,14 @@ macro_rules! of_floating_base {
             #[doc = $details]
             /// `omega` has the shape (3,) or (N, 3).
             ///
-            #[doc = about!(Wrenches)]
+            #[doc = concat!($(about!($kind),)* about!(Wrenches))]
             #[doc = concat!("Without `wrenches` no tip exerts anything.\n\nReturns ", returned!($returned))]
-            #[pyo3(signature = ($($of_joints,)* omega, wrenches=None, *, parameters=None, out=None))]
+            #[pyo3(signature = ($($argument,)* omega, wrenches=None, *, parameters=None, out=None))]
             #[allow(clippy::too_many_arguments)] // those of Python
             fn $name<'py>(
                 &self,
                 py: Python<'py>,
-                $($of_joints: &Bound<'py, PyAny>,)*
+                $($argument: &Bound<'py, PyAny>,)*
                 omega: &Bound<'py, PyAny>,
                 wrenches: Option<&Bound<'py, PyAny>>,
                 parameters: Option<&Bound<'py, PyAny>>,
@@ -304,7 +332,7 @@ macro_rules! of_floating_base {
             ) -> PyResult<Bound<'py, PyAny>> {
                 let nothing = PyDict::new(py).into_any();
                 let given = vec![
-                    $(self.of_joints(stringify!($of_joints), $of_joints)?,)*
+                    $(given!(self, $argument: $kind),)*
                     Given { name: "omega", parts: &[], elements: 3, value: omega.clone() },
                     self.of_tips("wrenches", wrenches.unwrap_or(&nothing))?,
                 ];

@@ -65,12 +65,14 @@ fn inverted_mass_matrix(
 ) -> Option<Vec<Vec<f64>>> {
     let matrix = || match payload.filter(|_| function.takes(Argument::Payload)) {
         Some(payload) => arm.mass_matrix_with_payload(q, payload),
-        None if function.is_of_floating_base() => arm.floating_mass_matrix(q),
-        None if function.is_of_closed_loops() => arm.mass_matrix_of_loops(q, passive),
-        None => arm.mass_matrix(q),
+        None => match (function.is_of_floating_base(), function.is_of_closed_loops()) {
+            (true, true) => arm.floating_mass_matrix_of_loops(q, passive),
+            (true, false) => arm.floating_mass_matrix(q),
+            (false, true) => arm.mass_matrix_of_loops(q, passive),
+            (false, false) => arm.mass_matrix(q),
+        },
     };
-    // that of closed loops depends on the positions of the dependent joints, too
-    (function.inverts_mass() && !function.is_of_closed_loops()).then(matrix)?.ok()
+    function.inverts_mass().then(matrix)?.ok()
 }
 
 /// Whether xᵀ M x < 0 for some x: elimination with the largest pivot of the diagonal, or a rest whose diagonal is zero

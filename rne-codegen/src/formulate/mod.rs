@@ -86,11 +86,13 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
-        Function::InverseDynamicsOfFloatingBase | Function::FloatingBias => derivation.floating_torques(),
-        Function::FloatingMassMatrix => {
+        Function::InverseDynamicsOfFloatingBase | Function::FloatingBias | Function::InverseDynamicsOfFloatingLoops => {
+            derivation.floating_torques()
+        }
+        Function::FloatingMassMatrix | Function::FloatingMassMatrixOfLoops => {
             floating_mass_matrix(builder, &derivation.system(), &derivation.floating_half())
         }
-        Function::FloatingForwardDynamics => floating_forward_dynamics(
+        Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops => floating_forward_dynamics(
             builder,
             &derivation.system(),
             &derivation.floating_half(),

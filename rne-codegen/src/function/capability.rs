@@ -52,6 +52,8 @@ named! {
         FloatingInverseDynamicsDerivatives = "FloatingInverseDynamicsDerivatives",
         /// The robot with closed loops.
         ClosedLoops = "ClosedLoops",
+        /// The robot with closed loops whose base nothing holds.
+        FloatingClosedLoops = "FloatingClosedLoops",
     }
 }
 
@@ -72,6 +74,7 @@ impl Capability {
                 | Self::FloatingKinematics
                 | Self::ContactDynamics
                 | Self::FloatingInverseDynamicsDerivatives
+                | Self::FloatingClosedLoops
         )
     }
 

@@ -4,6 +4,7 @@ use super::Function;
 use super::answer::{Answer, AnswerTable, Labels, MatrixUnit};
 use super::capability::Capability;
 use super::entry::{Entry, Own};
+use super::floating_base;
 use crate::quantity::Quantity;
 
 /// Why a solution of the equations of loops may be none.
@@ -15,6 +16,10 @@ const OF_CLOSURE: Entry =
 
 const TORQUES: Entry =
     Entry { divides: Some(SINGULAR), ..Entry::torques(Function::InverseDynamicsOfLoops, Capability::ClosedLoops) };
+
+/// Why accelerations may be none.
+const MOVES_NO_MASS: &str = "the accelerations are not finite: the mass matrix is singular (a joint moves no mass), the \
+                             loops are singular in this position, or the state is too large";
 
 /// The functions.
 pub(super) const CLOSED_LOOPS: &[Entry] = &[
@@ -78,12 +83,27 @@ pub(super) const CLOSED_LOOPS: &[Entry] = &[
     Entry {
         output: "qdd",
         answer: Answer::Accelerations,
-        divides: Some(
-            "the accelerations are not finite: the mass matrix is singular (a joint moves no mass), the loops are \
-             singular in this position, or the state is too large",
-        ),
+        divides: Some(MOVES_NO_MASS),
         inverts_mass: true,
         feels_rotors: true,
         ..Entry::of(Function::ForwardDynamicsOfLoops, Capability::ClosedLoops)
+    },
+    Entry {
+        function: Function::InverseDynamicsOfFloatingLoops,
+        capability: Capability::FloatingClosedLoops,
+        divides: Some(SINGULAR),
+        ..floating_base::TORQUES
+    },
+    Entry {
+        function: Function::FloatingMassMatrixOfLoops,
+        capability: Capability::FloatingClosedLoops,
+        divides: Some(SINGULAR),
+        ..floating_base::MASS_MATRIX
+    },
+    Entry {
+        function: Function::FloatingForwardDynamicsOfLoops,
+        capability: Capability::FloatingClosedLoops,
+        divides: Some(MOVES_NO_MASS),
+        ..floating_base::ACCELERATIONS
     },
 ];

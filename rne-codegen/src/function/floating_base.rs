@@ -33,31 +33,63 @@ const ORIGIN_VELOCITY: Own = Own::meaning(
     |joint| format!("velocity of the origin of frame {joint}"),
 );
 
+/// Torques, and the wrench on the base.
+pub(super) const TORQUES: Entry = Entry {
+    output: "torques",
+    listed: "returned: force and moment on the base, then the torques",
+    own: &ON_BASE,
+    answer: Answer::Tables(&[
+        AnswerTable::of("force on the base (N), in axes of frame 0", Labels::Names(&["force"]), AXES),
+        AnswerTable::of("moment on the base (N m), about the origin of frame 0", Labels::Names(&["moment"]), AXES),
+        AnswerTable::of("torques (N m, prismatic: N)", Labels::Names(&["tau"]), Labels::Joints),
+    ]),
+    ..Entry::of(Function::InverseDynamicsOfFloatingBase, Capability::FloatingBase)
+};
+
+/// The mass matrix with the rows of the base.
+pub(super) const MASS_MATRIX: Entry = Entry {
+    output: "mass",
+    listed: "returned: the rows of the matrix",
+    own: &ON_BASE,
+    answer: Answer::Tables(&[AnswerTable::of(
+        "force and moment on the base and torques per acceleration, axes of frame 0; SI units",
+        VELOCITIES,
+        VELOCITIES,
+    )]),
+    feels_rotors: true,
+    ..Entry::of(Function::FloatingMassMatrix, Capability::FloatingBase)
+};
+
+/// Accelerations of the base and of the joints.
+pub(super) const ACCELERATIONS: Entry = Entry {
+    output: "accelerations",
+    listed: "returned: linear and angular acceleration of the base, then those of the joints",
+    own: &[
+        Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+        Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+    ],
+    answer: Answer::Tables(&[
+        AnswerTable::of(
+            "acceleration of the origin of frame 0 less gravity (m/s²), in axes of frame 0",
+            Labels::Names(&["linear"]),
+            AXES,
+        ),
+        AnswerTable::of("angular acceleration of the base (rad/s²)", Labels::Names(&["angular"]), AXES),
+        AnswerTable::of("accelerations (rad/s², prismatic: m/s²)", Labels::Names(&["qdd"]), Labels::Joints),
+    ]),
+    divides: Some(
+        "the accelerations are not finite: the mass matrix is singular \
+         (a joint or the base moves no mass), or the state is too large",
+    ),
+    inverts_mass: true,
+    feels_rotors: true,
+    ..Entry::of(Function::FloatingForwardDynamics, Capability::FloatingBase)
+};
+
 /// The functions.
 pub(super) const FLOATING_BASE: &[Entry] = &[
-    Entry {
-        output: "torques",
-        listed: "returned: force and moment on the base, then the torques",
-        own: &ON_BASE,
-        answer: Answer::Tables(&[
-            AnswerTable::of("force on the base (N), in axes of frame 0", Labels::Names(&["force"]), AXES),
-            AnswerTable::of("moment on the base (N m), about the origin of frame 0", Labels::Names(&["moment"]), AXES),
-            AnswerTable::of("torques (N m, prismatic: N)", Labels::Names(&["tau"]), Labels::Joints),
-        ]),
-        ..Entry::of(Function::InverseDynamicsOfFloatingBase, Capability::FloatingBase)
-    },
-    Entry {
-        output: "mass",
-        listed: "returned: the rows of the matrix",
-        own: &ON_BASE,
-        answer: Answer::Tables(&[AnswerTable::of(
-            "force and moment on the base and torques per acceleration, axes of frame 0; SI units",
-            VELOCITIES,
-            VELOCITIES,
-        )]),
-        feels_rotors: true,
-        ..Entry::of(Function::FloatingMassMatrix, Capability::FloatingBase)
-    },
+    TORQUES,
+    MASS_MATRIX,
     Entry {
         output: "bias",
         listed: "returned: force and moment on the base, then the torques",
@@ -69,30 +101,7 @@ pub(super) const FLOATING_BASE: &[Entry] = &[
         )]),
         ..Entry::of(Function::FloatingBias, Capability::FloatingBase)
     },
-    Entry {
-        output: "accelerations",
-        listed: "returned: linear and angular acceleration of the base, then those of the joints",
-        own: &[
-            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
-        ],
-        answer: Answer::Tables(&[
-            AnswerTable::of(
-                "acceleration of the origin of frame 0 less gravity (m/s²), in axes of frame 0",
-                Labels::Names(&["linear"]),
-                AXES,
-            ),
-            AnswerTable::of("angular acceleration of the base (rad/s²)", Labels::Names(&["angular"]), AXES),
-            AnswerTable::of("accelerations (rad/s², prismatic: m/s²)", Labels::Names(&["qdd"]), Labels::Joints),
-        ]),
-        divides: Some(
-            "the accelerations are not finite: the mass matrix is singular \
-             (a joint or the base moves no mass), or the state is too large",
-        ),
-        inverts_mass: true,
-        feels_rotors: true,
-        ..Entry::of(Function::FloatingForwardDynamics, Capability::FloatingBase)
-    },
+    ACCELERATIONS,
     Entry {
         output: "map",
         listed: "returned: the rows of the matrix",

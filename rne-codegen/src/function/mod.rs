@@ -162,10 +162,11 @@ impl Function {
     /// base where nothing holds it.
     #[must_use]
     pub fn of_plan(robot: &Robot) -> Self {
-        match robot.floating_base {
-            Some(_) => Self::InverseDynamicsOfFloatingBase,
-            _ if !robot.closed.is_empty() => Self::InverseDynamicsOfLoops,
-            _ => Self::InverseDynamics,
+        match (robot.floating_base.is_some(), robot.closed.is_empty()) {
+            (true, true) => Self::InverseDynamicsOfFloatingBase,
+            (true, false) => Self::InverseDynamicsOfFloatingLoops,
+            (false, true) => Self::InverseDynamics,
+            (false, false) => Self::InverseDynamicsOfLoops,
         }
     }
 
@@ -184,7 +185,7 @@ impl Function {
     /// Whether it is a function of a robot with closed loops.
     #[must_use]
     pub const fn is_of_closed_loops(self) -> bool {
-        matches!(self.capability(), Capability::ClosedLoops)
+        matches!(self.capability(), Capability::ClosedLoops | Capability::FloatingClosedLoops)
     }
 
     /// Whether rotors that belong to the arm change what it returns.

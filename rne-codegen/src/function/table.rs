@@ -293,6 +293,21 @@ macro_rules! functions {
             ) -> Vector:
                 "Accelerations of a robot with closed loops for torques `tau` of the joints that move by themselves.",
                 "passive: as in loop_map. qdd: of the joints of q; those of the dependent joints are G q̈ + Ġ q̇.";
+            InverseDynamicsOfFloatingLoops = inverse_dynamics_of_floating_loops(
+                q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
+            ) -> FloatingTorques:
+                "Torques of a robot with closed loops, and the wrench on its base, when nothing holds the base.",
+                "passive: as in loop_map. base, wrenches, wrench: as in inverse_dynamics_of_floating_base. tau: as in \
+                 inverse_dynamics_of_loops.";
+            FloatingMassMatrixOfLoops = floating_mass_matrix_of_loops(q: Positions, passive: Passive) -> FloatingMatrix:
+                "The mass matrix of a robot with closed loops whose base nothing holds: six rows, then the joints.",
+                "passive: as in loop_map. mass[i][j]: as in floating_mass_matrix, of the joints of q.";
+            FloatingForwardDynamicsOfLoops = floating_forward_dynamics_of_loops(
+                q: Positions, passive: Passive, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches
+            ) -> FloatingAccelerations:
+                "Accelerations of the base and of the joints of a robot with closed loops, when nothing holds the base.",
+                "passive: as in loop_map. omega, wrenches, base: as in floating_forward_dynamics. qdd: as in \
+                 forward_dynamics_of_loops.";
         }
     };
 }

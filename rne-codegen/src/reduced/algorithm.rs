@@ -66,6 +66,7 @@ impl Algorithm {
             | Function::InverseDynamicsWithWrenches
             | Function::InverseDynamicsOfFloatingBase
             | Function::FloatingBias
+            | Function::InverseDynamicsOfFloatingLoops
             | Function::InverseDynamicsOfLoops
             | Function::InverseDynamicsOfLoopsWithWrenches => &[Algorithm::Rnea],
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
@@ -88,7 +89,9 @@ impl Algorithm {
             | Function::ForwardDynamicsInContact
             | Function::FloatingInverseDynamicsDerivatives
             | Function::MassMatrixOfLoops
-            | Function::ForwardDynamicsOfLoops => &[BY_GROUPS, BY_JOINTS],
+            | Function::ForwardDynamicsOfLoops
+            | Function::FloatingMassMatrixOfLoops
+            | Function::FloatingForwardDynamicsOfLoops => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -270,8 +273,13 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             | Function::InverseDynamicsOfLoopsWithWrenches,
             algorithm,
         ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
-        (Function::InverseDynamicsOfFloatingBase | Function::FloatingBias, _) => of_floating_base(),
-        (Function::FloatingMassMatrix, _) => formulate::floating_mass_matrix(builder, &system(), &floating_half()?),
+        (
+            Function::InverseDynamicsOfFloatingBase | Function::FloatingBias | Function::InverseDynamicsOfFloatingLoops,
+            _,
+        ) => of_floating_base(),
+        (Function::FloatingMassMatrix | Function::FloatingMassMatrixOfLoops, _) => {
+            formulate::floating_mass_matrix(builder, &system(), &floating_half()?)
+        }
         (Function::FloatingForwardDynamics, Algorithm::Aba(_)) => {
             let (of_base, of_joints) = aba::forward_dynamics(arm);
             let [linear, angular] = of_base?;
@@ -279,7 +287,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             let named = of_base.map(|(row, x)| (system().name(Quantity::RateDot, row), x)).collect();
             [named, by_joint(Quantity::RateDot, of_joints)].concat()
         }
-        (Function::FloatingForwardDynamics, _) => {
+        (Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops, _) => {
             formulate::floating_forward_dynamics(builder, &system(), &floating_half()?, of_floating_base())
         }
         (Function::ForwardDynamicsInContact, _) => {
