@@ -297,9 +297,15 @@ impl fmt::Display for CompileError {
                 match function {
                     Function::MassMatrix => f.write_str("Use `mass_matrix_of_loops`"),
                     Function::ForwardDynamics => f.write_str("Use `forward_dynamics_of_loops`"),
-                    Function::InverseDynamicsWithWrench | Function::InverseDynamicsWithWrenches => {
+                    Function::InverseDynamicsWithWrenches => {
                         f.write_str("Use `inverse_dynamics_of_loops_with_wrenches`")
                     }
+                    Function::InverseDynamicsWithWrench => {
+                        f.write_str("Use `inverse_dynamics_of_loops_with_wrenches`, which takes a wrench at each tip")
+                    }
+                    Function::InverseDynamicsOfFloatingBase => f.write_str("Use `inverse_dynamics_of_floating_loops`"),
+                    Function::FloatingMassMatrix => f.write_str("Use `floating_mass_matrix_of_loops`"),
+                    Function::FloatingForwardDynamics => f.write_str("Use `floating_forward_dynamics_of_loops`"),
                     Function::InverseDynamics => f.write_str("Use `inverse_dynamics_of_loops`"),
                     _ => f.write_str("docs/closed-loops.md lists the functions of closed loops"),
                 }

@@ -12,11 +12,11 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
 use crate::expression::Names as _;
 use crate::inertia::principal_moments;
-use crate::loops::short;
+use crate::loops::{listed, short};
 use crate::mobility::Remarks;
 use crate::resistance::{self, Unresisted};
 use crate::source::{is_invisible, quoted, six_digits};
-use crate::{Angle, Convention, Inertia, Joint, JointKind, Limits, Link, QuarterTurns, Transform};
+use crate::{Angle, ClosedLoop, Convention, Inertia, Joint, JointKind, Limits, Link, QuarterTurns, Transform};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
 const NEARLY: f64 = 2e-4;
@@ -468,12 +468,17 @@ pub(crate) fn width_beside_displacement(cx: &Context, width: &Node) {
 }
 
 /// Closed loops that were found closed in few configurations, and singular ones within the limits.
-pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], remarks: &Remarks) {
+pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], loops: &[ClosedLoop], remarks: &Remarks) {
     let place = item.get("dependent").unwrap_or(item).head();
     if let Some((found, wanted)) = remarks.few {
         let message = format!("{found} of {wanted} configurations that close the loops were found");
         let help = "if position limits leave the loops more room than this, check the lengths";
         cx.report(Diagnostic::note(place.clone(), message).label("few configurations").help(help));
+    }
+    for closed in remarks.rigid.iter().filter_map(|&index| loops.get(index)) {
+        let message = format!("the loop {} cannot move: all joints that move it are dependent", quoted(&closed.name));
+        let help = "if it should move, check its lengths and axes; if it is a rigid frame, weld its links to one";
+        cx.report(Diagnostic::lint(place.clone(), message).label("rigid").help(help));
     }
     // what rounding leaves of a zero
     let rounded = |position: f64| short(if position.abs() < 1e-9 { 0.0 } else { position });
@@ -484,9 +489,10 @@ pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], remarks:
     };
     if let Some((ratio, positions)) = &remarks.singular {
         let message = format!(
-            "the dependent joints are not determined near {}: the smallest singular value of their equations is {} of \
-             the largest there",
+            "near {}, the other joints hardly determine {}: the smallest singular value of the equations is {} of the \
+             largest there",
             at(positions),
+            listed(joints, &remarks.undetermined),
             short(*ratio)
         );
         let help =

@@ -79,7 +79,7 @@ pub(crate) fn loops(
             cx.refuse(at(items[0], "dependent", message.to_owned()).help(help))
         }
         Ok((closed, remarks)) => {
-            lint::closed_loops(cx, items[0], joints, &remarks);
+            lint::closed_loops(cx, items[0], joints, &closed.loops, &remarks);
             Some((closed, remarks.joints))
         }
         Err(fault) => cx.refuse(refusal(&fault, &loops, &items, joints)),
@@ -248,7 +248,7 @@ fn refusal(fault: &Fault, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[J
         Fault::Open { index, apart: [length, angle] } => {
             let name = quoted(&loops[*index].name);
             let by = if *angle > 1e-9 { format!(" and turned by {} rad", short(*angle)) } else { String::new() };
-            let nearest = if length.is_finite() {
+            let nearest = if length.is_finite() && *length < 1e100 {
                 format!(
                     "the nearest one leaves its two places {} m apart{by}",
                     short(if *length < 1e-12 { 0.0 } else { *length })
@@ -257,8 +257,13 @@ fn refusal(fault: &Fault, loops: &[ClosedLoop], items: &[&Rc<Node>], joints: &[J
                 "its lengths are too large".to_owned()
             };
             let message = format!("no configuration closes the loop {name}: {nearest}");
-            let help = "check the lengths and the places of `between`; it must close to 1e-12 of its size, so write \
-                        angles and axes with all digits, such as `pi/2`";
+            let help = if *angle > 3.0 {
+                "the axes of the two places are opposite there; if the joint turns about the same line, turn one place \
+                 by `rpy: [pi, 0, 0]`"
+            } else {
+                "check the lengths and the places of `between`; it must close to 1e-12 of its size, so write angles \
+                 and axes with all digits, such as `pi/2`"
+            };
             at(items[*index], "between", message).label("the loop stays open").help(help)
         }
         Fault::Count(count) => wrong_count(count, loops, items, joints),

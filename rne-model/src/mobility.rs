@@ -52,6 +52,10 @@ pub(crate) struct Remarks {
     /// where it is small.
     pub(crate) singular: Option<(f64, Vec<f64>)>,
     pub(crate) pivot: Option<(f64, Vec<f64>)>,
+    /// The dependent joints that the least singular value moves there.
+    pub(crate) undetermined: Vec<usize>,
+    /// Loops that cannot move: all joints that move them are dependent.
+    pub(crate) rigid: Vec<usize>,
     /// The joints that move the loops.
     pub(crate) joints: Vec<usize>,
 }
@@ -124,8 +128,18 @@ pub(crate) fn solved(
     let pivot = pivot
         .map(|(pivot, positions)| (pivot / singular_values[1], positions))
         .filter(|(ratio, _)| *ratio < NEARLY_SINGULAR && singular.is_none());
+    let undetermined = singular.iter().flat_map(|(_, positions)| {
+        let values = at(positions).part(&kept, &every).singular();
+        moved(&passive, values.last().map_or(&[], |(_, direction)| direction), 0.3)
+    });
+    let undetermined = undetermined.collect();
+    let is_rigid = |group: &Vec<usize>| {
+        let mut joints = group.iter().flat_map(|&index| moving(joints, &loops[index]));
+        joints.all(|joint| passive.contains(&joint))
+    };
+    let rigid = found.groups().into_iter().filter(is_rigid).flatten().collect();
     let few = (closures.len() < CLOSURES).then_some((closures.len(), CLOSURES));
-    let remarks = Remarks { few, singular, pivot, joints: equations.variables.clone() };
+    let remarks = Remarks { few, singular, pivot, undetermined, rigid, joints: equations.variables.clone() };
     let elimination = steps.iter().map(|&(equation, passive, _)| Pivot { equation, passive }).collect();
     Ok((ClosedLoops { loops, passive, elimination, closures, singular_values, smallest_pivot }, remarks))
 }
@@ -134,6 +148,13 @@ pub(crate) fn solved(
 fn rank(singular: &[(f64, Vec<f64>)]) -> usize {
     let largest = singular.first().map_or(0.0, |(value, _)| *value);
     singular.iter().filter(|(value, _)| *value > RANK * largest).count()
+}
+
+/// The joints that a direction moves by more than a part of the largest motion.
+fn moved(joints: &[usize], direction: &[f64], part: f64) -> Vec<usize> {
+    let largest = direction.iter().map(|it| it.abs()).fold(0.0, f64::max);
+    let moves = joints.iter().zip(direction).filter(|(_, it)| it.abs() > part * largest);
+    moves.map(|(joint, _)| *joint).collect()
 }
 
 /// The Jacobians at all closures.
@@ -229,9 +250,7 @@ impl Jacobians<'_> {
     /// The dependent joints that the least singular value moves.
     fn undetermined(&self, passive: &[usize], singular: &[(f64, Vec<f64>)]) -> Fault {
         let direction = singular.last().map_or(&[][..], |(_, direction)| direction);
-        let largest = direction.iter().map(|it| it.abs()).fold(0.0, f64::max);
-        let moves = passive.iter().zip(direction).filter(|(_, it)| it.abs() > 1e-3 * largest);
-        let joints: Vec<usize> = moves.map(|(joint, _)| *joint).collect();
+        let joints = moved(passive, direction, 1e-3);
         let index = self.loops.iter().position(|closed| closed.dependent.iter().any(|it| joints.contains(it)));
         let loops: Vec<usize> = (0..self.loops.len()).collect();
         Fault::Undetermined {

@@ -25,6 +25,7 @@ use crate::render::layout::PAGE;
 use crate::render::letters::Letters;
 use crate::render::worksheet::{self, Axes, Narrowed};
 use crate::values::choice;
+use crate::values::closure;
 use crate::values::definite::{BUT_FOR_ROUNDING, NOT_DEFINITE, is_indefinite, is_singular};
 use crate::values::limits;
 use crate::values::numbers::List;
@@ -211,7 +212,7 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     if is_singular(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
     }
-    let mut remark = limits::remark(&robot, &state.q);
+    let mut remark = limits::remark(&robot, &state.q, &state.passive) + &closure::remark(&robot, &arm, &state);
     if is_indefinite(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }

@@ -3,9 +3,10 @@
 use std::f64::consts::TAU;
 
 use rne::DynArm;
-use rne_model::{JointKind, Robot};
+use rne_model::{JointKind, Robot, six_digits};
 
 use crate::outcome::Failure;
+use crate::values::state::State;
 
 /// Newton steps from one guess: some are far away.
 const STEPS: usize = 50;
@@ -40,6 +41,24 @@ pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<
         ))
     };
     found.map(|passive| without_turns(robot, passive)).ok_or_else(failure)
+}
+
+/// A note where the loops are close to a singular position: dependent joints then move much faster than the others, and
+/// torques are as much larger.
+pub(crate) fn remark(robot: &Robot, arm: &DynArm, state: &State) -> String {
+    const FAST: f64 = 1e3;
+    let map = arm.loop_map(&state.q, &state.passive).unwrap_or_default();
+    let speeds = map.iter().map(|row| row.iter().fold(0.0_f64, |largest, x| largest.max(x.abs())));
+    let fastest = robot.closed.passive.iter().zip(speeds).max_by(|a, b| a.1.total_cmp(&b.1));
+    match fastest.filter(|(_, speed)| *speed > FAST) {
+        Some((&joint, speed)) => format!(
+            "note: the loops are close to a singular position: {} moves {} times as fast as the joints of q, so \
+             positions of few digits give torques of fewer\n",
+            robot.joints[joint].name,
+            six_digits(speed)
+        ),
+        None => String::new(),
+    }
 }
 
 /// The closure that Newton's method finds from a guess.

@@ -5,13 +5,16 @@ use std::fmt::Write as _;
 
 use rne_model::{JointKind, Robot, six_digits};
 
-/// A line for each joint whose position, rad or m, lies outside of its limits in the file. The numbers are right all
-/// the same: limits are no part of the dynamics.
-pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
+/// A line for each joint whose position, rad or m, lies outside of its limits in the file: of those of `q`, and of the
+/// dependent joints of closed loops. The numbers are right all the same: limits are no part of the dynamics.
+pub(crate) fn remark(robot: &Robot, q: &[f64], passive: &[f64]) -> String {
     let mut text = String::new();
     let are_degrees = look_like_degrees(robot, q);
-    let joints = robot.independent_joints().zip(robot.coordinate_limits());
-    for (index, ((joint, limits), &q)) in joints.zip(q).enumerate() {
+    let joints = robot.independent_joints().zip(robot.coordinate_limits()).zip(q);
+    let joints = joints.enumerate().map(|(index, (joint, q))| (format!("q{}", index + 1), joint, q));
+    let dependent = robot.closed.passive.iter().map(|&joint| &robot.joints[joint]).zip(passive);
+    let dependent = dependent.map(|(joint, p)| ("the position".to_owned(), (joint, joint.limits.clone()), p));
+    for (name, (joint, limits), &q) in joints.chain(dependent) {
         let Some((lower, upper)) = limits.position else { continue };
         // a limit that is given as an expression and a position that is given as its digits
         let rounding = 1e-12 * lower.abs().max(upper.abs());
@@ -27,8 +30,7 @@ pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
         let [q, lower, upper] = [q, lower, upper].map(six_digits);
         let _ = writeln!(
             text,
-            "note: q{} = {q} {unit} is outside of the limits of {}: {lower} to {upper} {unit}{degrees}",
-            index + 1,
+            "note: {name} = {q} {unit} is outside of the limits of {}: {lower} to {upper} {unit}{degrees}",
             joint.name
         );
     }

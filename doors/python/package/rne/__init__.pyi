@@ -364,6 +364,23 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations of a robot with closed loops for torques `tau` of the joints that move by themselves."""
+    def inverse_dynamics_of_floating_loops(
+        self, q: Joints, passive: Joints, qd: Joints, qdd: Joints, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Torques of a robot with closed loops, and the wrench on its base, when nothing holds the base."""
+    def floating_mass_matrix_of_loops(
+        self, q: Joints, passive: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The mass matrix of a robot with closed loops whose base nothing holds: six rows, then the joints."""
+    def floating_forward_dynamics_of_loops(
+        self, q: Joints, passive: Joints, qd: Joints, tau: Joints, omega: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Accelerations of the base and of the joints of a robot with closed loops, when nothing holds the base."""
     # <!-- end -->
     @property
     def passive_joints(self) -> list[str]:
