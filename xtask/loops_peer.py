@@ -11,8 +11,12 @@ import pinocchio as pin
 class Pinocchio:
     """The tree in Pinocchio; the loops are equations between its frames."""
 
-    def __init__(self, robot):
+    def __init__(self, robot, floats=False):
         self.robot, self.model, rows = robot, pin.Model(), {-1: 0}
+        inertia = lambda mass, centre, tensor: pin.Inertia(float(mass), centre.astype(float), tensor.astype(float))
+        if floats:
+            rows[-1] = self.model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "base")
+            self.model.appendBodyToJoint(rows[-1], inertia(*robot.base), pin.SE3.Identity())
         place = lambda pose: pin.SE3(pose[:3, :3].astype(float), pose[:3, 3].astype(float))
         ends = {-1: pin.SE3.Identity()}
 
@@ -22,9 +26,7 @@ class Pinocchio:
             rows[row] = self.model.addJoint(rows[parent], kind, ends[parent] * place(robot.before[row]),
                                             robot.joints[row])
             ends[row] = pin.SE3.Identity() if robot.after[row] is None else place(robot.after[row])
-            mass, centre, tensor = robot.links[row]
-            body = pin.Inertia(float(mass), centre.astype(float), tensor.astype(float))
-            self.model.appendBodyToJoint(rows[row], body, ends[row])
+            self.model.appendBodyToJoint(rows[row], inertia(*robot.links[row]), ends[row])
             for child, above in enumerate(robot.parents):
                 if above == row:
                     add(child)
@@ -39,7 +41,8 @@ class Pinocchio:
         self.tip = frame("tip", robot.tip)
         self.model.gravity.linear = robot.gravity.astype(float)
         self.data = self.model.createData()
-        self.order = [self.model.joints[rows[row]].idx_v for row in range(len(robot.joints))]
+        base = list(range(6)) if floats else []
+        self.order = base + [self.model.joints[rows[row]].idx_v for row in range(len(robot.joints))]
 
     def equations(self, q, v):
         """K and k of K q'' = k, from products of vectors that stay zero."""

@@ -38,11 +38,22 @@ def listed(values):
                            for value in np.where(np.abs(values) < 5e-5, 0.0, values)) + "]"
 
 
+def drawn_link(random):
+    """Mass, centre of mass and inertia of a body, as text."""
+    draw = lambda low, high: round(float(random.uniform(low, high)), 3)
+    mass, com = draw(0.5, 4), [draw(-0.2, 0.2) for _ in range(3)]
+    xx, yy, part = draw(0.01, 0.1), draw(0.01, 0.1), draw(0.3, 0.9)
+    zz = round(abs(xx - yy) + part * (xx + yy - abs(xx - yy)), 4)
+    small = round(0.1 * min(xx, yy, zz, xx + yy - zz, abs(zz - abs(xx - yy))), 5)
+    return f"{{mass: {mass}, com: {com}, inertia: {{xx: {xx}, yy: {yy}, zz: {zz}, xy: {small}, yz: {-small}}}}}"
+
+
 class Draft:
     """A robot that is being drawn: rows as text, and the pose of each link at the positions q."""
 
-    def __init__(self, random, planar, standard):
+    def __init__(self, random, planar, standard, floats=False):
         self.random, self.planar, self.standard = random, planar, standard
+        self.base = drawn_link(random) if floats else None
         self.rows, self.q, self.poses, self.parents, self.flat = [], [], {-1: np.eye(4)}, [], {-1: True}
         self.loops, self.moved, self.ranks = [], [], []
 
@@ -76,15 +87,11 @@ class Draft:
         else:
             pose = turn(2, gamma) @ shift(0, 0, b) @ along @ own
             dh = f"gamma: {gamma}, b: {b}, {dh}" if branch else dh
-        mass, com = draw(0.5, 4), [draw(-0.2, 0.2) for _ in range(3)]
-        xx, yy, part = draw(0.01, 0.1), draw(0.01, 0.1), draw(0.3, 0.9)
-        zz = round(abs(xx - yy) + part * (xx + yy - abs(xx - yy)), 4)
-        small = round(0.1 * min(xx, yy, zz, xx + yy - zz, abs(zz - abs(xx - yy))), 5)
+        link = drawn_link(random)
         above = f" parent: {'base' if parent < 0 else f'j{parent + 1}'}," if branch else ""
         kind = "prismatic" if slide else "revolute"
-        tensor = f"{{xx: {xx}, yy: {yy}, zz: {zz}, xy: {small}, yz: {-small}}}"
         self.rows.append(f"- {{name: j{index + 1},{above} type: {kind},{at} dh: {{{dh}}},\n"
-                         f"   link: {{mass: {mass}, com: {com}, inertia: {tensor}}}}}")
+                         f"   link: {link}}}")
         self.poses[index] = self.poses[parent] @ pose
         self.q.append(q)
         self.parents.append(parent)
@@ -161,17 +168,18 @@ class Draft:
                  for k, loop in enumerate(self.loops)]
         gravity = "[0, -9.81, 0]" if self.planar else "[1.5, -2.5, -9.2]"
         tip = max(link for link in range(len(self.q)) if self.flat[link])
+        base = [f"floating_base: {{name: base_link, link: {self.base}}}"] if self.base else []
         return "\n".join([
             "format: 2", f"name: {name}", "source: Drawn at random to test closed loops.",
             f"convention: {'standard' if self.standard else 'modified'}", f"gravity: {gravity}",
-            f"tool: {{on: j{tip + 1}, xyz: [0.1, -0.05, 0.08], rpy: [0.3, -0.2, 0.5]}}", "joints:", *self.rows,
+            *base, f"tool: {{on: j{tip + 1}, xyz: [0.1, -0.05, 0.08], rpy: [0.3, -0.2, 0.5]}}", "joints:", *self.rows,
             "loops:", *loops, ""])
 
 
-def draw(random, kind):
+def draw(random, kind, floats):
     """A draft of one to three loops, or None: `kind` says how many, and whether it is planar or in standard rows."""
     planar = kind % 5 < 2
-    draft = Draft(random, planar, not planar and kind % 4 == 3)
+    draft = Draft(random, planar, not planar and kind % 4 == 3, floats)
     for _ in range(int(random.integers(0, 3))):
         draft.row(len(draft.q) - 1, False)
     for _ in range(1 + kind % 3):
@@ -195,13 +203,13 @@ def choice(random, slopes, rank):
     return sorted(columns)
 
 
-def random_robots(count, robot_of):
+def random_robots(count, robot_of, floats=False):
     """Names, texts and closed positions of random robots; every sixth is the one before with other dependent joints.
 
-    `robot_of` reads a text."""
-    random, found, kind = np.random.default_rng(20), [], 0
+    `robot_of` reads a text; with `floats` nothing holds their bases."""
+    random, found, kind = np.random.default_rng(21 if floats else 20), [], 0
     while len(found) < count:
-        draft = draw(random, kind)
+        draft = draw(random, kind, floats)
         if draft is None:
             continue
         name, rank = f"random{len(found) + 1}", sum(draft.ranks)

@@ -8,6 +8,7 @@ import numpy as np
 import yaml
 
 mp.mp.dps = 60
+STEP = mp.mpf("1e-13")  # of time and of positions: differences are exact to about 1e-24
 NAMES = {name: getattr(mp, name) for name in ("pi", "sqrt", "sin", "cos", "radians")} | {"deg": mp.radians}
 
 
@@ -39,12 +40,32 @@ def place(entry):
     return shift(xyz) @ rotation(2, rpy[2]) @ rotation(1, rpy[1]) @ rotation(0, rpy[0])
 
 
+def body(link):
+    """Mass, centre of mass, and inertia about it."""
+    element = lambda key: number(link.get("inertia", {}).get(key, 0))
+    xx, yy, zz, xy, xz, yz = map(element, ("xx", "yy", "zz", "xy", "xz", "yz"))
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return number(link["mass"]), np.array([number(x) for x in link.get("com", [0, 0, 0])]), tensor
+
+
+def second_moments(mass, centre, tensor):
+    """∫ (r, 1) (r, 1)ᵀ dm of a body."""
+    out = shift([0, 0, 0])
+    out[:3, :3] = out[:3, :3] * (tensor.trace() / 2) - tensor + mass * np.outer(centre, centre)
+    out[:3, 3] = out[3, :3] = mass * centre
+    out[3, 3] = mass
+    return out
+
+
 class Robot:
     """A robot file of format 2 with loops: rows as constants before and after each joint, links as second moments."""
 
     def __init__(self, text):
         file = yaml.load(text, yaml.BaseLoader)  # all words stay words: `on`, and all digits
         self.name, self.joints = file["name"], [joint["name"] for joint in file["joints"]]
+        self.floating_base = file.get("floating_base")
+        if self.floating_base:
+            self.base = body(self.floating_base["link"])
         self.slides = [joint["type"] == "prismatic" for joint in file["joints"]]
         self.gravity = np.array([number(x) for x in file["gravity"]])
         self.parents, self.before, self.after, self.moments, self.links = [], [], [], [], []
@@ -58,17 +79,8 @@ class Robot:
             modified = file["convention"] == "modified"
             self.before.append(start @ along @ turn if modified else start)
             self.after.append(None if modified else turn @ along)
-            link = joint.get("link", {"mass": 0})
-            mass, centre = number(link["mass"]), np.array([number(x) for x in link.get("com", [0, 0, 0])])
-            element = lambda key: number(link.get("inertia", {}).get(key, 0))
-            xx, yy, zz, xy, xz, yz = map(element, ("xx", "yy", "zz", "xy", "xz", "yz"))
-            tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])  # about the centre of mass
-            moment = shift([0, 0, 0])
-            moment[:3, :3] = moment[:3, :3] * ((xx + yy + zz) / 2) - tensor + mass * np.outer(centre, centre)
-            moment[:3, 3] = moment[3, :3] = mass * centre
-            moment[3, 3] = mass
-            self.moments.append(moment)
-            self.links.append((mass, centre, tensor))
+            self.links.append(body(joint.get("link", {"mass": 0})))
+            self.moments.append(second_moments(*self.links[-1]))
         self.cuts = [(loop["cut"], [(self.link(end["on"]), place(end)) for end in loop["between"]])
                      for loop in file["loops"]]
         dependent = {name for loop in file["loops"] for name in loop["dependent"]}
@@ -77,7 +89,8 @@ class Robot:
         self.tip = (self.link(file["tool"]["on"]), place(file["tool"])) if "tool" in file else None
 
     def link(self, name):
-        return -1 if name == "base" else self.joints.index(name)
+        is_base = name == "base" or self.floating_base and name == self.floating_base["name"]
+        return -1 if is_base else self.joints.index(name)
 
     def poses(self, q):
         """Poses of all links, the base last."""
