@@ -2,16 +2,21 @@
 //! program has made by virtual work on the closed kinematics, at 60 digits (`xtask/loops.py`).
 
 use rne::compiled::{Arguments as Numbers, Array, CompiledArm, Destination};
-use rne::{DynArm, VectorUnit, Wrench};
+use rne::{BaseAcceleration, BaseMotion, ClosedLoops, DynArm, FloatingClosedLoops, VectorUnit, Wrench};
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
 use rne_model::{Reader, Robot};
 use serde_json::Value;
+
+/// A trunk with one leg of a four-bar.
+#[derive(rne::ClosedLoops, rne::FloatingClosedLoops)]
+#[robot(path = "../../benches/trees/loops/floating_four_bar_leg.yaml", form = "reduced")]
+struct FourBarLeg;
 
 /// The largest error that is allowed, relative to the largest number that the function returns.
 const TOLERANCE: f64 = 1e-9;
 
 /// Robots with golden values of their own.
-const ROBOTS: [&str; 11] = [
+const ROBOTS: [&str; 15] = [
     "four_bar",
     "six_bar",
     "planar_leg_linkage",
@@ -23,6 +28,10 @@ const ROBOTS: [&str; 11] = [
     "ankle_by_foot",
     "palletiser",
     "bennett",
+    "floating_four_bar_leg",
+    "floating_two_ankles",
+    "floating_delta",
+    "floating_digit_like",
 ];
 
 fn robot(yaml: &[u8]) -> Robot {
@@ -44,6 +53,23 @@ fn read(path: &str) -> Vec<u8> {
 struct State<'a>(&'a Value);
 
 impl State<'_> {
+    /// The motion of the base; `None` for a robot whose base is fixed.
+    fn base(&self) -> Option<BaseMotion<f64>> {
+        self.0.get("base")?;
+        let of = |key: &str| {
+            let numbers = State(&self.0["base"]).numbers(key);
+            <[f64; 3]>::try_from(numbers).expect("three numbers")
+        };
+        let (omega, omega_dot) = (of("omega"), of("omega_dot"));
+        Some(BaseMotion { omega, omega_dot, acceleration: of("acceleration"), ..BaseMotion::fixed(of("gravity")) })
+    }
+
+    /// The functions with values in the file.
+    fn functions(&self, robot: &Robot) -> impl Iterator<Item = Function> + use<> {
+        let floats = self.base().is_some();
+        Function::of_robot(robot).filter(move |function| floats || !function.is_of_floating_base())
+    }
+
     fn numbers(&self, key: &str) -> Vec<f64> {
         fn flat(value: &Value, numbers: &mut Vec<f64>) {
             match value {
@@ -66,12 +92,17 @@ impl State<'_> {
             Function::InverseDynamicsOfLoopsWithWrenches => self.numbers("inverse_dynamics_with_wrench"),
             Function::MassMatrixOfLoops => self.numbers("mass_matrix"),
             Function::ForwardDynamicsOfLoops => self.numbers("forward_dynamics"),
+            Function::InverseDynamicsOfFloatingLoops => self.numbers("inverse_dynamics_of_floating_loops_with_wrench"),
+            Function::FloatingMassMatrixOfLoops => self.numbers("floating_mass_matrix_of_loops"),
+            Function::FloatingForwardDynamicsOfLoops => self.numbers("floating_forward_dynamics_of_loops_with_wrench"),
             other => unreachable!("{other} is of no closed loop"),
         };
         let largest = |numbers: &[f64]| numbers.iter().fold(1.0_f64, |largest, x| largest.max(x.abs()));
         let scale = match function {
             // a large wrench may need a small torque
-            Function::InverseDynamicsOfLoopsWithWrenches => largest(&numbers).max(largest(&self.numbers("wrench"))),
+            Function::InverseDynamicsOfLoopsWithWrenches | Function::InverseDynamicsOfFloatingLoops => {
+                largest(&numbers).max(largest(&self.numbers("wrench")))
+            }
             _ => largest(&numbers),
         };
         (numbers, scale)
@@ -94,6 +125,7 @@ fn of_runtime(arm: &DynArm, function: Function, state: &State<'_>) -> Vec<f64> {
         ["q", "passive", "qd", "qdd", "tau", "wrench"].map(|key| state.numbers(key));
     let wrench = Wrench { force: [wrench[0], wrench[1], wrench[2]], moment: [wrench[3], wrench[4], wrench[5]] };
     let [q, passive, qd, qdd, tau] = [&q, &passive, &qd, &qdd, &tau].map(Vec::as_slice);
+    let base = state.base().unwrap_or_else(|| BaseMotion::fixed([0.0; 3]));
     let numbers = match function {
         Function::ClosureStep => arm.closure_step(q, passive).map(|(passive, residual)| [passive, residual].concat()),
         Function::LoopMap => arm.loop_map(q, passive).map(|rows| rows.concat()),
@@ -104,6 +136,13 @@ fn of_runtime(arm: &DynArm, function: Function, state: &State<'_>) -> Vec<f64> {
         }
         Function::MassMatrixOfLoops => arm.mass_matrix_of_loops(q, passive).map(|rows| rows.concat()),
         Function::ForwardDynamicsOfLoops => arm.forward_dynamics_of_loops(q, passive, qd, tau),
+        Function::InverseDynamicsOfFloatingLoops => arm
+            .inverse_dynamics_of_floating_loops(q, passive, qd, qdd, &base, &[wrench])
+            .map(|(Wrench { force, moment }, tau)| [&force[..], &moment, &tau].concat()),
+        Function::FloatingMassMatrixOfLoops => arm.floating_mass_matrix_of_loops(q, passive).map(|rows| rows.concat()),
+        Function::FloatingForwardDynamicsOfLoops => arm
+            .floating_forward_dynamics_of_loops(q, passive, qd, tau, &base.omega, &[wrench])
+            .map(|(BaseAcceleration { linear, angular }, qdd)| [&linear[..], &angular, &qdd].concat()),
         other => unreachable!("{other} is of no closed loop"),
     };
     numbers.expect("one number per joint")
@@ -111,7 +150,7 @@ fn of_runtime(arm: &DynArm, function: Function, state: &State<'_>) -> Vec<f64> {
 
 fn check(name: &str, robot: &Robot, states: &[Value]) {
     let (arm, compiler) = (DynArm::from_robot(robot), Compiler::new(robot));
-    for function in Function::of_robot(robot) {
+    for function in State(&states[0]).functions(robot) {
         for state in states.iter().map(State) {
             state.is_near(function, &of_runtime(&arm, function, &state), &format!("{name}, runtime"));
         }
@@ -125,6 +164,9 @@ fn check(name: &str, robot: &Robot, states: &[Value]) {
                     passive: &passive,
                     tau: &tau,
                     wrenches: &[wrench],
+                    base: state
+                        .base()
+                        .map_or([[0.0; 3]; 4], |base| [base.omega, base.omega_dot, base.acceleration, base.gravity]),
                     ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
                 };
                 let found = interpreter.run(&arguments, |x| x, f64::sin_cos).expect("all arguments");
@@ -146,17 +188,43 @@ fn real_mechanisms_are_those_of_virtual_work() {
 
 #[test]
 fn random_mechanisms_are_those_of_virtual_work() {
-    let golden: Vec<Value> = serde_json::from_slice(&read("tests/golden/loops/random.json")).expect("JSON");
-    for (index, entry) in golden.iter().enumerate() {
-        let robot = robot(entry["yaml"].as_str().expect("a text").as_bytes());
-        check(&format!("random mechanism {index}"), &robot, entry["states"].as_array().expect("states"));
+    for file in ["random", "floating_random"] {
+        let path = format!("tests/golden/loops/{file}.json");
+        let golden: Vec<Value> = serde_json::from_slice(&read(&path)).expect("JSON");
+        for (index, entry) in golden.iter().enumerate() {
+            let robot = robot(entry["yaml"].as_str().expect("a text").as_bytes());
+            check(&format!("{file} mechanism {index}"), &robot, entry["states"].as_array().expect("states"));
+        }
+    }
+}
+
+#[test]
+fn derived_closed_loops_float() {
+    let golden: Vec<Value> =
+        serde_json::from_slice(&read("tests/golden/loops/floating_four_bar_leg.json")).expect("JSON");
+    for state in golden.iter().map(State) {
+        let of = |key: &str| <[f64; 2]>::try_from(state.numbers(key)).expect("two numbers");
+        let [q, passive, qd, qdd, tau] = ["q", "passive", "qd", "qdd", "tau"].map(of);
+        let [x, y, z, about_x, about_y, about_z] = state.numbers("wrench")[..] else { unreachable!("six numbers") };
+        let wrenches = [Wrench { force: [x, y, z], moment: [about_x, about_y, about_z] }];
+        let base = state.base().expect("a floating base");
+        let closed = FourBarLeg.close(&q, &passive.map(|p| p + 1e-3));
+        state.is_near(Function::ClosureStep, &[&closed.passive[..], &closed.residual].concat(), "derived");
+        let torques = FourBarLeg.inverse_dynamics_of_floating_loops(&q, &passive, &qd, &qdd, &base, &wrenches);
+        let torques = [&torques.wrench.force[..], &torques.wrench.moment, &torques.tau].concat();
+        state.is_near(Function::InverseDynamicsOfFloatingLoops, &torques, "derived");
+        let mass = FourBarLeg.floating_mass_matrix_of_loops(&q, &passive);
+        state.is_near(Function::FloatingMassMatrixOfLoops, mass.as_flattened(), "derived");
+        let moved = FourBarLeg.floating_forward_dynamics_of_loops(&q, &passive, &qd, &tau, &base.omega, &wrenches);
+        let moved = [&moved.base.linear[..], &moved.base.angular, &moved.qdd].concat();
+        state.is_near(Function::FloatingForwardDynamicsOfLoops, &moved, "derived");
     }
 }
 
 /// The machine computes what the interpreter does, for many states at once.
 #[test]
 fn the_machine_computes_closed_loops() {
-    for name in ["g1_ankle", "cassie_like"] {
+    for name in ["g1_ankle", "cassie_like", "floating_two_ankles"] {
         let path = format!("{}/benches/trees/loops/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
         let arm = CompiledArm::from_file(path).expect("a robot file").in_form(Form::Reduced);
         let golden: Vec<Value> =
@@ -165,7 +233,19 @@ fn the_machine_computes_closed_loops() {
         let [q, passive, qd, qdd, tau, wrenches] = ["q", "passive", "qd", "qdd", "tau", "wrench"].map(all);
         let arguments = Numbers::new().q(Array::Rows(&q)).passive(Array::Rows(&passive)).qd(Array::Rows(&qd));
         let arguments = arguments.qdd(Array::Rows(&qdd)).tau(Array::Rows(&tau)).wrenches(Array::Rows(&wrenches));
-        for function in Function::of_robot(arm.robot()) {
+        let of_base = |part: fn(&BaseMotion<f64>) -> [f64; 3]| {
+            golden.iter().filter_map(|state| State(state).base()).flat_map(|base| part(&base)).collect::<Vec<f64>>()
+        };
+        let [omega, omega_dot, acceleration, gravity] = [
+            of_base(|base| base.omega),
+            of_base(|base| base.omega_dot),
+            of_base(|base| base.acceleration),
+            of_base(|base| base.gravity),
+        ];
+        let arguments = arguments.omega(Array::Rows(&omega)).base_omega(Array::Rows(&omega));
+        let arguments = arguments.base_omega_dot(Array::Rows(&omega_dot));
+        let arguments = arguments.base_acceleration(Array::Rows(&acceleration)).base_gravity(Array::Rows(&gravity));
+        for function in State(&golden[0]).functions(arm.robot()) {
             let width = arm.layout(function).len();
             let mut numbers = vec![f64::NAN; golden.len() * width];
             let compiled = arm.function(function).expect("a function that compiles");

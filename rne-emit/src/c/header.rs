@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use rne_codegen::{Argument, Function, Name, Program, Quantity, Record};
-use rne_model::JointIdentifier;
+use rne_model::{Joint, JointIdentifier};
 
 use super::signature::{fields, head, parameters_type, record_type, records};
 use super::{ConstantTooLarge, File, comment, joint_functions, motors, observer};
@@ -129,15 +129,24 @@ fn initialiser(name: &str, numbers: &[String]) -> String {
     format!("{start} \\\n{lines}}}\n")
 }
 
-/// The index of each joint by its name.
+/// The index of each joint by its name, and that of each dependent joint of closed loops.
 fn joints(file: &File, upper: &str) -> String {
-    let mut text = "\n/// Indices of the joints in arrays, by their names.\nenum {\n".to_owned();
-    for (index, joint) in file.robot.independent_joints().enumerate() {
-        let JointIdentifier { upper_case, .. } = JointIdentifier::of(&joint.name, index);
-        let name = inert::c_comment(&joint.name);
-        let _ = writeln!(text, "    /// {name}\n    {upper}_JOINT_{upper_case} = {index},");
-    }
-    text + "};\n\n"
+    let robot = file.robot;
+    let indices = |about: &str, kind: &str, joints: &mut dyn Iterator<Item = &Joint>| {
+        let mut text = format!("\n/// {about}\nenum {{\n");
+        for (index, joint) in joints.enumerate() {
+            let JointIdentifier { upper_case, .. } = JointIdentifier::of(&joint.name, index);
+            let name = inert::c_comment(&joint.name);
+            let _ = writeln!(text, "    /// {name}\n    {upper}_{kind}_{upper_case} = {index},");
+        }
+        text + "};\n"
+    };
+    let text = indices("Indices of the joints in arrays, by their names.", "JOINT", &mut robot.independent_joints());
+    let passive = (!robot.closed.is_empty()).then(|| {
+        let about = "Indices of the dependent joints in `passive`, and of their rows in the map, by their names.";
+        indices(about, "PASSIVE", &mut robot.closed.passive.iter().map(|&joint| &robot.joints[joint]))
+    });
+    text + &passive.unwrap_or_default() + "\n"
 }
 
 /// The index of each tip by its name, where a function takes or returns something for each.
