@@ -51,8 +51,7 @@ impl<'a> Target<'a> {
             inline: attribute.inline,
             tips: number("__TIPS", |sizes| sizes.tips),
             passive: number("__PASSIVE", |sizes| sizes.passive),
-            // no argument has this length, so that nothing would determine a parameter: any number serves
-            equations: Literal::usize_unsuffixed(sizes.map_or(60, |sizes| sizes.equations)).into_token_stream(),
+            equations: number("__EQUATIONS", |sizes| sizes.equations),
         }
     }
 }
@@ -152,6 +151,9 @@ impl Target<'_> {
         }
         if matches!(capability, Capability::ClosedLoops | Capability::FloatingClosedLoops) {
             generics.params.push(syn::parse_quote!(const __PASSIVE: ::core::primitive::usize));
+        }
+        if capability == Capability::ClosedLoops {
+            generics.params.push(syn::parse_quote!(const __EQUATIONS: ::core::primitive::usize));
         }
         if capability.has_tips() {
             generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
