@@ -1,8 +1,8 @@
 """Golden values of robots with closed loops, by two oracles that share no formula with rne.
 
-Usage: python loops.py [NAME …]         the robots of benches/trees/loops, to tests/golden/loops/NAME.json
-       python loops.py random N FILE    N random robots, their files inside; tests/golden/loops/random.json has 60
-       python loops.py floating N FILE  the same on floating bases; tests/golden/loops/floating_random.json has 20
+Usage: python loops.py [NAME …]                       the robots of benches/trees/loops, to tests/golden/loops/NAME.json
+       python loops.py random N FILE [PROCESSES]      N random robots, their files inside; 60 in random.json there
+       python loops.py floating N FILE [PROCESSES]    the same on floating bases; 20 in floating_random.json there
 
 Needs numpy, mpmath, PyYAML and pin. The values come from the closed kinematics alone: the loops are closed by Newton
 steps at 60 digits, and rates, accelerations and virtual displacements are differences of the closed poses. The virtual
@@ -21,6 +21,7 @@ or acceleration less gravity and angular acceleration; then those of the indepen
 """
 
 import json
+import multiprocessing
 import pathlib
 import sys
 
@@ -29,10 +30,10 @@ import numpy as np
 
 from loops_floating import FloatingPinocchio, floating_values, motion_of_base
 from loops_peer import Pinocchio
-from loops_random import random_robots
+from loops_random import random_robots, wrong_choice
 from loops_robot import STEP, Robot
 
-STATES, RANDOM_STATES = 5, 3
+STATES, RANDOM_STATES, PART = 5, 3, 60
 ROOT = pathlib.Path(__file__).parent.parent
 FOLDER = ROOT / "benches/trees/loops"
 # A position of the independent joints at which the loops close, a guess of the dependent ones, and how far the states
@@ -148,7 +149,7 @@ def states(robot, q, reach, count):
 
 
 def golden(robot, q, reach, count):
-    """States with their values, and the largest difference between both oracles by function."""
+    """Closed positions and states with their values, and the largest difference between both oracles by function."""
     peer, out, errors, conditions = Pinocchio(robot), [], {}, [0.0, 0.0]
     floating = FloatingPinocchio(robot) if robot.floating_base else None
     random = np.random.default_rng(8)
@@ -162,7 +163,7 @@ def golden(robot, q, reach, count):
             values |= of_base
         conditions = [max(pair) for pair in zip(conditions, of_state)]
         errors = {key: max(error, errors.get(key, 0.0)) for key, error in state_errors.items()}
-        out.append(state | values)
+        out.append((closed, state | values))
     return out, errors, conditions
 
 
@@ -175,7 +176,19 @@ def report(name, robot, found, errors, conditions):
           f"{len(robot.passive)}, states {len(found)}, condition {conditions[0]:.1f}, of M {conditions[1]:.0f}, "
           f"largest difference {errors.get(key, 0):.1e} of {key}, of forward_dynamics {accelerations:.1e}", flush=True)
     if not errors or max(errors.values()) > 1e-10 or accelerations > 1e-10:
-        sys.exit(f"{name}: failed")
+        raise RuntimeError(f"{name}: failed")
+
+
+def random_entries(part):
+    """Random robots with their states, and for each a wrong choice of its dependent joints."""
+    count, floats, number = part
+    entries, random = [], np.random.default_rng(number)
+    for robot, text, q in random_robots(count, Robot, floats, number):
+        found, errors, conditions = golden(robot, q, 0.15, RANDOM_STATES)
+        report(f"{robot.name} of part {number}", robot, [state for _, state in found], errors, conditions)
+        wrong = wrong_choice(random, robot, [closed for closed, _ in found])
+        entries.append({"yaml": text, "wrong": wrong, "states": [state for _, state in found]})
+    return entries
 
 
 def line(value):
@@ -184,12 +197,10 @@ def line(value):
 
 def main():
     if sys.argv[1:2] in (["random"], ["floating"]):
-        entries = []
-        for robot, text, q in random_robots(int(sys.argv[2]), Robot, sys.argv[1] == "floating"):
-            name = robot.name
-            found, errors, conditions = golden(robot, q, 0.15, RANDOM_STATES)
-            report(name, robot, found, errors, conditions)
-            entries.append({"yaml": text, "states": found})
+        count, floats = int(sys.argv[2]), sys.argv[1] == "floating"
+        parts = [(min(PART, count - start), floats, start // PART) for start in range(0, count, PART)]
+        with multiprocessing.Pool(int(sys.argv[4]) if len(sys.argv) > 4 else 1) as pool:
+            entries = sum(pool.imap(random_entries, parts), [])
         pathlib.Path(sys.argv[3]).write_text("[\n" + ",\n".join(map(line, entries)) + "\n]\n")
         return
     for path in sorted(FOLDER.glob("*.yaml")):
@@ -202,6 +213,7 @@ def main():
         if closed is None or not robot.sensible(closed[1]):
             sys.exit(f"{path.stem}: no closed positions near the start")
         found, errors, conditions = golden(robot, closed[0], reach, STATES)
+        found = [state for _, state in found]
         report(path.stem, robot, found, errors, conditions)
         out = ROOT / "tests/golden/loops" / f"{path.stem}.json"
         out.parent.mkdir(exist_ok=True)

@@ -203,11 +203,33 @@ def choice(random, slopes, rank):
     return sorted(columns)
 
 
-def random_robots(count, robot_of, floats=False):
+def wrong_choice(random, robot, closed):
+    """Names of dependent joints by loop that are refused, and why: there are too many or too few of them, or, where the
+    robot has such a choice, they are as many as the rank and lose it at all of the closed positions."""
+    slopes, rank, chosen = [robot.slopes(q, range(len(q))) for q in closed], len(robot.passive), robot.dependent
+    lists = lambda gone, added, k: [[row for row in of if row != gone] + [added] * (loop == k and added is not None)
+                                    for loop, of in enumerate(chosen)]
+    more = [(row, k) for k, joints in enumerate(robot.moving()) for row in sorted(joints & set(robot.free))]
+
+    def is_lost(choice):
+        columns = sum(choice, [])
+        values = [np.linalg.svd(of[:, columns], compute_uv=False) for of in slopes]
+        return all(of[rank - 1] < 1e-10 * of[0] for of in values)
+
+    exchanged = [lists(gone, row, k) for gone in robot.passive for row, k in more]
+    choices = {"rank": [choice for choice in exchanged if is_lost(choice)],
+               "too few": [lists(gone, None, 0) for gone in robot.passive],
+               "too many": [lists(None, row, k) for row, k in more]}
+    why = "rank" if choices["rank"] else str(random.choice([why for why in choices if choices[why]]))
+    choice = choices[why][int(random.integers(len(choices[why])))]
+    return {"why": why, "dependent": [[robot.joints[row] for row in rows] for rows in choice]}
+
+
+def random_robots(count, robot_of, floats=False, part=0):
     """Names, texts and closed positions of random robots; every sixth is the one before with other dependent joints.
 
-    `robot_of` reads a text; with `floats` nothing holds their bases."""
-    random, found, kind = np.random.default_rng(21 if floats else 20), [], 0
+    `robot_of` reads a text; with `floats` nothing holds their bases. Each `part` has others."""
+    random, found, kind = np.random.default_rng((21 if floats else 20) + 1000 * part), [], 0
     while len(found) < count:
         draft = draw(random, kind, floats)
         if draft is None:

@@ -9,6 +9,7 @@ import yaml
 
 mp.mp.dps = 60
 STEP = mp.mpf("1e-13")  # of time and of positions: differences are exact to about 1e-24
+LOADER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 NAMES = {name: getattr(mp, name) for name in ("pi", "sqrt", "sin", "cos", "radians")} | {"deg": mp.radians}
 
 
@@ -61,7 +62,7 @@ class Robot:
     """A robot file of format 2 with loops: rows as constants before and after each joint, links as second moments."""
 
     def __init__(self, text):
-        file = yaml.load(text, yaml.BaseLoader)  # all words stay words: `on`, and all digits
+        file = yaml.load(text, LOADER)  # all words stay words: `on`, and all digits
         self.name, self.joints = file["name"], [joint["name"] for joint in file["joints"]]
         self.floating_base = file.get("floating_base")
         if self.floating_base:
@@ -81,36 +82,47 @@ class Robot:
             self.after.append(None if modified else turn @ along)
             self.links.append(body(joint.get("link", {"mass": 0})))
             self.moments.append(second_moments(*self.links[-1]))
+        constant = lambda poses: [pose if pose is None else pose.astype(complex) for pose in poses]
+        self.rough = constant(self.before), constant(self.after)
         self.cuts = [(loop["cut"], [(self.link(end["on"]), place(end)) for end in loop["between"]])
                      for loop in file["loops"]]
-        dependent = {name for loop in file["loops"] for name in loop["dependent"]}
-        self.passive = [row for row, name in enumerate(self.joints) if name in dependent]
-        self.free = [row for row, name in enumerate(self.joints) if name not in dependent]
+        self.dependent = [[self.link(name) for name in loop["dependent"]] for loop in file["loops"]]
+        self.passive = sorted(sum(self.dependent, []))
+        self.free = [row for row in range(len(self.joints)) if row not in self.passive]
         self.tip = (self.link(file["tool"]["on"]), place(file["tool"])) if "tool" in file else None
 
     def link(self, name):
         is_base = name == "base" or self.floating_base and name == self.floating_base["name"]
         return -1 if is_base else self.joints.index(name)
 
+    def moving(self):
+        """For each loop the joints that move one of its places and not the other."""
+        def path(link):
+            return {link} | path(self.parents[link]) if link >= 0 else set()
+
+        return [path(first[0]) ^ path(second[0]) for _, (first, second) in self.cuts]
+
     def poses(self, q):
-        """Poses of all links, the base last."""
-        out = []
+        """Poses of all links, the base last. Positions that are complex numbers have poses in double precision."""
+        rough = isinstance(q[0], complex)
+        before, after = (self.rough if rough else (self.before, self.after))
+        sin, cos, out = np.sin if rough else mp.sin, np.cos if rough else mp.cos, []
         for row, parent in enumerate(self.parents):
-            pose = (out[parent] if parent >= 0 else shift([0, 0, 0])) @ self.before[row]
+            pose = out[parent] @ before[row] if parent >= 0 else before[row].copy()
             if self.slides[row]:
                 pose[:3, 3] = pose[:3, 3] + pose[:3, 2] * q[row]
             else:
-                c, s = mp.cos(q[row]), mp.sin(q[row])
+                c, s = cos(q[row]), sin(q[row])
                 x, y = pose[:3, 0], pose[:3, 1]  # arrays first: mpmath would print an array that it multiplies
                 pose[:3, 0], pose[:3, 1] = x * c + y * s, y * c - x * s
-            out.append(pose if self.after[row] is None else pose @ self.after[row])
-        return [*out, shift([0, 0, 0])]
+            out.append(pose if after[row] is None else pose @ after[row])
+        return [*out, np.eye(4) if rough else shift([0, 0, 0])]
 
     def gaps(self, poses):
         """What is left of the loops: zeros where they are closed."""
         out = []
         for cut, ends in self.cuts:
-            first, second = (poses[link] @ frame for link, frame in ends)
+            first, second = (poses[link] @ frame.astype(poses[link].dtype) for link, frame in ends)
             turn = first[:3, :3].T @ second[:3, :3]
             out += list(second[:3, 3] - first[:3, 3])
             out += {"revolute": [turn[0, 2], turn[1, 2]], "spherical": [], "universal": [turn[0, 1]],
@@ -124,13 +136,12 @@ class Robot:
         return all({"revolute": turn[2, 2] > 0, "weld": turn.trace() > 2}.get(cut, True) for cut, turn in turns)
 
     def slopes(self, q, columns):
-        """Derivative of the gaps, in double precision."""
-        gaps, tiny = self.gaps(self.poses(q)), mp.mpf("1e-30")
-        out = []
+        """Derivative of the gaps, in double precision: a small imaginary part of a position takes no difference."""
+        tiny, out = 1e-30, []
         for column in columns:
-            moved = list(q)
-            moved[column] += tiny
-            out.append([float(x) for x in (self.gaps(self.poses(moved)) - gaps) / tiny])
+            moved = [complex(x) for x in q]
+            moved[column] += tiny * 1j
+            out.append([x.imag / tiny for x in self.gaps(self.poses(moved))])
         return np.array(out).T
 
     def close(self, y, guess, slopes=None):

@@ -258,6 +258,8 @@ def read(path):
         follows[follower] = [(names[name], number(ratio)) for name, ratio in coupling["follows"].items()]
         rows[follower].theta += number(coupling.get("offset", 0.0))
     for loop in file.get("loops", []):
+        if loop.get("kind") != "parallelogram":
+            continue  # of a closed loop, the tree that is left is counted
         follows |= parallelogram(rows, names, loop, number)
     floating = file.get("floating_base")
     base = floating and matter_of(floating["link"], number)
@@ -281,6 +283,12 @@ def parallelogram(rows, names, loop, number):
 
 def peer(rows, follows, gravity, base):
     """Products and sums of Khalil's algorithm with base parameters."""
+    sheet = Sheet()
+    return sheet.operations(torques_on(sheet, rows, follows, gravity, base))
+
+
+def torques_on(sheet, rows, follows, gravity, base):
+    """The torques, and behind them the wrench on a floating base. The parameters of the rows become base parameters."""
     ends = set(range(len(rows))) - {row.parent for row in rows}
     for index, row in enumerate(rows):
         if index in ends and index not in follows:
@@ -294,7 +302,6 @@ def peer(rows, follows, gravity, base):
         carrier = rows[row.parent].matter if row.parent >= 0 else base
         if carrier is not None:
             carrier.add_rod(rod, row.p, [line[2] for line in row.turn])
-    sheet = Sheet()
 
     def moving(quantity, index):
         total = 0.0
@@ -368,7 +375,7 @@ def peer(rows, follows, gravity, base):
     if base:
         base.clean()
         results += [x for part in wrench(base, of_base, carried[-1]) for x in part]
-    return sheet.operations(results)
+    return results
 
 
 def ours(rne, path, floats):

@@ -16,6 +16,7 @@ mod growth;
 mod instructions;
 mod light;
 mod lines;
+mod loops;
 mod machine;
 mod mutants;
 mod mutate;
@@ -72,6 +73,7 @@ enum Task {
     Verify(verify::Verify),
     Light(light::Light),
     Lines(lines::Lines),
+    Loops(loops::Loops),
     Prose(prose::Prose),
     Package(package::Package),
     Tool(tool::Tool),
@@ -119,6 +121,7 @@ impl Task {
             Self::Verify(task) => ("verify", false, task.run()),
             Self::Light(_) => ("light", false, light::Light::run()),
             Self::Lines(task) => ("lines", false, task.run()),
+            Self::Loops(task) => ("loops", false, task.run()),
             Self::Prose(task) => ("prose", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),

@@ -167,7 +167,7 @@ fn listing(command: Cmd<'_>) -> Result<String> {
 }
 
 /// A page with another text in one of its blocks.
-fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
+pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
     let start = format!("<!-- begin: measured {name},");
     ensure!(page.lines().any(|line| line.starts_with(&start)), "the page has no block `{name}`");
     let mut is_inside = false;

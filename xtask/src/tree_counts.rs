@@ -6,6 +6,7 @@ use xshell::cmd;
 
 use crate::Verdict;
 use crate::machine::{self, Missing};
+use crate::performance;
 
 /// Robots that are counted: shipped ones, and those of benches/trees.
 const ROBOTS: [&str; 15] = [
@@ -26,22 +27,33 @@ const ROBOTS: [&str; 15] = [
     "benches/trees/mini_cheetah_floating.yaml",
 ];
 
+/// Robots with closed loops that are counted.
+const LOOPS: [&str; 3] = ["docs/four_bar.yaml", "benches/trees/loops/g1_ankle.yaml", "benches/trees/loops/delta.yaml"];
+
+/// Where their table is.
+const PAGE: &str = "docs/closed-loops.md";
+
 /// Counts the operations of robots with branches beside Khalil's algorithm
 ///
 /// Inverse dynamics in the form reduced, on fixed and on floating bases, by the plan files, and the customised
 /// Newton-Euler algorithm with base parameters, from the same robot files. `xtask/tree_counts.py` has the rules of both
-/// counts.
+/// counts. With --loops: robots with closed loops beside their spanning trees with a dense projection, by the rules of
+/// `xtask/loop_counts.py`; the table is written to docs/closed-loops.md.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a robot needs more operations than its bar. Needs python3 with PyYAML.
 
 Examples:
   cargo xtask tree-counts                          all of them
-  cargo xtask tree-counts robots/trees/hyq.yaml    one robot file; a table with modified rows")]
+  cargo xtask tree-counts robots/trees/hyq.yaml    one robot file; a table with modified rows
+  cargo xtask tree-counts --loops                  closed loops")]
 pub(crate) struct TreeCounts {
     /// Robot files to count instead
     #[arg(value_name = "FILE")]
     files: Vec<String>,
+    /// Count robots with closed loops
+    #[arg(long, conflicts_with = "files")]
+    loops: bool,
 }
 
 impl TreeCounts {
@@ -52,6 +64,17 @@ impl TreeCounts {
         }
         machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
         let rne = machine::target_folder("target")?.join("debug/rne");
+        if self.loops {
+            let counted = cmd!(shell, "python3 xtask/loop_counts.py {rne} {LOOPS...}").quiet().ignore_status();
+            let output = counted.output()?;
+            let table = String::from_utf8(output.stdout)?;
+            print!("{table}");
+            eprint!("{}", String::from_utf8_lossy(&output.stderr));
+            if output.status.success() {
+                machine::write(PAGE, &performance::replaced(&machine::read(PAGE)?, "loops", &table)?)?;
+            }
+            return Ok(Verdict::from(output.status.success()));
+        }
         let files = if self.files.is_empty() { ROBOTS.map(str::to_owned).to_vec() } else { self.files.clone() };
         Ok(Verdict::from(cmd!(shell, "python3 xtask/tree_counts.py {rne} {files...}").quiet().run().is_ok()))
     }
