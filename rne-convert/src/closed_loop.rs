@@ -1,5 +1,6 @@
 //! Closed loops of a description, and which joints follow from the others by them.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use rne_model::{
@@ -10,9 +11,9 @@ use crate::chain::{Chain, ChainLoop, Extracted};
 use crate::frames::transform;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::scan::Seen;
-use crate::source::{names, quoted};
+use crate::source::{Source, names, quoted};
 use crate::table::Table;
-use crate::urdf::{Urdf, cut};
+use crate::urdf::{Joint, Kind, Link, Urdf, cut};
 
 /// Places of a loop that are not farther apart, m and rad, where the loops come nearest to closing, were meant to be one
 /// place: descriptions round their numbers.
@@ -76,26 +77,86 @@ impl Urdf {
                 let turned = Pose { rotation: turned, translation: Vector::ZERO };
                 *end = (known, Pose::new(xyz, rpy) * turned);
             }
-            self.add_loop(Loop { name, span: seen.span.clone(), cut, ends })?;
+            let source = self.source.clone();
+            self.add_loop(Loop { name, span: seen.span.clone(), cut, ends }, &source)?;
         }
         Ok(())
     }
 
-    /// Adds a loop, after its checks.
-    pub(crate) fn add_loop(&mut self, closed: Loop) -> Result<(), Report> {
-        let error = |message: String, help: &str| Err(self.source.error(&closed.span, message, help.to_owned()));
+    /// Adds a loop of the text `source`, after its checks.
+    pub(crate) fn add_loop(&mut self, closed: Loop, source: &Source) -> Result<(), Report> {
+        let error = |message: String, help: &str| Err(source.error(&closed.span, message, help.to_owned()));
         let name = quoted(&closed.name);
         if self.loops.iter().any(|other| other.name == closed.name) {
             return error(format!("two loops have the name {name}"), "names of loops must differ");
         }
         let [one, other] = closed.ends.map(|(link, _)| link);
-        let moves = |joint: &usize| !matches!(self.joints[*joint].kind, crate::urdf::Kind::Fixed);
+        let moves = |joint: &usize| !matches!(self.joints[*joint].kind, Kind::Fixed);
         if !self.between([one, other]).iter().any(moves) {
             let [one, other] = [one, other].map(|link| quoted(&self.links[link].name));
             let message = format!("no joint moves the ends of the loop {name} against each other: {one} and {other}");
             return error(message, "a loop joins two links that joints move against each other");
         }
         self.loops.push(closed);
+        Ok(())
+    }
+
+    /// Makes three revolute joints of each spherical joint in a loop.
+    pub(crate) fn split_spherical_joints(&mut self, source: &Source) -> Result<(), Report> {
+        let in_loops = self.loops.iter().flat_map(|closed| self.between(closed.ends.map(|(link, _)| link)));
+        let is_spherical = |joint: &usize| self.joints[*joint].kind == Kind::Spherical;
+        let joints: BTreeSet<usize> = in_loops.filter(is_spherical).collect();
+        if joints.is_empty() {
+            return Ok(());
+        }
+        let named = names(joints.iter().map(|&joint| &self.joints[joint].name));
+        self.remarks.push(format!(
+            "these spherical joints of closed loops become three revolute joints each, about x, y and z, without limits \
+             and friction: {named}"
+        ));
+        joints.into_iter().try_for_each(|joint| {
+            let span = self.joints[joint].span.clone();
+            self.split(joint, &[0, 1, 2], (source, &span))
+        })
+    }
+
+    /// Makes revolute joints of a joint, one after the other, about these axes of its frame (0 to 2 for x to z), with
+    /// massless links between them.
+    pub(crate) fn split(
+        &mut self,
+        index: usize,
+        axes: &[usize],
+        (source, place): (&Source, &Range<usize>),
+    ) -> Result<(), Report> {
+        let of = self.joints[index].clone();
+        let (mut parent, mut at) = (of.parent, index);
+        for (turn, &axis) in axes.iter().enumerate() {
+            let name = format!("{}_{}", of.name, ["x", "y", "z"][axis]);
+            let link = format!("{name}_link");
+            if self.joints.iter().any(|joint| joint.name == name) || self.links.iter().any(|known| known.name == link) {
+                let (of, name) = (quoted(&of.name), quoted(&name));
+                let message = format!("a part of the joint {of} gets the name {name}, which is taken");
+                return Err(source.error(place, message, None));
+            }
+            let child = if turn + 1 == axes.len() { of.child } else { self.links.len() };
+            if child == self.links.len() {
+                self.links.push(Link::new(link, of.span.clone()));
+            }
+            let mut joint = Joint { name, parent, child, ..Joint::new(Kind::Continuous, of.span.clone()) };
+            joint.axis = [0.0; 3];
+            joint.axis[axis] = 1.0;
+            joint.has_motor = of.has_motor;
+            if turn == 0 {
+                (joint.xyz, joint.rpy, joint.unknown) = (of.xyz, of.rpy, of.unknown.clone());
+                self.joints[index] = joint;
+            } else {
+                at = self.joints.len();
+                self.joints.push(joint);
+                self.links[parent].children.push(at);
+            }
+            self.links[child].parent = Some(at);
+            parent = child;
+        }
         Ok(())
     }
 
@@ -195,10 +256,8 @@ impl Urdf {
         });
         if !idle.is_empty() {
             told.remarks.push(format!(
-                "the loops leave {} joints that the file gives no motor and that move by themselves: {}; they have \
-                 elements of q and torques like joints with motors. Lock those that turn a part about itself only, or \
-                 name others in `dependent`",
-                idle.len(),
+                "the loops leave freedoms that no motor of the file moves, so these joints have elements of q and torques \
+                 like joints with motors: {}. Lock those that turn a part about itself only",
                 named(&idle)
             ));
         }

@@ -7,12 +7,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use rne_model::document::{self, Content, Node};
-use rne_model::{Cut, Limits, MAX_BYTES, Report, did_you_mean, open_file};
+use rne_model::{Cut, MAX_BYTES, Report, did_you_mean, open_file};
 
 use crate::closed_loop::Loop;
 use crate::geometry::Pose;
-use crate::source::{names, quoted};
-use crate::urdf::{Joint, Kind, Link, Urdf};
+use crate::source::{file_name, names, quoted};
+use crate::urdf::Urdf;
 
 /// The key that tells this file from other YAML.
 const LOOPS: &str = "closed_loop";
@@ -78,7 +78,14 @@ impl Urdf {
             let axes = self.axes(kind)?;
             let index = self.named_joint(joint)?;
             remarked.push(joint.text.clone());
-            self.split(index, &axes, &joint.span)?;
+            let of = &self.joints[index];
+            if !of.kind.has_one_freedom() {
+                let message = format!("the joint {} is {} in the URDF", quoted(&of.name), of.kind.name());
+                let help = "`joint_type` is for joints that are revolute in the URDF".to_owned();
+                return Err(self.source.error(&joint.span, message, help));
+            }
+            let source = self.source.clone();
+            self.split(index, &axes, (&source, &joint.span))?;
         }
         if !remarked.is_empty() {
             let joints = names(remarked);
@@ -112,9 +119,10 @@ impl Urdf {
             };
             let ends = [end(one)?, end(other)?];
             let span = one.span.start..other.span.end.max(one.span.end);
-            self.add_loop(Loop { name: format!("loop{}", index + 1), span, cut, ends })?;
+            let source = self.source.clone();
+            self.add_loop(Loop { name: format!("loop{}", index + 1), span, cut, ends }, &source)?;
         }
-        self.remarks.push(format!("the closed loops are those of {}", quoted(name)));
+        self.remarks.push(format!("the closed loops are those of {}", quoted(file_name(name))));
         Ok(())
     }
 
@@ -193,59 +201,6 @@ impl Urdf {
                 Err(self.source.error(&kind.span, message, help.to_owned()))
             }
         }
-    }
-
-    /// Makes revolute joints about axes of its frame, one after the other, of a joint. Massless links are between them.
-    fn split(&mut self, index: usize, axes: &[usize], place: &Range<usize>) -> Result<(), Report> {
-        let of = self.joints[index].clone();
-        if !of.kind.has_one_freedom() {
-            let message = format!("the joint {} is {} in the URDF", quoted(&of.name), of.kind.name());
-            let help = "`joint_type` is for joints that are revolute in the URDF".to_owned();
-            return Err(self.source.error(place, message, help));
-        }
-        let last = of.child;
-        for (at, &axis) in axes.iter().enumerate() {
-            let name = format!("{}_{}", of.name, ["x", "y", "z"][axis]);
-            let link = format!("{name}_link");
-            if self.joints.iter().any(|joint| joint.name == name) || self.links.iter().any(|known| known.name == link) {
-                let message =
-                    format!("the joint {} becomes {}, and this name is taken", quoted(&of.name), quoted(&name));
-                return Err(self.source.error(place, message, None));
-            }
-            let child = if at + 1 == axes.len() {
-                last
-            } else {
-                self.links.push(Link::new(link, of.span.clone()));
-                self.links.len() - 1
-            };
-            let mut unit = [0.0; 3];
-            unit[axis] = 1.0;
-            let joint = Joint {
-                name,
-                kind: Kind::Continuous,
-                axis: unit,
-                child,
-                limits: Limits::default(),
-                mimic: None,
-                friction: [0.0; 2],
-                crossed: None,
-                negative: Vec::new(),
-                ..of.clone()
-            };
-            let number = if at == 0 {
-                self.joints[index] = joint;
-                index
-            } else {
-                let parent = self.joints[self.joints.len() - 1].child;
-                let parent = if at == 1 { self.joints[index].child } else { parent };
-                self.joints.push(Joint { parent, xyz: [0.0; 3], rpy: [0.0; 3], ..joint });
-                let number = self.joints.len() - 1;
-                self.links[parent].children.push(number);
-                number
-            };
-            self.links[child].parent = Some(number);
-        }
-        Ok(())
     }
 }
 

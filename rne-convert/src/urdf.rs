@@ -219,6 +219,8 @@ impl Urdf {
         if let Some((name, text)) = loops {
             urdf.extend(name, text)?;
         }
+        let source = urdf.source.clone();
+        urdf.split_spherical_joints(&source)?;
         Ok(urdf)
     }
 
