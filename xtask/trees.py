@@ -159,7 +159,10 @@ def main():
             path = folder / f"{name}.urdf"
             if not path.exists() or names and name not in names:
                 continue
-            followers = re.findall(r'<joint\s+name="([^"]*)"[^>]*>(?:(?!</joint>).)*<mimic', path.read_text(), re.S)
+            # the trees, without the closed loops of the text and of the YAML beside it
+            text, path = re.sub(r"<loop\b.*?</loop>", "", path.read_text(), flags=re.S), pathlib.Path(temporary) / path.name
+            path.write_text(text)
+            followers = re.findall(r'<joint\s+name="([^"]*)"[^>]*>(?:(?!</joint>).)*<mimic', text, re.S)
             words += "".join(f" --lock {follower}=0" for follower in followers)
             try:
                 arm = Imported(rne, path, ["--whole", "--no-snap", *words.split()], pathlib.Path(temporary), name)

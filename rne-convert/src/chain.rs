@@ -35,16 +35,29 @@ pub(crate) struct Chain {
     pub(crate) tip: Pose,
     /// Other frames that are fixed to its links, or to the base.
     pub(crate) frames: Vec<ChainFrame>,
+    /// The closed loops that its joints move.
+    pub(crate) loops: Vec<ChainLoop>,
 }
 
 impl Chain {
-    /// Whether each link carries one joint, the last one the tip, and no joint follows another: a table without
-    /// branches has all of it.
+    /// Whether each link carries one joint, the last one the tip, no joint follows another and no loop is closed: a
+    /// table without branches has all of it.
     pub(crate) fn is_serial(&self) -> bool {
         let follows_the_last =
             |(index, joint): (usize, &ChainJoint)| joint.parent == index.checked_sub(1) && joint.coupling.is_none();
-        self.joints.iter().enumerate().all(follows_the_last) && self.tip_on + 1 == self.joints.len()
+        self.joints.iter().enumerate().all(follows_the_last)
+            && self.tip_on + 1 == self.joints.len()
+            && self.loops.is_empty()
     }
+}
+
+/// A closed loop.
+#[derive(Clone, Debug)]
+pub(crate) struct ChainLoop {
+    /// Its place in the list of the URDF.
+    pub(crate) index: usize,
+    /// The joints that move the two links, from 0, `None` for the base, and the places in the frames of these links.
+    pub(crate) ends: [(Option<usize>, Pose); 2],
 }
 
 /// A frame that is fixed to a link of a chain.
@@ -85,6 +98,8 @@ pub(crate) struct Extracted {
     pub(crate) tip: String,
     /// Per joint of the chain its place in the text.
     pub(crate) spans: Vec<Range<usize>>,
+    /// Per joint of the chain that of the URDF.
+    pub(crate) moving: Vec<usize>,
     /// Per joint of the chain the links that were lumped into the link it moves.
     pub(crate) lumped: Vec<Vec<String>>,
     /// Joints that are held, and where.
@@ -150,6 +165,7 @@ pub(crate) fn extract(
         tip_on: 0,
         tip: Pose::identity(),
         frames: Vec::new(),
+        loops: Vec::new(),
     };
     if floats {
         // it has no place in the world, and gravity is that of the world
@@ -199,6 +215,7 @@ pub(crate) fn extract(
              stand still, lock each of these joints by its name".to_owned();
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
+    chain.loops = walk.loops(base)?;
     chain.frames = walk.frames;
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
@@ -388,8 +405,43 @@ impl Walk<'_> {
             coulomb_displacement: None,
         });
         self.told.spans.push(joint.span.clone());
+        self.told.moving.push(index);
         self.told.lumped.push(Vec::new());
         Ok(())
+    }
+
+    /// The loops that moving joints close. One of which no joint moves is left out.
+    fn loops(&mut self, base: usize) -> Result<Vec<ChainLoop>, Report> {
+        let mut loops = Vec::new();
+        for (index, closed) in self.urdf.loops.iter().enumerate() {
+            let name = quoted(&closed.name);
+            let moved = self.urdf.between(closed.ends.map(|(link, _)| link));
+            let Some(mover) = moved.into_iter().find(|joint| self.moving.contains(joint)) else {
+                let remark = format!("the loop {name} is left out, because no joint that moves is in it");
+                self.told.remarks.push(remark);
+                continue;
+            };
+            let error =
+                |message: String, help: &str| Err(self.urdf.source.error(&closed.span, message, help.to_owned()));
+            if !self.selection.whole {
+                let mover = quoted(&self.urdf.joints[mover].name);
+                let message = format!("the joint {mover} of the arm moves the closed loop {name}");
+                return error(message, "import the whole robot: an arm alone has no closed loops");
+            }
+            let mut ends = [(None, Pose::identity()); 2];
+            for (end, (link, place)) in ends.iter_mut().zip(closed.ends) {
+                let link = &self.urdf.links[link].name;
+                let Some(frame) = self.frames.iter().find(|frame| frame.name == *link) else {
+                    let base = quoted(&self.urdf.links[base].name);
+                    let message =
+                        format!("the loop {name} has an end on {}, which is not after the base {base}", quoted(link));
+                    return error(message, "name a base that carries both ends");
+                };
+                *end = (frame.on, frame.place * place);
+            }
+            loops.push(ChainLoop { index, ends });
+        }
+        Ok(loops)
     }
 
     /// All links after the base, branch by branch.

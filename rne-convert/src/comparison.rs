@@ -1,7 +1,7 @@
 //! Differences between two arms, over many states.
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Frame, Robot};
+use rne_model::{ClosedLoops, Frame, Robot};
 use rne_runtime::{DynArm, Pose};
 
 use crate::dynamics::{Dynamics, State};
@@ -47,8 +47,8 @@ impl Difference {
 
     /// Between a chain and the table made of it, as the runtime of rne computes that.
     pub(crate) fn of_table(chain: &Dynamics, robot: &Robot) -> Self {
-        // the chain knows no couplings: all joints move freely in both
-        let mut robot = robot.clone();
+        // the chain knows no couplings and no loops: all joints move freely in both
+        let mut robot = Robot { closed: ClosedLoops::default(), ..robot.clone() };
         robot.joints.iter_mut().for_each(|joint| joint.coupling = None);
         let arm = DynArm::from_robot(&robot);
         let at = |frame: &Frame| arm.clone().at_frame(frame.fixed);

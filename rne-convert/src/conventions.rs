@@ -90,7 +90,7 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let tip = ends.get(tip_on).copied().unwrap_or_else(Pose::identity) * placement(&tip.placement);
     let gravity = Vector::decimal(robot.gravity);
     let floating_base = robot.floating_base.as_ref().map(|base| Body::of_link(&base.link));
-    Chain { base, gravity, floating_base, joints, tip_on, tip, frames }
+    Chain { base, gravity, floating_base, joints, tip_on, tip, frames, loops: Vec::new() }
 }
 
 pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {

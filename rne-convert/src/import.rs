@@ -147,11 +147,20 @@ impl Urdf {
     /// assert_eq!(imported.robot.joints[0].row.link.com, [0.0, 0.25, 0.0]);
     /// ```
     ///
+    /// A robot with closed loops is taken as a whole where `selection` names no tip and holds no others: no arm alone
+    /// has them. [`Account::remarks`] says which joints are dependent, and why.
+    ///
     /// # Errors
     ///
     /// An error with its place in the URDF: a name that is not there, a tip that must be named, movable
     /// joints off the chain that nobody holds, joints that no row of a table can say, bodies that are none.
     pub fn import(&self, options: &Options) -> Result<Imported, Report> {
+        let Selection { whole, tip, lock_others, .. } = &options.selection;
+        if !self.loops.is_empty() && !whole && tip.is_none() && !lock_others {
+            let selection = Selection { whole: true, ..options.selection.clone() };
+            let options = Options { selection, convention: Convention::Modified, ..options.clone() };
+            return self.import(&options);
+        }
         let gravity = self.gravity.unwrap_or(options.gravity);
         let (chain, mut told) = extract(self, &options.selection, gravity, options.snap)?;
         told.remarks.splice(0..0, self.remarks.iter().cloned());
@@ -168,6 +177,7 @@ impl Urdf {
         }
         let table = if is_tree { tree_table(&chain) } else { table(&chain, options.convention) };
         let mut robot = robot(&chain, &table, options.convention);
+        self.close((&chain, &mut told), &table, &mut robot)?;
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
         robot.title = title(&self.name);
         if let Some(base) = &mut robot.floating_base {
@@ -215,7 +225,8 @@ impl Urdf {
         };
         robot.notes = notes(&told, change.as_ref());
         let text = robot_file::write(&robot);
-        let checked = Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().read(&text)?;
+        let checked =
+            Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().loops().read(&text)?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let ignored = self.ignored(&told);

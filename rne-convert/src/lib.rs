@@ -13,11 +13,13 @@
 
 mod body;
 mod chain;
+mod closed_loop;
 mod comparison;
 mod conventions;
 mod description;
 mod dynamics;
 mod export;
+mod extended_urdf;
 mod frames;
 mod geometry;
 mod import;

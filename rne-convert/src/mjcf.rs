@@ -34,6 +34,11 @@ impl LeftOut {
         self.0.entry(what).or_default().push(of.to_owned());
     }
 
+    /// Whether an element is among those of a kind.
+    fn has(&self, what: &str, of: &str) -> bool {
+        self.0.get(what).is_some_and(|elements| elements.iter().any(|element| element == of))
+    }
+
     /// A remark for each thing.
     fn remarks(self) -> impl Iterator<Item = String> {
         self.0.into_iter().map(|(what, of)| format!("{what}: {}", names(of)))
@@ -50,6 +55,7 @@ pub(crate) fn read(mut source: Source) -> Result<Urdf, Report> {
     let mut urdf = Bodies::read(&settings, &mut left_out, &root)?;
     actuator::read(&settings, &mut left_out, &root, &mut urdf)?;
     equality::read(&settings, &mut left_out, &root, &mut urdf)?;
+    urdf.split_spherical_joints(&source)?;
     for tendon in root.below("tendon") {
         left_out.add("tendons are left out", tendon.text("name").unwrap_or(&tendon.name));
     }

@@ -34,11 +34,13 @@ pub(crate) struct Scanned {
     pub(crate) joints: Vec<Seen>,
     /// Gears between links, of URDF+.
     pub(crate) couplings: Vec<Seen>,
+    /// Closed loops, of URDF+.
+    pub(crate) loops: Vec<Seen>,
     /// Kinds of elements and attributes that are not known, in words.
     pub(crate) unknown: Vec<String>,
 }
 
-/// The values of a link, a joint or a coupling.
+/// The values of a link, a joint, a coupling or a loop.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
     /// The place of its tag.
@@ -87,6 +89,10 @@ enum Kind {
     Text,
     /// A kind of joint.
     Joint,
+    /// A joint that closes a loop.
+    Cut,
+    /// True or false.
+    Flag,
     Number,
     /// A number that may be infinite.
     Limit,
@@ -129,7 +135,7 @@ const ELEMENTS: &[Element] = &[
         "inertial",
         &[number("ixx"), number("ixy"), number("ixz"), number("iyy"), number("iyz"), number("izz")],
     ),
-    element("joint", "robot", &[text("name"), TYPE, optional("independent", Kind::Text)]),
+    element("joint", "robot", &[text("name"), TYPE, optional("independent", Kind::Flag)]),
     element("origin", "joint", ORIGIN),
     element("parent", "joint", &[text("link")]),
     element("child", "joint", &[text("link")]),
@@ -141,6 +147,16 @@ const ELEMENTS: &[Element] = &[
     element("predecessor", "coupling", &[text("link")]),
     element("successor", "coupling", &[text("link")]),
     element("ratio", "coupling", &[number("value")]),
+    element(
+        "loop",
+        "robot",
+        &[optional("name", Kind::Text), Attribute { name: "type", kind: Kind::Cut, required: true }],
+    ),
+    element("predecessor", "loop", &[text("link")]),
+    element("successor", "loop", &[text("link")]),
+    element("origin", "predecessor", ORIGIN),
+    element("origin", "successor", ORIGIN),
+    element("axis", "loop", &[Attribute { name: "xyz", kind: Kind::Vector, required: true }]),
 ];
 
 /// Elements that are known and do not matter here, by the element that contains them.
@@ -252,7 +268,7 @@ impl Scanner<'_> {
         let element = self.element(&name, &place)?;
         if let Some(element) = element {
             if let Some(parent) = self.open.last_mut() {
-                let several = matches!(element.name, "link" | "joint" | "coupling");
+                let several = matches!(element.name, "link" | "joint" | "coupling" | "loop");
                 if !several && parent.children.contains(&element.name) {
                     let message = format!("a second `{}` in one `{}`", element.name, element.parent);
                     return Err(self.source.error(&place, message, None));
@@ -296,12 +312,6 @@ impl Scanner<'_> {
             let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
             return Err(self.source.error(place, message, help));
         }
-        if (name, name_of_parent) == ("loop", "robot") {
-            let message = "the robot has a closed loop, which the import does not convert".to_owned();
-            let help = "delete the element `loop` to import the tree without it; a robot file describes closed loops \
-                        in `loops`";
-            return Err(self.source.error(place, message, help.to_owned()));
-        }
         if let (None, Some(parent)) = (element, parent) {
             let matter = ELEMENTS.iter().filter(|element| element.parent == parent.name).map(|element| element.name);
             let others = passed_over(PASSED_OVER, parent.name);
@@ -311,6 +321,7 @@ impl Scanner<'_> {
             "link" => &mut self.scanned.links,
             "joint" => &mut self.scanned.joints,
             "coupling" => &mut self.scanned.couplings,
+            "loop" => &mut self.scanned.loops,
             _ => return Ok(element),
         };
         if element.is_some() {
@@ -325,11 +336,14 @@ impl Scanner<'_> {
 
     /// The record of an element: that of its link, its joint or the robot.
     fn owner(&mut self, element: &Element) -> &mut Seen {
-        let Scanned { robot, links, joints, couplings, .. } = &mut self.scanned;
+        let Scanned { robot, links, joints, couplings, loops, .. } = &mut self.scanned;
+        let is_in_loop = self.open.iter().filter_map(|open| open.element).any(|open| open.name == "loop");
         let owner = match (element.name, element.parent) {
             ("link", _) | (_, "link" | "inertial") => links.last_mut(),
             ("joint", _) | (_, "joint") => joints.last_mut(),
-            ("coupling", _) | (_, "coupling") => couplings.last_mut(),
+            ("loop", _) => loops.last_mut(),
+            (_, "loop" | "predecessor" | "successor") if is_in_loop => loops.last_mut(),
+            ("coupling", _) | (_, "coupling" | "predecessor" | "successor") => couplings.last_mut(),
             _ => None,
         };
         owner.unwrap_or(robot)
@@ -412,9 +426,11 @@ impl Scanner<'_> {
                 return Err(self.source.error(place, message, None));
             }
         }
+        // the two origins of a loop
+        let of = if matches!(element.parent, "predecessor" | "successor") { element.parent } else { element.name };
         for (attribute, value) in element.attributes.iter().zip(values) {
             if let Some(value) = value {
-                self.owner(element).values.insert((element.name, attribute.name), value);
+                self.owner(element).values.insert((of, attribute.name), value);
             } else if attribute.required {
                 let message = format!("`{}` lacks the attribute `{}`", element.name, attribute.name);
                 return Err(self.source.error(place, message, None));
@@ -444,6 +460,10 @@ fn fault(kind: Kind, value: &str) -> Option<&'static str> {
         Kind::Joint if urdf::Kind::of(value).is_none() => {
             Some("it must be revolute, continuous, prismatic, fixed, floating, planar or spherical")
         }
+        Kind::Cut if urdf::cut(value).is_none() => {
+            Some("it must be revolute, continuous, spherical, universal or fixed, the joints that can close a loop")
+        }
+        Kind::Flag if !matches!(value, "true" | "false") => Some("it must be true or false"),
         Kind::Number if words.len() != 1 || !words.iter().all(|word| fine(word)) => {
             Some("it must be one number of at most 1e9")
         }

@@ -41,7 +41,7 @@ impl Snapping {
             if twelfths_of_pi(*angle).is_none() && (*angle - meant).abs() <= TOLERANCE {
                 self.found.push(Snapped {
                     place: format!("{of}, {name}"),
-                    from: format!("{angle}"),
+                    from: rne_model::exact_digits(*angle),
                     to: angle_text(meant).unwrap_or_else(|| format!("{meant}")),
                     by: (*angle - meant).abs(),
                 });

@@ -23,7 +23,7 @@ impl Source {
 
     /// The name of the file without its folders: where they are matters to messages alone.
     pub(crate) fn file_name(&self) -> &str {
-        Path::new(&self.file).file_name().and_then(OsStr::to_str).unwrap_or(&self.file)
+        file_name(&self.file)
     }
 
     /// A mistake against which a choice of the caller helps.
@@ -47,6 +47,11 @@ impl Source {
         let within = |at: usize| at.saturating_sub(start).min(text.len());
         Report::of_error(file, text, within(span.start)..within(span.end), message, help.as_deref())
     }
+}
+
+/// The name of a file without its folders.
+pub(crate) fn file_name(path: &str) -> &str {
+    Path::new(path).file_name().and_then(OsStr::to_str).unwrap_or(path)
 }
 
 /// Largest number of names in a message, which counts the others.

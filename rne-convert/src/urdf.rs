@@ -4,8 +4,9 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use rne_model::{Inertia, Limits, Report};
+use rne_model::{Cut, Inertia, Limits, Report};
 
+use crate::closed_loop::Loop;
 use crate::mjcf;
 use crate::scan::{Seen, root_name, scan};
 use crate::source::{Source, names, quoted};
@@ -22,6 +23,8 @@ pub struct Urdf {
     pub(crate) joints: Vec<Joint>,
     /// Joints that gears couple to others, of URDF+.
     pub(crate) gears: Vec<Gear>,
+    /// Closed loops.
+    pub(crate) loops: Vec<Loop>,
     /// The link that no joint moves.
     pub(crate) root: usize,
     /// The link at the base of an arm that names none: the root, or the link that floats.
@@ -59,6 +62,17 @@ pub(crate) struct Link {
     pub(crate) parent: Option<usize>,
     /// The joints whose parent it is.
     pub(crate) children: Vec<usize>,
+}
+
+/// The cut joint of a word in a URDF+.
+pub(crate) fn cut(word: &str) -> Option<Cut> {
+    match word {
+        "revolute" | "continuous" => Some(Cut::Revolute),
+        "spherical" => Some(Cut::Spherical),
+        "universal" => Some(Cut::Universal),
+        "fixed" => Some(Cut::Weld),
+        _ => None,
+    }
 }
 
 /// A joint that gears couple to others: its position is Σ ratio · q of those.
@@ -152,22 +166,41 @@ pub(crate) struct Joint {
     pub(crate) gear_ratio: f64,
     /// The position at which the links are where the file has them, rad or m: `ref` of an MJCF file.
     pub(crate) reference: f64,
+    /// Whether it has a motor, where the file says it.
+    pub(crate) has_motor: Option<bool>,
 }
 
 impl Urdf {
     /// Reads the text of a URDF, or of an MJCF file, whose root element is `mujoco`. `file` is what messages call it,
     /// its path; files that an MJCF file includes are read from its folder. The robot file keeps its name without
-    /// folders.
+    /// folders. Closed loops that a URDF has not are read from the file beside it, `robot.yaml` for `robot.urdf`, if
+    /// that has the key `closed_loop`, as those of Gepetto/example-parallel-robots have.
     ///
     /// # Errors
     ///
     /// An error with its place in the text: not XML, a document type, more than 16 MiB, a value that is no finite
     /// number, a name that is there twice or not at all, links that are not one tree.
     pub fn read(file: &str, text: &str) -> Result<Self, Report> {
+        let loops = crate::extended_urdf::beside(file);
+        Self::read_with_loops(file, text, loops.as_ref().map(|(name, text)| (name.as_str(), text.as_str())))
+    }
+
+    /// [`Urdf::read`] with the closed loops of the file `loops`, its name and its text, and not of one beside the URDF.
+    ///
+    /// # Errors
+    ///
+    /// As [`Urdf::read`]; an error of the file with its place there; an MJCF file with such a file.
+    pub fn read_with_loops(file: &str, text: &str, loops: Option<(&str, &str)>) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
         let source = Source::new(file, text);
         if root_name(text).is_some_and(|name| name == "mujoco") {
-            return mjcf::read(source);
+            return match loops {
+                None => mjcf::read(source),
+                Some(_) => {
+                    let help = "a file of closed loops is for a URDF; an MJCF file has its own, in `equality`";
+                    Err(source.error(&(0..0), "this is an MJCF file", help.to_owned()))
+                }
+            };
         }
         let scanned = scan(&source)?;
         let mut urdf = Self {
@@ -180,9 +213,21 @@ impl Urdf {
         urdf.take_joints(&scanned.joints)?;
         urdf.find_root()?;
         urdf.take_gears(&scanned.couplings)?;
+        urdf.take_loops(&scanned.loops)?;
         let transmissions = transmission::read(&urdf.source)?;
         urdf.take_transmissions(transmissions);
+        if let Some((name, text)) = loops {
+            urdf.extend(name, text)?;
+        }
+        let source = urdf.source.clone();
+        urdf.split_spherical_joints(&source)?;
         Ok(urdf)
+    }
+
+    /// The link of a name, or the link that the joint of this name moves.
+    pub(crate) fn link_or_moved(&self, name: &str) -> Option<usize> {
+        let moved = || self.joints.iter().find(|joint| joint.name == name).map(|joint| joint.child);
+        self.links.iter().position(|link| link.name == name).or_else(moved)
     }
 
     /// A robot without links.
@@ -193,6 +238,7 @@ impl Urdf {
             links: Vec::new(),
             joints: Vec::new(),
             gears: Vec::new(),
+            loops: Vec::new(),
             root: 0,
             base: 0,
             floats: None,
@@ -424,7 +470,7 @@ impl Urdf {
     }
 
     /// The joints from a link to the root.
-    fn to_root(&self, link: usize) -> Vec<usize> {
+    pub(crate) fn to_root(&self, link: usize) -> Vec<usize> {
         let parent = |joint: &usize| self.links[self.joints[*joint].parent].parent;
         std::iter::successors(self.links[link].parent, parent).collect()
     }
@@ -480,6 +526,7 @@ impl Joint {
             rotor_inertia: 0.0,
             gear_ratio: 1.0,
             reference: 0.0,
+            has_motor: None,
         }
     }
 
@@ -519,6 +566,7 @@ impl Joint {
                 effort: positive(number("limit", "effort")),
             },
             friction: [number("dynamics", "damping"), number("dynamics", "friction")],
+            has_motor: seen.text("joint", "independent").map(|word| word == "true"),
             ..Self::new(kind, seen.span.clone())
         }
     }

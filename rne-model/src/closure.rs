@@ -193,6 +193,16 @@ impl<'a> Equations<'a> {
         [length(difference(other.translation, one.translation)), turned]
     }
 
+    /// The loop whose places are farthest apart, in parts of the loops' size or in rad, and how far, m and rad.
+    pub(crate) fn farthest(&self, positions: &[f64]) -> (usize, [f64; 2]) {
+        let off = |index: &usize| {
+            let [length, angle] = self.apart(*index, positions);
+            (length / self.size).max(angle)
+        };
+        let index = (0..self.ways.len()).max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        (index, self.apart(index, positions))
+    }
+
     /// Gives the joints that follow others their positions.
     fn complete(&self, positions: &mut [f64]) {
         for (joint, of) in self.joints.iter().enumerate() {

@@ -63,6 +63,8 @@ mod data_file;
 #[cfg(feature = "std")]
 mod decode;
 #[cfg(feature = "std")]
+mod dependents;
+#[cfg(feature = "std")]
 mod diagnostic;
 #[cfg(feature = "std")]
 pub mod document;
@@ -144,6 +146,8 @@ pub use contact::{Contact, ContactKind};
 pub use coupling::Coupling;
 #[cfg(feature = "std")]
 pub use data_file::{MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of};
+#[cfg(feature = "std")]
+pub use dependents::{Actuation, NoDependents, choose_dependents};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Remedy, Report, Severity};
 #[cfg(feature = "std")]

@@ -7,8 +7,8 @@ use crate::matrix::{Matrix, elimination, pivots};
 use crate::{ClosedLoop, ClosedLoops, Convention, Joint, Pivot};
 
 /// Configurations at which the equations are looked at, and more in place of those where they are singular.
-const CLOSURES: usize = 20;
-const SPARE: usize = 4;
+pub(crate) const CLOSURES: usize = 20;
+pub(crate) const SPARE: usize = 4;
 /// A singular value below this part of the largest is zero.
 const RANK: f64 = 1e-7;
 /// A singular value, and a pivot, below this part of the largest is worth a note.
@@ -69,12 +69,8 @@ pub(crate) fn solved(
     let equations = Equations::new(joints, convention, &loops);
     let (closures, nearest) = equations.closures(CLOSURES + SPARE);
     if closures.is_empty() {
-        let off = |index: &usize| {
-            let [length, angle] = equations.apart(*index, &nearest);
-            (length / equations.size).max(angle)
-        };
-        let index = (0..loops.len()).max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
-        return Err(Fault::Open { index, apart: equations.apart(index, &nearest) });
+        let (index, apart) = equations.farthest(&nearest);
+        return Err(Fault::Open { index, apart });
     }
     let found = Jacobians { equations, all: Vec::new(), loops: &loops, joints };
     let all = closures.iter().map(|positions| found.equations.jacobian(positions)).collect();
@@ -145,7 +141,7 @@ pub(crate) fn solved(
 }
 
 /// How many singular values, the largest first, are not zero.
-fn rank(singular: &[(f64, Vec<f64>)]) -> usize {
+pub(crate) fn rank(singular: &[(f64, Vec<f64>)]) -> usize {
     let largest = singular.first().map_or(0.0, |(value, _)| *value);
     singular.iter().filter(|(value, _)| *value > RANK * largest).count()
 }
@@ -158,28 +154,28 @@ fn moved(joints: &[usize], direction: &[f64], part: f64) -> Vec<usize> {
 }
 
 /// The Jacobians at all closures.
-struct Jacobians<'a> {
-    equations: Equations<'a>,
-    all: Vec<Matrix>,
-    loops: &'a [ClosedLoop],
-    joints: &'a [Joint],
+pub(crate) struct Jacobians<'a> {
+    pub(crate) equations: Equations<'a>,
+    pub(crate) all: Vec<Matrix>,
+    pub(crate) loops: &'a [ClosedLoop],
+    pub(crate) joints: &'a [Joint],
 }
 
 impl Jacobians<'_> {
     /// The columns of some joints, with their units.
-    fn columns_of(&self, joints: &[usize]) -> Vec<(usize, f64)> {
+    pub(crate) fn columns_of(&self, joints: &[usize]) -> Vec<(usize, f64)> {
         let columns = self.equations.columns();
         joints.iter().filter_map(|joint| Some(columns[self.equations.variables.binary_search(joint).ok()?])).collect()
     }
 
-    fn rows_of(&self, loops: &[usize]) -> Vec<(usize, f64)> {
+    pub(crate) fn rows_of(&self, loops: &[usize]) -> Vec<(usize, f64)> {
         let rows = self.equations.rows();
         loops.iter().flat_map(|&index| rows[self.equations.rows_of(index)].to_vec()).collect()
     }
 
     /// The rank of the equations of some loops at most closures, of equally many the larger one, and the singular
     /// values where it is that.
-    fn rank_of(&self, loops: &[usize]) -> (usize, Vec<f64>) {
+    pub(crate) fn rank_of(&self, loops: &[usize]) -> (usize, Vec<f64>) {
         let (rows, columns) = (self.rows_of(loops), self.equations.columns());
         let found: Vec<_> =
             self.all.iter().take(CLOSURES).map(|jacobian| jacobian.part(&rows, &columns).singular()).collect();
@@ -191,7 +187,7 @@ impl Jacobians<'_> {
     }
 
     /// The loops in groups that share joints.
-    fn groups(&self) -> Vec<Vec<usize>> {
+    pub(crate) fn groups(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
         for index in 0..self.loops.len() {
             let mut own = (vec![index], moving(self.joints, &self.loops[index]));

@@ -22,6 +22,7 @@ mod first_moments;
 mod floating_base;
 mod frames;
 mod golden;
+mod imported_loops;
 mod kinematics;
 mod matrices;
 mod momentum;

@@ -45,6 +45,11 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
             left_out.add("damping of actuators is left out", name);
         }
     }
+    if !limits.is_empty() {
+        for (index, joint) in urdf.joints.iter_mut().enumerate() {
+            joint.has_motor = Some(limits.iter().any(|(with_motor, _)| *with_motor == index));
+        }
+    }
     for (joint, range) in &limits {
         // of several actuators of a joint, none alone limits its torque
         let is_alone = limits.iter().filter(|(other, _)| other == joint).count() == 1;

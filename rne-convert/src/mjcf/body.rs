@@ -13,6 +13,12 @@ use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::{Source, quoted};
 use crate::urdf::{Joint, Kind, Link, Urdf};
 
+/// The link of the world.
+pub(super) const WORLD: &str = "world";
+
+/// What is said about bodies that a motion capture moves.
+pub(super) const MOCAP: &str = "bodies that a motion capture moves (`mocap`) are fixed";
+
 /// More links than any robot has.
 const MAX_LINKS: usize = 20_000;
 
@@ -55,7 +61,7 @@ impl<'a> Bodies<'a> {
             sites: Vec::new(),
             floating: Vec::new(),
         };
-        bodies.link("world".to_owned(), root)?;
+        bodies.link(WORLD.to_owned(), root)?;
         for world in root.children("worldbody") {
             let class = world.text("childclass").map_or(Ok(0), |name| settings.class(name, &world.span))?;
             let mut contents = Vec::new();
@@ -124,7 +130,7 @@ impl<'a> Bodies<'a> {
             self.left_out.add("compensation of gravity (`gravcomp`) is left out", &name);
         }
         if element.text("mocap") == Some("true") {
-            self.left_out.add("bodies that a motion capture moves (`mocap`) are fixed", &name);
+            self.left_out.add(MOCAP, &name);
         }
         let mut contents = Vec::new();
         self.contents(element, Pose::identity(), self.childclass(element, class)?, &mut contents)?;

@@ -1,13 +1,15 @@
-//! Joints that follow others (`equality`), and closed loops, which are refused.
+//! The section `equality`: joints that follow others, and closed loops, which MuJoCo closes by `connect` and `weld`.
 
-use rne_model::Report;
+use rne_model::{Cut, Report};
 
 use super::LeftOut;
+use super::body::{MOCAP, WORLD};
 use super::element::Element;
-use super::settings::Settings;
+use super::settings::{Classed, Settings};
+use crate::closed_loop::Loop;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::quoted;
-use crate::urdf::{Kind, Mimic, Urdf};
+use crate::urdf::{Joint, Kind, Link, Mimic, Urdf};
 
 /// Couples joints by the equalities of the file: position = reference + polynomial of the other joint's position from
 /// its reference.
@@ -19,11 +21,16 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
             left_out.add("equalities that are not active are left out", name);
             continue;
         }
-        if element.name != "joint" {
-            let message = format!("the equality `{}` closes a loop, which the import does not convert", element.name);
-            let help = "delete it to import the tree without this closed loop; a robot file describes closed loops \
-                        in `loops`";
-            return Err(equality.refused(message, help.to_owned()));
+        match element.name.as_str() {
+            "joint" => {}
+            "connect" | "weld" => {
+                close(equality, left_out, urdf)?;
+                continue;
+            }
+            kind => {
+                let message = format!("the equality `{kind}` is neither `joint`, `connect` nor `weld`");
+                return Err(equality.refused(message, "rne reads these three; delete this one".to_owned()));
+            }
         }
         let find = |attribute: &str| {
             let Some(name) = equality.text(attribute) else { return Ok(None) };
@@ -71,15 +78,97 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
     Ok(())
 }
 
-/// Fixes a joint at a position.
-fn hold(urdf: &mut Urdf, joint: usize, position: f64) {
-    let joint = &mut urdf.joints[joint];
+/// Adds the loop of a `connect`, which is a spherical joint, or of a `weld`.
+fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(), Report> {
+    let element = equality.element;
+    let matter = ["name", "class", "body1", "body2", "site1", "site2", "anchor", "relpose", "active"];
+    equality.refuse_slips(&matter, &["solref", "solimp", "torquescale"])?;
+    let name = element.text("name").map_or_else(|| format!("loop{}", urdf.loops.len() + 1), str::to_owned);
+    let cut = if element.name == "weld" { Cut::Weld } else { Cut::Spherical };
+    let [sites, bodies] = [["site1", "site2"], ["body1", "body2"]].map(|of| of.map(|end| equality.text(end)));
+    let (names, are_sites) = match (sites, bodies) {
+        ([Some(one), Some(other)], [None, None]) => ([one, other], true),
+        ([None, None], [Some(one), other]) => ([one, other.unwrap_or(WORLD)], false),
+        _ => {
+            let message = format!("`{}` has neither two sites nor a `body1` alone", element.name);
+            let help = "write `site1` and `site2`, or `body1` and `body2`".to_owned();
+            return Err(equality.refused(message, help));
+        }
+    };
+    if names.iter().any(|name| !are_sites && left_out.has(MOCAP, name)) {
+        left_out.add("equalities with a body that a motion capture moves are left out", &name);
+        return Ok(());
+    }
+    let mut links = [0; 2];
+    for (link, name) in links.iter_mut().zip(names) {
+        let is_meant = |known: &&Link| match are_sites {
+            true => known.is_site && (known.name == name || known.name.trim_end_matches("_site") == name),
+            false => !known.is_site && known.name == name,
+        };
+        let Some(known) = urdf.links.iter().find(is_meant) else {
+            let what = if are_sites { "site" } else { "body" };
+            let message = format!("the equality names the {what} {}, which does not exist", quoted(name));
+            return Err(equality.refused(message, format!("there is no such {what} in the file")));
+        };
+        *link = urdf.links.iter().position(|link| link.name == known.name).unwrap_or(0);
+    }
+    let [anchor, relative] = [equality.numbers("anchor", 3, 3)?, equality.numbers("relpose", 7, 7)?];
+    let of_one = urdf.at_reference(links[0]).inverse() * urdf.at_reference(links[1]);
+    let places = match (cut, anchor, relative) {
+        (_, None, None) if are_sites => [Pose::identity(); 2],
+        _ if are_sites => {
+            let message = format!("`{}` between sites has no `anchor` and no `relpose`", element.name);
+            return Err(equality.refused(message, "delete them: the sites say where the ends are".to_owned()));
+        }
+        (Cut::Weld, _, Some(pose)) if pose[3..] != [0.0; 4] => {
+            let Some(rotation) = Rotation::quaternion([pose[3], pose[4], pose[5], pose[6]]) else {
+                return Err(equality.error("relpose", "its quaternion has no direction"));
+            };
+            let translation = Vector::decimal([pose[0], pose[1], pose[2]]);
+            [Pose { rotation, translation }, Pose::identity()]
+        }
+        (Cut::Weld, ..) => [of_one, Pose::identity()],
+        (_, Some(anchor), _) => {
+            let place = Pose {
+                rotation: Rotation::identity(),
+                translation: Vector::decimal([anchor[0], anchor[1], anchor[2]]),
+            };
+            [place, of_one.inverse() * place]
+        }
+        (_, None, _) => {
+            let message = "`connect` between bodies lacks the attribute `anchor`";
+            return Err(equality.refused(message, "write the place of the joint in the axes of `body1`".to_owned()));
+        }
+    };
+    let ends = [(links[0], places[0]), (links[1], places[1])];
+    urdf.add_loop(Loop { name, span: element.span.clone(), cut, ends }, equality.settings.source)
+}
+
+impl Urdf {
+    /// The place of a link in the world where all joints are at their references.
+    fn at_reference(&self, link: usize) -> Pose {
+        let place = |&joint: &usize| {
+            let joint = &self.joints[joint];
+            Pose::new(joint.xyz, joint.rpy) * moved(joint, joint.reference)
+        };
+        self.to_root(link).iter().rev().map(place).fold(Pose::identity(), |pose, next| pose * next)
+    }
+}
+
+/// The motion of a joint from 0 to a position.
+fn moved(joint: &Joint, position: f64) -> Pose {
     let axis = Vector::decimal(joint.axis).direction().unwrap_or(Vector::unit(2));
-    let moved = if joint.kind == Kind::Prismatic {
+    if joint.kind == Kind::Prismatic {
         Pose { rotation: Rotation::identity(), translation: axis * decimal(position) }
     } else {
         Pose { rotation: Rotation::about(axis, position), translation: Vector::ZERO }
-    };
-    (joint.xyz, joint.rpy) = super::body::placed(Pose::new(joint.xyz, joint.rpy) * moved);
+    }
+}
+
+/// Fixes a joint at a position.
+fn hold(urdf: &mut Urdf, joint: usize, position: f64) {
+    let joint = &mut urdf.joints[joint];
+    let place = Pose::new(joint.xyz, joint.rpy) * moved(joint, position);
+    (joint.xyz, joint.rpy) = super::body::placed(place);
     joint.kind = Kind::Fixed;
 }

@@ -31,7 +31,7 @@ struct Class<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Classed<'a> {
     pub(super) element: &'a Element,
-    settings: &'a Settings<'a>,
+    pub(super) settings: &'a Settings<'a>,
     /// The class whose values stand for those that the element lacks.
     class: Option<usize>,
 }
