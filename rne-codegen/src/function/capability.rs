@@ -52,6 +52,10 @@ named! {
         FloatingInverseDynamicsDerivatives = "FloatingInverseDynamicsDerivatives",
         /// The robot with closed loops.
         ClosedLoops = "ClosedLoops",
+        /// Gradient of a weighted sum of the torques.
+        InverseDynamicsGradient = "InverseDynamicsGradient",
+        /// Derivatives of the motion from torques.
+        ForwardDynamicsDerivatives = "ForwardDynamicsDerivatives",
     }
 }
 
