@@ -125,24 +125,24 @@ pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingInverseDynamicsDerivatives,
-    FloatingKinematics, FloatingRegressor, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics,
-    Regressor, TipWrenches,
+    FloatingKinematics, FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, Kinematics, MassMatrix,
+    MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
 pub use rne_runtime::{
-    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
+    AccelerationDerivatives, AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, Constant,
     ContactDynamics, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
     FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
-    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix,
-    MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, PayloadDynamics,
-    Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, VectorUnit, Wrench,
-    dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointOrderError, JointWrenches, Kinematics,
+    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
+    Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, TorqueGradient,
+    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -150,8 +150,8 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(inline)]
 pub use rne_runtime::{
-    BaseParameter, BaseParameters, DynArm, DynFloatingTorqueDerivatives, DynObserverState, DynTorqueDerivatives,
-    DynTrace, LinkParameter, LoadError, WrongJointCount, WrongLength,
+    BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives, DynObserverState,
+    DynTorqueDerivatives, DynTorqueGradient, DynTrace, LinkParameter, LoadError, WrongJointCount, WrongLength,
 };
 // The Python package has arms of any number of joints.
 #[doc(hidden)]

@@ -203,7 +203,8 @@ impl<T: Copy> Arguments<'_, T> {
             let array = match name.quantity {
                 Quantity::Position => self.q,
                 Quantity::Rate => self.qd,
-                Quantity::AppliedTorque => self.tau,
+                // no function has both
+                Quantity::AppliedTorque | Quantity::Multiplier => self.tau,
                 Quantity::Parameter => return self.parameters.get(name.joint.checked_sub(1)?).copied(),
                 _ => self.qdd,
             };

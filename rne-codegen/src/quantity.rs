@@ -400,6 +400,10 @@ quantities! {
     ClosedPosition:             "closed",    Joint,     8, true,  "", "rad|m",
         "position of joint i after a Newton step";
     Residual:                   "left",      Joint,     8, true,  "", "", "what is left of equation i of the loops";
+
+    // Of the torques weighted by multipliers.
+    Multiplier:                 "lam",       Joint,     0, false, "λ", "", "multiplier of the torque of joint i";
+    WeightedTorque:             "lt",        Alone,     8, true,  "", "", "sum of the torques times the multipliers";
 }
 
 impl Quantity {

@@ -93,6 +93,28 @@ pub struct Derivatives<T> {
     pub dqd: Matrix<T>,
 }
 
+/// The derivatives of λᵀτ by q, by q̇ and by q̈.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TorqueGradient<T> {
+    /// ∂(λᵀτ)/∂q_j.
+    pub dq: Vec<T>,
+    /// ∂(λᵀτ)/∂q̇_j.
+    pub dqd: Vec<T>,
+    /// ∂(λᵀτ)/∂q̈_j.
+    pub dqdd: Vec<T>,
+}
+
+/// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ; row i is acceleration i.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AccelerationDerivatives<T> {
+    /// ∂q̈_i/∂q_j.
+    pub dq: Matrix<T>,
+    /// ∂q̈_i/∂q̇_j.
+    pub dqd: Matrix<T>,
+    /// ∂q̈_i/∂τ_j, M⁻¹.
+    pub dtau: Matrix<T>,
+}
+
 /// A result that is made of the numbers of a function, in the order of its layout.
 pub(crate) trait Shaped<T> {
     /// Takes as many numbers as the layout has.
@@ -143,5 +165,6 @@ records! {
     Pose { rotation, translation } Wrench { force, moment } Derivatives { dq, dqd } FloatingTorques { wrench, tau }
     BaseAcceleration { linear, angular } FloatingAccelerations { base, qdd }
     AccelerationsAndWrenches { accelerations, wrenches_on_robot } FloatingTorqueDerivatives { dq, dqd, domega }
-    ClosureStep { passive, residual }
+    ClosureStep { passive, residual } TorqueGradient { dq, dqd, dqdd }
+    AccelerationDerivatives { dq, dqd, dtau }
 }

@@ -332,6 +332,7 @@ impl Target<'_> {
                 Argument::Rates => ("qd", quote!([T; #dof])),
                 Argument::Accelerations => ("qdd", quote!([T; #dof])),
                 Argument::Torques => ("tau", quote!([T; #dof])),
+                Argument::Multipliers => ("multipliers", quote!([T; #dof])),
                 Argument::Wrench => ("wrench", quote!(#krate::Wrench<T>)),
                 Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
                 Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
@@ -418,6 +419,8 @@ impl Target<'_> {
                         quote!(#krate::#name<#dof, #velocities, T>)
                     }
                     Record::TorqueDerivatives
+                    | Record::TorqueGradient
+                    | Record::AccelerationDerivatives
                     | Record::MomentumAndRate
                     | Record::FloatingTorques
                     | Record::FloatingAccelerations => quote!(#krate::#name<#dof, T>),

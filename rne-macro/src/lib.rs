@@ -331,6 +331,27 @@ pub fn derive_contact_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ContactDynamics, input.into()).into()
 }
 
+/// Implements the trait `InverseDynamicsGradient` for a struct: the derivatives of a weighted sum of the torques.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `TORQUE_GRADIENT_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(InverseDynamicsGradient, attributes(robot))]
+pub fn derive_inverse_dynamics_gradient(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::InverseDynamicsGradient, input.into()).into()
+}
+
+/// Implements the trait `ForwardDynamicsDerivatives` for a struct: the derivatives of the accelerations by positions,
+/// velocities and torques.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `FORWARD_DYNAMICS_DERIVATIVES_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(ForwardDynamicsDerivatives, attributes(robot))]
+pub fn derive_forward_dynamics_derivatives(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::ForwardDynamicsDerivatives, input.into()).into()
+}
+
 /// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.
 ///
 /// The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. Other derives

@@ -73,6 +73,7 @@ mod names;
 mod observer;
 mod operational_space;
 mod operations;
+mod optimisation;
 mod payload;
 #[cfg(feature = "arm")]
 mod payload_dynamics;
@@ -140,6 +141,9 @@ pub use observer::ObserverState;
 pub use operational_space::operational_space;
 pub use operational_space::{dynamically_consistent_inverse, operational_space_inertia};
 pub use operations::Operations;
+pub use optimisation::{AccelerationDerivatives, ForwardDynamicsDerivatives, InverseDynamicsGradient, TorqueGradient};
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use optimisation::{DynAccelerationDerivatives, DynTorqueGradient};
 pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;
 pub use quaternion::Quaternion;

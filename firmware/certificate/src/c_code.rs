@@ -192,7 +192,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Positions => "s.q",
         Argument::Passive => "passive",
         Argument::Rates => "s.qd",
-        Argument::Accelerations | Argument::Torques => "s.qdd",
+        Argument::Accelerations | Argument::Torques | Argument::Multipliers => "s.qdd",
         Argument::Wrench => "force, moment",
         Argument::Payload => "payload",
         Argument::BaseVelocity => "base_omega",

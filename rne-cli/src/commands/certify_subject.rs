@@ -285,7 +285,7 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
                 ("const float *", "passive")
             }
             Argument::Rates => ("const float *", "s->qd"),
-            Argument::Accelerations | Argument::Torques => ("const float *", "s->qdd"),
+            Argument::Accelerations | Argument::Torques | Argument::Multipliers => ("const float *", "s->qdd"),
             Argument::Payload => {
                 call.before.push(format!("const float payload[10] = {{{}}};", numbers(&accuracy::PAYLOAD)));
                 ("const float *", "payload")

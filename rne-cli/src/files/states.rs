@@ -52,7 +52,7 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
             "base_rotation" => {
                 axes.into_iter().flat_map(|row| axes.map(|column| format!("{name}_{row}{column}"))).collect()
             }
-            "q" | "passive" | "qd" | "qdd" | "tau" | "sin" | "cos" => {
+            "q" | "passive" | "qd" | "qdd" | "tau" | "multipliers" | "sin" | "cos" => {
                 (1..=elements).map(|joint| format!("{name}{joint}")).collect()
             }
             _ => axes.map(|axis| format!("{name}_{axis}")).into(),

@@ -47,6 +47,8 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     };
     // hundredths, which single precision rounds: the code and the runtime agree for a rotation
     let base_rotation = BASE_ROTATION.map(|row| row.map(|x| (f64::from(x) * 100.0).round() / 100.0));
+    // last, so that the other numbers stay what they were
+    let multipliers = (0..dof).map(|_| random.number(1.0)).collect();
     let function = Function::InverseDynamics;
-    State { function, q, passive, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation }
+    State { function, q, passive, qd, qdd, tau, multipliers, wrench, wrenches, payload, base, pose, base_rotation }
 }

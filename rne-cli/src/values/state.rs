@@ -3,8 +3,8 @@
 use std::str::FromStr;
 
 use rne::{
-    BaseAcceleration, BaseMotion, BaseTwist, DynArm, DynFloatingTorqueDerivatives, DynTorqueDerivatives, Payload, Pose,
-    Quaternion, Wrench, WrongLength,
+    BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives,
+    DynTorqueDerivatives, DynTorqueGradient, Payload, Pose, Quaternion, Wrench, WrongLength,
 };
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
@@ -23,6 +23,7 @@ pub(crate) struct Given<'a> {
     pub(crate) qd: Option<&'a List>,
     pub(crate) qdd: Option<&'a List>,
     pub(crate) tau: Option<&'a List>,
+    pub(crate) multipliers: Option<&'a List>,
     pub(crate) wrench: Option<&'a List>,
     pub(crate) tip_wrenches: &'a [TipWrench],
     pub(crate) payload: Option<&'a List>,
@@ -82,6 +83,7 @@ pub(crate) struct State {
     pub(crate) qd: Vec<f64>,
     pub(crate) qdd: Vec<f64>,
     pub(crate) tau: Vec<f64>,
+    pub(crate) multipliers: Vec<f64>,
     pub(crate) wrench: Option<Wrench<f64>>,
     /// One for each tip.
     pub(crate) wrenches: Vec<Wrench<f64>>,
@@ -105,6 +107,7 @@ impl State {
         let qd = of_joints("--qd", given.qd, Rates)?;
         let qdd = of_joints("--qdd", given.qdd, Accelerations)?;
         let tau = of_joints("--tau", given.tau, Torques)?;
+        let multipliers = of_joints("--multipliers", given.multipliers, Argument::Multipliers)?;
         let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
         let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
         let wrench = wrench.map(|w| Wrench { force: triple(&w, 0), moment: triple(&w, 3) });
@@ -142,9 +145,23 @@ impl State {
             list => argument(function, "--base-rotation", list, Argument::BaseRotation, 9, rows)?
                 .map_or(Ok(IDENTITY), |list| rotation("--base-rotation", &list))?,
         };
-        let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
+        let [q, qd, qdd, tau, multipliers] = [q, qd, qdd, tau, multipliers].map(Option::unwrap_or_default);
         let pose = pose_of_base(function, given.base_pose)?;
-        Ok(Self { function, q, passive, qd, qdd, tau, wrench, wrenches, payload, base, pose, base_rotation })
+        Ok(Self {
+            function,
+            q,
+            passive,
+            qd,
+            qdd,
+            tau,
+            multipliers,
+            wrench,
+            wrenches,
+            payload,
+            base,
+            pose,
+            base_rotation,
+        })
     }
 
     /// The velocity of a base that nothing holds.
@@ -159,7 +176,7 @@ impl State {
 
     /// The function's result, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
-        let Self { q, passive, qd, qdd, tau, wrenches, base, pose, base_rotation, .. } = self;
+        let Self { q, passive, qd, qdd, tau, multipliers, wrenches, base, pose, base_rotation, .. } = self;
         let twist = &self.twist();
         let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
@@ -185,6 +202,9 @@ impl State {
             };
             (tau) => {
                 tau
+            };
+            (multipliers) => {
+                multipliers
             };
             (wrench) => {
                 wrench
@@ -284,6 +304,7 @@ macro_rules! records {
 records! {
     Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd }
     BaseAcceleration { linear, angular } DynFloatingTorqueDerivatives { dq, dqd, domega }
+    DynTorqueGradient { dq, dqd, dqdd } DynAccelerationDerivatives { dq, dqd, dtau }
 }
 
 /// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step

@@ -1,6 +1,7 @@
 //! Formulas of each function of a robot, written with a builder: the seven steps and the other functions.
 
 pub(crate) mod actuation;
+pub(crate) mod adjoint;
 pub(crate) mod arm;
 pub(crate) mod centre_of_mass;
 pub(crate) mod centroid;
@@ -117,6 +118,20 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::FloatingInverseDynamicsDerivatives => {
             floating_derivatives(builder, derivation.coordinates(), derivation.floating_torques())
         }
+        Function::TorqueGradient => adjoint::gradient(builder, derivation.coordinates(), &derivation.tau()),
+        Function::ForwardDynamicsDerivatives => {
+            let system = derivation.system();
+            let inverse = adjoint::Inverse::of(builder, &system, &derivation.upper_half());
+            // the same quantities come again, at these accelerations
+            inverse.keep_accelerations(builder.unnamed(|| derivation.tau()));
+            let solved = Derivation::new(builder, robot, function);
+            let joints = solved.coordinates().joints();
+            let torques = solved.tau();
+            inverse.derivatives([WithRespectTo::Position, WithRespectTo::Rate].map(|kind: fn(usize) -> _| {
+                let columns = builder.derivatives(&torques, joints.iter().map(|joint| kind(joint + 1)));
+                (0..joints.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+            }))
+        }
         Function::ClosureStep => closure::step(builder, robot),
         Function::LoopMap => closure::map(builder, derivation.coordinates()),
         Function::LoopMapRateTimesVelocity => closure::bias(builder, derivation.coordinates()),
@@ -160,6 +175,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
             // closed loops accelerate their dependent joints
             qdd: match arm.coordinates.bias(builder, joint) {
                 Some(bias) if !function.takes(Argument::Accelerations) => bias,
+                _ if builder.has_accelerations() => of_joint(Quantity::RateDot, joint),
                 _ => given(Argument::Accelerations, Quantity::RateDot, joint, Cause::NoAcceleration),
             },
         };
@@ -506,17 +522,22 @@ pub(crate) fn inverse_mass_matrix<'s>(
     system: &System<'_>,
     upper: &[Vec<Symbol<'s>>],
 ) -> Outputs<'s> {
-    let factors = ldlt::Factors::of(builder, system, upper);
+    inverse_by(builder, system, &ldlt::Factors::of(builder, system, upper))
+}
+
+/// The inverse by the factors of the matrix.
+fn inverse_by<'s>(builder: &'s Builder, system: &System<'_>, factors: &ldlt::Factors<'s>) -> Outputs<'s> {
     let joints = system.coordinates.joints();
+    let dof = joints.len();
     let (zero, one) = (builder.constant(0.0, Cause::Arithmetic), builder.constant(1.0, Cause::Arithmetic));
     let name = |quantity, row: usize, column: usize| Name::indexed(quantity, joints[row] + 1, joints[column] + 1);
-    let columns: Vec<Vec<Option<Symbol<'s>>>> = (0..upper.len())
+    let columns: Vec<Vec<Option<Symbol<'s>>>> = (0..dof)
         .map(|column| {
-            let unit: Vec<_> = (0..upper.len()).map(|row| if row == column { one } else { zero }).collect();
+            let unit: Vec<_> = (0..dof).map(|row| if row == column { one } else { zero }).collect();
             factors.solved(factors.place(column), &unit, |quantity, row| name(quantity, row, column))
         })
         .collect();
-    square(upper.len(), |row, column| {
+    square(dof, |row, column| {
         let is_mirror = factors.place(row) < factors.place(column);
         let (row, column) = if is_mirror { (column, row) } else { (row, column) };
         (name(Quantity::RateDot, row, column), columns[column][row].unwrap_or(zero))

@@ -36,6 +36,8 @@ pub enum Argument {
     BaseRotation,
     /// Positions of the dependent joints of closed loops.
     Passive,
+    /// Multipliers of the joint torques.
+    Multipliers,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -62,6 +64,7 @@ macro_rules! argument_parts {
         passive: Passive, Passive, Position,
             "Positions of the dependent joints of the closed loops, rad or m, in the order of the joints.";
         tau: Torques, Joints, AppliedTorque, "Joint torques, N m or N.";
+        multipliers: Multipliers, Joints, Multiplier, "Multipliers of the joint torques, in any unit.";
         sin: Sines, Joints, Sine, "Sines of the joint positions.";
         cos: Cosines, Joints, Cosine, "Cosines of the joint positions.";
         force: Wrench, Fixed(3), JointForce,

@@ -54,6 +54,10 @@ named! {
         ClosedLoops = "ClosedLoops",
         /// The robot with closed loops whose base nothing holds.
         FloatingClosedLoops = "FloatingClosedLoops",
+        /// Gradient of a weighted sum of the torques.
+        InverseDynamicsGradient = "InverseDynamicsGradient",
+        /// Derivatives of the motion from torques.
+        ForwardDynamicsDerivatives = "ForwardDynamicsDerivatives",
     }
 }
 

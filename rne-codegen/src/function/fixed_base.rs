@@ -75,6 +75,14 @@ const MOMENTUM_AND_RATE: Entry = Entry {
     ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
 };
 
+/// The elements of an inverse mass matrix.
+const PER_TORQUE: &str =
+    "acceleration of the row's joint per torque of the column's: 1/(kg m²), prismatic 1/kg, mixed 1/(kg m)";
+
+/// Why a mass matrix may have no inverse.
+const INVERSE_OF_NOTHING: &str =
+    "the inverse is not finite: the mass matrix is singular (a joint moves no mass), or the positions are too large";
+
 /// The functions.
 pub(super) const FIXED_BASE: &[Entry] = &[
     Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
@@ -236,18 +244,11 @@ pub(super) const FIXED_BASE: &[Entry] = &[
                 format!("row {joint} of D⁻¹ L⁻¹")
             }),
         ],
-        answer: Answer::Tables(&[AnswerTable::of(
-            "acceleration of the row's joint per torque of the column's: 1/(kg m²), prismatic 1/kg, mixed 1/(kg m)",
-            Labels::Joints,
-            Labels::Joints,
-        )]),
+        answer: Answer::Tables(&[AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints)]),
         feels_rotors: true,
         is_of_motion: true,
         inverts_mass: true,
-        divides: Some(
-            "the inverse is not finite: the mass matrix is singular \
-             (a joint moves no mass), or the positions are too large",
-        ),
+        divides: Some(INVERSE_OF_NOTHING),
         ..Entry::of(Function::InverseMassMatrix, Capability::MassMatrix)
     },
     Entry {
@@ -287,4 +288,37 @@ pub(super) const FIXED_BASE: &[Entry] = &[
     Entry { output: "tau", ..Entry::of(Function::WrenchTorques, Capability::Kinematics) },
     Entry { ..Entry::torques(Function::InverseDynamicsWithWrenches, Capability::TipWrenches) },
     Entry { function: Function::ForwardDynamicsWithWrenches, capability: Capability::TipWrenches, ..FORWARD_DYNAMICS },
+    Entry {
+        output: "gradient",
+        listed: "returned: derivatives by q, then by q̇, then by q̈",
+        own: &[Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned())],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "derivative of λᵀτ by each joint's position (per rad, prismatic: m), velocity and acceleration",
+            Labels::Names(&["dq", "dqd", "dqdd"]),
+            Labels::Joints,
+        )]),
+        is_of_motion: true,
+        feels_rotors: true,
+        ..Entry::of(Function::TorqueGradient, Capability::InverseDynamicsGradient)
+    },
+    Entry {
+        output: "derivatives",
+        listed: "returned: the rows of ∂q̈/∂q, then those of ∂q̈/∂q̇, then those of ∂q̈/∂τ",
+        answer: Answer::Tables(&[
+            AnswerTable::of(
+                "∂q̈/∂q (1/s²; rows in rad/s² or m/s², columns per rad or m)",
+                Labels::Joints,
+                Labels::Joints,
+            ),
+            AnswerTable::of("∂q̈/∂q̇ (1/s)", Labels::Joints, Labels::Joints),
+            AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints),
+        ]),
+        divides: Some(
+            "the derivatives are not finite: the mass matrix is singular \
+             (a joint moves no mass), or the state is too large",
+        ),
+        inverts_mass: true,
+        feels_rotors: true,
+        ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
+    },
 ];

@@ -82,6 +82,10 @@ pub enum Returned {
     PassiveRows,
     /// A number per dependent joint, and one per equation of the loops.
     ClosureStep,
+    /// Three vectors.
+    TorqueGradient,
+    /// Three matrices.
+    AccelerationDerivatives,
 }
 
 impl Returned {
@@ -119,6 +123,8 @@ impl Returned {
             Self::ClosureStep => {
                 &Shape::Record(Record::ClosureStep, &[PASSIVE, Shape::Array(Length::Equations, &Shape::Number)])
             }
+            Self::TorqueGradient => &Shape::Record(Record::TorqueGradient, &[VECTOR, VECTOR, VECTOR]),
+            Self::AccelerationDerivatives => &Shape::Record(Record::AccelerationDerivatives, &[MATRIX, MATRIX, MATRIX]),
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -244,6 +250,10 @@ pub enum Record {
     FloatingTorqueDerivatives,
     /// Positions of the dependent joints, and what is left of the equations before the step.
     ClosureStep,
+    /// By q, by q̇ and by q̈.
+    TorqueGradient,
+    /// By q, by q̇ and by τ.
+    AccelerationDerivatives,
 }
 
 impl Record {
@@ -261,6 +271,8 @@ impl Record {
             Self::AccelerationsAndWrenches => "AccelerationsAndWrenches",
             Self::FloatingTorqueDerivatives => "FloatingTorqueDerivatives",
             Self::ClosureStep => "ClosureStep",
+            Self::TorqueGradient => "TorqueGradient",
+            Self::AccelerationDerivatives => "AccelerationDerivatives",
         }
     }
 
@@ -278,6 +290,8 @@ impl Record {
             Self::AccelerationsAndWrenches => &["accelerations", "wrenches_on_robot"],
             Self::FloatingTorqueDerivatives => &["dq", "dqd", "domega"],
             Self::ClosureStep => &["passive", "residual"],
+            Self::TorqueGradient => &["dq", "dqd", "dqdd"],
+            Self::AccelerationDerivatives => &["dq", "dqd", "dtau"],
         }
     }
 }

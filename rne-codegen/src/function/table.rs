@@ -308,6 +308,20 @@ macro_rules! functions {
                 "Accelerations of the base and of the joints of a robot with closed loops, when nothing holds the base.",
                 "passive: as in loop_map. omega, wrenches, base: as in floating_forward_dynamics. qdd: as in \
                  forward_dynamics_of_loops.";
+            TorqueGradient = torque_gradient(
+                q: Positions, qd: Rates, qdd: Accelerations, multipliers: Multipliers
+            ) -> TorqueGradient:
+                "The gradient of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up.",
+                "multipliers: λ, as an optimiser has them for the equations of motion. dq, dqd, dqdd: derivatives of \
+                 λᵀτ by the positions, velocities and accelerations, which are λᵀ ∂τ/∂q, λᵀ ∂τ/∂q̇ and M(q) λ, in \
+                 fewer operations. The unit of λᵀτ per that of the joint.";
+            ForwardDynamicsDerivatives = forward_dynamics_derivatives(
+                q: Positions, qd: Rates, tau: Torques
+            ) -> AccelerationDerivatives:
+                "∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics`; row i is acceleration i.",
+                "dq[i][j], dqd[i][j], dtau[i][j]: of acceleration i, by joint j; -M⁻¹ times the derivatives of the \
+                 torques at these accelerations, and M⁻¹, which is symmetric. A singular mass matrix (a joint that \
+                 moves nothing) gives numbers that are not finite.";
         }
     };
 }

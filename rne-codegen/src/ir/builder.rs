@@ -3,6 +3,7 @@
 use std::cell::{Cell, RefCell};
 
 use rne_model::{Angle, Joint};
+use rustc_hash::FxHashMap;
 
 use super::{
     Axis, Birth, Cause, CausesId, Definition, Embedding, ExactAngle, Graph, Input, Matrix, Name, Number, Operation,
@@ -37,6 +38,8 @@ pub(crate) struct Builder {
     is_unnamed: Cell<bool>,
     /// The map of closed loops by rows, and the accelerations of the dependent joints where no coordinate accelerates.
     of_loops: RefCell<(Vec<Vec<Ref>>, Vec<Ref>)>,
+    /// The accelerations that were solved for, by joint, where a function goes on with them.
+    solved: RefCell<FxHashMap<usize, Ref>>,
 }
 
 impl Builder {
@@ -62,6 +65,7 @@ impl Builder {
             moving: Cell::default(),
             is_unnamed: Cell::default(),
             of_loops: RefCell::default(),
+            solved: RefCell::default(),
         }
     }
 
@@ -74,6 +78,7 @@ impl Builder {
     pub(crate) fn restart(&mut self, embedding: Embedding) {
         self.graph.get_mut().clear(embedding);
         self.of_loops.take();
+        self.solved.take();
     }
 
     fn embedding(&self) -> Embedding {
@@ -185,6 +190,26 @@ impl Builder {
     /// Keeps the accelerations of the dependent joints where no coordinate accelerates.
     pub(crate) fn keep_loop_bias(&self, bias: &[Symbol<'_>]) {
         self.of_loops.borrow_mut().1 = bias.iter().map(|x| x.at).collect();
+    }
+
+    /// Keeps accelerations that were solved for, with their joints counted from 0: those of the joints from now on.
+    pub(crate) fn keep_accelerations<'s>(&self, solved: impl Iterator<Item = (usize, Symbol<'s>)>) {
+        *self.solved.borrow_mut() = solved.map(|(joint, x)| (joint, x.at)).collect();
+    }
+
+    /// Whether accelerations were solved for.
+    pub(crate) fn has_accelerations(&self) -> bool {
+        !self.solved.borrow().is_empty()
+    }
+
+    /// An acceleration that was solved for.
+    pub(crate) fn solved_acceleration(&self, joint: usize) -> Option<Symbol<'_>> {
+        self.solved.borrow().get(&joint).map(|&at| self.symbol(at))
+    }
+
+    /// The nodes of accelerations that were solved for: derivatives of the torques do not follow them.
+    pub(super) fn held(&self) -> Vec<usize> {
+        self.solved.borrow().values().map(|at| at.index()).collect()
     }
 
     /// An element of the map of closed loops: zero before it is kept.

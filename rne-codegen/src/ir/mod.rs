@@ -1,5 +1,6 @@
 //! The one representation in which formulas are written, and what can be done with any of them.
 
+mod adjoint;
 mod arithmetic;
 mod builder;
 mod causes;

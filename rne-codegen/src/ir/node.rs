@@ -82,6 +82,20 @@ impl Op {
         operands.into_iter().flatten()
     }
 
+    /// The operation of operands in another graph, whose nodes for those of this graph are listed.
+    pub(super) fn mapped(self, nodes: &[Ref]) -> Self {
+        let mapped = |at: Ref| at.mapped(nodes);
+        match self {
+            Self::Constant(_) | Self::Input(_) => self,
+            Self::Sine(angle) => Self::Sine(mapped(angle)),
+            Self::Cosine(angle) => Self::Cosine(mapped(angle)),
+            Self::Sum(a, b) => Self::Sum(mapped(a), mapped(b)),
+            Self::Product(a, b) => Self::Product(mapped(a), mapped(b)),
+            Self::Quotient(a, b) => Self::Quotient(mapped(a), mapped(b)),
+            Self::BySign(operands) => Self::BySign(operands.map(mapped)),
+        }
+    }
+
     /// Whether it is computed by arithmetic.
     pub(crate) const fn is_operation(self) -> bool {
         matches!(self, Self::Sum(..) | Self::Product(..) | Self::Quotient(..) | Self::BySign(_))

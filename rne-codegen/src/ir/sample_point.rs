@@ -35,7 +35,8 @@ impl SamplePoint {
             Quantity::JointMoment => self.random(5, axis),
             Quantity::Sine => self.turn(index).0,
             Quantity::Cosine => self.turn(index).1,
-            Quantity::AppliedTorque => self.random(7, index),
+            // no function has both
+            Quantity::AppliedTorque | Quantity::Multiplier => self.random(7, index),
             Quantity::Omega => self.random(8, axis),
             Quantity::OmegaDot => self.random(9, axis),
             Quantity::Acceleration => self.random(10, axis),

@@ -4,7 +4,7 @@ use rne_model::Robot;
 
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
-use crate::formulate::{self, Closure, Contacts, Outputs, centroid, contact, square, torque_by};
+use crate::formulate::{self, Closure, Contacts, Outputs, adjoint, centroid, contact, square, torque_by};
 use crate::function::{Argument, Function};
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::{torques, torques_of_floating_base};
@@ -68,7 +68,8 @@ impl Algorithm {
             | Function::FloatingBias
             | Function::InverseDynamicsOfFloatingLoops
             | Function::InverseDynamicsOfLoops
-            | Function::InverseDynamicsOfLoopsWithWrenches => &[Algorithm::Rnea],
+            | Function::InverseDynamicsOfLoopsWithWrenches
+            | Function::TorqueGradient => &[Algorithm::Rnea],
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload]
             }
@@ -91,7 +92,8 @@ impl Algorithm {
             | Function::MassMatrixOfLoops
             | Function::ForwardDynamicsOfLoops
             | Function::FloatingMassMatrixOfLoops
-            | Function::FloatingForwardDynamicsOfLoops => &[BY_GROUPS, BY_JOINTS],
+            | Function::FloatingForwardDynamicsOfLoops
+            | Function::ForwardDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -253,6 +255,18 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         }
         (Function::InverseDynamicsDerivatives, _) => {
             formulate::derivatives(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
+        }
+        (Function::ForwardDynamicsDerivatives, _) => {
+            // the same quantities come again, at the accelerations that are solved for
+            let bias = builder.unnamed(|| coordinates.torques(&recursion(arm, algorithm)));
+            let (upper, system) = (upper_half(), system());
+            let inverse = adjoint::Inverse::of(builder, &system, &upper);
+            inverse.keep_accelerations(bias);
+            let found = sensitivity(arm, Number::integer(2));
+            inverse.derivatives([&found.by_position, &found.by_rate].map(|rows| coordinates.matrix(rows)))
+        }
+        (Function::TorqueGradient, _) => {
+            adjoint::gradient(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
         }
         (Function::CoriolisMatrix, _) => {
             let torques = coordinates.torques(&recursion(arm, algorithm));

@@ -109,7 +109,7 @@ impl<'s> Arm<'_, 's> {
         match builder.moving.get() {
             Moving::OneAccelerates(only) if only == joint => builder.one().signed(self.rows()[joint].reversed),
             Moving::RatesForAccelerations => self.of_joint(Quantity::Rate, joint),
-            Moving::AsGiven if builder.function.takes(Argument::Accelerations) => {
+            Moving::AsGiven if builder.function.takes(Argument::Accelerations) || builder.has_accelerations() => {
                 self.of_joint(Quantity::RateDot, joint)
             }
             // closed loops accelerate their dependent joints

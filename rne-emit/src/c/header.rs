@@ -242,6 +242,13 @@ const fn about(record: Record) -> &'static str {
         Record::ClosureStep => {
             "Positions of the dependent joints after a Newton step, and what is left of the equations before it."
         }
+        Record::TorqueGradient => {
+            "Derivatives of the torques, each times its multiplier and added up: by positions, by velocities and by \
+             accelerations."
+        }
+        Record::AccelerationDerivatives => {
+            "Accelerations by positions, by velocities and by torques; row i is acceleration i, column j is joint j."
+        }
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

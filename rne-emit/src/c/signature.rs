@@ -109,6 +109,8 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::AccelerationsAndWrenches => "accelerations_and_wrenches",
         Record::FloatingTorqueDerivatives => "floating_torque_derivatives",
         Record::ClosureStep => "closure",
+        Record::TorqueGradient => "gradient",
+        Record::AccelerationDerivatives => "acceleration_derivatives",
     };
     format!("{prefix}_{name}")
 }

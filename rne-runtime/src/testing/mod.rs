@@ -34,9 +34,9 @@ pub use golden::{GoldenState, torques_are_those_of_the_golden_file};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use motion::{
     accelerations_are_those_of_the_runtime, accelerations_need_the_torques_that_cause_them,
-    coriolis_matrix_is_that_of_the_runtime, energies_are_those_of_the_runtime,
-    kinetic_energy_is_that_of_the_mass_matrix, mass_matrix_is_symmetric, mass_matrix_is_that_of_the_runtime,
-    momenta_are_those_of_the_runtime, momentum_is_that_of_the_mass_matrix,
+    coriolis_matrix_is_that_of_the_runtime, derivatives_of_accelerations_are_those_of_the_runtime,
+    energies_are_those_of_the_runtime, kinetic_energy_is_that_of_the_mass_matrix, mass_matrix_is_symmetric,
+    mass_matrix_is_that_of_the_runtime, momenta_are_those_of_the_runtime, momentum_is_that_of_the_mass_matrix,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use robot_file::RobotFile;
@@ -44,7 +44,7 @@ pub use robot_file::RobotFile;
 pub use state::{JOINTS, Random};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use torques::{
-    actuator_torques_are_those_of_the_runtime, derivatives_are_those_of_the_runtime,
+    actuator_torques_are_those_of_the_runtime, derivatives_are_those_of_the_runtime, gradient_is_that_of_the_runtime,
     gravity_and_bias_are_torques_without_motion, joint_wrenches_are_those_of_the_runtime,
     payload_dynamics_are_those_of_the_runtime, regressor_is_that_of_the_runtime, torques_are_linear_in_accelerations,
     torques_are_those_of_the_runtime, torques_on_a_moving_base_are_those_of_the_runtime,

@@ -4,7 +4,10 @@ use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest, product};
 use super::state::{State, states};
 use super::torques::scale;
-use crate::{CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, MassMatrix, MomentumObserver};
+use crate::{
+    CoriolisMatrix, Energy, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives,
+    MassMatrix, MomentumObserver,
+};
 
 /// Masses times heights that cancel are measured by this part of them.
 const LEAST: f64 = 1e-2;
@@ -71,6 +74,35 @@ pub fn accelerations_need_the_torques_that_cause_them<const DOF: usize, R: Forwa
         let terms = largest(arm.mass_matrix(q).as_flattened()) * largest(&accelerations);
         let scale = terms.max(largest(&arm.bias_torques(q, qd))).max(scale(&arm, &state));
         compare("torques of forward_dynamics", &state, Allowed::Rounding { scale }, &found, tau);
+    }
+}
+
+/// M ∂q̈/∂q = -∂τ/∂q at the accelerations of τ, in the same way ∂q̈/∂q̇, and M ∂q̈/∂τ = 1, where the accelerations are
+/// finite: with M and the derivatives of the torques of the runtime.
+pub fn derivatives_of_accelerations_are_those_of_the_runtime<const DOF: usize, R: ForwardDynamicsDerivatives<DOF>>(
+    robot: &R,
+    file: &RobotFile,
+) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, tau, .. } = &state;
+        let accelerations = arm.forward_dynamics(q, qd, tau);
+        if !are_finite(&accelerations) {
+            continue;
+        }
+        let (mass, torques) = (arm.mass_matrix(q), arm.inverse_dynamics_derivatives(q, qd, &accelerations));
+        let found = robot.forward_dynamics_derivatives(q, qd, tau);
+        let one = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { -1.0 } else { 0.0 }));
+        for (what, found, expected) in
+            [("M ∂q̈/∂q", found.dq, torques.dq), ("M ∂q̈/∂q̇", found.dqd, torques.dqd), ("M ∂q̈/∂τ", found.dtau, one)]
+        {
+            let column = |j: usize| product(&mass, &core::array::from_fn(|i| found[i][j]));
+            let columns: [[f64; DOF]; DOF] = core::array::from_fn(column);
+            let expected: [[f64; DOF]; DOF] = core::array::from_fn(|j| core::array::from_fn(|i| -expected[i][j]));
+            // of the terms: of an arm that is nearly singular they are larger than their sum
+            let scale = largest(mass.as_flattened()) * largest(found.as_flattened());
+            compare(what, &state, Allowed::Rounding { scale }, columns.as_flattened(), expected.as_flattened());
+        }
     }
 }
 

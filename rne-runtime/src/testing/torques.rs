@@ -6,8 +6,8 @@ use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest};
 use super::state::{State, states};
 use crate::{
-    Actuation, Arm, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, MovingBase, PayloadDynamics, Regressor,
-    Wrench,
+    Actuation, Arm, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, MovingBase,
+    PayloadDynamics, Regressor, Wrench,
 };
 
 /// Torques that vanish but for rounding are measured by this part of the forces and moments at the joints.
@@ -111,6 +111,20 @@ pub fn derivatives_are_those_of_the_runtime<const DOF: usize, R: InverseDynamics
         let expected = arm.inverse_dynamics_derivatives(q, qd, qdd);
         compare("∂τ/∂q", &state, allowed, found.dq.as_flattened(), expected.dq.as_flattened());
         compare("∂τ/∂q̇", &state, allowed, found.dqd.as_flattened(), expected.dqd.as_flattened());
+    }
+}
+
+/// The gradient of λᵀτ, which generated code has in reverse mode.
+pub fn gradient_is_that_of_the_runtime<const DOF: usize, R: InverseDynamicsGradient<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, qdd, tau: multipliers, .. } = &state;
+        let allowed = Allowed::Rounding { scale: scale(&arm, &state) * largest(multipliers) };
+        let found = robot.torque_gradient(q, qd, qdd, multipliers);
+        let expected = arm.torque_gradient(q, qd, qdd, multipliers);
+        compare("∂(λᵀτ)/∂q", &state, allowed, &found.dq, &expected.dq);
+        compare("∂(λᵀτ)/∂q̇", &state, allowed, &found.dqd, &expected.dqd);
+        compare("∂(λᵀτ)/∂q̈", &state, allowed, &found.dqdd, &expected.dqdd);
     }
 }
 

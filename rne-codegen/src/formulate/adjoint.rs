@@ -1,0 +1,77 @@
+//! Derivatives of the torques weighted by multipliers, λᵀτ, in reverse mode.
+//!
+//! λᵀτ is one number, so its gradient takes a few times the operations of the torques, whatever the number of joints.
+//! The adjoint of the forces on a link is the velocity that it would have if the joints had the velocities λ, so what is
+//! derived here is the virtual power of the forces that move the robot.
+
+use crate::coordinates::Coordinates;
+use crate::formulate::ldlt::{Factors, System};
+use crate::formulate::{Outputs, inverse_by, square};
+use crate::ir::{Builder, Name, Quantity, Symbol, WithRespectTo};
+
+/// λᵀτ of the torques of the coordinates.
+fn weighted<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Symbol<'s> {
+    let terms = coordinates.joints().iter().zip(torques).map(|(joint, &torque)| {
+        let multiplier = builder.argument(Name::scalar(Quantity::Multiplier, joint + 1));
+        multiplier * torque
+    });
+    terms.reduce(|sum, term| sum + term).unwrap_or_else(|| builder.zero())
+}
+
+/// The derivatives of λᵀτ by q, by q̇ and by q̈.
+pub(crate) fn gradient<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Outputs<'s> {
+    let kinds = [WithRespectTo::Position, WithRespectTo::Rate, WithRespectTo::RateDot];
+    let by: Vec<_> = kinds.iter().flat_map(|kind| coordinates.joints().iter().map(|joint| kind(joint + 1))).collect();
+    let variables: Vec<_> = by.iter().map(|by| by.variable()).collect();
+    builder.at(Quantity::WeightedTorque, 0);
+    let found = builder.gradient(weighted(builder, coordinates, torques), &variables);
+    let name = |by| Name { by: Some(by), ..Name::scalar(Quantity::WeightedTorque, 0) };
+    by.into_iter().zip(found).map(|(by, derivative)| (name(by), builder.name(name(by), derivative))).collect()
+}
+
+/// The inverse of a mass matrix, on the way to the derivatives of the accelerations.
+pub(crate) struct Inverse<'s, 'a> {
+    builder: &'s Builder,
+    system: &'a System<'a>,
+    factors: Factors<'s>,
+    /// By rows.
+    elements: Outputs<'s>,
+}
+
+impl<'s, 'a> Inverse<'s, 'a> {
+    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix.
+    pub(crate) fn of(builder: &'s Builder, system: &'a System<'a>, upper: &[Vec<Symbol<'s>>]) -> Self {
+        let factors = Factors::of(builder, system, upper);
+        let elements = inverse_by(builder, system, &factors);
+        Self { builder, system, factors, elements }
+    }
+
+    /// Solves for the accelerations, which formulas that follow have as those of the joints.
+    pub(crate) fn keep_accelerations(&self, bias: Vec<Symbol<'s>>) {
+        let coordinates = self.system.coordinates;
+        let joints = coordinates.joints();
+        let rest = joints.iter().zip(bias).map(|(&joint, bias)| coordinates.applied(self.builder, joint) - bias);
+        let rest: Vec<_> = rest.collect();
+        let solved = self.factors.solved(0, &rest, |quantity, row| self.system.name(quantity, row));
+        self.builder.keep_accelerations(joints.iter().copied().zip(solved.into_iter().flatten()));
+    }
+
+    /// -M⁻¹ ∂τ/∂q and -M⁻¹ ∂τ/∂q̇, given ∂τ/∂q and ∂τ/∂q̇ by rows, and M⁻¹.
+    pub(crate) fn derivatives(self, by_state: [Vec<Vec<Symbol<'s>>>; 2]) -> Outputs<'s> {
+        let joints = self.system.coordinates.joints();
+        let dof = joints.len();
+        let kinds: [fn(usize) -> WithRespectTo; 2] = [WithRespectTo::Position, WithRespectTo::Rate];
+        let mut found = Vec::new();
+        for (torques, kind) in by_state.iter().zip(kinds) {
+            found.extend(square(dof, |row, column| {
+                let terms = (0..dof).map(|at| self.elements[row * dof + at].1 * torques[at][column]);
+                let sum = terms.reduce(|sum, term| sum + term).unwrap_or_else(|| self.builder.zero());
+                let name =
+                    Name { by: Some(kind(joints[column] + 1)), ..Name::scalar(Quantity::RateDot, joints[row] + 1) };
+                (name, self.builder.name(name, -sum))
+            }));
+        }
+        found.extend(self.elements);
+        found
+    }
+}
