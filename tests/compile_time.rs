@@ -176,6 +176,8 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::FloatingKinematics
                         | Capability::ContactDynamics
                         | Capability::FloatingInverseDynamicsDerivatives
+                        | Capability::InverseDynamicsGradient
+                        | Capability::ForwardDynamicsDerivatives
                 )
         };
         let functions = Function::OF_TREES.into_iter().filter(|&function| !is_left_out(function));

@@ -6,8 +6,9 @@ use std::process::Command;
 use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
     Actuation, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix,
-    CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
+    CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics,
+    InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, Kinematics, MassMatrix, MomentumObserver,
+    MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
 };
 
 #[derive(
@@ -25,6 +26,8 @@ use rne::{
     MomentumObserver,
     MovingBase,
     Actuation,
+    InverseDynamicsGradient,
+    ForwardDynamicsDerivatives,
     BatchMassMatrix,
     BatchForwardDynamics,
     BatchInverseDynamicsDerivatives,
@@ -36,7 +39,16 @@ struct Puma560;
 #[robot(builtin = "puma560", form = "reduced", rotors, tests)]
 struct Puma560Reduced;
 
-#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy, CentreOfMass)]
+#[derive(
+    InverseDynamics,
+    MassMatrix,
+    ForwardDynamics,
+    Kinematics,
+    Energy,
+    CentreOfMass,
+    InverseDynamicsGradient,
+    ForwardDynamicsDerivatives,
+)]
 #[robot(builtin = "panda", form = "reduced", tests)]
 struct Panda;
 

@@ -3,8 +3,9 @@
 use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
     FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
-    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix,
-    MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
+    ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
+    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar,
+    TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -44,6 +45,8 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + FloatingKinematics<DOF, NV, 1>
     + ContactDynamics<DOF, NV, 1>
     + FloatingInverseDynamicsDerivatives<DOF, NV, 1>
+    + InverseDynamicsGradient<DOF>
+    + ForwardDynamicsDerivatives<DOF>
 {
 }
 
@@ -105,6 +108,14 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::InverseDynamicsDerivatives => {
             let derivatives = robot.inverse_dynamics_derivatives(q, qd, qdd);
             [flat(derivatives.dq), flat(derivatives.dqd)].concat()
+        }
+        Function::TorqueGradient => {
+            let gradient = robot.torque_gradient(q, qd, qdd, tau);
+            [gradient.dq, gradient.dqd, gradient.dqdd].concat()
+        }
+        Function::ForwardDynamicsDerivatives => {
+            let derivatives = robot.forward_dynamics_derivatives(q, qd, tau);
+            [flat(derivatives.dq), flat(derivatives.dqd), flat(derivatives.dtau)].concat()
         }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
@@ -193,6 +204,8 @@ macro_rules! robot {
                 rne::FloatingKinematics,
                 rne::ContactDynamics,
                 rne::FloatingInverseDynamicsDerivatives,
+                rne::InverseDynamicsGradient,
+                rne::ForwardDynamicsDerivatives,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

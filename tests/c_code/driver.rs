@@ -161,7 +161,10 @@ impl Driver<'_> {
                 | Function::CoriolisMatrix
                 | Function::JacobianRateTimesVelocity
                 | Function::KineticEnergy => "q, qd",
-                Function::ForwardDynamics | Function::MomentumAndRate => "q, qd, tau",
+                Function::ForwardDynamics | Function::MomentumAndRate | Function::ForwardDynamicsDerivatives => {
+                    "q, qd, tau"
+                }
+                Function::TorqueGradient => "q, qd, qdd, tau",
                 Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
                     "q, qd, qdd, omega, omega_dot, acceleration, gravity"
                 }
@@ -206,6 +209,8 @@ impl Driver<'_> {
                 Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
                     (format!("{prefix}_torque_derivatives x"), "&x")
                 }
+                Function::TorqueGradient => (format!("{prefix}_gradient x"), "&x"),
+                Function::ForwardDynamicsDerivatives => (format!("{prefix}_acceleration_derivatives x"), "&x"),
                 Function::MomentumAndRate | Function::MomentumAndRateWithPayload => {
                     (format!("{prefix}_momentum x"), "&x")
                 }

@@ -410,6 +410,10 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::InverseDynamicsDerivatives => {
             arm.inverse_dynamics_derivatives(q, qd, qdd).map(|by| flat([by.dq, by.dqd].concat()))
         }
+        Function::TorqueGradient => arm.torque_gradient(q, qd, qdd, tau).map(|by| [by.dq, by.dqd, by.dqdd].concat()),
+        Function::ForwardDynamicsDerivatives => {
+            arm.forward_dynamics_derivatives(q, qd, tau).map(|by| flat([by.dq, by.dqd, by.dtau].concat()))
+        }
         Function::JointWrenches => arm
             .joint_wrenches(q, qd, qdd)
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),

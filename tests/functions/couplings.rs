@@ -107,6 +107,7 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
         | Function::MomentumAndRate
         | Function::MomentumAndRateWithPayload
         | Function::ActuatorTorques
+        | Function::TorqueGradient
         | Function::WrenchTorques => rows().concat(),
         _ if function.returns_torques() => rows().concat(),
         Function::FloatingMassMatrix => {
@@ -178,6 +179,11 @@ fn every_function_of_a_robot_with_followers_is_that_of_the_free_robot_projected(
             // what is solved with the mass matrix is no projection
             let is_projected = |function: &Function| !function.is_of_every_link() && !function.inverts_mass();
             for function in Function::OF_TREES.into_iter().filter(is_projected) {
+                let mut all = all.clone();
+                if function == Function::TorqueGradient {
+                    // λᵀ Gᵀ τ
+                    all.tau = times(&ratios, &own.tau);
+                }
                 let expected = expected(&free, function, &all);
                 if expected.iter().any(|x| !x.is_finite()) {
                     continue; // the centre of mass of a robot without mass

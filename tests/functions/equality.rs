@@ -81,6 +81,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::BiasTorques
         | Function::FloatingInverseDynamicsDerivatives
         | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),
+        Function::TorqueGradient => LEAST * of(Function::JointWrenches) * largest(given.tau),
         // the joints carry the payload, too
         Function::GravityTorquesWithPayload
         | Function::BiasTorquesWithPayload
@@ -167,6 +168,24 @@ pub(crate) fn error(
                 return 0.0;
             }
             error_on_scale(found, &expected, 0.0) / number
+        }
+        Function::ForwardDynamicsDerivatives => {
+            let matrix = arm.runtime.mass_matrix(given.q).expect("one per joint");
+            let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
+            if number >= 1e12 {
+                return 0.0;
+            }
+            let qdd = arm.runtime.forward_dynamics(given.q, given.qd, given.tau).expect("one per joint");
+            let of_torques = Given { qdd: &qdd, ..*given };
+            let of_torques = largest(&of_runtime(&arm.runtime, Function::InverseDynamicsDerivatives, &of_torques));
+            // each of the three matrices is a product with M⁻¹
+            let elements = matrix.len() * matrix.len();
+            let by_state = of_torques * number / of_matrix;
+            let parts =
+                found.chunks(elements).zip(expected.chunks(elements)).zip([by_state, by_state, number / of_matrix]);
+            parts.fold(0.0, |worst: f64, ((found, expected), scale)| {
+                worst.max(error_on_scale(found, expected, scale) / number)
+            })
         }
         Function::ForwardDynamics
         | Function::InverseMassMatrix

@@ -309,6 +309,25 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let column = |joint| oracle::by_position(robot, q, joint, |q| torques(q, qd, qdd, fixed));
             [transposed((0..dof).map(column).collect()), by_rates(qdd)].concat()
         }
+        // the multipliers are the torques of the state
+        Function::TorqueGradient => {
+            let weighted = |torques: Vec<f64>| vec![torques.iter().zip(tau).map(|(a, b)| a * b).sum::<f64>()];
+            let by_q = |joint| oracle::by_position(robot, q, joint, |q| weighted(torques(q, qd, qdd, fixed)))[0];
+            let by_qd = |joint| oracle::by_rate(qd, joint, |qd| weighted(torques(q, qd, qdd, fixed)))[0];
+            let by_qdd = times(&mass_matrix(), tau);
+            [(0..dof).map(by_q).collect(), (0..dof).map(by_qd).collect(), by_qdd].concat()
+        }
+        Function::ForwardDynamicsDerivatives => {
+            let bias = torques(q, qd, &zeros, fixed);
+            let qdd = &solved(DMatrix::from_fn(dof, 1, |joint, _| tau[joint] - bias[joint]));
+            if !qdd.iter().all(|x| x.is_finite()) {
+                return vec![f64::NAN; 3 * dof * dof];
+            }
+            let by_q = |joint| oracle::by_position(robot, q, joint, |q| torques(q, qd, qdd, fixed));
+            let by_q = solved(-DMatrix::from_row_slice(dof, dof, &transposed((0..dof).map(by_q).collect())));
+            let by_qd = solved(-DMatrix::from_row_slice(dof, dof, &by_rates(qdd)));
+            [by_q, by_qd, solved(DMatrix::identity(dof, dof))].concat()
+        }
         Function::Regressor => oracle::regressor(robot, &Motion { joints: [q, qd, qdd], base: fixed }),
         Function::FloatingKineticEnergy => {
             let velocities = [&base.velocity[..], &base.omega, qd].concat();

@@ -128,6 +128,13 @@ macro_rules! returned {
         "the positions after the step, of shape (p,) or (N, p), and what is left of the equations before it, of shape \
          (e,) or (N, e); `out` is one array of shape (p + e,) or (N, p + e)."
     };
+    (TorqueGradient) => {
+        "dq, dqd and dqdd, three arrays of shape (n,) or (N, n); `out` is one array of shape (3, n) or (N, 3, n)."
+    };
+    (AccelerationDerivatives) => {
+        "dq, dqd and dtau, three arrays of shape (n, n) or (N, n, n); `out` is one array of shape (3, n, n) or \
+         (N, 3, n, n)."
+    };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
     };

@@ -30,10 +30,12 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
                 | Record::FloatingAccelerations
                 | Record::AccelerationsAndWrenches
                 | Record::FloatingTorqueDerivatives
+                | Record::TorqueGradient
+                | Record::AccelerationDerivatives
                 | Record::ClosureStep,
                 parts,
             ) => {
-                shape.push(2);
+                shape.push(parts.len());
                 if let Some(part) = parts.first() {
                     of(part, shape);
                 }
@@ -124,14 +126,21 @@ fn evaluate_in<'py, T: Element + Number>(
         computed.map_err(|error: rne::compiled::EvaluationError| of_evaluation(&error))?;
     }
     match arm.layout(function) {
-        Layout::Record(Record::TorqueDerivatives | Record::MomentumAndRate, _) => {
+        Layout::Record(
+            Record::TorqueDerivatives
+            | Record::MomentumAndRate
+            | Record::TorqueGradient
+            | Record::AccelerationDerivatives,
+            parts,
+        ) => {
             let all = vec![PySlice::full(py).into_any(); of_state.len() - 1];
             let of = |index: usize| {
                 let index = index.into_pyobject(py)?.into_any();
                 let places = [PyEllipsis::get(py).to_owned().into_any(), index].into_iter().chain(all.clone());
                 result.get_item(PyTuple::new(py, places.collect::<Vec<_>>())?)
             };
-            Ok(PyTuple::new(py, [of(0)?, of(1)?])?.into_any())
+            let parts = (0..parts.len()).map(of).collect::<PyResult<Vec<_>>>()?;
+            Ok(PyTuple::new(py, parts)?.into_any())
         }
         Layout::Record(record @ (Record::FloatingTorques | Record::FloatingAccelerations | Record::ClosureStep), _) => {
             let first = if record == Record::ClosureStep { arm.robot().closed.passive.len() } else { 6 };
