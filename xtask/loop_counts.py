@@ -176,7 +176,7 @@ def main():
     for row, (function, keys) in enumerate([("inverse_dynamics_of_loops", TORQUES), ("loop_map", MAP)]):
         if row:
             print()
-        heads = [*(key.removesuffix(" alone") for key in keys), "peer", "rne", "ratio", "customised", "ratio"]
+        heads = [*(key.removesuffix(" alone") for key in keys), "peer", "rne", "rne / peer", "customised", "rne / customised"]
         print(f"| `{function}` | {' | '.join(heads)} |\n|---{'|---:' * len(heads)}|")
         for path in map(pathlib.Path, paths):
             parts, customised = ([peer(path, kind)[key] for key in keys] for kind in (Numbers, Sheet))

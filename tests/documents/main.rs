@@ -26,7 +26,7 @@ fn read(path: &Path) -> String {
 }
 
 fn robot(path: &Path) -> Robot {
-    let read = Reader::new("robot").trees().couplings().read(&read(path));
+    let read = Reader::new("robot").trees().couplings().loops().read(&read(path));
     read.unwrap_or_else(|report| panic!("{}: {report}", path.display())).robot
 }
 

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use rne_codegen::{Compiler, Form, Function};
 use rne_model::Robot;
 use rne_search::PlanFile;
 
-use crate::{read, root};
+use crate::{read, robot, root};
 
 #[test]
 fn the_readme_is_short() {
@@ -49,4 +50,34 @@ fn the_page_of_mutations_is_of_the_mutants() {
         assert!(row.is_some_and(|tests| tests.starts_with('`')), "docs/mutations.md: cargo xtask mutate '{what}'");
     }
     assert_eq!(page.lines().filter(|row| row.ends_with("` |")).count(), mutants.len());
+}
+
+/// Both tables of `cargo xtask tree-counts --loops` have the counts of the programs.
+#[test]
+fn the_page_of_closed_loops_counts_the_programs() {
+    let page = read(&root().join("docs/closed-loops.md"));
+    let (_, tables) = page.split_once("<!-- begin: measured loops,").expect("the tables");
+    let cells = |row: &str| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    for function in [Function::InverseDynamicsOfLoops, Function::LoopMap] {
+        let (_, rows) = tables.split_once(&format!("| `{function}` |")).expect("a table");
+        let rows: Vec<_> = rows.lines().take_while(|row| row.contains('|')).map(cells).collect();
+        // the first line lacks its first cell here
+        let column = 1 + rows[0].iter().position(|title| title == "rne").expect("a column");
+        assert_eq!(rows.len(), 5);
+        for row in &rows[2..] {
+            let file = if row[0] == "four_bar" {
+                "docs/four_bar.yaml"
+            } else {
+                &format!("benches/trees/loops/{}.yaml", row[0])
+            };
+            let program =
+                Compiler::new(&robot(&root().join(file))).compile(function, Form::Reduced).expect("a program");
+            let found = program.operations();
+            assert_eq!(
+                row[column],
+                (found.mul + found.add).to_string(),
+                "{file}, {function}: cargo xtask tree-counts --loops"
+            );
+        }
+    }
 }
