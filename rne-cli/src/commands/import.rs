@@ -26,7 +26,6 @@ Examples:
   rne import puma.urdf --name puma -o puma.yaml
   rne import quadruped.urdf --whole -o quadruped.yaml
   rne import scene.xml --tip hand -o arm.yaml    MJCF: bodies are the links
-
 For an arm with several ends: --base torso_lift_link --tip arm_tool_link. For a
 URDF with joints outside the arm: --lock torso_lift_joint=0.1 --lock-others.
 
@@ -68,6 +67,9 @@ pub(crate) struct Arguments {
     /// Keep the links, and links fixed to them, as named frames: the list `frames` of the robot file
     #[arg(long)]
     frames: bool,
+    /// YAML file with the closed loops of a URDF, with closed_loop and type [default: robot.yaml for robot.urdf]
+    #[arg(long, value_name = "YAML")]
+    loops: Option<PathBuf>,
     /// Accept inertias that no physical body can have
     #[arg(long)]
     keep_unphysical: bool,
@@ -93,7 +95,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     }
     let (file, text) = read(&arguments.file)?;
-    let urdf = Urdf::read(&file, &text).map_err(|report| Failure::from(&report))?;
+    let urdf = match &arguments.loops {
+        None => Urdf::read(&file, &text),
+        Some(loops) => {
+            let (name, loops) = read(loops)?;
+            Urdf::read_with_loops(&file, &text, Some((&name, &loops)))
+        }
+    };
+    let urdf = urdf.map_err(|report| Failure::from(&report))?;
     let selection = Selection {
         base: arguments.base.clone(),
         tip: arguments.tip.first().cloned(),
