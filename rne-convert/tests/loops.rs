@@ -156,7 +156,7 @@ fn every_mistake_of_a_loop_has_its_place() {
         (format!("{LOOP}{}", LOOP.replace("pin", "pin2")), "the loop `pin2` adds no equation"),
         (
             LOOP.replace("revolute", "fixed").replace("<axis xyz=\"0 0 1\"/>", "").replace("0.5 0 0", "0.2 0 0"),
-            "leaves no joint that moves",
+            "leave no joint that moves",
         ),
     ] {
         let said = refused(&four_bar(SAID, &end));
@@ -279,7 +279,7 @@ fn mjcf_closes_loops_by_bodies_and_by_sites() {
     assert_eq!(held.robot.closed.loops.len(), 1);
     assert!(
         refused("<weld body1=\"coupler\" body2=\"rocker\" relpose=\"0.8 0 0 1 0 0 0\"/>")
-            .contains("leaves no joint that moves")
+            .contains("leave no joint that moves")
     );
     // MuJoCo does not close by what a motion capture moves
     let captured = "<weld body1=\"coupler\" body2=\"hand\"/>";

@@ -275,7 +275,7 @@ fn every_mistake_has_its_message_and_its_place() {
         ("<equality/>", "<equality><connect site1=\"a\" site2=\"b\"/></equality>", 7, "the site `a`, which does not"),
         ("<equality/>", "<equality><connect site1=\"a\" body2=\"a\"/></equality>", 7, "neither two sites nor"),
         ("<equality/>", "<equality><connect body1=\"a\" ancor=\"0 0 0\"/></equality>", 7, "did you mean `anchor`"),
-        ("<equality/>", "<equality><weld body1=\"a\"/></equality>", 7, "leaves no joint that moves"),
+        ("<equality/>", "<equality><weld body1=\"a\"/></equality>", 7, "leave no joint that moves"),
         ("<equality/>", "<equality><weld body1=\"a\" relpose=\"0 0 0 1\"/></equality>", 7, "it must be 7 numbers"),
         ("<equality/>", "<equality><tendon tendon1=\"a\"/></equality>", 7, "neither `joint`, `connect` nor `weld`"),
         ("<equality/>", "<equality><joint joint1=\"k\"/></equality>", 7, "the joint `k`, which does not exist"),
