@@ -15,8 +15,8 @@ use crate::source::{Source, names, quoted};
 use crate::table::Table;
 use crate::urdf::{Joint, Kind, Link, Urdf, cut};
 
-/// Places of a loop that are not farther apart, m and rad, where the loops come nearest to closing, were meant to be one
-/// place: descriptions round their numbers.
+/// Places of a loop that are not farther apart, m and rad, where the loops come nearest to closing, were meant to be
+/// one place: descriptions round their numbers.
 const ROUNDING: f64 = 1e-6;
 
 /// A loop that a joint closes.
@@ -105,8 +105,8 @@ impl Urdf {
         }
         let named = names(joints.iter().map(|&joint| &self.joints[joint].name));
         self.remarks.push(format!(
-            "these spherical joints of closed loops become three revolute joints each, about x, y and z, without limits \
-             and friction: {named}"
+            "these spherical joints of closed loops become three revolute joints each, about x, y and z, without \
+             limits and friction: {named}"
         ));
         joints.into_iter().try_for_each(|joint| {
             let span = self.joints[joint].span.clone();

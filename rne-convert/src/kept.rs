@@ -20,8 +20,8 @@ const MOST: usize = 32;
 const MOST_BYTES: usize = 32 << 20;
 
 /// All that decides an import. Meshes and other files that a URDF names are never opened, and a document type, by which
-/// XML includes others, is refused: a text and that of the closed loops beside it are all of it. What includes others is
-/// not kept.
+/// XML includes others, is refused: a text and that of the closed loops beside it are all of it. What includes others
+/// is not kept.
 #[derive(Debug, PartialEq, Eq)]
 struct Content {
     /// The name of the file, which is written into the robot file and into reports.

@@ -1,5 +1,5 @@
-//! Closed loops that `rne import` reads, beside the golden values of `closed_loops`: these were made from robot files by
-//! hand, with loops that are often cut elsewhere. So joints are compared by their names, and the positions of others are
+//! Closed loops that `rne import` reads, beside the golden values of `closed_loops`. Robot files by hand gave these,
+//! and their loops are often cut elsewhere. So joints are compared by their names, and the positions of others are
 //! solved for.
 
 use std::collections::BTreeMap;
@@ -95,8 +95,8 @@ fn close(arm: &DynArm, robot: &Robot, q: &[f64], positions: &Named) -> Vec<f64> 
     panic!("no start leads to the closure of {positions:?}");
 }
 
-/// Compares an imported robot with the golden values of the robot file `golden`: torques of the motors, and the rates of
-/// the dependent joints that both have. Joints that the golden robot has not are at rest.
+/// Compares an imported robot with the golden values of the robot file `golden`: torques of the motors, and the rates
+/// of the dependent joints that both have. Joints that the golden robot has not are at rest.
 fn compare(imported: &Imported, golden: &str) {
     compare_renamed(imported, golden, &[]);
 }
