@@ -215,8 +215,7 @@ pub(crate) fn extract(
              stand still, lock each of these joints by its name".to_owned();
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
     }
-    chain.loops = walk.loops(base)?;
-    chain.frames = walk.frames;
+    (chain.loops, chain.frames) = (walk.loops(base)?, walk.frames);
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
         let others = names(others.iter().map(|&link| &urdf.links[link].name));

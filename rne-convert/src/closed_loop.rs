@@ -15,8 +15,8 @@ use crate::source::{Source, names, quoted};
 use crate::table::Table;
 use crate::urdf::{Joint, Kind, Link, Urdf, cut};
 
-/// Places of a loop that are not farther apart, m and rad, where the loops come nearest to closing, were meant to be one
-/// place: descriptions round their numbers.
+/// Places of a loop that are not farther apart, m and rad, where the loops come nearest to closing, were meant to be
+/// one place: descriptions round their numbers.
 const ROUNDING: f64 = 1e-6;
 
 /// A loop that a joint closes.
@@ -37,30 +37,24 @@ impl Urdf {
             let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help.to_owned()));
             let name = seen.text("loop", "name").map_or_else(|| format!("loop{}", index + 1), str::to_owned);
             let cut = seen.text("loop", "type").and_then(cut).unwrap_or(Cut::Weld);
-            let turned = match (cut, seen.vector("axis", "xyz")) {
-                (Cut::Revolute, None) => {
-                    let help = "write a direction into it, such as <axis xyz=\"0 0 1\"/>";
-                    return error(format!("the loop {} is revolute and has no element `axis`", quoted(&name)), help);
-                }
-                (Cut::Revolute, Some(axis)) => match Rotation::to_z(axis) {
-                    Some(turned) => turned,
-                    None => {
-                        let message = format!("the axis of the loop {} has no direction", quoted(&name));
-                        return error(message, "write a direction, such as 0 0 1");
-                    }
-                },
-                (_, None) => Rotation::identity(),
-                (cut, Some(_)) => {
-                    let message = format!("the loop {} has an `axis`, but it is not revolute", quoted(&name));
-                    let help = match cut {
-                        Cut::Universal => {
-                            "delete `axis`: a universal joint turns about x of the predecessor's origin and about y of \
-                             the successor's"
-                        }
-                        _ => "delete `axis`, or make the loop revolute",
-                    };
-                    return error(message, help);
-                }
+            let axis = seen.vector("axis", "xyz");
+            let turned = axis.map_or(Some(Rotation::identity()), Rotation::to_z);
+            if (cut == Cut::Revolute) != axis.is_some() {
+                return match cut {
+                    Cut::Revolute => error(
+                        format!("the loop {} is revolute and has no element `axis`", quoted(&name)),
+                        "write a direction into it, such as <axis xyz=\"0 0 1\"/>",
+                    ),
+                    _ => error(
+                        format!("the loop {} has an `axis`, but it is not revolute", quoted(&name)),
+                        "delete `axis`: a universal joint turns about x of the predecessor's origin and about y of the \
+                         successor's, and other joints have no axis",
+                    ),
+                };
+            }
+            let Some(turned) = turned else {
+                let message = format!("the axis of the loop {} has no direction", quoted(&name));
+                return error(message, "write a direction, such as 0 0 1");
             };
             let mut ends = [(0, Pose::identity()); 2];
             for (end, of) in ends.iter_mut().zip(["predecessor", "successor"]) {
@@ -111,8 +105,8 @@ impl Urdf {
         }
         let named = names(joints.iter().map(|&joint| &self.joints[joint].name));
         self.remarks.push(format!(
-            "these spherical joints of closed loops become three revolute joints each, about x, y and z, without limits \
-             and friction: {named}"
+            "these spherical joints of closed loops become three revolute joints each, about x, y and z, without \
+             limits and friction: {named}"
         ));
         joints.into_iter().try_for_each(|joint| {
             let span = self.joints[joint].span.clone();
@@ -187,7 +181,7 @@ impl Urdf {
             let actuation: Vec<Actuation> = told.moving.iter().map(|&joint| self.actuation(joint)).collect();
             match choose_dependents(&robot.joints, Convention::Modified, &mut loops, &actuation) {
                 Ok(rest) => {
-                    self.tell(told, robot, (&loops, &rest), &actuation);
+                    tell(told, robot, (&loops, &rest), &actuation);
                     for &joint in loops.iter().flat_map(|closed| &closed.dependent) {
                         robot.joints[joint].motor = None;
                     }
@@ -234,57 +228,6 @@ impl Urdf {
         }
     }
 
-    /// Says which joints are dependent, and why these.
-    fn tell(&self, told: &mut Extracted, robot: &Robot, (loops, rest): (&[ClosedLoop], &[usize]), of: &[Actuation]) {
-        let chosen: Vec<usize> = loops.iter().flat_map(|closed| closed.dependent.iter().copied()).collect();
-        let named = |joints: &[usize]| names(joints.iter().map(|&joint| &robot.joints[joint].name));
-        let among = |joints: &[usize], level: Actuation| -> Vec<usize> {
-            joints.iter().copied().filter(|&joint| of[joint] == level).collect()
-        };
-        let rank = chosen.len();
-        let are = format!("the closed loops determine {rank} joints, and the dependent joints are {}", named(&chosen));
-        let idle = among(rest, Actuation::None);
-        let unsaid = among(&chosen, Actuation::Unknown);
-        let moved = among(&chosen, Actuation::Motor);
-        let unsaid_rest = among(rest, Actuation::Unknown);
-        told.remarks.push(if moved.is_empty() && unsaid.is_empty() && idle.is_empty() {
-            format!(
-                "{are}: the file says that these joints have no motors, and the rank of the equations says the same"
-            )
-        } else {
-            format!("{are}; rne has chosen them by the rank of the equations, and joints without motors first")
-        });
-        if !idle.is_empty() {
-            told.remarks.push(format!(
-                "the loops leave freedoms that no motor of the file moves, so these joints have elements of q and torques \
-                 like joints with motors: {}. Lock those that turn a part about itself only",
-                named(&idle)
-            ));
-        }
-        if !unsaid.is_empty() {
-            let others = if unsaid_rest.is_empty() { named(rest) } else { named(&unsaid_rest) };
-            told.remarks.push(format!(
-                "the file does not say whether {} have motors; if one of them has one, name a joint among {others} in \
-                 `dependent` in its place",
-                named(&unsaid)
-            ));
-        }
-        if !moved.is_empty() {
-            told.remarks.push(format!(
-                "the file gives {} motors, but the loops leave fewer freedoms than there are motors: these joints have \
-                 no torques of their own in the robot file",
-                named(&moved)
-            ));
-        }
-        let lost: Vec<usize> = chosen.into_iter().filter(|&joint| robot.joints[joint].motor.is_some()).collect();
-        if !lost.is_empty() {
-            told.remarks.push(format!(
-                "friction and rotors of dependent joints are left out, because these joints have no motors: {}",
-                named(&lost)
-            ));
-        }
-    }
-
     /// Why the loops have no dependent joints.
     fn refuse_loops(&self, fault: &NoDependents, chain: &Chain) -> Report {
         let of = |index: &usize| &self.loops[chain.loops[*index].index];
@@ -303,7 +246,7 @@ impl Urdf {
             NoDependents::Rigid(index) => {
                 let name = quoted(&of(index).name);
                 let message =
-                    format!("the loop {name}, with the loops that share joints with it, leaves no joint that moves");
+                    format!("the loop {name}, and the loops that share joints with it, leave no joint that moves");
                 (of(index), message, "check the type of the joint that closes it: a planar loop is revolute")
             }
             NoDependents::Singular(index) => {
@@ -313,6 +256,55 @@ impl Urdf {
             _ => (of(&0), "the loops cannot be solved".to_owned(), "check the lengths, and the origins at both ends"),
         };
         self.source.error(&closed.span, message, help.to_owned())
+    }
+}
+
+/// Says which joints are dependent, and why these.
+fn tell(told: &mut Extracted, robot: &Robot, (loops, rest): (&[ClosedLoop], &[usize]), of: &[Actuation]) {
+    let chosen: Vec<usize> = loops.iter().flat_map(|closed| closed.dependent.iter().copied()).collect();
+    let named = |joints: &[usize]| names(joints.iter().map(|&joint| &robot.joints[joint].name));
+    let among = |joints: &[usize], level: Actuation| -> Vec<usize> {
+        joints.iter().copied().filter(|&joint| of[joint] == level).collect()
+    };
+    let rank = chosen.len();
+    let are = format!("the closed loops determine {rank} joints, and the dependent joints are {}", named(&chosen));
+    let idle = among(rest, Actuation::None);
+    let unsaid = among(&chosen, Actuation::Unknown);
+    let moved = among(&chosen, Actuation::Motor);
+    let unsaid_rest = among(rest, Actuation::Unknown);
+    told.remarks.push(if moved.is_empty() && unsaid.is_empty() && idle.is_empty() {
+        format!("{are}: the file says that these joints have no motors, and the rank of the equations says the same")
+    } else {
+        format!("{are}; rne has chosen them by the rank of the equations, and joints without motors first")
+    });
+    if !idle.is_empty() {
+        told.remarks.push(format!(
+            "the loops leave freedoms that no motor of the file moves, so these joints have elements of q and torques \
+             like joints with motors: {}. Lock those that turn a part about itself only",
+            named(&idle)
+        ));
+    }
+    if !unsaid.is_empty() {
+        let others = if unsaid_rest.is_empty() { named(rest) } else { named(&unsaid_rest) };
+        told.remarks.push(format!(
+            "the file does not say whether {} have motors; if one of them has one, name a joint among {others} in \
+             `dependent` in its place",
+            named(&unsaid)
+        ));
+    }
+    if !moved.is_empty() {
+        told.remarks.push(format!(
+            "the file gives {} motors, but the loops leave fewer freedoms than there are motors: these joints have \
+             no torques of their own in the robot file",
+            named(&moved)
+        ));
+    }
+    let lost: Vec<usize> = chosen.into_iter().filter(|&joint| robot.joints[joint].motor.is_some()).collect();
+    if !lost.is_empty() {
+        told.remarks.push(format!(
+            "friction and rotors of dependent joints are left out, because these joints have no motors: {}",
+            named(&lost)
+        ));
     }
 }
 

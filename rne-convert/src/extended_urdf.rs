@@ -204,7 +204,7 @@ impl Urdf {
     }
 }
 
-/// Where words stand, or `other` if there are none.
+/// The place of the first of some words, or `other` for an empty list.
 fn span_of(words: &[Word], other: &Range<usize>) -> Range<usize> {
     words.first().map_or(other.clone(), |word| word.span.clone())
 }

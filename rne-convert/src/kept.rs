@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rne_model::Report;
 
+use crate::extended_urdf::beside;
 use crate::import::{Imported, Options};
 use crate::selection::Selection;
 use crate::urdf::Urdf;
@@ -19,12 +20,15 @@ const MOST: usize = 32;
 const MOST_BYTES: usize = 32 << 20;
 
 /// All that decides an import. Meshes and other files that a URDF names are never opened, and a document type, by which
-/// XML includes others, is refused: a text is all of it. What includes others is not kept.
+/// XML includes others, is refused: a text and that of the closed loops beside it are all of it. What includes others
+/// is not kept.
 #[derive(Debug, PartialEq, Eq)]
 struct Content {
     /// The name of the file, which is written into the robot file and into reports.
     file: String,
     text: String,
+    /// The file with the closed loops beside it, and its text.
+    loops: Option<(String, String)>,
     /// As `Debug` writes them, which tells -0.0 from 0.0 and has every field, later ones too.
     options: String,
 }
@@ -35,14 +39,16 @@ struct Content {
 /// # Errors
 /// As those two; a refusal is not kept.
 pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>, Report> {
-    let content = Content { file: file.to_owned(), text: text.to_owned(), options: format!("{options:?}") };
+    let loops = beside(file);
+    let content = Content { file: file.to_owned(), text: text.to_owned(), loops, options: format!("{options:?}") };
     let known = |kept: &VecDeque<(Content, Arc<Imported>)>| {
         kept.iter().find(|(other, _)| *other == content).map(|(_, imported)| Arc::clone(imported))
     };
     if let Some(imported) = known(&KEPT.lock().unwrap_or_else(PoisonError::into_inner)) {
         return Ok(imported);
     }
-    let urdf = Urdf::read(file, text)?;
+    let loops = content.loops.as_ref().map(|(name, text)| (name.as_str(), text.as_str()));
+    let urdf = Urdf::read_with_loops(file, text, loops)?;
     let imported = Arc::new(urdf.import(options)?);
     if !urdf.source.included.is_empty() {
         return Ok(imported);

@@ -194,13 +194,11 @@ impl Urdf {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
         let source = Source::new(file, text);
         if root_name(text).is_some_and(|name| name == "mujoco") {
-            return match loops {
-                None => mjcf::read(source),
-                Some(_) => {
-                    let help = "a file of closed loops is for a URDF; an MJCF file has its own, in `equality`";
-                    Err(source.error(&(0..0), "this is an MJCF file", help.to_owned()))
-                }
-            };
+            if loops.is_some() {
+                let help = "a file of closed loops is for a URDF; an MJCF file has its own, in `equality`";
+                return Err(source.error(&(0..0), "this is an MJCF file", help.to_owned()));
+            }
+            return mjcf::read(source);
         }
         let scanned = scan(&source)?;
         let mut urdf = Self {

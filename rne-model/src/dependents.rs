@@ -79,7 +79,7 @@ pub fn choose_dependents(
         });
         let Some(chosen) = chosen else { return Err(NoDependents::Singular(group[0])) };
         rest.extend(movers.into_iter().filter(|joint| !chosen.contains(joint)));
-        share(joints, loops, (&group, &adds), chosen);
+        share(joints, loops, (&group, &adds), &chosen);
     }
     Ok(sorted(rest))
 }
@@ -106,12 +106,12 @@ impl Jacobians<'_> {
 
 /// Names each chosen joint in one loop that it moves: each loop gets as many as it adds equations, as far as that is
 /// possible, and one at least. The loops are solved together, so that the numbers of each do not matter.
-fn share(joints: &[Joint], loops: &mut [ClosedLoop], (group, adds): (&[usize], &[usize]), chosen: Vec<usize>) {
+fn share(joints: &[Joint], loops: &mut [ClosedLoop], (group, adds): (&[usize], &[usize]), chosen: &[usize]) {
     let moves: Vec<Vec<usize>> = group.iter().map(|&index| moving(joints, &loops[index])).collect();
     // places of the loops, by the places in `chosen`
     let mut of_joint: Vec<Option<usize>> = vec![None; chosen.len()];
     for place in 0..group.len() {
-        claim(place, &moves, &chosen, &mut of_joint, &mut vec![false; chosen.len()]);
+        claim(place, &moves, chosen, &mut of_joint, &mut vec![false; chosen.len()]);
     }
     for at in 0..chosen.len() {
         let has_room = |place: &usize| of_joint.iter().filter(|of| **of == Some(*place)).count() < adds[*place];

@@ -23,7 +23,6 @@ use crate::values::numbers::not_a_number;
 Examples:
   rne export puma560 --urdf -o puma.urdf         a URDF to try it on
   rne import puma.urdf --convention modified     to the terminal
-  rne import puma.urdf --name puma -o puma.yaml
   rne import quadruped.urdf --whole -o quadruped.yaml
   rne import scene.xml --tip hand -o arm.yaml    MJCF: bodies are the links
 
@@ -41,7 +40,7 @@ pub(crate) struct Arguments {
     /// Link at the base of the arm [default: the root link, or the link that floats]
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
-    /// Last link of the arm [default: the last link, if the file has only one end]; with --whole, several give `tips`
+    /// Last link of the arm [default: the last link, if only one is an end]; with --whole, several give `tips`
     #[arg(long, value_name = "LINK")]
     tip: Vec<String>,
     /// Convert the whole robot after the base, a tree, and not one arm; --tip then says where the tip is
@@ -53,7 +52,7 @@ pub(crate) struct Arguments {
     /// With --whole: fix a base that floats in the file
     #[arg(long, requires = "whole", conflicts_with = "floating")]
     fixed: bool,
-    /// Denavit-Hartenberg convention of the new table: standard or modified [default: standard; modified for a tree]
+    /// Convention of the new table: standard or modified [default: standard; modified for a tree]
     #[arg(long, value_name = "C", value_parser = convention(), hide_possible_values = true)]
     convention: Option<Convention>,
     /// Lock a movable joint at this position, rad or m, such as finger=0.04; may be repeated; 0 holds a floating base
@@ -68,6 +67,9 @@ pub(crate) struct Arguments {
     /// Keep the links, and links fixed to them, as named frames: the list `frames` of the robot file
     #[arg(long)]
     frames: bool,
+    /// YAML file with closed loops of a URDF [default: robot.yaml beside robot.urdf]
+    #[arg(long, value_name = "YAML")]
+    loops: Option<PathBuf>,
     /// Accept inertias that no physical body can have
     #[arg(long)]
     keep_unphysical: bool,
@@ -93,7 +95,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     }
     let (file, text) = read(&arguments.file)?;
-    let urdf = Urdf::read(&file, &text).map_err(|report| Failure::from(&report))?;
+    let urdf = match &arguments.loops {
+        None => Urdf::read(&file, &text),
+        Some(loops) => {
+            let (name, loops) = read(loops)?;
+            Urdf::read_with_loops(&file, &text, Some((&name, &loops)))
+        }
+    };
+    let urdf = urdf.map_err(|report| Failure::from(&report))?;
     let selection = Selection {
         base: arguments.base.clone(),
         tip: arguments.tip.first().cloned(),

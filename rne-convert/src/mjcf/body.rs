@@ -16,7 +16,7 @@ use crate::urdf::{Joint, Kind, Link, Urdf};
 /// The link of the world.
 pub(super) const WORLD: &str = "world";
 
-/// What is said about bodies that a motion capture moves.
+/// The remark on bodies that a motion capture moves.
 pub(super) const MOCAP: &str = "bodies that a motion capture moves (`mocap`) are fixed";
 
 /// More links than any robot has.

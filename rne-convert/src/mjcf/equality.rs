@@ -9,7 +9,7 @@ use super::settings::{Classed, Settings};
 use crate::closed_loop::Loop;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::quoted;
-use crate::urdf::{Joint, Kind, Link, Mimic, Urdf};
+use crate::urdf::{Joint, Kind, Mimic, Urdf};
 
 /// Couples joints by the equalities of the file: position = reference + polynomial of the other joint's position from
 /// its reference.
@@ -101,16 +101,15 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
     }
     let mut links = [0; 2];
     for (link, name) in links.iter_mut().zip(names) {
-        let is_meant = |known: &&Link| match are_sites {
-            true => known.is_site && (known.name == name || known.name.trim_end_matches("_site") == name),
-            false => !known.is_site && known.name == name,
-        };
-        let Some(known) = urdf.links.iter().find(is_meant) else {
+        let find = |name: &str| urdf.links.iter().position(|link| link.is_site == are_sites && link.name == name);
+        // a site that has the name of a body has got another one
+        let other = || find(&format!("{name}_site")).filter(|_| are_sites);
+        let Some(known) = find(name).or_else(other) else {
             let what = if are_sites { "site" } else { "body" };
             let message = format!("the equality names the {what} {}, which does not exist", quoted(name));
             return Err(equality.refused(message, format!("there is no such {what} in the file")));
         };
-        *link = urdf.links.iter().position(|link| link.name == known.name).unwrap_or(0);
+        *link = known;
     }
     let [anchor, relative] = [equality.numbers("anchor", 3, 3)?, equality.numbers("relpose", 7, 7)?];
     let of_one = urdf.at_reference(links[0]).inverse() * urdf.at_reference(links[1]);
