@@ -65,7 +65,8 @@ impl States {
         }
         rows[10] = omega;
         // the interpreter has one array for both
-        rows[18] = rows[3].clone();
+        let tau = rows[3].clone();
+        rows[18] = tau;
         Self { dof, rows }
     }
 
