@@ -137,8 +137,14 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
             accelerate(&arm, function, &state, &interpreted).expect("arrays of the right length")
         }
         Function::InverseMassMatrix => inverts(&arm, &state, &interpreted).expect("arrays of the right length"),
+        // the others are products with it, and of accelerations that are as far from those of the runtime
+        Function::ForwardDynamicsDerivatives => {
+            inverts(&arm, &state, &interpreted[2 * robot.dof() * robot.dof()..]).expect("arrays of the right length")
+        }
         _ => {
-            let scale = scale(&expected);
+            // multipliers magnify what cancels
+            let weights = if function == Function::TorqueGradient { scale(&state.tau) } else { 1.0 };
+            let scale = weights * scale(&expected);
             // an arm without mass has no centre
             let is_close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-11 * scale || !(a.is_finite() || b.is_finite());
             interpreted.iter().zip(&expected).all(is_close)
@@ -254,6 +260,15 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::InverseDynamicsDerivatives => {
             let derivatives = arm.inverse_dynamics_derivatives(q, qd, qdd)?;
             [derivatives.dq.concat(), derivatives.dqd.concat()].concat()
+        }
+        // the multipliers are the torques of the state, as in the interpreter
+        Function::TorqueGradient => {
+            let gradient = arm.torque_gradient(q, qd, qdd, tau)?;
+            [gradient.dq, gradient.dqd, gradient.dqdd].concat()
+        }
+        Function::ForwardDynamicsDerivatives => {
+            let derivatives = arm.forward_dynamics_derivatives(q, qd, tau)?;
+            [derivatives.dq, derivatives.dqd, derivatives.dtau].concat().concat()
         }
         Function::JointWrenches => {
             let wrenches = arm.joint_wrenches(q, qd, qdd)?;

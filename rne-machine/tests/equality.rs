@@ -12,7 +12,7 @@ use rne_search::PlanFile;
 const STATES: usize = 150;
 
 /// Arguments and their elements for any function of an arm.
-fn widths(dof: usize) -> [(&'static str, usize); 18] {
+fn widths(dof: usize) -> [(&'static str, usize); 19] {
     [
         ("q", dof),
         ("qd", dof),
@@ -33,6 +33,7 @@ fn widths(dof: usize) -> [(&'static str, usize); 18] {
         ("twist", 6),
         ("pose", 12),
         ("base_rotation", 9),
+        ("multipliers", dof),
     ]
 }
 
@@ -63,6 +64,9 @@ impl States {
             twist[3..].copy_from_slice(omega);
         }
         rows[10] = omega;
+        // the interpreter has one array for both
+        let tau = rows[3].clone();
+        rows[18] = tau;
         Self { dof, rows }
     }
 

@@ -102,7 +102,10 @@ pub(crate) fn stubs() -> String {
             | Returned::FloatingTorques
             | Returned::FloatingAccelerations
             | Returned::ClosureStep => "tuple[Floats, Floats]",
-            Returned::AccelerationsAndWrenches | Returned::FloatingTorqueDerivatives => "tuple[Floats, Floats, Floats]",
+            Returned::AccelerationsAndWrenches
+            | Returned::FloatingTorqueDerivatives
+            | Returned::TorqueGradient
+            | Returned::AccelerationDerivatives => "tuple[Floats, Floats, Floats]",
             _ => "Floats",
         };
         // a pose of the tip has the name that it has at a frame, too

@@ -23,6 +23,8 @@ fn of_state(robot: &Robot, state: &State) -> Vec<(&'static str, Vec<f64>)> {
         ("qd", qd.clone()),
         ("qdd", qdd.clone()),
         ("tau", tau.clone()),
+        // as the other tests have them
+        ("multipliers", tau.clone()),
         ("sin", sin),
         ("cos", cos),
         ("force", wrench.force.to_vec()),

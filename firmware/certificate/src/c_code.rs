@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 use rne_certify::board;
 use rne_certify::cycles::Core;
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record, Sizes};
+use rne_codegen::{Argument, Compiler, Form, Function, Layout, Sizes};
 use rne_emit::{Precision, Prefix, c_code};
 use rne_model::Robot;
 use rne_search::PlanFile;
@@ -240,15 +240,7 @@ fn declaration(prefix: &str, layout: &Layout) -> (String, String) {
             let (kind, lengths) = declaration(prefix, of);
             (kind, format!("[{length}]{lengths}"))
         }
-        // a function and a type of one name cannot be in C
-        Layout::Record(Record::MomentumAndRate, _) => (format!("{prefix}_momentum"), String::new()),
-        Layout::Record(record, _) => {
-            let name = record.name().chars().enumerate().fold(String::new(), |name, (index, letter)| {
-                let gap = if index > 0 && letter.is_uppercase() { "_" } else { "" };
-                format!("{name}{gap}{}", letter.to_lowercase())
-            });
-            (format!("{prefix}_{name}"), String::new())
-        }
+        Layout::Record(record, _) => (rne_emit::record_name(prefix, *record), String::new()),
     }
 }
 

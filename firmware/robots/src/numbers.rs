@@ -1,6 +1,6 @@
 //! What a function returns, number by number.
 
-use rne::{MomentumAndRate, Pose, TorqueDerivatives, Wrench};
+use rne::{AccelerationDerivatives, MomentumAndRate, Pose, TorqueDerivatives, TorqueGradient, Wrench};
 
 /// Numbers in a shape.
 pub trait Numbers {
@@ -40,6 +40,22 @@ impl<const DOF: usize> Numbers for TorqueDerivatives<DOF, f32> {
     fn each(&self, act: &mut impl FnMut(f32)) {
         self.dq.each(act);
         self.dqd.each(act);
+    }
+}
+
+impl<const DOF: usize> Numbers for TorqueGradient<DOF, f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.dq.each(act);
+        self.dqd.each(act);
+        self.dqdd.each(act);
+    }
+}
+
+impl<const DOF: usize> Numbers for AccelerationDerivatives<DOF, f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.dq.each(act);
+        self.dqd.each(act);
+        self.dtau.each(act);
     }
 }
 

@@ -1,6 +1,9 @@
 //! All that the PUMA 560 can compute besides `inverse_dynamics`.
 
-use rne::{BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, Scalar, TorqueDerivatives, Wrench};
+use rne::{
+    AccelerationDerivatives, BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, Scalar, TorqueDerivatives,
+    TorqueGradient, Wrench,
+};
 
 use crate::numbers::Numbers;
 use crate::states::State;
@@ -20,6 +23,7 @@ pub struct Arguments {
     pub sin: [f32; 6],
     pub cos: [f32; 6],
     tau: [f32; 6],
+    multipliers: [f32; 6],
     wrench: Wrench<f32>,
     payload: Payload<f32>,
     base: BaseMotion<f32>,
@@ -34,7 +38,7 @@ impl Arguments {
         let payload = Payload::from_array([0.5, 0.01, -0.02, 0.1, 0.002, 0.003, 0.001, 0.0001, -0.0002, 0.0003]);
         let mut base = BaseMotion::fixed([0.0, 0.0, -9.81]);
         base.omega = [0.1, -0.2, 0.3];
-        Self { q, qd, qdd, sin, cos, tau: qdd, wrench, payload, base }
+        Self { q, qd, qdd, sin, cos, tau: qdd, multipliers: qdd, wrench, payload, base }
     }
 }
 
@@ -73,12 +77,16 @@ macro_rules! methods {
     ) => {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
-            use super::{BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, TorqueDerivatives, Wrench};
+            use super::{
+                AccelerationDerivatives, BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, TorqueDerivatives,
+                TorqueGradient, Wrench,
+            };
 
             #[derive(
                 rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
                 rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
                 rne::MomentumObserver, rne::MovingBase, rne::Actuation, rne::PayloadDynamics,
+                rne::InverseDynamicsGradient, rne::ForwardDynamicsDerivatives,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -155,4 +163,9 @@ methods! {
     PayloadDynamics: momentum_and_rate_with_payload(
         q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
     ) -> MomentumAndRate<6, f32>;
+    InverseDynamicsGradient: torque_gradient(
+        q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], multipliers: [f32; 6]
+    ) -> TorqueGradient<6, f32>;
+    ForwardDynamicsDerivatives: forward_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], tau: [f32; 6])
+        -> AccelerationDerivatives<6, f32>;
 }

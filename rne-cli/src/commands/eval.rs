@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     /// Multipliers of the torques for torque_gradient
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     multipliers: Option<List>,
-    /// Force and moment of the tip on its environment, fx,fy,fz,nx,ny,nz, N and N m, in tip axes
+    /// Wrench by the tip: fx,fy,fz,nx,ny,nz, tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
     /// A wrench at the tip N of `tips`; may be repeated

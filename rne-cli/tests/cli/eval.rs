@@ -365,7 +365,7 @@ fn functions_take_their_arguments_and_no_others() {
         "bias_torques",
         &[q, qd, ["--tau", "1,2"]].concat(),
         &["takes no --tau; forward_dynamics, momentum_and_rate, forward_dynamics_with_wrenches, \
-             floating_forward_dynamics and forward_dynamics_in_contact do"],
+             floating_forward_dynamics, forward_dynamics_in_contact and forward_dynamics_derivatives do"],
     );
     call(
         2,

@@ -57,7 +57,7 @@ impl<'s, 'a> Inverse<'s, 'a> {
     }
 
     /// -M⁻¹ ∂τ/∂q and -M⁻¹ ∂τ/∂q̇, given ∂τ/∂q and ∂τ/∂q̇ by rows, and M⁻¹.
-    pub(crate) fn derivatives(self, by_state: [Vec<Vec<Symbol<'s>>>; 2]) -> Outputs<'s> {
+    pub(crate) fn derivatives(self, by_state: &[Vec<Vec<Symbol<'s>>>; 2]) -> Outputs<'s> {
         let joints = self.system.coordinates.joints();
         let dof = joints.len();
         let kinds: [fn(usize) -> WithRespectTo; 2] = [WithRespectTo::Position, WithRespectTo::Rate];

@@ -127,7 +127,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             let solved = Derivation::new(builder, robot, function);
             let joints = solved.coordinates().joints();
             let torques = solved.tau();
-            inverse.derivatives([WithRespectTo::Position, WithRespectTo::Rate].map(|kind: fn(usize) -> _| {
+            inverse.derivatives(&[WithRespectTo::Position, WithRespectTo::Rate].map(|kind: fn(usize) -> _| {
                 let columns = builder.derivatives(&torques, joints.iter().map(|joint| kind(joint + 1)));
                 (0..joints.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
             }))

@@ -177,7 +177,7 @@ impl Formulas {
             let is_sine = matches!(self.ops[by.index()], Op::Sine(_));
             // the sine changes by the cosine, the cosine by minus the sine
             let other = self.other_of(of, is_sine)?;
-            let by_angle = other.residue(&self.residues).signed(!is_sine != by.is_negative());
+            let by_angle = other.residue(&self.residues).signed(is_sine == by.is_negative());
             derivative = derivative + (x.residue(&self.residues) * by_angle).signed(term.is_negative());
             turned[place] = (x.signed(term.is_negative()), by);
         }

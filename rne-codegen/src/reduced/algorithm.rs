@@ -263,7 +263,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             let inverse = adjoint::Inverse::of(builder, &system, &upper);
             inverse.keep_accelerations(bias);
             let found = sensitivity(arm, Number::integer(2));
-            inverse.derivatives([&found.by_position, &found.by_rate].map(|rows| coordinates.matrix(rows)))
+            inverse.derivatives(&[&found.by_position, &found.by_rate].map(|rows| coordinates.matrix(rows)))
         }
         (Function::TorqueGradient, _) => {
             adjoint::gradient(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))

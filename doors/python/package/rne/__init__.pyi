@@ -381,6 +381,16 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """Accelerations of the base and of the joints of a robot with closed loops, when nothing holds the base."""
+    def torque_gradient(
+        self, q: Joints, qd: Joints, qdd: Joints, multipliers: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats]:
+        """The gradient of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up."""
+    def forward_dynamics_derivatives(
+        self, q: Joints, qd: Joints, tau: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats]:
+        """∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics`; row i is acceleration i."""
     # <!-- end -->
     @property
     def passive_joints(self) -> list[str]:

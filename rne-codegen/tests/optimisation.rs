@@ -1,0 +1,52 @@
+//! Derivatives for optimisers without rounding, in the fields of the proof: reverse mode against forward mode, and the
+//! derivatives of the accelerations against those of the torques.
+
+use rne_codegen::{ExactFunction, Function, Name, Quantity, Residue};
+use rne_model::Robot;
+
+fn robots() -> impl Iterator<Item = Robot> {
+    ["puma560", "panda", "ur5", "scara_cobra600", "stanford"].into_iter().map(|name| {
+        let file = format!("{}/../robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let yaml = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
+        Robot::from_yaml(&yaml).unwrap_or_else(|report| panic!("{report}"))
+    })
+}
+
+/// Rows times a column.
+fn product(rows: &[Residue], column: impl Fn(usize) -> Residue, dof: usize) -> Vec<Residue> {
+    rows.chunks(dof)
+        .map(|row| row.iter().enumerate().fold(Residue::ZERO, |sum, (at, element)| sum + *element * column(at)))
+        .collect()
+}
+
+#[test]
+fn reverse_mode_is_forward_mode() {
+    for robot in robots() {
+        let dof = robot.dof();
+        let [gradient, derivatives, mass] =
+            [Function::TorqueGradient, Function::InverseDynamicsDerivatives, Function::MassMatrix]
+                .map(|function| ExactFunction::new(&robot, function));
+        for point in 1..=3 {
+            let multiplier = |at: usize| gradient.argument(point, Name::scalar(Quantity::Multiplier, at + 1));
+            let by_state = derivatives.at(point);
+            // λᵀ A is Aᵀ λ
+            let column = |matrix: usize, column: usize| {
+                (0..dof).map(|row| by_state[(matrix * dof + row) * dof + column]).collect::<Vec<_>>()
+            };
+            let columns: Vec<Residue> = (0..2 * dof).flat_map(|at| column(at / dof, at % dof)).collect();
+            let expected = [product(&columns, multiplier, dof), product(&mass.at(point), multiplier, dof)].concat();
+            assert_eq!(gradient.at(point), expected, "{}", robot.name);
+        }
+    }
+}
+
+#[test]
+fn derivatives_of_accelerations_have_the_inverse_mass_matrix() {
+    for robot in robots() {
+        let dof = robot.dof();
+        let [derivatives, inverse] = [Function::ForwardDynamicsDerivatives, Function::InverseMassMatrix]
+            .map(|function| ExactFunction::new(&robot, function).at(1));
+        assert_eq!(derivatives[2 * dof * dof..], inverse, "{}", robot.name);
+        assert!(derivatives[..2 * dof * dof].iter().any(|element| !element.is_zero()), "{}", robot.name);
+    }
+}
