@@ -1,6 +1,6 @@
 //! Programs as C99 without a library: a header that documents the functions, and the source.
 
-mod header;
+pub(crate) mod header;
 mod joint_functions;
 mod motors;
 mod observer;
@@ -110,12 +110,12 @@ pub fn c_code_with(
 }
 
 /// The programs that are written, and how.
-struct File<'a> {
-    robot: &'a Robot,
-    programs: &'a [Program],
-    precision: Precision,
-    prefix: &'a str,
-    additions: &'a Additions<'a>,
+pub(crate) struct File<'a> {
+    pub(crate) robot: &'a Robot,
+    pub(crate) programs: &'a [Program],
+    pub(crate) precision: Precision,
+    pub(crate) prefix: &'a str,
+    pub(crate) additions: &'a Additions<'a>,
 }
 
 /// The robot file of the code: its name without folders, and a hash of its contents.
@@ -184,7 +184,7 @@ impl fmt::Display for ConstantTooLarge {
 impl std::error::Error for ConstantTooLarge {}
 
 /// Words as a comment, in which each line begins with `start`; an empty comment if there are no words.
-fn comment(start: &str, text: &str) -> String {
+pub(crate) fn comment(start: &str, text: &str) -> String {
     let blank = format!("{start} ");
     let lines = if text.is_empty() { start.to_owned() } else { fill(&c_comment(text), WIDTH, &blank, &blank) };
     lines + "\n"
