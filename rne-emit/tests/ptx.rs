@@ -128,7 +128,7 @@ fn trees_floating_bases_and_closed_loops_have_the_bits_of_the_processor() {
     compare_both(&of_file("docs/tree.yaml"), &[Function::InverseDynamics, Function::MassMatrix]);
     compare_both(
         &of_file("benches/trees/go2_floating.yaml"),
-        &[Function::InverseDynamicsOfFloatingBase, Function::FloatingForwardDynamics],
+        &[Function::InverseDynamicsOfFloatingBase, Function::FloatingForwardDynamics, Function::FloatingMassMatrix],
     );
     compare_both(
         &of_file("docs/four_bar.yaml"),

@@ -201,6 +201,7 @@ impl Writing<'_, '_> {
                 let register = if result.starts_with('0') {
                     let register = self.register(None, id);
                     let _ = writeln!(self.body, "    mov.{} {register}, {result};", self.real);
+                    self.known[id.index()].clone_from(&register);
                     register
                 } else {
                     result

@@ -83,7 +83,10 @@ impl Reading {
                 None => vec![name.to_owned()],
             };
             for name in names {
-                self.registers.insert(name, self.count);
+                // registers of blocks have plain names, and each block has its own
+                let is_of_block = !name.starts_with(['%', '$']);
+                let before = self.registers.insert(name, self.count);
+                assert!(is_of_block || before.is_none(), "{declared}: declared twice");
                 self.count += 1;
             }
         }
