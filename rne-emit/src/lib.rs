@@ -8,6 +8,7 @@
 mod annotated;
 mod ascii;
 mod c;
+mod cuda;
 mod emitted_sine;
 mod evidence;
 mod expression;
@@ -32,6 +33,7 @@ pub use c::{
     Additions, BadPrefix, CCode, ConstantTooLarge, JointFriction, NoFriction, Origin, Prefix, c_code, c_code_with,
     record_name,
 };
+pub use cuda::cuda;
 pub use emitted_sine::sin_cos_f32;
 pub use evidence::{evidence, refusals};
 pub use formula::Formula;

@@ -8,7 +8,7 @@ use rne_codegen::{Form, Function, Program, Target};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
-use crate::commands::emit_c::{Header, Request, c_code, for_gpu, header_beside};
+use crate::commands::emit_c::{ForGpu, Header, Request, c_code, for_gpu, header_beside};
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
@@ -230,6 +230,8 @@ fn emitted(
     let names = if arguments.names_joints(robot) { rne_emit::rust_joints(robot) } else { String::new() };
     let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &names + &rust_tests(arguments, robot, &programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
+    let language = if arguments.lang == Language::Cuda { ForGpu::Cuda } else { ForGpu::Ptx };
+    let gpu = || for_gpu(language, &request, robot, &programs);
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
     let files = match (arguments.lang, out, header) {
         (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
@@ -240,10 +242,8 @@ fn emitted(
             vec![generated(&header.path, code.header().to_owned()), generated(out, source)]
         }
         (Language::C, ..) => return Ok(Outcome::text(c_code()?.one_file())),
-        (Language::Cuda | Language::Ptx, None, _) => return Ok(Outcome::text(for_gpu(&request, robot, &programs)?)),
-        (Language::Cuda | Language::Ptx, Some(out), _) => {
-            vec![generated(out, for_gpu(&request, robot, &programs)?)]
-        }
+        (_, None, _) => return Ok(Outcome::text(gpu()?)),
+        (_, Some(out), _) => vec![generated(out, gpu()?)],
     };
     match &arguments.check {
         Some(out) => check(arguments, out, &files),

@@ -82,12 +82,30 @@ pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
     Ok(if request.ascii { code.in_ascii() } else { code })
 }
 
-/// Kernels of PTX.
-pub(super) fn for_gpu(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<String, Failure> {
+/// A language of processors of graphics.
+#[derive(Clone, Copy)]
+pub(super) enum ForGpu {
+    /// A header for CUDA and C++.
+    Cuda,
+    /// Kernels.
+    Ptx,
+}
+
+/// Code for processors of graphics.
+pub(super) fn for_gpu(
+    language: ForGpu,
+    request: &Request<'_>,
+    robot: &Robot,
+    programs: &[Program],
+) -> Result<String, Failure> {
     let origin = origin(request);
     let additions = Additions { origin: Some(&origin), ..Additions::default() };
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
-    rne_emit::ptx(robot, programs, request.precision, &prefix, &additions).map_err(|error| too_large(request, &error))
+    let text = match language {
+        ForGpu::Cuda => rne_emit::cuda(robot, programs, &prefix, &additions),
+        ForGpu::Ptx => rne_emit::ptx(robot, programs, request.precision, &prefix, &additions),
+    };
+    text.map_err(|error| too_large(request, &error))
 }
 
 /// The robot file of a request. Without its folder: the same file gives the same bytes wherever it is.

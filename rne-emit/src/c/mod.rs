@@ -22,8 +22,7 @@ pub use joint_functions::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
 pub use signature::record_name;
 pub(super) use signature::{array_name, element_type, elements_of, inputs, result_elements};
-#[cfg(test)]
-pub(crate) use source::UNUSED;
+pub(crate) use source::{SIN_COS, UNUSED};
 
 /// The code of one robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -145,11 +144,11 @@ impl<'a> File<'a> {
     }
 
     /// Whether sines and cosines are needed.
-    fn turns(&self) -> bool {
+    pub(crate) fn turns(&self) -> bool {
         self.programs.iter().any(|program| !program.sines_and_cosines.is_empty())
     }
 
-    fn chooses_by_sign(&self) -> bool {
+    pub(crate) fn chooses_by_sign(&self) -> bool {
         self.programs.iter().any(Program::chooses_by_sign)
     }
 }

@@ -20,7 +20,7 @@ const SIN_COS: [&str; 2] = [include_str!("sin_cos_f32.ptx"), include_str!("sin_c
 macro_rules! abouts {
     ($($name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;)*) => {
         /// The meaning of an argument array, with its unit.
-        pub(crate) fn about(array: &str) -> &'static str {
+        fn about(array: &str) -> &'static str {
             match array {
                 $(stringify!($name) => $about,)*
                 _ => "Parameters of the robot file that are given at run time, in their order.",
@@ -61,31 +61,6 @@ impl<'p> Kernel<'p> {
             };
         }
         Ok(Self { program, precision, arrays, literals })
-    }
-
-    /// The function, its form, its operations and its arrays, as a comment.
-    pub(super) fn heading(&self) -> String {
-        let program = &*self.program;
-        let mut text = comment("//", &format!("{}: {}", program.name, program.function.summary()));
-        text.push_str(&comment("//", program.function.details()));
-        let count = program.operations();
-        let _ = writeln!(
-            text,
-            "//\n// Form {}: {} products, {} sums, {} divisions, {} angles; {} instructions with fused products.\n//",
-            program.form,
-            count.mul,
-            count.add,
-            count.div,
-            count.sincos,
-            fma::instructions(program)
-        );
-        for ArgumentArray { name, elements, .. } in &self.arrays {
-            text.push_str(&comment("//", &format!("{name}[{}]: {}", elements.len(), about(name))));
-        }
-        let output = program.function.entry().output;
-        let layout = program.layout();
-        let of = shape(if output.is_empty() { "result" } else { output }, &layout);
-        text + &comment("//", &format!("Results, {} elements: {of}.", layout.len()))
     }
 
     /// The text of the kernel of this name.
@@ -134,6 +109,33 @@ impl<'p> Kernel<'p> {
     }
 }
 
+/// The function, its form, its operations and its arrays, as a comment.
+pub(crate) fn heading(program: &Program) -> String {
+    let mut text = comment("//", &format!("{}: {}", program.name, program.function.summary()));
+    if !program.function.details().is_empty() {
+        text.push_str(&comment("//", program.function.details()));
+    }
+    let count = program.operations();
+    let _ = writeln!(
+        text,
+        "//\n// Form {}: {} products, {} sums, {} divisions, {} angles; {} instructions with fused products.\n//",
+        program.form,
+        count.mul,
+        count.add,
+        count.div,
+        count.sincos,
+        fma::instructions(program)
+    );
+    for ArgumentArray { name, elements, .. } in program.argument_arrays() {
+        text.push_str(&comment("//", &format!("{name}[{}]: {}", elements.len(), about(name))));
+    }
+    let output = program.function.entry().output;
+    let layout = program.layout();
+    let of = shape(if output.is_empty() { "result" } else { output }, &layout);
+    let elements = if layout.len() == 1 { "1 element" } else { &format!("{} elements", layout.len()) };
+    text + &comment("//", &format!("Results, {elements}: {of}."))
+}
+
 /// An exact number of a type, in hexadecimal.
 fn literal(precision: Precision, value: f64) -> Option<String> {
     match precision {
@@ -147,7 +149,7 @@ fn literal(precision: Precision, value: f64) -> Option<String> {
 }
 
 /// The parts of a result in their order, with their lengths.
-pub(crate) fn shape(name: &str, layout: &Layout) -> String {
+fn shape(name: &str, layout: &Layout) -> String {
     let (lengths, of) = elements_of(layout);
     match of {
         Layout::Record(record, parts) => {

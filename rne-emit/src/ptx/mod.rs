@@ -15,6 +15,7 @@ use crate::ascii::ascii;
 use crate::c::{Additions, ConstantTooLarge, File, Prefix, comment, header};
 use crate::syntax::Precision;
 use kernel::Kernel;
+pub(crate) use kernel::heading;
 
 /// How the numbers of a batch lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,12 +57,12 @@ pub fn ptx(
         text.push_str(&comment("//", words));
         text.push_str("//\n");
     }
-    text.pop();
-    text = ascii(&(text + "\n" + &header::counts(programs)));
+    let counts = header::counts(programs);
+    text = ascii(&(text + counts.trim_start_matches("//\n")));
     text.push_str("\n.version 7.0\n.target sm_70\n.address_size 64\n");
     for program in programs {
         let kernel = Kernel::of(program, precision)?;
-        let _ = write!(text, "\n{}", ascii(&kernel.heading()));
+        let _ = write!(text, "\n{}", ascii(&heading(program)));
         for (arrangement, end) in [(Arrangement::Columns, "columns"), (Arrangement::Rows, "rows")] {
             let name = format!("{}_{}_{end}", file.prefix, program.name);
             let _ = write!(text, "\n{}", kernel.text(&name, arrangement));
