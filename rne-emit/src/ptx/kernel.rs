@@ -9,7 +9,7 @@ use rne_codegen::{
     ArgumentArray, Contraction, Form, Layout, Name, Negated, Operator, Program, Value, ValueId, argument_parts,
 };
 
-use super::Arrangement;
+use super::{Arrangement, order};
 use crate::c::{ConstantTooLarge, comment, elements_of};
 use crate::syntax::Precision;
 use crate::wrap::{WIDTH, fill};
@@ -191,7 +191,8 @@ impl Writing<'_, '_> {
                 _ => None,
             })
             .collect();
-        for (id, value) in program.values.iter() {
+        for id in order::of(program) {
+            let value = program.values.get(id);
             match value {
                 Value::Sine(angle) | Value::Cosine(angle) => self.turn(angle, [0, 1].map(|of| turns.get(&(angle, of)))),
                 // read where they are used

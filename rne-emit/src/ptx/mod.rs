@@ -5,6 +5,7 @@
 //! machine of `rne-machine` on a vector unit with fused multiply-add.
 
 mod kernel;
+mod order;
 
 use std::fmt::Write as _;
 
