@@ -15,7 +15,7 @@ from array import array
 HERE = os.path.dirname(os.path.abspath(__file__))
 BEGIN = time.monotonic()
 SECONDS = float(os.environ.get("RNE_GPU_SECONDS", "135"))
-RESULT = {"checks": [], "times": [], "limits": {}, "sweep": []}
+RESULT = {"checks": [], "times": [], "limits": {}}
 GUARD = 64  # numbers behind the results that no kernel may write
 
 
@@ -105,13 +105,12 @@ class Driver:
                       ctypes.c_size_t(more * size))
             have += more
 
-    def module(self, text, most_registers=0):
+    def module(self, text):
         data = text.encode() if isinstance(text, str) else text
         log, errors = ctypes.create_string_buffer(8192), ctypes.create_string_buffer(8192)
-        # info log, its size, error log, its size, largest number of registers
-        options = [3, 4, 5, 6] + ([0] if most_registers else [])
+        # info log, its size, error log, its size
+        options = [3, 4, 5, 6]
         values = [ctypes.cast(log, ctypes.c_void_p), 8192, ctypes.cast(errors, ctypes.c_void_p), 8192]
-        values += [most_registers] if most_registers else []
         numbers = (ctypes.c_int * len(options))(*options)
         pointers = (ctypes.c_void_p * len(options))(*values)
         module = ctypes.c_void_p()
@@ -291,7 +290,8 @@ def check(driver, case, function, arrangement, states):
         count = outputs * states
         addresses.append(driver.allocate((count + GUARD) * size))
         driver.upload(addresses[-1], array("B", b"\xa5" * ((count + GUARD) * size)))
-        driver.launch(function, (states + 127) // 128, 128, arguments_of(addresses, states))
+        # one block more than there are states for
+        driver.launch(function, states // 64 + 2, 64, arguments_of(addresses, states))
         driver.synchronize()
         found = driver.download(addresses[-1], code, count + GUARD)
     finally:
@@ -321,7 +321,7 @@ def check(driver, case, function, arrangement, states):
             worst = error if not error <= worst else worst
             squares += error * error
     return {
-        "label": case["label"], "type": case["type"], "arrangement": arrangement, "states": states,
+        "label": case["label"] + case.get("variant", ""), "type": case["type"], "arrangement": arrangement, "states": states,
         "numbers": count, "differing_bits": differing, "largest_error": worst,
         "rms_error": (squares / count) ** 0.5, "is_guarded": is_guarded,
     }
@@ -331,8 +331,8 @@ def measure(driver, case, function, arrangement, states, widths=(128,)):
     code, outputs = code_of(case), case["outputs"]
     size = array(code).itemsize
     elements = sum(len(columns) for columns in inputs_of(case, 1))
-    bytes_in, bytes_out = elements * states * size, outputs * states * size
-    if bytes_in + bytes_out > 0.8 * driver.memory():
+    bytes_in, bytes_out = case["used"] * states * size, outputs * states * size
+    if (elements + outputs) * states * size > 0.8 * driver.memory():
         raise Failed("too little memory for so many states")
     known = case["states"]
     addresses = []
@@ -355,9 +355,9 @@ def measure(driver, case, function, arrangement, states, widths=(128,)):
         driver.free(addresses)
     median, least, width = best
     return {
-        "label": case["label"], "type": case["type"], "arrangement": arrangement, "states": states, "width": width,
+        "label": case["label"] + case.get("variant", ""), "type": case["type"], "arrangement": arrangement, "states": states, "width": width,
         "seconds": median, "shortest": least, "states_per_second": states / median, "ns_per_state": 1e9 * median / states,
-        "GB_per_second": (bytes_in + bytes_out) / median / 1e9, "bytes_per_state": (elements + outputs) * size,
+        "GB_per_second": (bytes_in + bytes_out) / median / 1e9, "bytes_per_state": (case["used"] + outputs) * size,
         "Gflop_per_second": case["operations"] * states / median / 1e9,
     }
 
@@ -404,9 +404,9 @@ def copy_near(count):
     return min(found)[1] if found else float("nan")
 
 
-def load(driver, case, most_registers=0):
+def load(driver, case):
     with open(os.path.join(HERE, case["ptx"]), encoding="ascii") as file:
-        return driver.module(file.read(), most_registers)
+        return driver.module(file.read())
 
 
 def one_case(driver, case, sizes, counts):
@@ -423,13 +423,14 @@ def one_case(driver, case, sizes, counts):
             RESULT["checks"].append(result)
             is_last = states == counts[-1]
             if is_last or result["differing_bits"] or not result["is_guarded"]:
-                say(f"check {case['label']:<44} {case['type']} {arrangement:<7} n={states:<5}"
+                say(f"check {result['label']:<44} {case['type']} {arrangement:<7} n={states:<5}"
                     f" bits differ {result['differing_bits']}/{result['numbers']}"
                     f" largest error {result['largest_error']:.1e} {'' if result['is_guarded'] else 'WROTE BEYOND'}"
                     f" regs {properties['registers']} local {properties['local_bytes']} B, translated {seconds:.2f} s")
         for power in sizes if arrangement == "columns" else sizes[-1:]:
             result = attempt(f"{case['label']} {case['type']} {arrangement} 2^{power}",
-                             lambda: measure(driver, case, function, arrangement, 2 ** power, (64, 128, 256)))
+                             lambda: measure(driver, case, function, arrangement, 2 ** power,
+                                             (64, 128, 256) if arrangement == "columns" else (64,)))
             if result is None:
                 continue
             result.update(properties)
@@ -438,25 +439,11 @@ def one_case(driver, case, sizes, counts):
             result["part_of_copy"] = result["GB_per_second"] / copy
             result["part_of_fma"] = case["instructions"] * result["states_per_second"] / fma
             RESULT["times"].append(result)
-            say(f"time  {case['label']:<44} {case['type']} {arrangement:<7} 2^{power} block {result['width']:<3}"
+            say(f"time  {result['label']:<44} {case['type']} {arrangement:<7} 2^{power} block {result['width']:<3}"
                 f" {result['states_per_second'] / 1e9:8.3f} G states/s {result['ns_per_state'] * 1e3:9.2f} ps/state"
                 f" {result['GB_per_second']:6.0f} GB/s = {result['part_of_copy']:.0%} of copy,"
                 f" {result['part_of_fma']:.0%} of fma peak")
     driver.call("cuModuleUnload", module)
-
-
-def sweep(driver, case, power):
-    """Fewer registers per thread: more threads at once, but numbers in memory."""
-    for most in (0, 64, 80, 96, 128, 168):
-        module, _ = load(driver, case, most)
-        function = driver.function(module, f"{case['kernel']}_columns")
-        result = measure(driver, case, function, "columns", 2 ** power, (64, 128, 256))
-        result.update(driver.properties(function), most_registers=most)
-        RESULT["sweep"].append(result)
-        say(f"sweep {case['label']} {case['type']} at most {most} registers: {result['registers']} used,"
-            f" local {result['local_bytes']} B, block {result['width']}, {result['states_per_second'] / 1e9:.3f}"
-            f" G states/s, {result['GB_per_second']:.0f} GB/s")
-        driver.call("cuModuleUnload", module)
 
 
 def main():
@@ -471,19 +458,17 @@ def main():
     close = [case for case in cases if case not in torques and case["robot"] in ("panda", "g1_floating", "g1")]
     others = [case for case in cases if case not in torques and case not in close]
     for case in torques:
-        attempt(case["label"], lambda: one_case(driver, case, (20, 22, 24), (1, 31, case["states"])))
-    for case in torques:
-        attempt(f"sweep {case['label']}", lambda: sweep(driver, case, 24))
+        attempt(case["label"], lambda: one_case(driver, case, (20, 22, 24), (1, 31, 64, case["states"])))
     for case in close:
         if left() < 40:
             say(f"skipped for want of time: {case['label']} {case['type']}")
             continue
-        attempt(case["label"], lambda: one_case(driver, case, (20, 22), (1, 31, case["states"])))
+        attempt(case["label"], lambda: one_case(driver, case, (20, 22), (1, 31, 64, case["states"])))
     for case in others:
         if left() < 3:
             say(f"skipped for want of time: {case['label']} {case['type']}")
             continue
-        attempt(case["label"], lambda: one_case(driver, case, (22,) if left() > 25 else (), (31, case["states"])))
+        attempt(case["label"], lambda: one_case(driver, case, (22,) if left() > 25 else (), (31, 64, case["states"])))
     checks = RESULT["checks"]
     RESULT["seconds"] = time.monotonic() - BEGIN
     differing = sum(result["differing_bits"] for result in checks)

@@ -114,6 +114,7 @@ fn case(folder: &Path, name: &str, arm: &CompiledArm, function: Function) -> Res
             "kernel": format!("{}_{}", prefix.as_str(), program.name),
             "arrays": inputs.iter().map(|(array, columns)| json!([array, columns.len()])).collect::<Vec<_>>(),
             "outputs": outputs,
+            "used": program.arguments().count(),
             "states": states,
             "operations": program.operations().total(),
             "instructions": rne_codegen::fma::instructions(program),

@@ -17,6 +17,10 @@ use crate::wrap::{WIDTH, fill};
 /// Sine and cosine as a block of instructions; ANGLE, SINE and COSINE are replaced by registers.
 const SIN_COS: [&str; 2] = [include_str!("sin_cos_f32.ptx"), include_str!("sin_cos_f64.ptx")];
 
+/// Threads of a block whose rows go through shared memory, and the bytes of it that every processor has for a block.
+const BLOCK: usize = 64;
+const MOST_SHARED: usize = 48 * 1024;
+
 macro_rules! abouts {
     ($($name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;)*) => {
         /// The meaning of an argument array, with its unit.
@@ -65,39 +69,51 @@ impl<'p> Kernel<'p> {
 
     /// The text of the kernel of this name.
     pub(super) fn text(&self, name: &str, arrangement: Arrangement) -> String {
+        let (real, bytes) = if self.precision == Precision::Double { ("f64", 8) } else { ("f32", 4) };
+        let arrays = self.arrays.iter().map(|array| (format!("in_{}", array.name), array.elements.len()));
+        let is_used = self.arrays.iter().map(|array| array.elements.iter().any(Option::is_some));
+        let arrays: Vec<_> = arrays.zip(is_used).map(|((name, length), is_used)| (name, length, is_used)).collect();
+        let outputs = self.program.outputs.len();
+        let staged: usize = arrays.iter().filter(|(.., is_used)| *is_used).map(|(_, length, _)| length).sum();
+        let staged = (staged + outputs) * bytes * BLOCK;
+        let memory = if arrangement == Arrangement::Rows && staged <= MOST_SHARED { "shared" } else { "global" };
         let mut writing = Writing {
             kernel: self,
             arrangement,
-            real: if self.precision == Precision::Double { "f64" } else { "f32" },
-            bytes: if self.precision == Precision::Double { 8 } else { 4 },
+            memory,
+            real,
+            bytes,
             registers: Vec::new(),
             addresses: 0,
             known: vec![String::new(); self.program.values.len()],
             body: String::new(),
         };
         writing.values();
-        let Writing { registers, addresses, body, real, bytes, .. } = writing;
-        let arrays = self.arrays.iter().map(|array| format!("in_{}", array.name)).chain(["out".to_owned()]);
-        let parameters: Vec<String> = arrays.clone().map(|array| format!("    .param .u64 {array}")).collect();
+        let Writing { registers, addresses, body, .. } = writing;
+        let names = arrays.iter().map(|(name, ..)| name.as_str()).chain(["out"]);
+        let parameters: Vec<String> = names.map(|array| format!("    .param .u64 {array}")).collect();
+        let block = if memory == "shared" { ".reqntid 64" } else { ".maxntid 256" };
         let mut text = format!(
-            ".visible .entry {name}(\n{},\n    .param .u32 states)\n.maxntid 256, 1, 1\n{{\n",
+            ".visible .entry {name}(\n{},\n    .param .u32 states)\n{block}, 1, 1\n{{\n",
             parameters.join(",\n")
         );
         let registers = fill(&registers.join(", "), WIDTH, &format!("    .reg .{real} "), "        ");
-        let _ = writeln!(text, "{registers};");
-        let _ = writeln!(
+        let _ = write!(
             text,
-            "    .reg .u32 %index, %block, %width, %states;\n    .reg .u64 %a<{}>;\n    .reg .pred %is_beyond, \
-             %is_above, %is_below;",
+            "{registers};\n    .reg .u32 %index, %block, %width, %states;\n    .reg .u64 %a<{}>;\n    \
+             .reg .pred %is_beyond, %is_above, %is_below;\n    mov.u32 %block, %ctaid.x;\n    \
+             mov.u32 %index, %tid.x;\n    ld.param.u32 %states, [states];\n",
             addresses + 1
         );
+        if memory == "shared" {
+            let staging = Staging { arrays, outputs, real, bytes };
+            return text + &staging.before(staged) + &body + &staging.after() + "    ret;\n}\n";
+        }
         text.push_str(
-            "    mov.u32 %block, %ctaid.x;\n    mov.u32 %width, %ntid.x;\n    mov.u32 %index, %tid.x;\n    \
-             mad.lo.u32 %index, %block, %width, %index;\n    ld.param.u32 %states, [states];\n    \
+            "    mov.u32 %width, %ntid.x;\n    mad.lo.u32 %index, %block, %width, %index;\n    \
              setp.ge.u32 %is_beyond, %index, %states;\n    @%is_beyond ret;\n",
         );
-        let lengths = self.arrays.iter().map(|array| array.elements.len()).chain([self.program.outputs.len()]);
-        for (array, length) in arrays.zip(lengths) {
+        for (array, length, _) in arrays.into_iter().chain([("out".to_owned(), outputs, true)]) {
             let step = if arrangement == Arrangement::Columns { bytes } else { length * bytes };
             let _ = writeln!(
                 text,
@@ -160,10 +176,93 @@ fn shape(name: &str, layout: &Layout) -> String {
     }
 }
 
+/// Rows go through the memory that the threads of a block share: the block reads and writes its rows as they lie, one
+/// number after the other, and each thread finds its own row there.
+struct Staging {
+    /// The name and the length of each argument, and whether it is used.
+    arrays: Vec<(String, usize, bool)>,
+    outputs: usize,
+    real: &'static str,
+    bytes: usize,
+}
+
+impl Staging {
+    /// The rows of the block in shared memory, and the places of a thread's own. Threads beyond the last state compute
+    /// what nobody reads.
+    fn before(&self, size: usize) -> String {
+        let Self { arrays, outputs, real, bytes } = self;
+        let mut text = format!(
+            "    .shared .align 8 .b8 rows[{size}];\n    .reg .u32 %first, %count, %left, %own, %shared;\n    \
+             .reg .u64 %global;\n    .reg .{real} %number;\n    shl.b32 %first, %block, 6;\n    \
+             sub.s32 %count, %states, %first;\n    min.s32 %count, %count, {BLOCK};\n    mov.u32 %shared, rows;\n    \
+             mad.lo.u32 %own, %index, {bytes}, %shared;\n"
+        );
+        let mut start = 0;
+        for (array, length, _) in arrays.iter().filter(|(.., is_used)| *is_used) {
+            text.push_str(&self.chunk(array, *length));
+            for k in 0..*length {
+                let (offset, at) = (k * BLOCK * bytes, k * BLOCK);
+                let _ = writeln!(
+                    text,
+                    "    setp.gt.s32 %is_beyond, %left, {at};\n    \
+                     @%is_beyond ld.global.nc.{real} %number, [%global+{offset}];\n    \
+                     @%is_beyond st.shared.{real} [%own+{}], %number;",
+                    start + offset
+                );
+            }
+            start += length * BLOCK * bytes;
+        }
+        text.push_str("    bar.sync 0;\n");
+        let mut start = 0;
+        let results = ("out".to_owned(), *outputs, true);
+        for (array, length, _) in arrays.iter().filter(|(.., is_used)| *is_used).chain([&results]) {
+            let _ = writeln!(
+                text,
+                "    .reg .u32 %{array};\n    mad.lo.u32 %{array}, %index, {}, %shared;\n    \
+                 add.u32 %{array}, %{array}, {start};",
+                length * bytes
+            );
+            start += length * BLOCK * bytes;
+        }
+        text
+    }
+
+    /// The results of the block as they lie in shared memory.
+    fn after(&self) -> String {
+        let Self { arrays, outputs, real, bytes } = self;
+        let start: usize = arrays.iter().filter(|(.., is_used)| *is_used).map(|(_, length, _)| length).sum();
+        let mut text = "    bar.sync 0;\n".to_owned() + &self.chunk("out", *outputs);
+        for k in 0..*outputs {
+            let (offset, at) = (k * BLOCK * bytes, k * BLOCK);
+            let _ = writeln!(
+                text,
+                "    setp.gt.s32 %is_beyond, %left, {at};\n    \
+                 @%is_beyond ld.shared.{real} %number, [%own+{}];\n    \
+                 @%is_beyond st.global.{real} [%global+{offset}], %number;",
+                start * BLOCK * bytes + offset
+            );
+        }
+        text
+    }
+
+    /// The address of the first number that a thread moves of an array, and how many lie from there to the end.
+    fn chunk(&self, array: &str, length: usize) -> String {
+        let bytes = self.bytes;
+        format!(
+            "    ld.param.u64 %global, [{array}];\n    cvta.to.global.u64 %global, %global;\n    \
+             mad.wide.u32 %global, %first, {}, %global;\n    mad.wide.u32 %global, %index, {bytes}, %global;\n    \
+             mul.lo.s32 %left, %count, {length};\n    sub.s32 %left, %left, %index;\n",
+            length * bytes
+        )
+    }
+}
+
 /// The instructions of a kernel.
 struct Writing<'k, 'p> {
     kernel: &'k Kernel<'p>,
     arrangement: Arrangement,
+    /// The memory in which a thread finds its arguments and leaves its results.
+    memory: &'static str,
     real: &'static str,
     bytes: usize,
     registers: Vec<String>,
@@ -210,7 +309,7 @@ impl Writing<'_, '_> {
                     result
                 };
                 let place = self.place("%out", index);
-                let _ = writeln!(self.body, "    st.global.{} {place}, {register};", self.real);
+                let _ = writeln!(self.body, "    st.{}.{} {place}, {register};", self.memory, self.real);
             }
         }
     }
@@ -263,7 +362,8 @@ impl Writing<'_, '_> {
         let (array, element) = places.next().unwrap_or_default();
         let register = self.register(name, id);
         let place = self.place(&array, element);
-        let _ = writeln!(self.body, "    ld.global.nc.{} {register}, {place};", self.real);
+        let load = if self.memory == "shared" { "ld.shared" } else { "ld.global.nc" };
+        let _ = writeln!(self.body, "    {load}.{} {register}, {place};", self.real);
         register
     }
 

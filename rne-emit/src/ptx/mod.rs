@@ -29,9 +29,9 @@ enum Arrangement {
 
 /// What holds for all kernels.
 const CONTRACT: [&str; 4] = [
-    "Every kernel computes one state per thread, in a grid of one dimension with at most 256 threads per block; threads \
-     beyond the last state do nothing. Its parameters are the addresses of the arrays in the order below, then the \
-     number of states (32 bits).",
+    "Every kernel computes one state per thread, in a grid of one dimension; threads beyond the last state write \
+     nothing. Launch it with 64 threads per block, kernels with .maxntid with up to 256. Its parameters are the \
+     addresses of the arrays in the order below, then the number of states (32 bits), at most 2^31 - 1.",
     "Kernels that end in _columns take and return arrays by elements: element e of state i is at e * states + i. \
      Kernels that end in _rows take and return arrays by states: element e of state i is at i * elements + e.",
     "No array of results may overlap an array of arguments. The address of an array of which no element is used may be \

@@ -8,6 +8,16 @@ pub(crate) struct Kernel {
     parameters: Vec<String>,
     code: Vec<Instruction>,
     registers: usize,
+    /// Bytes of the memory that a block shares.
+    shared: usize,
+    /// Whether blocks have 64 threads, no more and no fewer.
+    is_of_64: bool,
+}
+
+/// Where a thread is.
+struct Thread {
+    registers: Vec<Option<u64>>,
+    next: usize,
 }
 
 struct Instruction {
@@ -50,20 +60,25 @@ fn kernel(text: &str) -> (String, Kernel) {
             ref other => panic!("{other:?}"),
         })
         .collect();
-    let rest = rest.trim().strip_prefix(".maxntid 256, 1, 1").expect("the size of a block").trim();
+    let rest = rest.trim();
+    let required = rest.strip_prefix(".reqntid 64, 1, 1");
+    let rest = required.or(rest.strip_prefix(".maxntid 256, 1, 1")).expect("the size of a block").trim();
     let body = rest.strip_prefix('{').and_then(|body| body.trim_end().strip_suffix('}')).expect("a body");
     // Braces of `{low, high}` stand in an instruction; others begin and end blocks, whose registers are new each time.
     let mut reading = Reading { registers: HashMap::new(), count: 0 };
+    let mut shared = 0;
     let mut code = Vec::new();
     for statement in body.split(';').map(str::trim) {
         let statement = statement.trim_start_matches(['{', '}', '\n', ' ']).trim();
-        if let Some(declared) = statement.strip_prefix(".reg ") {
+        if let Some(size) = statement.strip_prefix(".shared .align 8 .b8 rows[") {
+            shared = size.trim_end_matches(']').parse().expect("a size");
+        } else if let Some(declared) = statement.strip_prefix(".reg ") {
             reading.declare(declared);
         } else if !statement.is_empty() {
             code.push(reading.instruction(statement));
         }
     }
-    (name.to_owned(), Kernel { parameters, code, registers: reading.count })
+    (name.to_owned(), Kernel { parameters, code, registers: reading.count, shared, is_of_64: required.is_some() })
 }
 
 struct Reading {
@@ -131,6 +146,9 @@ impl Reading {
             assert_eq!(bits.len(), if text.starts_with("0d") { 16 } else { 8 }, "{text}");
             return Operand::Bits(u64::from_str_radix(bits, 16).expect("bits"));
         }
+        if text == "rows" {
+            return Operand::Bits(0);
+        }
         if text.ends_with(".x") {
             return Operand::Special(text.to_owned());
         }
@@ -185,9 +203,18 @@ impl Kernel {
         assert_eq!(addresses.len() + 1, self.parameters.len());
         let values: HashMap<&str, u64> =
             self.parameters.iter().map(String::as_str).zip(addresses.into_iter().chain([states.into()])).collect();
-        for block in 0..states.div_ceil(width) {
-            for thread in 0..width {
-                self.thread(&mut memory, &values, [block, width, thread]);
+        let width = if self.is_of_64 { 64 } else { width };
+        // a block more than there are states for
+        for block in 0..=states.div_ceil(width) {
+            // what a thread finds that no thread has written
+            let mut shared = vec![0x5A_u8; self.shared];
+            let thread = |_| Thread { registers: vec![None; self.registers], next: 0 };
+            let mut threads: Vec<Thread> = (0..width).map(thread).collect();
+            while threads.iter().any(|thread| thread.next < self.code.len()) {
+                for (index, thread) in threads.iter_mut().enumerate() {
+                    let place = [block, width, u32::try_from(index).expect("few")];
+                    self.to_barrier(thread, [&mut memory, &mut shared], &values, place);
+                }
             }
         }
         let word = |bytes: &[u8]| {
@@ -198,9 +225,17 @@ impl Kernel {
         memory[start..].chunks(T::BYTES).map(word).collect()
     }
 
-    fn thread(&self, memory: &mut [u8], parameters: &HashMap<&str, u64>, [block, width, thread]: [u32; 3]) {
-        let mut registers: Vec<Option<u64>> = vec![None; self.registers];
-        for Instruction { guard, operation, operands } in &self.code {
+    /// Runs a thread to the next barrier, or to its end.
+    fn to_barrier(
+        &self,
+        thread: &mut Thread,
+        [memory, shared]: [&mut Vec<u8>; 2],
+        parameters: &HashMap<&str, u64>,
+        [block, width, number]: [u32; 3],
+    ) {
+        let Thread { registers, next } = thread;
+        while let Some(Instruction { guard, operation, operands }) = self.code.get(*next) {
+            *next += 1;
             if guard.is_some_and(|guard| registers[guard].expect("a predicate") == 0) {
                 continue;
             }
@@ -213,7 +248,7 @@ impl Kernel {
                     Operand::Special(name) => match name.as_str() {
                         "%ctaid.x" => block.into(),
                         "%ntid.x" => width.into(),
-                        "%tid.x" => thread.into(),
+                        "%tid.x" => number.into(),
                         other => panic!("{other}"),
                     },
                     Operand::Halves(low, high) => {
@@ -222,16 +257,25 @@ impl Kernel {
                 }
             };
             let word = |index| u32::try_from(value(index)).expect("32 bits");
+            let signed = |index| word(index).cast_signed();
             let double = |index| f64::from_bits(value(index));
             let single = |index| f32::from_bits(word(index));
             let of_double = |number: f64| number.to_bits();
             let of_single = |number: f32| u64::from(number.to_bits());
             let result = match operation.as_str() {
-                "ret" => return,
+                "ret" => {
+                    *next = self.code.len();
+                    return;
+                }
+                "bar.sync" => return,
                 "mov.u32" | "mov.b32" | "mov.b64" | "mov.f32" | "mov.f64" | "ld.param.u32" | "ld.param.u64"
                 | "cvta.to.global.u64" => value(1),
                 "mad.lo.u32" => word(1).wrapping_mul(word(2)).wrapping_add(word(3)).into(),
                 "mad.wide.u32" => u64::from(word(1)) * u64::from(word(2)) + value(3),
+                "mul.lo.s32" => signed(1).wrapping_mul(signed(2)).cast_unsigned().into(),
+                "sub.s32" => signed(1).wrapping_sub(signed(2)).cast_unsigned().into(),
+                "min.s32" => signed(1).min(signed(2)).cast_unsigned().into(),
+                "setp.gt.s32" => u64::from(signed(1) > signed(2)),
                 "add.u32" => word(1).wrapping_add(word(2)).into(),
                 "and.b32" => (word(1) & word(2)).into(),
                 "xor.b32" => (word(1) ^ word(2)).into(),
@@ -261,18 +305,21 @@ impl Kernel {
                 "mul.rn.f32" => of_single(single(1) * single(2)),
                 "div.rn.f32" => of_single(single(1) / single(2)),
                 "fma.rn.f32" => of_single(single(1).mul_add(single(2), single(3))),
-                "ld.global.nc.f32" | "ld.global.nc.f64" => {
+                "ld.global.nc.f32" | "ld.global.nc.f64" | "ld.shared.f32" | "ld.shared.f64" => {
                     let bytes = if operation.ends_with("64") { 8 } else { 4 };
+                    let is_shared = operation.starts_with("ld.shared");
+                    let from = if is_shared { &*shared } else { &*memory };
                     let at = usize::try_from(value(1)).expect("an address");
-                    assert!(at >= START && at.is_multiple_of(bytes), "an address of nothing");
+                    assert!((is_shared || at >= START) && at.is_multiple_of(bytes), "an address of nothing");
                     let mut word = [0; 8];
-                    word[..bytes].copy_from_slice(&memory[at..at + bytes]);
+                    word[..bytes].copy_from_slice(&from[at..at + bytes]);
                     u64::from_le_bytes(word)
                 }
-                "st.global.f32" | "st.global.f64" => {
+                "st.global.f32" | "st.global.f64" | "st.shared.f32" | "st.shared.f64" => {
                     let bytes = if operation.ends_with("64") { 8 } else { 4 };
                     let (at, number) = (usize::try_from(value(0)).expect("an address"), value(1));
-                    memory[at..at + bytes].copy_from_slice(&number.to_le_bytes()[..bytes]);
+                    let into = if operation.starts_with("st.shared") { &mut *shared } else { &mut *memory };
+                    into[at..at + bytes].copy_from_slice(&number.to_le_bytes()[..bytes]);
                     continue;
                 }
                 other => panic!("{other} is not an instruction of this interpreter"),
