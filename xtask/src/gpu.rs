@@ -35,7 +35,7 @@ pub(crate) struct Gpu {
 }
 
 const PAGE: &str = "docs/gpu.md";
-/// What the table stands between.
+/// The lines before and after the table.
 const MARKS: [&str; 2] = ["<!-- cargo xtask gpu --update -->\n", "<!-- end -->"];
 const PACKAGE: &str = "nvidia-cuda-nvcc-cu12==12.*";
 const PROCESSORS: [&str; 3] = ["sm_70", "sm_80", "sm_90"];

@@ -14,7 +14,7 @@ use crate::ptx::heading;
 use crate::syntax::{Precision, Syntax};
 use crate::wrap::{WIDTH, fill};
 
-/// What holds for all functions.
+/// The contract of all functions, in the heading.
 const CONTRACT: [&str; 3] = [
     "Functions for one state, for the host and for the device, over float, double or any other number type with +, -, \
      *, /, comparisons and a function PREFIX_sin_cos. All arrays are flat, in the order of the comments; the results \

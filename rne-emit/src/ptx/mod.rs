@@ -27,7 +27,7 @@ enum Arrangement {
     Rows,
 }
 
-/// What holds for all kernels.
+/// The contract of all kernels, in the heading.
 const CONTRACT: [&str; 4] = [
     "Every kernel computes one state per thread, in a grid of one dimension; threads beyond the last state write \
      nothing. Launch it with 64 threads per block, kernels with .maxntid with up to 256. Its parameters are the \

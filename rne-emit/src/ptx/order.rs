@@ -1,5 +1,5 @@
-//! The order in which a kernel computes its values: a thread has 255 registers at most, and the fewer it needs, the more
-//! threads run at once.
+//! The order in which a kernel computes its values: a thread has 255 registers at most, and the fewer it needs, the
+//! more threads run at once.
 //!
 //! The assembler orders instructions anew, but it does not leave the neighbourhood of where they stand. Programs go
 //! through the robot from the base to the tips and back, so that a tree has values of all its branches in registers at
