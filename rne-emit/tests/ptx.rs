@@ -156,9 +156,8 @@ fn a_kernel_gives_the_torques_of_the_interpreter_of_programs() {
     }
 }
 
-/// Below 1 ulp, against the standard library in double precision and by its sums in single precision.
 #[test]
-fn nothing_is_named_twice_and_all_text_is_ascii() {
+fn text_is_ascii_in_short_lines() {
     for name in ["panda", "stanford"] {
         let arm = shipped(name);
         let program = arm.function(Function::InverseDynamicsDerivatives).expect("a function").program().clone();
@@ -167,4 +166,18 @@ fn nothing_is_named_twice_and_all_text_is_ascii() {
         assert!(text.is_ascii());
         assert!(text.lines().all(|line| line.len() <= 120), "{name}");
     }
+}
+
+/// Arguments and results of 64 states that take more than 48 KiB are read and written where they lie.
+#[test]
+fn rows_that_are_too_long_for_shared_memory_stay_where_they_are() {
+    let arm = shipped("panda");
+    for (precision, is_shared) in [(Precision::Single, true), (Precision::Double, false)] {
+        let program = arm.function(Function::InverseDynamicsDerivatives).expect("a function").program();
+        let text =
+            ptx(arm.robot(), std::slice::from_ref(program), precision, &Prefix::of(arm.robot()), &Additions::default());
+        assert_eq!(text.expect("text").contains(".shared"), is_shared, "{precision:?}");
+    }
+    compare::<f64>(&arm, Function::InverseDynamicsDerivatives, Precision::Double, f64::from);
+    compare::<f32>(&arm, Function::InverseDynamicsDerivatives, Precision::Single, |x| x);
 }

@@ -138,7 +138,7 @@ fn shipped_arms() -> Result<Vec<String>> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(machine::root().join("robots")).context("robots/")? {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if name.ends_with(".yaml") && !name.ends_with(".plan.yaml") {
+        if name.strip_suffix(".yaml").is_some_and(|robot| !robot.contains('.')) {
             paths.push(format!("robots/{name}"));
         }
     }

@@ -149,7 +149,7 @@ impl Reading {
         if text == "rows" {
             return Operand::Bits(0);
         }
-        if text.ends_with(".x") {
+        if ["%ctaid.x", "%ntid.x", "%tid.x"].contains(&text) {
             return Operand::Special(text.to_owned());
         }
         match text.parse() {
