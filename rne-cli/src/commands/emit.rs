@@ -20,7 +20,7 @@ use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
-/// Write the generated code in Rust, C, CUDA or PTX, without dependencies
+/// Write the generated code in Rust, C, CUDA or PTX
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
