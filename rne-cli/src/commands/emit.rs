@@ -28,7 +28,7 @@ Examples:
   rne emit robots/puma560.yaml --function all -o puma.rs     all functions
   rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
   rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
-  rne emit robots/puma560.yaml --lang c --real double --prefix arm
+  rne emit robots/puma560.yaml --lang ptx --real double      for a GPU
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
   rne emit docs/desk_arm_identified.yaml --lang c --friction --limits
 
@@ -44,13 +44,13 @@ pub(crate) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Language of the code: rust, c, cuda (a header for C++ and CUDA) or ptx (kernels of NVIDIA's processors)
+    /// Language: rust, c, cuda or ptx
     #[arg(long, value_enum, default_value_t = Language::Rust, hide_possible_values = true)]
     lang: Language,
     /// Number type of C and PTX: float (default) or double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
     pub(super) real: Option<Real>,
-    /// Prefix of names in C, CUDA and PTX [default: the robot's name]
+    /// Prefix of names, not in Rust [default: robot's name]
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
     /// Functions to write, F,F,… or `all`; see `rne explain functions`
