@@ -178,7 +178,7 @@ macro_rules! quantities {
         }
 
         /// The row of each quantity, in the order of the variants.
-        const TABLE: &[Row] = &[$(Row {
+        static TABLE: &[Row] = &[$(Row {
             prefix: $prefix,
             indices: Indices::$indices,
             step: Step::of($step),

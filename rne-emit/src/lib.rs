@@ -8,6 +8,7 @@
 mod annotated;
 mod ascii;
 mod c;
+mod cuda;
 mod emitted_sine;
 mod evidence;
 mod expression;
@@ -18,6 +19,7 @@ mod line_breaks;
 mod listing;
 mod own_tests;
 mod parameters;
+mod ptx;
 mod steps;
 mod syntax;
 mod table;
@@ -31,6 +33,7 @@ pub use c::{
     Additions, BadPrefix, CCode, ConstantTooLarge, JointFriction, NoFriction, Origin, Prefix, c_code, c_code_with,
     record_name,
 };
+pub use cuda::cuda;
 pub use emitted_sine::sin_cos_f32;
 pub use evidence::{evidence, refusals};
 pub use formula::Formula;
@@ -38,6 +41,7 @@ pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
 pub use listing::{Folds, Line, Listing, Section, Selection, listing, reason};
 pub use own_tests::{Golden, c_tests, rust_tests, without_c_tests};
+pub use ptx::ptx;
 pub use steps::steps;
 pub use syntax::Precision;
 pub use table::{angle, operations_table};

@@ -44,6 +44,8 @@ pub(super) enum Syntax<'a> {
     Rust,
     /// C over a type; functions of the file begin with the prefix.
     C { precision: Precision, prefix: &'a str },
+    /// CUDA and C++ over a type `T`.
+    Cuda { prefix: &'a str },
 }
 
 impl Syntax<'_> {
@@ -52,6 +54,7 @@ impl Syntax<'_> {
         match self {
             Self::Rust => "let".to_owned(),
             Self::C { precision, .. } => format!("const {}", precision.c_type()),
+            Self::Cuda { .. } => "const T".to_owned(),
         }
     }
 
@@ -61,6 +64,7 @@ impl Syntax<'_> {
             Self::Rust => "zero",
             Self::C { precision: Precision::Single, .. } => "0.0f",
             Self::C { precision: Precision::Double, .. } => "0.0",
+            Self::Cuda { .. } => "T(0)",
         }
     }
 
@@ -68,7 +72,7 @@ impl Syntax<'_> {
     pub(super) fn by_sign(self) -> String {
         match self {
             Self::Rust => "Scalar::by_sign".to_owned(),
-            Self::C { prefix, .. } => format!("{prefix}_by_sign"),
+            Self::C { prefix, .. } | Self::Cuda { prefix } => format!("{prefix}_by_sign"),
         }
     }
 
@@ -77,14 +81,14 @@ impl Syntax<'_> {
         match self {
             Self::Rust => "Scalar::mul_add".to_owned(),
             Self::C { precision: Precision::Single, .. } => "fmaf".to_owned(),
-            Self::C { precision: Precision::Double, .. } => "fma".to_owned(),
+            Self::C { precision: Precision::Double, .. } | Self::Cuda { .. } => "fma".to_owned(),
         }
     }
 
     /// Whether a product in a sum has parentheses: rule 12.1 of MISRA C does not trust readers to know what binds
     /// tighter.
     pub(super) const fn groups_products(self) -> bool {
-        matches!(self, Self::C { .. })
+        !matches!(self, Self::Rust)
     }
 }
 

@@ -12,6 +12,7 @@ mod features;
 mod fleet;
 mod frozen;
 mod fuzz;
+mod gpu;
 mod growth;
 mod instructions;
 mod light;
@@ -84,6 +85,7 @@ enum Task {
     Frozen(frozen::Frozen),
     Doors(doors::Doors),
     Fuzz(fuzz::Fuzz),
+    Gpu(gpu::Gpu),
     Urdf(urdf::Urdf),
     Python(python::Python),
     Ros2(ros2::Ros2),
@@ -130,6 +132,7 @@ impl Task {
             Self::Sbom(task) => ("sbom", false, task.run()),
             Self::Frozen(task) => ("frozen", false, task.run()),
             Self::Doors(task) => ("doors", task.install, task.run()),
+            Self::Gpu(task) => ("gpu", task.install, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(features) => ("features", false, features.run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),

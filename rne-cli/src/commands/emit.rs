@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_codegen::{Form, Function, Program};
+use rne_codegen::{Form, Function, Program, Target};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
-use crate::commands::emit_c::{Header, Request, c_code, header_beside};
+use crate::commands::emit_c::{ForGpu, Header, Request, c_code, for_gpu, header_beside};
 use crate::commands::golden;
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
@@ -20,7 +20,7 @@ use crate::palette::{GOOD, TYPED};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
-/// Write the generated code in Rust or C, without dependencies
+/// Write the generated code in Rust, C, CUDA or PTX
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -28,7 +28,7 @@ Examples:
   rne emit robots/puma560.yaml --function all -o puma.rs     all functions
   rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
   rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
-  rne emit robots/puma560.yaml --lang c --real double --prefix arm
+  rne emit robots/puma560.yaml --lang ptx --real double      for a GPU
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
   rne emit docs/desk_arm_identified.yaml --lang c --friction --limits
 
@@ -44,13 +44,13 @@ pub(crate) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Language of the code: rust or c
+    /// Language: rust, c, cuda or ptx
     #[arg(long, value_enum, default_value_t = Language::Rust, hide_possible_values = true)]
     lang: Language,
-    /// Number type of C code: float (default) or double
+    /// Number type of C and PTX: float (default) or double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
     pub(super) real: Option<Real>,
-    /// Prefix of names in C code [default: the robot's name]
+    /// Prefix of names, not in Rust [default: robot's name]
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
     /// Functions to write, F,F,… or `all`; see `rne explain functions`
@@ -60,8 +60,8 @@ pub(crate) struct Arguments {
     /// Frames or joints whose kinematics are written
     #[arg(long = "frame", value_name = "NAMES", value_delimiter = ',')]
     frames: Vec<String>,
-    /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations) [default: reduced in C,
-    /// seven_steps in Rust]
+    /// Form of the code: seven_steps (every intermediate value) or reduced (fewest operations) [default: seven_steps
+    /// in Rust, reduced in others]
     #[arg(long, value_name = "F", value_parser = choice::form(), hide_possible_values = true)]
     form: Option<Form>,
     /// Names of parameters of FILE that become function arguments, NAME,NAME,…; the others are constants in the code
@@ -101,7 +101,7 @@ impl Arguments {
     fn form(&self) -> Form {
         self.form.unwrap_or(match self.lang {
             Language::Rust => Form::SevenSteps,
-            Language::C => Form::Reduced,
+            Language::C | Language::Cuda | Language::Ptx => Form::Reduced,
         })
     }
 
@@ -116,6 +116,8 @@ impl Arguments {
 enum Language {
     Rust,
     C,
+    Cuda,
+    Ptx,
 }
 
 impl Language {
@@ -123,6 +125,8 @@ impl Language {
         match self {
             Self::Rust => "rust",
             Self::C => "c",
+            Self::Cuda => "cuda",
+            Self::Ptx => "ptx",
         }
     }
 
@@ -130,6 +134,8 @@ impl Language {
         match self {
             Self::Rust => "Rust",
             Self::C => "C",
+            Self::Cuda => "CUDA",
+            Self::Ptx => "PTX",
         }
     }
 
@@ -137,6 +143,8 @@ impl Language {
         match self {
             Self::Rust => "rs",
             Self::C => "c",
+            Self::Cuda => "cuh",
+            Self::Ptx => "ptx",
         }
     }
 
@@ -144,6 +152,8 @@ impl Language {
         match self {
             Self::Rust => Format::Rust,
             Self::C => Format::C,
+            Self::Cuda => Format::Cuda,
+            Self::Ptx => Format::Ptx,
         }
     }
 }
@@ -220,6 +230,8 @@ fn emitted(
     let names = if arguments.names_joints(robot) { rne_emit::rust_joints(robot) } else { String::new() };
     let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &names + &rust_tests(arguments, robot, &programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
+    let language = if arguments.lang == Language::Cuda { ForGpu::Cuda } else { ForGpu::Ptx };
+    let gpu = || for_gpu(language, &request, robot, &programs);
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
     let files = match (arguments.lang, out, header) {
         (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
@@ -230,6 +242,8 @@ fn emitted(
             vec![generated(&header.path, code.header().to_owned()), generated(out, source)]
         }
         (Language::C, ..) => return Ok(Outcome::text(c_code()?.one_file())),
+        (_, None, _) => return Ok(Outcome::text(gpu()?)),
+        (_, Some(out), _) => vec![generated(out, gpu()?)],
     };
     match &arguments.check {
         Some(out) => check(arguments, out, &files),
@@ -243,6 +257,7 @@ fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
     let (is_other, other) = match lang {
         Language::Rust => (matches!(extension.as_str(), "c" | "h" | "cc" | "cpp" | "cxx" | "hpp"), Language::C),
         Language::C => (matches!(extension.as_str(), "rs" | "cc" | "cpp" | "cxx" | "hpp"), Language::Rust),
+        Language::Cuda | Language::Ptx => return Ok(()),
     };
     if !is_other {
         return Ok(());
@@ -270,33 +285,28 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 }
 
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.with_sin_cos && arguments.lang == Language::C {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always contains its sine and cosine. Leave it out"
-        )));
-    }
-    let options = [
-        ("--real", arguments.real.is_some()),
-        ("--prefix", arguments.prefix.is_some()),
-        ("--friction", arguments.friction),
-        ("--limits", arguments.limits),
+    use Language::{C, Cuda, Ptx, Rust};
+    let options: [(&str, bool, &[Language], &str); 7] = [
+        (
+            "--with-sin-cos",
+            arguments.with_sin_cos,
+            &[Rust],
+            "code in other languages always contains its sine and cosine",
+        ),
+        ("--real", arguments.real.is_some(), &[C, Ptx], "code in Rust and CUDA is generic over the number type"),
+        ("--prefix", arguments.prefix.is_some(), &[C, Cuda, Ptx], "a file of Rust is a module with a name of its own"),
+        ("--friction", arguments.friction, &[C], "in Rust, the derive `Actuation` computes friction"),
+        ("--limits", arguments.limits, &[C], "in Rust, `f64::clamp` limits a torque"),
+        ("--names", arguments.names, &[Rust, C], "code for processors of graphics has functions alone"),
+        ("--tests", arguments.tests, &[Rust, C], "code for processors of graphics has functions alone"),
     ];
-    match options.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
-        None => Ok(()),
-        Some(("--real", _)) => Err(Failure::usage(format_args!(
-            "{TYPED}--real{TYPED:#} is for C: code in Rust is generic over the number type. Leave it out, or add \
-             {TYPED}--lang c{TYPED:#}"
-        ))),
-        Some((option @ ("--friction" | "--limits"), _)) => Err(Failure::usage(format_args!(
-            "{TYPED}{option}{TYPED:#} is for C. Add {TYPED}--lang c{TYPED:#}; in Rust, the derive `Actuation` computes \
-             friction, and `f64::clamp` limits a torque"
-        ))),
-        Some((option, _)) => Err(Failure::usage(format_args!(
-            "{TYPED}{option}{TYPED:#} is for C: a file of Rust is a module with a name of its own. Leave it out, or \
-            add \
-             {TYPED}--lang c{TYPED:#}"
-        ))),
-    }
+    let refused = options.iter().find(|(_, is_given, of, _)| *is_given && !of.contains(&arguments.lang));
+    let Some((option, _, of, why)) = refused else { return Ok(()) };
+    let of: Vec<String> = of.iter().map(|lang| format!("{TYPED}--lang {}{TYPED:#}", lang.name())).collect();
+    Err(Failure::usage(format_args!(
+        "{TYPED}{option}{TYPED:#} is for {}: {why}. Leave it out, or ask for another language",
+        of.join(" and ")
+    )))
 }
 
 /// The tests of code in Rust, where they are asked for.
@@ -333,7 +343,9 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
-    let compiler = Compiler::new(&arguments.file, robot);
+    // kernels of a batch want the fewest instructions
+    let target = if arguments.lang == Language::Ptx { Target::Throughput } else { Target::Latency };
+    let compiler = Compiler::new(&arguments.file, robot).for_target(target);
     let functions = functions(arguments, robot);
     let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
     let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
@@ -341,7 +353,7 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
         of_tip.iter().map(|&function| compiler.compile(function, arguments.form())).collect::<Result<_, _>>()?;
     for frame in frames(arguments, robot)? {
         let robot = robot.clone().at_frame(frame);
-        let compiler = Compiler::new(&arguments.file, &robot);
+        let compiler = Compiler::new(&arguments.file, &robot).for_target(target);
         for &function in &of_frames {
             let program = compiler.compile(function, arguments.form())?;
             if let Some(other) = programs.iter().find(|other| other.name == program.name) {

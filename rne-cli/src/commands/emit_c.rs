@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use rne_codegen::Program;
-use rne_emit::{Additions, CCode, JointFriction, NoFriction, Origin, Precision, Prefix};
+use rne_emit::{Additions, CCode, ConstantTooLarge, JointFriction, NoFriction, Origin, Precision, Prefix};
 use rne_model::Robot;
 
 use crate::commands::golden;
@@ -58,10 +58,7 @@ pub(super) struct Request<'a> {
 pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
     let &Request { file, precision, limits, names, .. } = request;
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
-    // without its folder: the same file gives the same bytes wherever it is
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let name = if is_stream(file) { "on standard input" } else { &*name };
-    let origin = Origin::new(name, &rne_certify::sha256(request.bytes));
+    let origin = origin(request);
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
     let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names };
     if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
@@ -74,10 +71,8 @@ pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
             file.display()
         )));
     }
-    let code = rne_emit::c_code_with(robot, programs, precision, &prefix, &additions).map_err(|error| {
-        let file = file.display();
-        Failure::input(format_args!("{file}: {error}. {TYPED}rne emit --real double{TYPED:#} can store this number"))
-    })?;
+    let code = rne_emit::c_code_with(robot, programs, precision, &prefix, &additions)
+        .map_err(|error| too_large(request, &error))?;
     let code = if request.tests {
         let golden = golden::of_programs(robot, programs, precision)?;
         code.with_tests(&rne_emit::c_tests(robot, programs, precision, &prefix, &golden, &additions))
@@ -85,6 +80,44 @@ pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
         code
     };
     Ok(if request.ascii { code.in_ascii() } else { code })
+}
+
+/// A language of processors of graphics.
+#[derive(Clone, Copy)]
+pub(super) enum ForGpu {
+    /// A header for CUDA and C++.
+    Cuda,
+    /// Kernels.
+    Ptx,
+}
+
+/// Code for processors of graphics.
+pub(super) fn for_gpu(
+    language: ForGpu,
+    request: &Request<'_>,
+    robot: &Robot,
+    programs: &[Program],
+) -> Result<String, Failure> {
+    let origin = origin(request);
+    let additions = Additions { origin: Some(&origin), ..Additions::default() };
+    let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
+    let text = match language {
+        ForGpu::Cuda => rne_emit::cuda(robot, programs, &prefix, &additions),
+        ForGpu::Ptx => rne_emit::ptx(robot, programs, request.precision, &prefix, &additions),
+    };
+    text.map_err(|error| too_large(request, &error))
+}
+
+/// The robot file of a request. Without its folder: the same file gives the same bytes wherever it is.
+fn origin(request: &Request<'_>) -> Origin {
+    let name = request.file.file_name().unwrap_or_default().to_string_lossy();
+    let name = if is_stream(request.file) { "on standard input" } else { &*name };
+    Origin::new(name, &rne_certify::sha256(request.bytes))
+}
+
+fn too_large(request: &Request<'_>, error: &ConstantTooLarge) -> Failure {
+    let file = request.file.display();
+    Failure::input(format_args!("{file}: {error}. {TYPED}rne emit --real double{TYPED:#} can store this number"))
 }
 
 /// The friction of the joints; an error says where to write what is missing.

@@ -17,15 +17,28 @@ pub(crate) enum Format {
     Html,
     Rust,
     C,
+    Ptx,
+    Cuda,
 }
 
 /// Ends of names that say something, though nothing of it is written here.
-const OTHERS: [&str; 15] =
-    ["bag", "cc", "cpp", "cxx", "db3", "hpp", "jpg", "json", "mcap", "npz", "pdf", "png", "py", "toml", "xacro"];
+const OTHERS: [&str; 14] =
+    ["bag", "cc", "cpp", "cxx", "db3", "jpg", "json", "mcap", "npz", "pdf", "png", "py", "toml", "xacro"];
 
 impl Format {
-    const ALL: [Self; 9] =
-        [Self::Csv, Self::Npy, Self::Parquet, Self::RobotFile, Self::Urdf, Self::Svg, Self::Html, Self::Rust, Self::C];
+    const ALL: [Self; 11] = [
+        Self::Csv,
+        Self::Npy,
+        Self::Parquet,
+        Self::RobotFile,
+        Self::Urdf,
+        Self::Svg,
+        Self::Html,
+        Self::Rust,
+        Self::C,
+        Self::Ptx,
+        Self::Cuda,
+    ];
 
     /// Ends of names, the usual one first.
     const fn ends(self) -> &'static [&'static str] {
@@ -40,6 +53,9 @@ impl Format {
             Self::Rust => &["rs"],
             // its header stands beside it
             Self::C => &["c", "h"],
+            Self::Ptx => &["ptx"],
+            // a header of C++ as well
+            Self::Cuda => &["cuh", "cu", "hpp"],
         }
     }
 }

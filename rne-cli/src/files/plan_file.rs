@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 use rne_codegen::plan::{PlanSet, Trick};
-use rne_codegen::{self as codegen, CompileError, Form, Function, Program, Remedy};
+use rne_codegen::{self as codegen, CompileError, Form, Function, Program, Remedy, Target};
 use rne_machine::CompiledArm;
 use rne_model::{Robot, plan_of, read_file, robot_of};
 use rne_search::PlanFile;
@@ -167,6 +167,7 @@ pub(crate) struct Compiler<'a> {
     robot: &'a Robot,
     file: &'a Path,
     without: &'a [Trick],
+    target: Target,
     planned: OnceCell<codegen::Compiler<'a>>,
     /// The plan file, for errors in it.
     read: OnceCell<Read>,
@@ -174,7 +175,7 @@ pub(crate) struct Compiler<'a> {
 
 impl<'a> Compiler<'a> {
     pub(crate) fn new(file: &'a Path, robot: &'a Robot) -> Self {
-        Self { robot, file, without: &[], planned: OnceCell::new(), read: OnceCell::new() }
+        Self { robot, file, without: &[], target: Target::Latency, planned: OnceCell::new(), read: OnceCell::new() }
     }
 
     /// For a robot that is part of this program, with the text of its plan.
@@ -194,6 +195,11 @@ impl<'a> Compiler<'a> {
         Self { without: tricks, ..self }
     }
 
+    /// With the programs arranged for another target.
+    pub(crate) fn for_target(self, target: Target) -> Self {
+        Self { target, ..self }
+    }
+
     /// The choices of the plan file, or those that a build makes by itself.
     pub(crate) fn plans(&self) -> Result<&PlanSet, Failure> {
         Ok(self.planned()?.plans())
@@ -203,13 +209,13 @@ impl<'a> Compiler<'a> {
         if let Some(compiler) = self.planned.get() {
             return Ok(compiler);
         }
-        let compiler = codegen::Compiler::new(self.robot);
+        let compiler = codegen::Compiler::new(self.robot).for_target(self.target);
         let compiler = match read(self.file, self.robot)? {
             Some(read) => compiler.with_plans(self.read.get_or_init(|| read).plan.clone()),
             None => compiler,
         };
         let plans = (!self.without.is_empty()).then(|| rne_search::without(self.robot, compiler.plans(), self.without));
-        let compiler = plans.map_or(compiler, |plans| codegen::Compiler::new(self.robot).with_plans(plans));
+        let compiler = plans.map_or(compiler.clone(), |plans| compiler.with_plans(plans));
         Ok(self.planned.get_or_init(|| compiler))
     }
 

@@ -16,7 +16,7 @@ use crate::wrap::{TIED, WIDTH, fill};
 use crate::{inert, table};
 
 /// How both files begin.
-pub(super) fn title(file: &File) -> String {
+pub(crate) fn title(file: &File) -> String {
     let title = comment("//", &Heading::opening(&inert::title(file.robot)));
     let by = concat!("rne ", env!("CARGO_PKG_VERSION"));
     let by = file.additions.origin.map_or(by.to_owned(), |origin| format!("{by}, of the robot file {origin}"));
@@ -254,7 +254,7 @@ const fn about(record: Record) -> &'static str {
 }
 
 /// Conventions and table, and why the code can be trusted.
-fn robot(file: &File) -> String {
+pub(crate) fn robot(file: &File) -> String {
     let Heading { frames, table, .. } = Heading::of(file.robot);
     let mut text = "//\n".to_owned();
     for line in frames.lines().chain([""]).chain(table.lines()) {
@@ -316,7 +316,7 @@ fn contract(file: &File) -> String {
 }
 
 /// Operations of every function, in columns.
-fn counts(programs: &[Program]) -> String {
+pub(crate) fn counts(programs: &[Program]) -> String {
     let titles = ["function", "products", "sums", "divisions", "angles"].map(str::to_owned);
     let lines: Vec<[String; 5]> = std::iter::once(titles).chain(programs.iter().map(table::counts)).collect();
     "//\n// Operations of one call, of the recursion -> of the code:\n//\n".to_owned() + &columns(&lines)

@@ -1,6 +1,6 @@
 //! Programs as C99 without a library: a header that documents the functions, and the source.
 
-mod header;
+pub(crate) mod header;
 mod joint_functions;
 mod motors;
 mod observer;
@@ -22,8 +22,7 @@ pub use joint_functions::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
 pub use signature::record_name;
 pub(super) use signature::{array_name, element_type, elements_of, inputs, result_elements};
-#[cfg(test)]
-pub(crate) use source::UNUSED;
+pub(crate) use source::{SIN_COS, UNUSED};
 
 /// The code of one robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -110,12 +109,12 @@ pub fn c_code_with(
 }
 
 /// The programs that are written, and how.
-struct File<'a> {
-    robot: &'a Robot,
-    programs: &'a [Program],
-    precision: Precision,
-    prefix: &'a str,
-    additions: &'a Additions<'a>,
+pub(crate) struct File<'a> {
+    pub(crate) robot: &'a Robot,
+    pub(crate) programs: &'a [Program],
+    pub(crate) precision: Precision,
+    pub(crate) prefix: &'a str,
+    pub(crate) additions: &'a Additions<'a>,
 }
 
 /// The robot file of the code: its name without folders, and a hash of its contents.
@@ -145,11 +144,11 @@ impl<'a> File<'a> {
     }
 
     /// Whether sines and cosines are needed.
-    fn turns(&self) -> bool {
+    pub(crate) fn turns(&self) -> bool {
         self.programs.iter().any(|program| !program.sines_and_cosines.is_empty())
     }
 
-    fn chooses_by_sign(&self) -> bool {
+    pub(crate) fn chooses_by_sign(&self) -> bool {
         self.programs.iter().any(Program::chooses_by_sign)
     }
 }
@@ -184,7 +183,7 @@ impl fmt::Display for ConstantTooLarge {
 impl std::error::Error for ConstantTooLarge {}
 
 /// Words as a comment, in which each line begins with `start`; an empty comment if there are no words.
-fn comment(start: &str, text: &str) -> String {
+pub(crate) fn comment(start: &str, text: &str) -> String {
     let blank = format!("{start} ");
     let lines = if text.is_empty() { start.to_owned() } else { fill(&c_comment(text), WIDTH, &blank, &blank) };
     lines + "\n"

@@ -15,7 +15,7 @@ use crate::syntax::Precision;
 use crate::text::legend;
 
 /// Sine and cosine in C; PREFIX is replaced by the prefix.
-const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_cos_double.c")];
+pub(crate) const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_cos_double.c")];
 
 /// The source after the inclusion of the header.
 pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {

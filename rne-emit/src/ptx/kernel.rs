@@ -1,0 +1,443 @@
+//! One function as a kernel.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use rne_codegen::fma::{self, Fusing};
+use rne_codegen::{
+    ArgumentArray, Contraction, Form, Layout, Name, Negated, Operator, Program, Value, ValueId, argument_parts,
+};
+
+use super::{Arrangement, order};
+use crate::c::{ConstantTooLarge, comment, elements_of};
+use crate::syntax::Precision;
+use crate::wrap::{WIDTH, fill};
+
+/// Sine and cosine as a block of instructions; ANGLE, SINE and COSINE are replaced by registers.
+const SIN_COS: [&str; 2] = [include_str!("sin_cos_f32.ptx"), include_str!("sin_cos_f64.ptx")];
+
+/// Threads of a block whose rows go through shared memory, and the bytes of it that every processor has for a block.
+const BLOCK: usize = 64;
+const MOST_SHARED: usize = 48 * 1024;
+
+macro_rules! abouts {
+    ($($name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;)*) => {
+        /// The meaning of an argument array, with its unit.
+        fn about(array: &str) -> &'static str {
+            match array {
+                $(stringify!($name) => $about,)*
+                _ => "Parameters of the robot file that are given at run time, in their order.",
+            }
+        }
+    };
+}
+
+argument_parts!(abouts);
+
+/// A program as its kernels compute it, and its arrays.
+pub(super) struct Kernel<'p> {
+    program: Cow<'p, Program>,
+    precision: Precision,
+    arrays: Vec<ArgumentArray>,
+    /// The literals of constants, by their values.
+    literals: HashMap<ValueId, String>,
+}
+
+impl<'p> Kernel<'p> {
+    /// As the machine does it: in the reduced form a product that is added is rounded with its sum; in the seven steps
+    /// it is rounded by itself.
+    pub(super) fn of(program: &'p Program, precision: Precision) -> Result<Self, ConstantTooLarge> {
+        let arrays = program.argument_arrays();
+        let program = match program.form {
+            Form::Reduced => Cow::Owned(fma::fused(program, Fusing::All)),
+            Form::SevenSteps => Cow::Borrowed(program),
+        };
+        let mut literals = HashMap::new();
+        for (id, value) in program.values.iter() {
+            let Value::Constant(number) = value else { continue };
+            let too_large = |name| ConstantTooLarge { name, value: number, function: program.function };
+            let literal = literal(precision, number);
+            match (literal, program.values.name(id)) {
+                (Some(literal), _) => literals.insert(id, literal),
+                (None, Some(name)) => return Err(too_large(name)),
+                (None, None) => None,
+            };
+        }
+        Ok(Self { program, precision, arrays, literals })
+    }
+
+    /// The text of the kernel of this name.
+    pub(super) fn text(&self, name: &str, arrangement: Arrangement) -> String {
+        let (real, bytes) = if self.precision == Precision::Double { ("f64", 8) } else { ("f32", 4) };
+        let arrays = self.arrays.iter().map(|array| (format!("in_{}", array.name), array.elements.len()));
+        let is_used = self.arrays.iter().map(|array| array.elements.iter().any(Option::is_some));
+        let arrays: Vec<_> = arrays.zip(is_used).map(|((name, length), is_used)| (name, length, is_used)).collect();
+        let outputs = self.program.outputs.len();
+        let staged: usize = arrays.iter().filter(|(.., is_used)| *is_used).map(|(_, length, _)| length).sum();
+        let staged = (staged + outputs) * bytes * BLOCK;
+        let memory = if arrangement == Arrangement::Rows && staged <= MOST_SHARED { "shared" } else { "global" };
+        let mut writing = Writing {
+            kernel: self,
+            arrangement,
+            memory,
+            real,
+            bytes,
+            registers: Vec::new(),
+            addresses: 0,
+            known: vec![String::new(); self.program.values.len()],
+            body: String::new(),
+        };
+        writing.values();
+        let Writing { registers, addresses, body, .. } = writing;
+        let names = arrays.iter().map(|(name, ..)| name.as_str()).chain(["out"]);
+        let parameters: Vec<String> = names.map(|array| format!("    .param .u64 {array}")).collect();
+        let block = if memory == "shared" { ".reqntid 64" } else { ".maxntid 256" };
+        let mut text = format!(
+            ".visible .entry {name}(\n{},\n    .param .u32 states)\n{block}, 1, 1\n{{\n",
+            parameters.join(",\n")
+        );
+        let registers = fill(&registers.join(", "), WIDTH, &format!("    .reg .{real} "), "        ");
+        let _ = write!(
+            text,
+            "{registers};\n    .reg .u32 %index, %block, %width, %states;\n    .reg .u64 %a<{}>;\n    \
+             .reg .pred %is_beyond, %is_above, %is_below;\n    mov.u32 %block, %ctaid.x;\n    \
+             mov.u32 %index, %tid.x;\n    ld.param.u32 %states, [states];\n",
+            addresses + 1
+        );
+        if memory == "shared" {
+            let staging = Staging { arrays, outputs, real, bytes };
+            return text + &staging.before(staged) + &body + &staging.after() + "    ret;\n}\n";
+        }
+        text.push_str(
+            "    mov.u32 %width, %ntid.x;\n    mad.lo.u32 %index, %block, %width, %index;\n    \
+             setp.ge.u32 %is_beyond, %index, %states;\n    @%is_beyond ret;\n",
+        );
+        for (array, length, _) in arrays.into_iter().chain([("out".to_owned(), outputs, true)]) {
+            let step = if arrangement == Arrangement::Columns { bytes } else { length * bytes };
+            let _ = writeln!(
+                text,
+                "    .reg .u64 %{array};\n    ld.param.u64 %{array}, [{array}];\n    \
+                 cvta.to.global.u64 %{array}, %{array};\n    mad.wide.u32 %{array}, %index, {step}, %{array};"
+            );
+        }
+        text + &body + "    ret;\n}\n"
+    }
+}
+
+/// The function, its form, its operations and its arrays, as a comment.
+pub(crate) fn heading(program: &Program) -> String {
+    let mut text = comment("//", &format!("{}: {}", program.name, program.function.summary()));
+    if !program.function.details().is_empty() {
+        text.push_str(&comment("//", program.function.details()));
+    }
+    let count = program.operations();
+    let _ = writeln!(
+        text,
+        "//\n// Form {}: {} products, {} sums, {} divisions, {} angles; {} instructions with fused products.\n//",
+        program.form,
+        count.mul,
+        count.add,
+        count.div,
+        count.sincos,
+        fma::instructions(program)
+    );
+    for ArgumentArray { name, elements, .. } in program.argument_arrays() {
+        text.push_str(&comment("//", &format!("{name}[{}]: {}", elements.len(), about(name))));
+    }
+    let output = program.function.entry().output;
+    let layout = program.layout();
+    let of = shape(if output.is_empty() { "result" } else { output }, &layout);
+    let elements = if layout.len() == 1 { "1 element" } else { &format!("{} elements", layout.len()) };
+    text + &comment("//", &format!("Results, {elements}: {of}."))
+}
+
+/// An exact number of a type, in hexadecimal.
+fn literal(precision: Precision, value: f64) -> Option<String> {
+    match precision {
+        Precision::Double => value.is_finite().then(|| format!("0d{:016X}", value.to_bits())),
+        Precision::Single => {
+            #[allow(clippy::cast_possible_truncation)] // rounded once, as the runtime's `from_f64` rounds
+            let value = value as f32;
+            value.is_finite().then(|| format!("0f{:08X}", value.to_bits()))
+        }
+    }
+}
+
+/// The parts of a result in their order, with their lengths.
+fn shape(name: &str, layout: &Layout) -> String {
+    let (lengths, of) = elements_of(layout);
+    match of {
+        Layout::Record(record, parts) => {
+            let parts = record.fields().iter().zip(parts).map(|(field, part)| shape(field, part));
+            format!("{name}{lengths} of ({})", parts.collect::<Vec<_>>().join(", "))
+        }
+        _ => format!("{name}{lengths}"),
+    }
+}
+
+/// Rows go through the memory that the threads of a block share: the block reads and writes its rows as they lie, one
+/// number after the other, and each thread finds its own row there.
+struct Staging {
+    /// The name and the length of each argument, and whether it is used.
+    arrays: Vec<(String, usize, bool)>,
+    outputs: usize,
+    real: &'static str,
+    bytes: usize,
+}
+
+impl Staging {
+    /// The rows of the block in shared memory, and the places of a thread's own. Threads beyond the last state compute
+    /// what nobody reads.
+    fn before(&self, size: usize) -> String {
+        let Self { arrays, outputs, real, bytes } = self;
+        let mut text = format!(
+            "    .shared .align 8 .b8 rows[{size}];\n    .reg .u32 %first, %count, %left, %own, %shared;\n    \
+             .reg .u64 %global;\n    .reg .{real} %number;\n    shl.b32 %first, %block, 6;\n    \
+             sub.s32 %count, %states, %first;\n    min.s32 %count, %count, {BLOCK};\n    mov.u32 %shared, rows;\n    \
+             mad.lo.u32 %own, %index, {bytes}, %shared;\n"
+        );
+        let mut start = 0;
+        for (array, length, _) in arrays.iter().filter(|(.., is_used)| *is_used) {
+            text.push_str(&self.chunk(array, *length));
+            for k in 0..*length {
+                let (offset, at) = (k * BLOCK * bytes, k * BLOCK);
+                let _ = writeln!(
+                    text,
+                    "    setp.gt.s32 %is_beyond, %left, {at};\n    \
+                     @%is_beyond ld.global.nc.{real} %number, [%global+{offset}];\n    \
+                     @%is_beyond st.shared.{real} [%own+{}], %number;",
+                    start + offset
+                );
+            }
+            start += length * BLOCK * bytes;
+        }
+        text.push_str("    bar.sync 0;\n");
+        let mut start = 0;
+        let results = ("out".to_owned(), *outputs, true);
+        for (array, length, _) in arrays.iter().filter(|(.., is_used)| *is_used).chain([&results]) {
+            let _ = writeln!(
+                text,
+                "    .reg .u32 %{array};\n    mad.lo.u32 %{array}, %index, {}, %shared;\n    \
+                 add.u32 %{array}, %{array}, {start};",
+                length * bytes
+            );
+            start += length * BLOCK * bytes;
+        }
+        text
+    }
+
+    /// The results of the block as they lie in shared memory.
+    fn after(&self) -> String {
+        let Self { arrays, outputs, real, bytes } = self;
+        let start: usize = arrays.iter().filter(|(.., is_used)| *is_used).map(|(_, length, _)| length).sum();
+        let mut text = "    bar.sync 0;\n".to_owned() + &self.chunk("out", *outputs);
+        for k in 0..*outputs {
+            let (offset, at) = (k * BLOCK * bytes, k * BLOCK);
+            let _ = writeln!(
+                text,
+                "    setp.gt.s32 %is_beyond, %left, {at};\n    \
+                 @%is_beyond ld.shared.{real} %number, [%own+{}];\n    \
+                 @%is_beyond st.global.{real} [%global+{offset}], %number;",
+                start * BLOCK * bytes + offset
+            );
+        }
+        text
+    }
+
+    /// The address of the first number that a thread moves of an array, and how many lie from there to the end.
+    fn chunk(&self, array: &str, length: usize) -> String {
+        let bytes = self.bytes;
+        format!(
+            "    ld.param.u64 %global, [{array}];\n    cvta.to.global.u64 %global, %global;\n    \
+             mad.wide.u32 %global, %first, {}, %global;\n    mad.wide.u32 %global, %index, {bytes}, %global;\n    \
+             mul.lo.s32 %left, %count, {length};\n    sub.s32 %left, %left, %index;\n",
+            length * bytes
+        )
+    }
+}
+
+/// The instructions of a kernel.
+struct Writing<'k, 'p> {
+    kernel: &'k Kernel<'p>,
+    arrangement: Arrangement,
+    /// The memory in which a thread finds its arguments and leaves its results.
+    memory: &'static str,
+    real: &'static str,
+    bytes: usize,
+    registers: Vec<String>,
+    addresses: usize,
+    /// The register or the literal of each value; empty before it is computed.
+    known: Vec<String>,
+    body: String,
+}
+
+impl Writing<'_, '_> {
+    /// All values in their order; an argument is read just before its first use, and a result is written as soon as it
+    /// is known, so that few registers are in use at once.
+    fn values(&mut self) {
+        let program = &*self.kernel.program;
+        let mut results: Vec<Vec<usize>> = vec![Vec::new(); program.values.len()];
+        for (index, output) in program.outputs.iter().enumerate() {
+            results[output.value.index()].push(index);
+        }
+        let turns: HashMap<_, _> = program
+            .values
+            .iter()
+            .filter_map(|(id, value)| match value {
+                Value::Sine(angle) => Some(((angle, 0), id)),
+                Value::Cosine(angle) => Some(((angle, 1), id)),
+                _ => None,
+            })
+            .collect();
+        for id in order::of(program) {
+            let value = program.values.get(id);
+            match value {
+                Value::Sine(angle) | Value::Cosine(angle) => self.turn(angle, [0, 1].map(|of| turns.get(&(angle, of)))),
+                // read where they are used
+                Value::Argument | Value::Constant(_) => {}
+                _ => self.compute(id, value),
+            }
+            for &index in &results[id.index()] {
+                let result = self.operand(id);
+                let register = if result.starts_with('0') {
+                    let register = self.register(None, id);
+                    let _ = writeln!(self.body, "    mov.{} {register}, {result};", self.real);
+                    self.known[id.index()].clone_from(&register);
+                    register
+                } else {
+                    result
+                };
+                let place = self.place("%out", index);
+                let _ = writeln!(self.body, "    st.{}.{} {place}, {register};", self.memory, self.real);
+            }
+        }
+    }
+
+    /// A register that is declared: `$w2_z` for a number with a name, which no word of the language begins with.
+    fn register(&mut self, name: Option<Name>, id: ValueId) -> String {
+        let register = name.map_or_else(|| format!("$_{}", id.index()), |name| format!("${name}"));
+        self.registers.push(register.clone());
+        register
+    }
+
+    /// The address of an element in square brackets.
+    fn place(&mut self, array: &str, element: usize) -> String {
+        match (self.arrangement, element * self.bytes) {
+            (_, 0) => format!("[{array}]"),
+            (Arrangement::Rows, offset) => format!("[{array}+{offset}]"),
+            (Arrangement::Columns, offset) => {
+                let address = self.addresses;
+                self.addresses += 1;
+                let _ = writeln!(self.body, "    mad.wide.u32 %a{address}, %states, {offset}, {array};");
+                format!("[%a{address}]")
+            }
+        }
+    }
+
+    /// The register or the literal of a value.
+    fn operand(&mut self, id: ValueId) -> String {
+        let program = &*self.kernel.program;
+        let found = &self.known[id.index()];
+        if !found.is_empty() {
+            return found.clone();
+        }
+        let operand = match program.values.get(id) {
+            Value::Constant(_) => self.kernel.literals.get(&id).cloned().unwrap_or_default(),
+            Value::Same(of) => self.operand(of),
+            _ => self.argument(id),
+        };
+        self.known[id.index()].clone_from(&operand);
+        operand
+    }
+
+    /// Reads an argument.
+    fn argument(&mut self, id: ValueId) -> String {
+        let name = self.kernel.program.values.name(id);
+        let arrays = self.kernel.arrays.iter();
+        let mut places = arrays.filter_map(|array| {
+            let element = array.elements.iter().position(|element| *element == name)?;
+            Some((format!("%in_{}", array.name), element))
+        });
+        let (array, element) = places.next().unwrap_or_default();
+        let register = self.register(name, id);
+        let place = self.place(&array, element);
+        let load = if self.memory == "shared" { "ld.shared" } else { "ld.global.nc" };
+        let _ = writeln!(self.body, "    {load}.{} {register}, {place};", self.real);
+        register
+    }
+
+    /// Sine and cosine of an angle at once, unless they are known.
+    fn turn(&mut self, angle: ValueId, turned: [Option<&ValueId>; 2]) {
+        if turned.iter().flatten().any(|id| !self.known[id.index()].is_empty()) {
+            return;
+        }
+        let of = self.operand(angle);
+        let [sine, cosine] = [(turned[0], "sine"), (turned[1], "cosine")].map(|(id, unused)| match id {
+            Some(&id) => {
+                let register = self.register(self.kernel.program.values.name(id), id);
+                self.known[id.index()].clone_from(&register);
+                register
+            }
+            None => unused.to_owned(),
+        });
+        let block = SIN_COS[usize::from(self.kernel.precision == Precision::Double)];
+        let block = block.replace("COSINE", &cosine).replace("SINE", &sine).replace("ANGLE", &of);
+        self.body.push_str(&block);
+    }
+
+    fn compute(&mut self, id: ValueId, value: Value) {
+        let real = self.real;
+        let line = match value {
+            // Aliases, and the negative of a literal.
+            Value::Same(of) => {
+                self.known[id.index()] = self.operand(of);
+                return;
+            }
+            Value::Negative(a) => format!("neg.{real} DST, {}", self.operand(a)),
+            Value::Binary(operator, a, b) => {
+                let operation = match operator {
+                    Operator::Sum => "add",
+                    Operator::Difference => "sub",
+                    Operator::Product => "mul",
+                    Operator::Quotient => "div",
+                };
+                format!("{operation}.rn.{real} DST, {}, {}", self.operand(a), self.operand(b))
+            }
+            Value::Fused(Contraction { factors: [x, y], addend, negated }) => {
+                let [mut x, y, mut z] = [x, y, addend].map(|id| self.operand(id));
+                match negated {
+                    Some(Negated::Factor) => x = self.negative(id, &x),
+                    Some(Negated::Addend) => z = self.negative(id, &z),
+                    None => {}
+                }
+                format!("fma.rn.{real} DST, {x}, {y}, {z}")
+            }
+            Value::BySign(operands) => {
+                let zero = if real == "f64" { "0d0000000000000000" } else { "0f00000000" };
+                let [x, a, b] = operands.map(|operand| self.operand(operand));
+                let register = self.register(self.kernel.program.values.name(id), id);
+                let _ = writeln!(
+                    self.body,
+                    "    setp.gt.{real} %is_above, {x}, {zero};\n    setp.lt.{real} %is_below, {x}, {zero};\n    \
+                     selp.{real} {register}, {b}, {zero}, %is_below;\n    \
+                     selp.{real} {register}, {a}, {register}, %is_above;"
+                );
+                self.known[id.index()] = register;
+                return;
+            }
+            Value::Argument | Value::Constant(_) | Value::Sine(_) | Value::Cosine(_) => return,
+        };
+        let register = self.register(self.kernel.program.values.name(id), id);
+        let _ = writeln!(self.body, "    {};", line.replace("DST", &register));
+        self.known[id.index()] = register;
+    }
+
+    /// The negative of an operand of the value `id`; the assembler makes it a part of the instruction that uses it.
+    fn negative(&mut self, id: ValueId, operand: &str) -> String {
+        let register = format!("%n{}", id.index());
+        self.registers.push(register.clone());
+        let _ = writeln!(self.body, "    neg.{} {register}, {operand};", self.real);
+        register
+    }
+}

@@ -1,0 +1,337 @@
+//! An interpreter of the part of PTX that `rne emit --lang ptx` writes: it knows nothing of programs, so that a test
+//! without a graphics card tells what a kernel computes. What it does not know it refuses by a panic.
+
+use std::collections::HashMap;
+
+/// A kernel as it was read.
+pub(crate) struct Kernel {
+    parameters: Vec<String>,
+    code: Vec<Instruction>,
+    registers: usize,
+    /// Bytes of the memory that a block shares.
+    shared: usize,
+    /// Whether blocks have 64 threads, no more and no fewer.
+    is_of_64: bool,
+}
+
+/// Where a thread is.
+struct Thread {
+    registers: Vec<Option<u64>>,
+    next: usize,
+}
+
+struct Instruction {
+    /// The predicate under which it is executed.
+    guard: Option<usize>,
+    operation: String,
+    operands: Vec<Operand>,
+}
+
+enum Operand {
+    Register(usize),
+    Bits(u64),
+    /// What a register holds, and an offset.
+    Address(usize, u64),
+    Parameter(String),
+    /// `%tid.x` and the like.
+    Special(String),
+    /// The low and the high half of 64 bits.
+    Halves(usize, usize),
+}
+
+/// Reads all kernels of a module, by their names.
+pub(crate) fn read(module: &str) -> HashMap<String, Kernel> {
+    let code: String =
+        module.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n");
+    let mut directives = code.split(".visible .entry ");
+    let head: Vec<&str> = directives.next().expect("directives").split_whitespace().collect();
+    assert_eq!(head, [".version", "7.0", ".target", "sm_70", ".address_size", "64"]);
+    directives.map(kernel).collect()
+}
+
+fn kernel(text: &str) -> (String, Kernel) {
+    let (name, rest) = text.split_once('(').expect("parameters");
+    let (parameters, rest) = rest.split_once(')').expect("the end of the parameters");
+    let parameters: Vec<String> = parameters
+        .split(',')
+        .map(|parameter| match parameter.split_whitespace().collect::<Vec<_>>()[..] {
+            [".param", ".u64", name] => name.to_owned(),
+            [".param", ".u32", "states"] => "states".to_owned(),
+            ref other => panic!("{other:?}"),
+        })
+        .collect();
+    let rest = rest.trim();
+    let required = rest.strip_prefix(".reqntid 64, 1, 1");
+    let rest = required.or(rest.strip_prefix(".maxntid 256, 1, 1")).expect("the size of a block").trim();
+    let body = rest.strip_prefix('{').and_then(|body| body.trim_end().strip_suffix('}')).expect("a body");
+    // Braces of `{low, high}` stand in an instruction; others begin and end blocks, whose registers are new each time.
+    let mut reading = Reading { registers: HashMap::new(), count: 0 };
+    let mut shared = 0;
+    let mut code = Vec::new();
+    for statement in body.split(';').map(str::trim) {
+        let statement = statement.trim_start_matches(['{', '}', '\n', ' ']).trim();
+        if let Some(size) = statement.strip_prefix(".shared .align 8 .b8 rows[") {
+            shared = size.trim_end_matches(']').parse().expect("a size");
+        } else if let Some(declared) = statement.strip_prefix(".reg ") {
+            reading.declare(declared);
+        } else if !statement.is_empty() {
+            code.push(reading.instruction(statement));
+        }
+    }
+    (name.to_owned(), Kernel { parameters, code, registers: reading.count, shared, is_of_64: required.is_some() })
+}
+
+struct Reading {
+    registers: HashMap<String, usize>,
+    count: usize,
+}
+
+impl Reading {
+    fn declare(&mut self, declared: &str) {
+        let (_, names) = declared.split_once(char::is_whitespace).expect("a type");
+        for name in names.split(',').map(str::trim) {
+            let names = match name.split_once('<') {
+                Some((stem, count)) => {
+                    let count: usize = count.trim_end_matches('>').parse().expect("a number");
+                    (0..count).map(|index| format!("{stem}{index}")).collect()
+                }
+                None => vec![name.to_owned()],
+            };
+            for name in names {
+                // registers of blocks have plain names, and each block has its own
+                let is_of_block = !name.starts_with(['%', '$']);
+                let before = self.registers.insert(name, self.count);
+                assert!(is_of_block || before.is_none(), "{declared}: declared twice");
+                self.count += 1;
+            }
+        }
+    }
+
+    fn register(&self, name: &str) -> usize {
+        *self.registers.get(name).unwrap_or_else(|| panic!("{name} is not declared"))
+    }
+
+    fn instruction(&self, text: &str) -> Instruction {
+        let (guard, text) = match text.strip_prefix('@').and_then(|text| text.split_once(' ')) {
+            Some((guard, text)) => (Some(self.register(guard)), text),
+            None => (None, text),
+        };
+        let (operation, rest) = text.split_once(' ').unwrap_or((text, ""));
+        let mut operands = Vec::new();
+        let mut rest = rest.trim();
+        while !rest.is_empty() {
+            let end = match rest.strip_prefix('{') {
+                Some(_) => rest.find('}').expect("the end of a pair") + 1,
+                None => rest.find(',').unwrap_or(rest.len()),
+            };
+            operands.push(self.operand(rest[..end].trim()));
+            rest = rest[end..].trim_start_matches(',').trim();
+        }
+        Instruction { guard, operation: operation.to_owned(), operands }
+    }
+
+    fn operand(&self, text: &str) -> Operand {
+        if let Some(pair) = text.strip_prefix('{').and_then(|text| text.strip_suffix('}')) {
+            let (low, high) = pair.split_once(',').expect("two halves");
+            return Operand::Halves(self.register(low.trim()), self.register(high.trim()));
+        }
+        if let Some(place) = text.strip_prefix('[').and_then(|text| text.strip_suffix(']')) {
+            let (base, offset) = place.split_once('+').unwrap_or((place, "0"));
+            return match self.registers.get(base) {
+                Some(register) => Operand::Address(*register, offset.parse().expect("an offset")),
+                None => Operand::Parameter(base.to_owned()),
+            };
+        }
+        if let Some(bits) = text.strip_prefix("0d").or(text.strip_prefix("0f")) {
+            assert_eq!(bits.len(), if text.starts_with("0d") { 16 } else { 8 }, "{text}");
+            return Operand::Bits(u64::from_str_radix(bits, 16).expect("bits"));
+        }
+        if text == "rows" {
+            return Operand::Bits(0);
+        }
+        if ["%ctaid.x", "%ntid.x", "%tid.x"].contains(&text) {
+            return Operand::Special(text.to_owned());
+        }
+        match text.parse() {
+            Ok(number) => Operand::Bits(number),
+            Err(_) => Operand::Register(self.register(text)),
+        }
+    }
+}
+
+/// Numbers of a type, as bits of a register.
+pub(crate) trait Real: Copy {
+    /// Bytes of a number.
+    const BYTES: usize;
+    fn of_bits(bits: u64) -> Self;
+    fn bits(self) -> u64;
+}
+
+macro_rules! real {
+    ($type:ident, $bits:ident) => {
+        impl Real for $type {
+            const BYTES: usize = size_of::<$type>();
+            fn of_bits(bits: u64) -> Self {
+                Self::from_bits($bits::try_from(bits).expect("bits of this type"))
+            }
+            fn bits(self) -> u64 {
+                self.to_bits().into()
+            }
+        }
+    };
+}
+real!(f32, u32);
+real!(f64, u64);
+
+/// Where the first array begins: a kernel that reads at 0 reads nothing that exists.
+const START: usize = 256;
+
+impl Kernel {
+    /// Runs blocks of `width` threads over the arguments; returns the array of results. An argument without a number
+    /// has the address 0.
+    pub(crate) fn run<T: Real>(&self, arguments: &[Vec<T>], results: usize, states: u32, width: u32) -> Vec<T> {
+        let mut memory = vec![0_u8; START];
+        let mut addresses = Vec::new();
+        for array in arguments {
+            addresses.push(if array.is_empty() { 0 } else { memory.len() as u64 });
+            memory.extend(array.iter().flat_map(|number| number.bits().to_le_bytes()[..T::BYTES].to_vec()));
+        }
+        addresses.push(memory.len() as u64);
+        let start = memory.len();
+        // a number that no kernel computes
+        memory.resize(start + results * T::BYTES, 0xA5);
+        assert_eq!(addresses.len() + 1, self.parameters.len());
+        let values: HashMap<&str, u64> =
+            self.parameters.iter().map(String::as_str).zip(addresses.into_iter().chain([states.into()])).collect();
+        let width = if self.is_of_64 { 64 } else { width };
+        // a block more than there are states for
+        for block in 0..=states.div_ceil(width) {
+            // what a thread finds that no thread has written
+            let mut shared = vec![0x5A_u8; self.shared];
+            let thread = |_| Thread { registers: vec![None; self.registers], next: 0 };
+            let mut threads: Vec<Thread> = (0..width).map(thread).collect();
+            while threads.iter().any(|thread| thread.next < self.code.len()) {
+                for (index, thread) in threads.iter_mut().enumerate() {
+                    let place = [block, width, u32::try_from(index).expect("few")];
+                    self.to_barrier(thread, [&mut memory, &mut shared], &values, place);
+                }
+            }
+        }
+        let word = |bytes: &[u8]| {
+            let mut word = [0; 8];
+            word[..T::BYTES].copy_from_slice(bytes);
+            T::of_bits(u64::from_le_bytes(word))
+        };
+        memory[start..].chunks(T::BYTES).map(word).collect()
+    }
+
+    /// Runs a thread to the next barrier, or to its end.
+    fn to_barrier(
+        &self,
+        thread: &mut Thread,
+        [memory, shared]: [&mut Vec<u8>; 2],
+        parameters: &HashMap<&str, u64>,
+        [block, width, number]: [u32; 3],
+    ) {
+        let Thread { registers, next } = thread;
+        while let Some(Instruction { guard, operation, operands }) = self.code.get(*next) {
+            *next += 1;
+            if guard.is_some_and(|guard| registers[guard].expect("a predicate") == 0) {
+                continue;
+            }
+            let value = |index: usize| -> u64 {
+                match &operands[index] {
+                    Operand::Register(register) => registers[*register].expect("a value before it is used"),
+                    Operand::Bits(bits) => *bits,
+                    Operand::Parameter(name) => parameters[name.as_str()],
+                    Operand::Address(register, offset) => registers[*register].expect("an address") + offset,
+                    Operand::Special(name) => match name.as_str() {
+                        "%ctaid.x" => block.into(),
+                        "%ntid.x" => width.into(),
+                        "%tid.x" => number.into(),
+                        other => panic!("{other}"),
+                    },
+                    Operand::Halves(low, high) => {
+                        registers[*low].expect("a half") | registers[*high].expect("a half") << 32
+                    }
+                }
+            };
+            let word = |index| u32::try_from(value(index)).expect("32 bits");
+            let signed = |index| word(index).cast_signed();
+            let double = |index| f64::from_bits(value(index));
+            let single = |index| f32::from_bits(word(index));
+            let of_double = |number: f64| number.to_bits();
+            let of_single = |number: f32| u64::from(number.to_bits());
+            let result = match operation.as_str() {
+                "ret" => {
+                    *next = self.code.len();
+                    return;
+                }
+                "bar.sync" => return,
+                "mov.u32" | "mov.b32" | "mov.b64" | "mov.f32" | "mov.f64" | "ld.param.u32" | "ld.param.u64"
+                | "cvta.to.global.u64" => value(1),
+                "mad.lo.u32" => word(1).wrapping_mul(word(2)).wrapping_add(word(3)).into(),
+                "mad.wide.u32" => u64::from(word(1)) * u64::from(word(2)) + value(3),
+                "mul.lo.s32" => signed(1).wrapping_mul(signed(2)).cast_unsigned().into(),
+                "sub.s32" => signed(1).wrapping_sub(signed(2)).cast_unsigned().into(),
+                "min.s32" => signed(1).min(signed(2)).cast_unsigned().into(),
+                "setp.gt.s32" => u64::from(signed(1) > signed(2)),
+                "add.u32" => word(1).wrapping_add(word(2)).into(),
+                "and.b32" => (word(1) & word(2)).into(),
+                "xor.b32" => (word(1) ^ word(2)).into(),
+                "shl.b32" => word(1).checked_shl(word(2)).unwrap_or(0).into(),
+                "setp.ge.u32" => u64::from(word(1) >= word(2)),
+                "setp.ne.u32" => u64::from(word(1) != word(2)),
+                "setp.gt.f64" => u64::from(double(1) > double(2)),
+                "setp.lt.f64" => u64::from(double(1) < double(2)),
+                "setp.gt.f32" => u64::from(single(1) > single(2)),
+                "setp.lt.f32" => u64::from(single(1) < single(2)),
+                "selp.f32" | "selp.f64" => {
+                    if value(3) == 0 {
+                        value(2)
+                    } else {
+                        value(1)
+                    }
+                }
+                "neg.f64" => of_double(-double(1)),
+                "add.rn.f64" => of_double(double(1) + double(2)),
+                "sub.rn.f64" => of_double(double(1) - double(2)),
+                "mul.rn.f64" => of_double(double(1) * double(2)),
+                "div.rn.f64" => of_double(double(1) / double(2)),
+                "fma.rn.f64" => of_double(double(1).mul_add(double(2), double(3))),
+                "neg.f32" => of_single(-single(1)),
+                "add.rn.f32" => of_single(single(1) + single(2)),
+                "sub.rn.f32" => of_single(single(1) - single(2)),
+                "mul.rn.f32" => of_single(single(1) * single(2)),
+                "div.rn.f32" => of_single(single(1) / single(2)),
+                "fma.rn.f32" => of_single(single(1).mul_add(single(2), single(3))),
+                "ld.global.nc.f32" | "ld.global.nc.f64" | "ld.shared.f32" | "ld.shared.f64" => {
+                    let bytes = if operation.ends_with("64") { 8 } else { 4 };
+                    let is_shared = operation.starts_with("ld.shared");
+                    let from = if is_shared { &*shared } else { &*memory };
+                    let at = usize::try_from(value(1)).expect("an address");
+                    assert!((is_shared || at >= START) && at.is_multiple_of(bytes), "an address of nothing");
+                    let mut word = [0; 8];
+                    word[..bytes].copy_from_slice(&from[at..at + bytes]);
+                    u64::from_le_bytes(word)
+                }
+                "st.global.f32" | "st.global.f64" | "st.shared.f32" | "st.shared.f64" => {
+                    let bytes = if operation.ends_with("64") { 8 } else { 4 };
+                    let (at, number) = (usize::try_from(value(0)).expect("an address"), value(1));
+                    let into = if operation.starts_with("st.shared") { &mut *shared } else { &mut *memory };
+                    into[at..at + bytes].copy_from_slice(&number.to_le_bytes()[..bytes]);
+                    continue;
+                }
+                other => panic!("{other} is not an instruction of this interpreter"),
+            };
+            match &operands[0] {
+                Operand::Register(register) => registers[*register] = Some(result),
+                Operand::Halves(low, high) => {
+                    registers[*low] = Some(result & 0xFFFF_FFFF);
+                    registers[*high] = Some(result >> 32);
+                }
+                _ => panic!("{operation} writes a register"),
+            }
+        }
+    }
+}
