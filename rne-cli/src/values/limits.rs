@@ -60,22 +60,37 @@ mod tests {
     #[test]
     fn joints_beyond_their_limits() {
         let robot = Robot::from_yaml(ARM).unwrap_or_else(|report| panic!("{report}"));
-        assert_eq!(remark(&robot, &[0.0, 1e9, 0.25]), "");
+        assert_eq!(remark(&robot, &[0.0, 1e9, 0.25], &[]), "");
         // at a limit, as an expression and as digits, and of a function that takes no positions
-        assert_eq!(remark(&robot, &[std::f64::consts::FRAC_PI_2, 0.0, 0.5]), "");
-        assert_eq!(remark(&robot, &[-2.792_526_803_190_927, 0.0, 0.0]), "");
-        assert_eq!(remark(&robot, &[]), "");
+        assert_eq!(remark(&robot, &[std::f64::consts::FRAC_PI_2, 0.0, 0.5], &[]), "");
+        assert_eq!(remark(&robot, &[-2.792_526_803_190_927, 0.0, 0.0], &[]), "");
+        assert_eq!(remark(&robot, &[], &[]), "");
         // degrees are whole numbers, and one of them is more than a turn
         let outside = "outside of the limits of turn: -2.79253 to 1.5708 rad";
         for (q, end) in [(10.0, "; degrees? write deg(10)"), (6.0, ""), (10.5, "")] {
             let expected = format!("note: q1 = {q} rad is {outside}{end}\n");
-            assert_eq!(remark(&robot, &[q, -4.0, 0.0]), expected);
+            assert_eq!(remark(&robot, &[q, -4.0, 0.0], &[]), expected);
         }
-        assert!(!remark(&robot, &[10.0, 0.3, 0.0]).contains("degrees"));
+        assert!(!remark(&robot, &[10.0, 0.3, 0.0], &[]).contains("degrees"));
         assert_eq!(
-            remark(&robot, &[-3.0, 0.0, 0.6]),
+            remark(&robot, &[-3.0, 0.0, 0.6], &[]),
             "note: q1 = -3 rad is outside of the limits of turn: -2.79253 to 1.5708 rad\n\
              note: q3 = 0.6 m is outside of the limits of slide: 0 to 0.5 m\n"
         );
+    }
+
+    /// A dependent joint of closed loops has limits, too.
+    #[test]
+    fn dependent_joints_beyond_their_limits() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/four_bar.yaml");
+        let text = std::fs::read_to_string(path).expect("a file").replace(
+            "{name: coupler, type: revolute,",
+            "{name: coupler, type: revolute, limits: {position: [-0.5, 0.5]},",
+        );
+        let robot = rne_model::Reader::new("four_bar").trees().couplings().loops().read(text.as_bytes());
+        let robot = robot.unwrap_or_else(|report| panic!("{}", report.render(false))).robot;
+        let expected = "note: the position = 0.6 rad is outside of the limits of coupler: -0.5 to 0.5 rad\n";
+        assert_eq!(remark(&robot, &[0.2], &[0.6, 1.0]), expected);
+        assert_eq!(remark(&robot, &[0.2], &[0.4, 1.0]), "");
     }
 }

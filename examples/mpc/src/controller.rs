@@ -1,0 +1,142 @@
+//! A controller that plans: one real-time iteration of sequential quadratic programming for each sample (M. Diehl, H. G.
+//! Bock, J. P. Schlöder, "A real-time iteration scheme for nonlinear optimization in optimal feedback control", 2005).
+
+use std::time::{Duration, Instant};
+
+use rne::{AccelerationDerivatives, InverseDynamics};
+
+use crate::model::{DOF, Joints, Panda, State, accelerations, tip};
+use crate::program::Program;
+
+/// Intervals of the plan.
+pub const NODES: usize = 20;
+
+/// What the controller is to do.
+pub struct Task {
+    /// The measured state.
+    pub now: State,
+    /// The goal of the tip in the world, m.
+    pub goal: [f64; 3],
+    /// Positions that the arm prefers, rad.
+    pub posture: Joints,
+    /// Length of an interval, s.
+    pub interval: f64,
+    /// External torques, N m: those of a load that the model does not have.
+    pub external: Joints,
+    /// Weights of the cost.
+    pub weights: Weights,
+}
+
+/// Weights of the squares in the cost.
+#[derive(Clone, Copy)]
+pub struct Weights {
+    /// Distance of the tip, 1/m².
+    pub tip: f64,
+    /// Factor of it at the last node.
+    pub last: f64,
+    /// Distance from the posture, 1/rad².
+    pub posture: f64,
+    /// Velocities, s²/rad².
+    pub velocity: f64,
+    /// Torques beyond those that hold the arm, 1/(N m)².
+    pub torque: f64,
+}
+
+/// States at the nodes and torques of the intervals between them.
+pub struct Plan {
+    /// States.
+    pub states: Vec<State>,
+    /// Torques, N m.
+    pub torques: Vec<Joints>,
+}
+
+/// The model at a node.
+pub struct Node {
+    /// Accelerations, and how they change with the state and the torques.
+    pub accelerations: (Joints, AccelerationDerivatives<DOF, f64>),
+    /// Tip, and linear rows of its Jacobian.
+    pub tip: ([f64; 3], [[f64; DOF]; 3]),
+    /// Torques that hold the arm still.
+    pub holding: Joints,
+}
+
+/// What one iteration took.
+#[derive(Clone, Copy, Default)]
+pub struct Spent {
+    /// All of it.
+    pub whole: Duration,
+    /// Dynamics, kinematics and their derivatives.
+    pub model: Duration,
+    /// Accelerations and their derivatives alone.
+    pub dynamics: Duration,
+    /// Iterations of the solver of the quadratic program.
+    pub iterations: u32,
+}
+
+/// The controller, with its last plan.
+pub struct Controller {
+    plan: Plan,
+    program: Program,
+}
+
+impl Controller {
+    /// A controller whose first plan holds the arm where it is.
+    #[must_use]
+    pub fn new(start: &State) -> Self {
+        let plan = Plan { states: vec![*start; NODES + 1], torques: vec![Panda.gravity_torques(&start.q); NODES] };
+        Self { plan, program: Program::default() }
+    }
+
+    /// The torques for the next interval.
+    pub fn step(&mut self, task: &Task) -> (Joints, Spent) {
+        let begin = Instant::now();
+        self.shift();
+        let states = self.plan.states.iter().enumerate();
+        // the last node has no torques, and its accelerations are not used
+        let torques = |node: usize| self.plan.torques[node.min(NODES - 1)];
+        let of_motion: Vec<_> =
+            states.clone().map(|(node, state)| accelerations(state, &torques(node), &task.external)).collect();
+        let dynamics = begin.elapsed();
+        let nodes: Vec<Node> = states
+            .zip(of_motion)
+            .map(|((_, state), accelerations)| {
+                let gravity = Panda.gravity_torques(&state.q);
+                let holding = std::array::from_fn(|joint| gravity[joint] - task.external[joint]);
+                Node { accelerations, tip: tip(&state.q), holding }
+            })
+            .collect();
+        let model = begin.elapsed();
+        let (change, iterations) = self.program.solve(&self.plan, &nodes, task);
+        if let Some(change) = change {
+            let plus =
+                |numbers: &mut Joints, change: Joints| numbers.iter_mut().zip(change).for_each(|(x, by)| *x += by);
+            for (node, state) in self.plan.states.iter_mut().enumerate() {
+                plus(&mut state.q, change.of(node, 0));
+                plus(&mut state.qd, change.of(node, 1));
+            }
+            for (node, torques) in self.plan.torques.iter_mut().enumerate() {
+                plus(torques, change.of(node, 2));
+            }
+        }
+        let limited = std::array::from_fn(|joint| {
+            let limit = Panda::EFFORT_LIMITS[joint];
+            self.plan.torques[0][joint].clamp(-limit, limit)
+        });
+        (limited, Spent { whole: begin.elapsed(), model, dynamics, iterations })
+    }
+
+    /// The state that the plan has after the first interval.
+    #[must_use]
+    pub fn expected(&self) -> &State {
+        &self.plan.states[1]
+    }
+
+    /// The plan of the last sample, one interval later; its last interval stands twice.
+    fn shift(&mut self) {
+        self.plan.states.remove(0);
+        self.plan.torques.remove(0);
+        let (state, torques) = (self.plan.states[NODES - 1], self.plan.torques[NODES - 2]);
+        self.plan.states.push(state);
+        self.plan.torques.push(torques);
+    }
+}
