@@ -1,5 +1,5 @@
-//! Derivatives for optimisers, and those of an [`Arm`] by dual numbers through the seven steps: exact up to rounding, one
-//! direction at a time. Generated code has them in reverse mode and by composite bodies, from other formulas.
+//! Derivatives for optimisers, and those of an [`Arm`] by dual numbers through the seven steps: exact up to rounding,
+//! one direction at a time. Generated code has them in reverse mode and by composite bodies, from other formulas.
 
 #[cfg(feature = "arm")]
 use core::array::from_fn;

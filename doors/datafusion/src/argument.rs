@@ -41,7 +41,9 @@ impl Argument<'_> {
 /// The numbers that an argument has for a state of a robot, and words that say why.
 fn needed(argument: &str, robot: &Robot) -> (usize, String) {
     match argument {
-        "q" | "qd" | "qdd" | "tau" | "multipliers" => (robot.dof(), format!("{} has {} joints", robot.name, robot.dof())),
+        "q" | "qd" | "qdd" | "tau" | "multipliers" => {
+            (robot.dof(), format!("{} has {} joints", robot.name, robot.dof()))
+        }
         "wrenches" => {
             let tips = robot.wrench_frames().len();
             (6 * tips, format!("`wrenches` has force and moment of each tip, and {} has {tips} tips", robot.name))

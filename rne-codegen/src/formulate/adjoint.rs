@@ -1,8 +1,8 @@
 //! Derivatives of the torques weighted by multipliers, λᵀτ, in reverse mode.
 //!
 //! λᵀτ is one number, so its gradient takes a few times the operations of the torques, whatever the number of joints.
-//! The adjoint of the forces on a link is the velocity that it would have if the joints had the velocities λ, so what is
-//! derived here is the virtual power of the forces that move the robot.
+//! The adjoint of the forces on a link is the velocity that it would have if the joints had the velocities λ, so what
+//! is derived here is the virtual power of the forces that move the robot.
 
 use crate::coordinates::Coordinates;
 use crate::formulate::ldlt::{Factors, System};

@@ -5,8 +5,8 @@
 //! each factor times the other one (S. Linnainmaa, 1976). Two rules make what follows short:
 //!
 //! - The terms `adjoint · partial` of a node that have a factor in common are gathered before they are multiplied.
-//! - A turned component, u = x c + y s, changes with its angle by the other turned component, y c - x s. Where the graph
-//!   has that number, the adjoint of the angle takes one product of it instead of the adjoints of s and c.
+//! - A turned component, u = x c + y s, changes with its angle by the other turned component, y c - x s. Where the
+//!   graph has that number, the adjoint of the angle takes one product of it instead of the adjoints of s and c.
 
 use rustc_hash::FxHashMap;
 
