@@ -13,7 +13,7 @@ pub(crate) fn remark(robot: &Robot, q: &[f64], passive: &[f64]) -> String {
     let joints = robot.independent_joints().zip(robot.coordinate_limits()).zip(q);
     let joints = joints.enumerate().map(|(index, (joint, q))| (format!("q{}", index + 1), joint, q));
     let dependent = robot.closed.passive.iter().map(|&joint| &robot.joints[joint]).zip(passive);
-    let dependent = dependent.map(|(joint, p)| ("the position".to_owned(), (joint, joint.limits.clone()), p));
+    let dependent = dependent.map(|(joint, p)| ("the position".to_owned(), (joint, joint.limits), p));
     for (name, (joint, limits), &q) in joints.chain(dependent) {
         let Some((lower, upper)) = limits.position else { continue };
         // a limit that is given as an expression and a position that is given as its digits
