@@ -239,7 +239,7 @@ pub(crate) fn short(value: f64) -> String {
 fn suggestion(joints: &[Joint], choice: &[usize]) -> String {
     match choice {
         [] => String::new(),
-        _ => format!("; {} would do", listed(joints, choice)),
+        _ => format!("; for example {}: a joint with a motor is not dependent", listed(joints, choice)),
     }
 }
 

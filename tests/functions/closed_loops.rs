@@ -193,7 +193,7 @@ fn with_dependent(yaml: &str, lists: &[Value]) -> String {
     for (part, list) in parts.zip(lists) {
         let names: Vec<&str> = list.as_array().expect("a list").iter().filter_map(Value::as_str).collect();
         let rest = part.split_once(']').expect("the end of a list").1;
-        text += &format!("dependent: [{}]{rest}", names.join(", "));
+        text.extend(["dependent: [", &names.join(", "), "]", rest]);
     }
     text
 }

@@ -329,7 +329,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         // tips are there for their wrenches
         [] => {
             Function::TORQUES.contains(function)
-                || *function == Function::InverseDynamicsOfLoops
+                || matches!(function, Function::ClosureStep | Function::InverseDynamicsOfLoops)
                 || (*function == Function::InverseDynamicsWithWrenches && !robot.tips.is_empty())
         }
         asked => asked.contains(&FunctionOrAll::One(*function)),

@@ -12,53 +12,95 @@ use crate::values::state::State;
 const STEPS: usize = 50;
 /// The largest residual of an equation of a closed loop, m or a product of axes.
 const CLOSED: f64 = 1e-12;
-/// How far the other joints move between two closures on the way from a reference, rad or m.
+/// How far the other joints move between two closures on the way from a reference at most, rad or m.
 const STRIDE: f64 = 0.05;
+/// The shortest part of a stride where the loops bend.
+const SHORTEST: f64 = 1e-3;
 /// Strides of the longest way.
 const STRIDES: f64 = 1000.0;
+/// A pivot below this part of the largest singular value is nearly zero.
+const NEARLY_SINGULAR: f64 = 1e-3;
 
 /// Positions of the dependent joints for positions `q` of the others: the closure that a guess leads to. Without a
-/// guess, the closure that is reached from the first configuration of the robot file, without a jump to another
-/// assembly; where no way leads there, from the other configurations.
+/// guess, the closure that is reached from the first configuration of the robot file, without a singular position on
+/// the way and so without a jump to another assembly; where no such way leads there, from the other configurations.
 pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<Vec<f64>, Failure> {
     let arm = DynArm::from_robot(robot);
-    let found = match guess {
-        Some(guess) => newton(&arm, q, guess.to_vec()),
-        None => robot.closed.closures.iter().find_map(|closure| {
-            let of = |joints: &mut dyn Iterator<Item = usize>| joints.map(|at| closure[at]).collect::<Vec<f64>>();
-            let start = of(&mut robot.coordinates());
-            continued(&arm, [&start, q], of(&mut robot.closed.passive.iter().copied()))
-        }),
-    };
     let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
-    let failure = || {
-        let what = if guess.is_some() { "another guess" } else { "a guess" };
-        Failure::usage(format_args!(
-            "no positions of {} were found that close the loops of {} at these positions --q. Give {what} with \
-             --passive, or other positions",
-            names.join(", "),
-            robot.name
-        ))
-    };
-    found.map(|passive| without_turns(robot, passive)).ok_or_else(failure)
+    let (names, name) = (names.join(", "), &robot.name);
+    if let Some(guess) = guess {
+        let found = newton(&arm, q, guess.to_vec()).ok_or_else(|| {
+            Failure::usage(format_args!(
+                "--passive leads to no positions of {names} that close the loops of {name} at these positions --q: \
+                 the loops may be open at all of them. Give another guess, or other positions"
+            ))
+        });
+        return found.map(|passive| without_turns(robot, passive));
+    }
+    let mut nearest: Option<(f64, Vec<f64>)> = None;
+    for closure in &robot.closed.closures {
+        match reached(robot, &arm, closure, q) {
+            Ok(passive) => return Ok(without_turns(robot, passive)),
+            Err(end) => {
+                let left = end.iter().zip(q).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+                if nearest.as_ref().is_none_or(|(least, _)| left < *least) {
+                    nearest = Some((left, end));
+                }
+            }
+        }
+    }
+    let end = nearest.map_or_else(Vec::new, |(_, end)| end);
+    let end = end.into_iter().map(six_digits).collect::<Vec<_>>().join(", ");
+    Err(Failure::usage(format_args!(
+        "no assembly of {name} that was found reaches these positions --q: the nearest one ends at a singular position, \
+         or the loops open, at q = {end}. Give other positions, or with --passive a guess of {names} for another assembly"
+    )))
 }
 
-/// A note where the loops are close to a singular position: dependent joints then move much faster than the others, and
-/// torques are as much larger.
-pub(crate) fn remark(robot: &Robot, arm: &DynArm, state: &State) -> String {
-    const FAST: f64 = 1e3;
-    let map = arm.loop_map(&state.q, &state.passive).unwrap_or_default();
-    let speeds = map.iter().map(|row| row.iter().fold(0.0_f64, |largest, x| largest.max(x.abs())));
-    let fastest = robot.closed.passive.iter().zip(speeds).max_by(|a, b| a.1.total_cmp(&b.1));
-    match fastest.filter(|(_, speed)| *speed > FAST) {
-        Some((&joint, speed)) => format!(
-            "note: the loops are close to a singular position: {} moves {} times as fast as the joints of q, so \
-             positions of few digits give torques of fewer\n",
-            robot.joints[joint].name,
-            six_digits(speed)
-        ),
-        None => String::new(),
+/// A note where the loops are close to a singular position: positions of few digits then give torques of fewer, and
+/// other assemblies are near.
+///
+/// Another note where nothing chose the assembly and it is not that of the first configuration.
+pub(crate) fn remark(robot: &Robot, arm: &DynArm, state: &State, is_chosen: bool) -> String {
+    if state.passive.is_empty() {
+        return String::new();
     }
+    let first =
+        (!is_chosen).then(|| robot.closed.closures.first().map(|closure| reached(robot, arm, closure, &state.q)));
+    let other = match first.flatten() {
+        Some(Err(end)) => {
+            let end = end.into_iter().map(six_digits).collect::<Vec<_>>().join(", ");
+            format!(
+                "note: the assembly of the first configuration of the file ends, or meets another one, near q = {end} on \
+                 the way to this position; the numbers are of another assembly, and --passive chooses one\n"
+            )
+        }
+        _ => String::new(),
+    };
+    let least = pivots(robot, arm, &state.q, &state.passive).iter().fold(f64::INFINITY, |least, x| least.min(x.abs()));
+    let part = least / robot.closed.singular_values[1];
+    if part >= NEARLY_SINGULAR {
+        return other;
+    }
+    other
+        + &format!(
+            "note: the loops are close to a singular position, where the dependent joints do not follow from q (a pivot \
+             of their equations is {} of the largest singular value): torques can be very large, and have fewer digits \
+             than the positions\n",
+            three_digits(part)
+        )
+}
+
+/// The closure that is reached from a configuration of the file, or where the way to it ends.
+fn reached(robot: &Robot, arm: &DynArm, closure: &[f64], q: &[f64]) -> Result<Vec<f64>, Vec<f64>> {
+    let of = |joints: &mut dyn Iterator<Item = usize>| joints.map(|at| closure[at]).collect::<Vec<f64>>();
+    let start = of(&mut robot.coordinates());
+    continued(robot, arm, [&start, q], of(&mut robot.closed.passive.iter().copied()))
+}
+
+/// A number with three digits.
+fn three_digits(x: f64) -> String {
+    format!("{x:.2e}").parse().map_or_else(|_| six_digits(x), six_digits)
 }
 
 /// The closure that Newton's method finds from a guess.
@@ -73,17 +115,73 @@ fn newton(arm: &DynArm, q: &[f64], mut passive: Vec<f64>) -> Option<Vec<f64>> {
     None
 }
 
-/// The closure at the end of a straight way of the other joints, stride by stride.
-fn continued(arm: &DynArm, [from, to]: [&[f64]; 2], mut passive: Vec<f64>) -> Option<Vec<f64>> {
-    let longest = from.iter().zip(to).fold(0.0_f64, |longest, (a, b)| longest.max((b - a).abs()));
-    let strides = (longest / STRIDE).ceil().clamp(1.0, STRIDES);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most a thousand
-    for stride in 1..=strides as u32 {
-        let part = f64::from(stride) / strides;
-        let q: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + part * (b - a)).collect();
-        passive = newton(arm, if part == 1.0 { to } else { &q }, passive)?;
+/// The pivots of the equations in the order of elimination, by differences of the residuals. Their product is the
+/// determinant, which changes its sign where an assembly ends or meets another one.
+fn pivots(robot: &Robot, arm: &DynArm, q: &[f64], passive: &[f64]) -> Vec<f64> {
+    const STEP: f64 = 1e-6;
+    let order = &robot.closed.elimination;
+    let column = |joint: usize| {
+        let [ahead, behind] = [STEP, -STEP].map(|step| {
+            let mut moved = passive.to_vec();
+            moved[joint] += step;
+            arm.closure_step(q, &moved).map(|(_, residual)| residual).unwrap_or_default()
+        });
+        let slope = |equation: usize| (ahead.get(equation).zip(behind.get(equation))).map_or(0.0, |(a, b)| a - b);
+        order.iter().map(|row| slope(row.equation) / (2.0 * STEP)).collect::<Vec<f64>>()
+    };
+    // by columns, in the order of elimination
+    let mut matrix: Vec<Vec<f64>> = order.iter().map(|pivot| column(pivot.passive)).collect();
+    for step in 0..matrix.len() {
+        for later in step + 1..matrix.len() {
+            let factor = matrix[later][step] / matrix[step][step];
+            for row in step..matrix.len() {
+                matrix[later][row] -= factor * matrix[step][row];
+            }
+        }
     }
-    Some(passive)
+    (0..matrix.len()).map(|step| matrix[step][step]).collect()
+}
+
+/// The closure at the end of a straight way of the other joints: each stride begins with the velocities that the loops
+/// allow, and is halved where the closure is not near. If the assembly ends, or the determinant of its equations
+/// changes its sign, the error has the positions of the other joints there.
+fn continued(
+    robot: &Robot,
+    arm: &DynArm,
+    [from, to]: [&[f64]; 2],
+    mut passive: Vec<f64>,
+) -> Result<Vec<f64>, Vec<f64>> {
+    let at = |part: f64| -> Vec<f64> { from.iter().zip(to).map(|(a, b)| a + part * (b - a)).collect() };
+    let is_negative = |q: &[f64], passive: &[f64]| {
+        pivots(robot, arm, q, passive).into_iter().filter(|pivot| *pivot < 0.0).count() % 2 == 1
+    };
+    let longest = from.iter().zip(to).fold(0.0_f64, |longest, (a, b)| longest.max((b - a).abs()));
+    let whole = 1.0 / (longest / STRIDE).ceil().clamp(1.0, STRIDES);
+    let sign = is_negative(from, &passive);
+    let (mut part, mut stride) = (0.0, whole);
+    while part < 1.0 {
+        let next = (part + stride).min(1.0);
+        // to the last bit at the end
+        let q = if next >= 1.0 { to.to_vec() } else { at(next) };
+        let step: Vec<f64> = q.iter().zip(at(part)).map(|(a, b)| a - b).collect();
+        let map = arm.loop_map(&at(part), &passive).unwrap_or_default();
+        let rates = map.iter().map(|row| row.iter().zip(&step).map(|(g, dq)| g * dq).sum::<f64>());
+        let expected: Vec<f64> = passive.iter().zip(rates).map(|(p, change)| p + change).collect();
+        let reach = expected.iter().zip(&passive).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let found = newton(arm, &q, expected.clone()).filter(|found| {
+            let off = found.iter().zip(&expected).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            off <= 0.5 * reach + 1e-9 && is_negative(&q, found) == sign
+        });
+        match found {
+            Some(found) => {
+                (passive, part) = (found, next);
+                stride = (2.0 * stride).min(whole);
+            }
+            None if stride > SHORTEST * whole => stride /= 2.0,
+            None => return Err(at(part)),
+        }
+    }
+    Ok(passive)
 }
 
 /// Positions without whole turns.

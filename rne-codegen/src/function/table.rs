@@ -265,9 +265,9 @@ macro_rules! functions {
                  is singular, the numbers are not finite.";
             LoopMap = loop_map(q: Positions, passive: Passive) -> PassiveRows:
                 "The matrix G of closed loops: the velocities of the dependent joints are G q̇.",
-                "passive: positions of the dependent joints that close the loops, as close finds them. map[i][j]: \
-                 velocity of dependent joint i per velocity of joint j. Its transpose maps torques of dependent joints to \
-                 torques of q. In a singular position the numbers are not finite.";
+                "passive: positions of the dependent joints that close the loops; steps of closure_step find them. \
+                 map[i][j]: velocity of dependent joint i per velocity of joint j. Its transpose maps torques of dependent \
+                 joints to torques of q. In a singular position the numbers are not finite.";
             LoopMapRateTimesVelocity =
                 loop_map_rate_times_velocity(q: Positions, passive: Passive, qd: Rates) -> PassiveVector:
                 "Accelerations of the dependent joints of closed loops where the others do not accelerate: Ġ q̇.",

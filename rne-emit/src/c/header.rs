@@ -144,7 +144,10 @@ fn joints(file: &File, upper: &str) -> String {
     let text = indices("Indices of the joints in arrays, by their names.", "JOINT", &mut robot.independent_joints());
     let passive = (!robot.closed.is_empty()).then(|| {
         let about = "Indices of the dependent joints in `passive`, and of their rows in the map, by their names.";
-        indices(about, "PASSIVE", &mut robot.closed.passive.iter().map(|&joint| &robot.joints[joint]))
+        let count = robot.closed.passive.len();
+        let count =
+            format!("\n/// Number of dependent joints, the length of `passive`.\n#define {upper}_PASSIVE {count}u\n");
+        count + &indices(about, "PASSIVE", &mut robot.closed.passive.iter().map(|&joint| &robot.joints[joint]))
     });
     text + &passive.unwrap_or_default() + "\n"
 }

@@ -20,6 +20,9 @@ const SIN_COS: [&str; 2] = [include_str!("sin_cos_f32.ptx"), include_str!("sin_c
 /// Threads of a block whose rows go through shared memory, and the bytes of it that every processor has for a block.
 const BLOCK: usize = 64;
 const MOST_SHARED: usize = 48 * 1024;
+/// Results of a state beyond which they go through shared memory. An H200 wrote the 49 of a mass matrix of the Panda
+/// nine times as fast so, and its 7 torques three times as slowly (docs/gpu.md).
+const WIDE: usize = 32;
 
 macro_rules! abouts {
     ($($name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;)*) => {
@@ -76,7 +79,8 @@ impl<'p> Kernel<'p> {
         let outputs = self.program.outputs.len();
         let staged: usize = arrays.iter().filter(|(.., is_used)| *is_used).map(|(_, length, _)| length).sum();
         let staged = (staged + outputs) * bytes * BLOCK;
-        let memory = if arrangement == Arrangement::Rows && staged <= MOST_SHARED { "shared" } else { "global" };
+        let is_staged = arrangement == Arrangement::Rows && outputs > WIDE && staged <= MOST_SHARED;
+        let memory = if is_staged { "shared" } else { "global" };
         let mut writing = Writing {
             kernel: self,
             arrangement,
