@@ -67,7 +67,7 @@ pub(crate) struct Arguments {
     /// Keep the links, and links fixed to them, as named frames: the list `frames` of the robot file
     #[arg(long)]
     frames: bool,
-    /// YAML file with closed loops of a URDF [default: robot.yaml beside robot.urdf]
+    /// YAML file with closed loops of a URDF [default: NAME.yaml beside NAME.urdf]
     #[arg(long, value_name = "YAML")]
     loops: Option<PathBuf>,
     /// Accept inertias that no physical body can have

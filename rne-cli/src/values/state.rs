@@ -100,7 +100,8 @@ impl State {
     pub(crate) fn new(function: Function, given: Given<'_>, robot: &Robot) -> Result<Self, Failure> {
         use Argument::{Accelerations, Base, Positions, Rates, Torques};
         let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
-        let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
+        let which = if robot.closed.is_empty() { "" } else { " that is not dependent" };
+        let per_joint = format!("one number for each joint of {}{which}: {}", robot.name, joints.join(", "));
         let of_joints = |name, list, kind| argument(function, name, list, kind, robot.dof(), &per_joint);
         let q = of_joints("--q", given.q, Positions)?;
         let passive = passive(function, given.passive, q.as_deref(), robot)?;

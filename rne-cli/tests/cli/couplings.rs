@@ -1,6 +1,6 @@
 //! Robots some of whose joints follow others.
 
-use crate::call::{fails, fine, folder, rne, rne_reading};
+use crate::call::{ROOT, fails, fine, folder, rne, rne_reading};
 use crate::certify::has_tools;
 use std::fmt::Write as _;
 
@@ -168,7 +168,7 @@ fn closed_loops_are_computed() {
     // a guess decides which closure is found: the other has the rocker below
     let other = torque(&["--passive", "-0.8,-1.8"]);
     assert!((torque(&["--passive", "0.3,1.2"]) - closed).abs() < 1e-12 * closed.abs() && (other - closed).abs() > 0.1);
-    fails(2, &["eval", FOUR_BAR, "--q", "0.3", "--passive", "1e300,1"], &["Give another guess with --passive"]);
+    fails(2, &["eval", FOUR_BAR, "--q", "0.3", "--passive", "1e300,1"], &["Give another guess, or other positions"]);
     // without one the assembly is the same all the way round, and after two turns
     let rocker = |q: &str| {
         let text = fine(&["eval", FOUR_BAR, "--q", q, "--qd", "0", "--qdd", "0"]);
@@ -184,6 +184,28 @@ fn closed_loops_are_computed() {
     let functions = fine(&["ops", FOUR_BAR]);
     assert!(functions.contains("closure_step") && !functions.contains(" mass_matrix "), "{functions}");
     assert!(rne(&["ops", FOUR_BAR, "--function", "mass_matrix"]).status != 0, "no function of loops");
+}
+
+/// The rods of the ankle reach no further than 0.77 rad with this foot: what is behind is another assembly, with a foot
+/// that is turned over. A parallelogram and its crossed bars meet where all bars lie on one line.
+#[test]
+fn the_end_of_an_assembly_is_told() {
+    let ankle = "benches/trees/loops/g1_ankle.yaml";
+    let run = |q: &str| rne(&["eval", ankle, "--q", q, "--qd", "0,0", "--qdd", "0,0"]);
+    let within = run("0.74,-0.74");
+    assert!(within.status == 0 && !within.err.contains("assembly") && within.out.contains("roll = 0.98"), "{within:?}");
+    let beyond = run("0.8,-0.8");
+    let told = "note: the assembly of the first configuration of the file ends, or meets another one, near q = 0.76";
+    assert!(beyond.status == 0 && beyond.err.contains(told), "{beyond:?}");
+    let text = std::fs::read_to_string(format!("{ROOT}/{FOUR_BAR}")).expect("a file");
+    let parallelogram = text.replace(
+        "xyz: [0.45, 0, 0]}, {on: rocker, xyz: [0.3, 0, 0]}",
+        "xyz: [0.5, 0, 0]}, {on: rocker, xyz: [0.2, 0, 0]}",
+    );
+    assert_ne!(text, parallelogram);
+    let arguments = ["eval", "-", "--qd", "1", "--qdd", "0", "--passive", "-0.00001,0.00001", "--q", "0.00001"];
+    let near = rne_reading(&arguments, &parallelogram);
+    assert!(near.status == 0 && near.err.contains("the loops are close to a singular position"), "{near:?}");
 }
 
 /// A table of states has a column for each dependent joint.
