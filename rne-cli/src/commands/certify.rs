@@ -191,6 +191,7 @@ impl Arguments {
         precision: Precision,
     ) -> Result<CCode, Failure> {
         let request = Request {
+            casadi: false,
             file: &self.file,
             bytes,
             prefix: self.prefix.as_ref(),

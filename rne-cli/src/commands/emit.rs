@@ -31,6 +31,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c --real double --prefix arm
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
   rne emit docs/desk_arm_identified.yaml --lang c --friction --limits
+  rne emit robots/panda.yaml --lang c --casadi -o panda.c    for CasADi
 
 Without --function rne writes the functions of the trait InverseDynamics. If the
 file of --check is out of date, rne exits with status 1 and prints the command
@@ -73,6 +74,9 @@ pub(crate) struct Arguments {
     /// Add effort limits to C code: limit_torques
     #[arg(long)]
     limits: bool,
+    /// Add functions that CasADi calls, with derivatives; numbers are double
+    #[arg(long, conflicts_with = "run_time")]
+    casadi: bool,
     /// Add the index of each joint under its name
     #[arg(long)]
     names: bool,
@@ -204,14 +208,22 @@ fn emitted(
     header: Option<Header>,
 ) -> Result<Outcome, Failure> {
     let programs = programs(arguments, robot)?;
+    if arguments.casadi && !programs.iter().any(rne_emit::is_for_casadi) {
+        return Err(Failure::usage(format_args!(
+            "CasADi can call none of these functions: it calls functions that take vectors and return a number, a \
+             vector or a matrix, such as {TYPED}--function inverse_dynamics,forward_dynamics{TYPED:#}"
+        )));
+    }
+    let precision = if arguments.casadi { Real::Double } else { arguments.real.unwrap_or(Real::Float) }.precision();
     let request = Request {
         file: &arguments.file,
         bytes,
         prefix: arguments.prefix.as_ref(),
-        precision: arguments.real.map_or_else(Precision::default, Real::precision),
+        precision,
         friction: arguments.friction,
         limits: arguments.limits,
         names: arguments.names_joints(robot),
+        casadi: arguments.casadi,
         tests: arguments.tests,
         ascii: arguments.ascii,
     };
@@ -280,7 +292,14 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
         ("--prefix", arguments.prefix.is_some()),
         ("--friction", arguments.friction),
         ("--limits", arguments.limits),
+        ("--casadi", arguments.casadi),
     ];
+    if arguments.casadi && arguments.real == Some(Real::Float) {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--real float{TYPED:#} is not for CasADi, which computes in double precision. Write \
+             {TYPED}--real double{TYPED:#}"
+        )));
+    }
     match options.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
         None => Ok(()),
         Some(("--real", _)) => Err(Failure::usage(format_args!(
@@ -290,6 +309,9 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
         Some((option @ ("--friction" | "--limits"), _)) => Err(Failure::usage(format_args!(
             "{TYPED}{option}{TYPED:#} is for C. Add {TYPED}--lang c{TYPED:#}; in Rust, the derive `Actuation` computes \
              friction, and `f64::clamp` limits a torque"
+        ))),
+        Some(("--casadi", _)) => Err(Failure::usage(format_args!(
+            "{TYPED}--casadi{TYPED:#} is for C: CasADi calls functions of C. Add {TYPED}--lang c{TYPED:#}"
         ))),
         Some((option, _)) => Err(Failure::usage(format_args!(
             "{TYPED}{option}{TYPED:#} is for C: a file of Rust is a module with a name of its own. Leave it out, or \
@@ -315,6 +337,9 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         return choice::functions_of(robot).collect();
     }
     let is_asked = |function: &Function| match asked.as_slice() {
+        [] if arguments.casadi && robot.closed.is_empty() => {
+            matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
+        }
         [] if !arguments.frames.is_empty() => function.of_frame().is_some(),
         // tips are there for their wrenches
         [] => {
@@ -329,7 +354,12 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         [] => Function::of_robot(robot).collect(),
         _ => Function::ALL.to_vec(),
     };
-    of_robot.into_iter().filter(is_asked).collect()
+    let asked: Vec<Function> = of_robot.into_iter().filter(is_asked).collect();
+    let for_derivatives = asked.iter().filter(|_| arguments.casadi);
+    let for_derivatives: Vec<Function> =
+        for_derivatives.flat_map(|&function| rne_emit::casadi_derivatives(function)).collect();
+    let is_needed = |function: &Function| asked.contains(function) || for_derivatives.contains(function);
+    Function::ALL.into_iter().filter(is_needed).collect()
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
