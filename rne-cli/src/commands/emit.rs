@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     /// Prefix of names in C code [default: the robot's name]
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
-    /// Functions to write, F,F,… or `all`; see `rne explain functions`
+    /// Functions, F,F,… or `all`: `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
@@ -65,7 +65,7 @@ pub(crate) struct Arguments {
     /// seven_steps in Rust]
     #[arg(long, value_name = "F", value_parser = choice::form(), hide_possible_values = true)]
     form: Option<Form>,
-    /// Names of parameters of FILE that become function arguments, NAME,NAME,…; the others are constants in the code
+    /// Parameters of FILE that become function arguments, NAME,NAME,…; the others are constants
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     run_time: Vec<String>,
     /// Add friction of the joints to C code: friction_torques
@@ -74,13 +74,13 @@ pub(crate) struct Arguments {
     /// Add effort limits to C code: limit_torques
     #[arg(long)]
     limits: bool,
-    /// Add functions that CasADi calls, with derivatives; numbers are double
+    /// Add functions for CasADi, in double precision; docs/optimal-control.md lists those with derivatives
     #[arg(long, conflicts_with = "run_time")]
     casadi: bool,
     /// Add the index of each joint under its name
     #[arg(long)]
     names: bool,
-    /// Add functions for sine and cosine to Rust code; C code always contains them
+    /// Add sine and cosine to Rust code; C always has them
     #[arg(long)]
     with_sin_cos: bool,
     /// Add tests that compare results of the code with `rne::Arm` and check laws of mechanics
