@@ -105,8 +105,8 @@ impl Arm {
 
     /// A function as code that needs nothing: `language` is `c` (a header and a source in one text) or `rust`.
     ///
-    /// `precision`: of C, `double` or `single`. `casadi`: of C in double precision, add the functions that CasADi calls,
-    /// with derivatives, and the functions that these need.
+    /// `precision`: of C, `double` or `single`. `casadi`: of C in double precision, add the functions that CasADi
+    /// calls, with derivatives, and the functions that these need.
     #[pyo3(signature = (
         language="c", functions=vec!["inverse_dynamics".to_owned()], *, form=None, precision="double", casadi=false,
     ))]

@@ -296,3 +296,35 @@ def test_the_page_runs_as_it_stands(tmp_path):
     q, qd, qdd = np.random.default_rng(4).uniform(-1, 1, size=(3, 7))
     loaded = eval(call.replace("./panda.so", str(tmp_path / "panda.so")), {"casadi": ca})  # noqa: S307
     assert difference(loaded(q, qd, qdd), rne.robots.panda.inverse_dynamics(q, qd, qdd)[:, None]) < 1e-13
+
+
+def test_functions_for_acados_are_those_that_casadi_generates(tmp_path):
+    """By the expressions of acados's own generator, with its integers."""
+    program = os.environ.get("RNE")
+    if program is None or shutil.which("cc") is None:
+        pytest.skip("RNE names no command line, or there is no cc")
+    code = [program, "emit", str(ROBOTS / "puma560.yaml"), "--lang", "c", "--casadi", "--acados", "-o", "arm.c"]
+    subprocess.run(code, cwd=tmp_path, check=True)
+    subprocess.run(["cc", "-std=c99", "-O2", "-fPIC", "-shared", "arm.c", "-o", "arm.so"], cwd=tmp_path, check=True)
+    # as acados reads them
+    subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Dcasadi_int=int", "-c", "arm.c"], cwd=tmp_path,
+                   check=True)
+    x, u, p = ca.MX.sym("x", 12), ca.MX.sym("u", 6), ca.MX.sym("p", 0, 0)
+    from_x, from_u, multipliers = ca.MX.sym("Sx", 12, 12), ca.MX.sym("Su", 12, 6), ca.MX.sym("lambda", 12)
+    rate = ca.vertcat(x[6:], Expressions("puma560").forward_dynamics(x[:6], x[6:], u))
+    forward = [rate, ca.jtimes(rate, x, from_x), ca.jacobian(rate, u) + ca.jtimes(rate, x, from_u)]
+    theirs = {
+        "expl_ode_fun": ([x, u, p], [rate]),
+        "expl_vde_forw": ([x, from_x, from_u, u, p], forward),
+        "expl_vde_adj": ([x, multipliers, u, p], [ca.jtimes(rate, ca.vertcat(x, u), multipliers, True)]),
+    }
+    random = np.random.default_rng(8)
+    for name, (inputs, outputs) in theirs.items():
+        found = ca.external(f"puma560_{name}", str(tmp_path / "arm.so"))
+        expected = ca.Function(name, inputs, outputs)
+        sizes = [[function.size_in(index) for index in range(function.n_in())] for function in (found, expected)]
+        assert sizes[0] == sizes[1]
+        for _ in range(10):
+            arguments = [random.uniform(-1, 1, size=size) for size in sizes[0]]
+            for ours_out, theirs_out in zip(found.call(arguments), expected.call(arguments), strict=True):
+                assert difference(ours_out, theirs_out) < 1e-8, name

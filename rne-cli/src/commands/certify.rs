@@ -192,6 +192,7 @@ impl Arguments {
     ) -> Result<CCode, Failure> {
         let request = Request {
             casadi: false,
+            acados: false,
             file: &self.file,
             bytes,
             prefix: self.prefix.as_ref(),

@@ -28,7 +28,6 @@ Examples:
   rne emit robots/puma560.yaml --function all -o puma.rs     all functions
   rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
   rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
-  rne emit robots/puma560.yaml --lang c --real double --prefix arm
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
   rne emit docs/desk_arm_identified.yaml --lang c --friction --limits
   rne emit robots/panda.yaml --lang c --casadi -o panda.c    for CasADi
@@ -77,6 +76,9 @@ pub(crate) struct Arguments {
     /// Add functions for CasADi, in double precision; docs/optimal-control.md lists those with derivatives
     #[arg(long, conflicts_with = "run_time")]
     casadi: bool,
+    /// Add functions for acados to those for CasADi
+    #[arg(long, requires = "casadi")]
+    acados: bool,
     /// Add the index of each joint under its name
     #[arg(long)]
     names: bool,
@@ -224,6 +226,7 @@ fn emitted(
         limits: arguments.limits,
         names: arguments.names_joints(robot),
         casadi: arguments.casadi,
+        acados: arguments.acados,
         tests: arguments.tests,
         ascii: arguments.ascii,
     };
@@ -337,6 +340,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         return choice::functions_of(robot).collect();
     }
     let is_asked = |function: &Function| match asked.as_slice() {
+        _ if arguments.acados && *function == Function::ForwardDynamics => true,
         [] if arguments.casadi && robot.closed.is_empty() => {
             matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
         }

@@ -51,20 +51,21 @@ pub(super) struct Request<'a> {
     pub(super) limits: bool,
     pub(super) names: bool,
     pub(super) casadi: bool,
+    pub(super) acados: bool,
     pub(super) tests: bool,
     pub(super) ascii: bool,
 }
 
 /// The code, with the tests that are asked for.
 pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
-    let &Request { file, precision, limits, names, casadi, .. } = request;
+    let &Request { file, precision, limits, names, casadi, acados, .. } = request;
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     // without its folder: the same file gives the same bytes wherever it is
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let name = if is_stream(file) { "on standard input" } else { &*name };
     let origin = Origin::new(name, &rne_certify::sha256(request.bytes));
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
-    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names, casadi };
+    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names, casadi, acados };
     if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
         let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
         let follower =

@@ -15,12 +15,25 @@ fn functions_and_derivatives_are_those_of_the_file() {
     for robot in ["planar2", "stanford", "trees/hyq"] {
         let folder = folder(&format!("casadi_{}", robot.replace('/', "_")));
         let (file, out) = (format!("robots/{robot}.yaml"), path(&folder, "arm.c"));
-        let emit = ["emit", &file, "--lang", "c", "--casadi", "--prefix", "arm", "--function", FUNCTIONS, "-o", &out];
+        let emit = [
+            "emit",
+            &file,
+            "--lang",
+            "c",
+            "--casadi",
+            "--acados",
+            "--prefix",
+            "arm",
+            "--function",
+            FUNCTIONS,
+            "-o",
+            &out,
+        ];
         assert_eq!(rne(&emit).status, 0, "{robot}");
         fs::write(folder.join("driver.c"), include_str!("casadi/driver.c")).expect("written");
         let options = ["-Wshadow", "-Wmissing-prototypes", "-Wdouble-promotion"];
         let code = fs::read_to_string(folder.join("arm.c")).expect("it was written");
-        assert!(code.contains("ARM_EXTERNAL(jac_forward_dynamics, 4, 3)"), "{robot}");
+        assert!(code.contains("arm_external(jac_forward_dynamics, 4, 3)"), "{robot}");
         let Some(said) = printed(&folder, &["arm.c", "driver.c"], &options) else { return };
         let count = said.strip_suffix(" numbers\n").and_then(|count| count.parse().ok()).unwrap_or(0);
         assert!(count > 500, "{robot}: {said}");
@@ -60,5 +73,15 @@ fn what_casadi_cannot_call_is_refused() {
     fails(2, &["emit", "planar2", "--casadi"], &["--casadi is for C", "--lang c"]);
     fails(2, &[&c[..], &["--run-time", "m1"]].concat(), &["--casadi", "--run-time"]);
     let mass = fine(&[&c[..], &["--function", "mass_matrix"]].concat());
-    assert!(mass.contains("PLANAR2_EXTERNAL(mass_matrix, 1, 1)") && !mass.contains("jac_"), "no derivatives");
+    assert!(mass.contains("planar2_external(mass_matrix, 1, 1)") && !mass.contains("jac_"), "no derivatives");
+}
+
+#[test]
+fn a_prefix_may_be_a_word_of_the_template() {
+    let folder = folder("casadi_prefix");
+    for prefix in ["DOF", "PREFIX", "LONGEST"] {
+        let code = fine(&["emit", "planar2", "--lang", "c", "--casadi", "--acados", "--prefix", prefix]);
+        fs::write(folder.join("arm.c"), code + "int main(void) { return 0; }\n").expect("written");
+        printed(&folder, &["arm.c"], &[]);
+    }
 }

@@ -20,7 +20,7 @@ extern "C" {
 #endif
 
 // The functions that describe `f` to CasADi, and the head of `f`. They keep no memory: threads may share them.
-#define UPPER_EXTERNAL(f, inputs, outputs) \
+#define PREFIX_external(f, inputs, outputs) \
     CASADI_SYMBOL_EXPORT casadi_int f##_n_in(void); \
     CASADI_SYMBOL_EXPORT casadi_int f##_n_out(void); \
     CASADI_SYMBOL_EXPORT const char *f##_name_in(casadi_int i); \

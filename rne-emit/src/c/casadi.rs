@@ -8,18 +8,21 @@ use std::fmt::Write;
 
 use rne_codegen::{ArgumentArray, Function, Layout, Program, Value};
 
-use super::signature::{inputs, record_type};
+use super::signature::{inputs, record_type, wrapped};
 use super::{File, comment};
 use crate::parameters;
 
-/// The part that is the same for all functions; PREFIX, UPPER, LONGEST are replaced.
+/// The part that is the same for all functions; PREFIX, DOF and LONGEST are replaced.
 const INTERFACE: &str = include_str!("casadi.c");
 
-/// What the derivatives need; DOF is replaced too.
+/// The operations on matrices that the derivatives need.
 const MATRICES: &str = include_str!("casadi_matrices.c");
 
-/// What the derivatives need that have no gradient of their own.
+/// The operation that derivatives without a gradient need.
 const TRANSPOSED: &str = include_str!("casadi_transposed.c");
+
+/// The bodies of the functions for acados, in the order of [`Writer::of_acados`].
+const ACADOS: &str = include_str!("acados.c");
 
 /// Matrices that one call of a function of the file gives: the field of the result, and the input by which the result
 /// of the CasADi function is derived.
@@ -100,27 +103,27 @@ pub(super) fn definitions(file: &File) -> String {
     }
     let mut writer = Writer { file, patterns: Vec::new() };
     let programs: Vec<&Program> = file.programs.iter().filter(|program| is_for_casadi(program)).collect();
-    let interfaces: Vec<Interface> = programs.iter().flat_map(|program| writer.interfaces(program)).collect();
+    let mut interfaces: Vec<Interface> = programs.iter().flat_map(|program| writer.interfaces(program)).collect();
+    if file.additions.acados {
+        interfaces.extend(writer.of_acados());
+    }
     let derived: Vec<Derivatives> = programs.iter().filter_map(|program| writer.sources(program)).collect();
     let longest = programs.iter().flat_map(|program| inputs(program)).map(|array| array.elements.len()).max();
 
     let mut text = "\n".to_owned();
-    let replaced = |text: &str| {
-        let text = text.replace("PREFIX", file.prefix).replace("UPPER", &file.prefix.to_ascii_uppercase());
-        text.replace("LONGEST", &longest.unwrap_or(1).to_string()).replace("DOF", &file.robot.dof().to_string())
-    };
-    text.push_str(&replaced(INTERFACE));
+    let interface = INTERFACE.replace("LONGEST", &longest.unwrap_or(1).to_string());
+    text.push_str(&writer.filled(&interface));
     if !derived.is_empty() {
-        text.push_str(&replaced(MATRICES));
+        text.push_str(&writer.filled(MATRICES));
     }
     if derived.iter().any(|derivatives| derivatives.gradient.is_none()) {
-        text.push_str(&replaced(TRANSPOSED));
+        text.push_str(&writer.filled(TRANSPOSED));
     }
     text.push_str("\n// rows, columns; then 1 if all elements are there, else starts of the columns and the rows\n");
     for (index, pattern) in writer.patterns.iter().enumerate() {
         let numbers: Vec<String> = pattern.iter().map(ToString::to_string).collect();
         let start = format!("static const casadi_int {}_pattern_{index}[] = {{", file.prefix);
-        text.push_str(&super::signature::wrapped(&start, &numbers).trim_end_matches(')').to_owned());
+        text.push_str(wrapped(&start, &numbers).trim_end_matches(')'));
         text.push_str("};\n");
     }
     for interface in &interfaces {
@@ -137,6 +140,11 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
+    /// Text with the numbers and names of the file. The prefix comes last: it may be any word.
+    fn filled(&self, text: &str) -> String {
+        text.replace("DOF", &self.file.robot.dof().to_string()).replace("PREFIX", self.file.prefix)
+    }
+
     /// The name of compressed columns.
     fn pattern(&mut self, pattern: Vec<usize>) -> String {
         let index = self.patterns.iter().position(|other| *other == pattern).unwrap_or_else(|| {
@@ -150,7 +158,7 @@ impl Writer<'_> {
         self.pattern(vec![rows, columns, 1])
     }
 
-    /// The compressed columns of a square matrix whose elements, row by row, stand behind the first `skipped` outputs.
+    /// The compressed columns of a square matrix whose elements, row by row, stand after the first `skipped` outputs.
     fn square(&mut self, program: &Program, skipped: usize) -> String {
         let dof = program.dof;
         let is_there = |row: usize, column: usize| {
@@ -230,6 +238,37 @@ impl Writer<'_> {
             body: self.reverse(&arrays, &derivatives),
         };
         vec![value, jacobian, forward, reverse]
+    }
+
+    /// The functions of an explicit differential equation as acados has CasADi generate them: x = (q, qd), u = tau, and
+    /// no parameters p. The derivatives of x by where it began, Sx and Su, are in columns.
+    fn of_acados(&mut self) -> Vec<Interface> {
+        let (prefix, dof) = (self.file.prefix, self.file.robot.dof());
+        let functions: [(&str, &[&str], &[&str]); 3] = [
+            ("expl_ode_fun", &["x", "u", "p"], &["xdot"]),
+            ("expl_vde_forw", &["x", "Sx", "Su", "u", "p"], &["xdot", "Sxdot", "Sudot"]),
+            ("expl_vde_adj", &["x", "lambda", "u", "p"], &["adj"]),
+        ];
+        let bodies = ACADOS.split("// next function\n");
+        let bodies: Vec<String> = bodies.map(|body| self.filled(body)).collect();
+        let mut named = |names: &[&str]| -> Vec<(String, String)> {
+            let pattern = |name: &str| match name {
+                "Sx" | "Sxdot" => vec![2 * dof, 2 * dof, 1],
+                "Su" | "Sudot" => vec![2 * dof, dof, 1],
+                "u" => vec![dof, 1, 1],
+                "p" => vec![0, 0, 0],
+                "adj" => vec![3 * dof, 1, 1],
+                _ => vec![2 * dof, 1, 1],
+            };
+            names.iter().map(|&name| (name.to_owned(), self.pattern(pattern(name)))).collect()
+        };
+        let interface = |((name, inputs, outputs), body): ((&str, &[&str], &[&str]), String)| Interface {
+            name: format!("{prefix}_{name}"),
+            inputs: named(inputs),
+            outputs: named(outputs),
+            body,
+        };
+        functions.into_iter().zip(bodies).map(interface).collect()
     }
 
     /// The compressed columns of the derivatives by each input.
@@ -345,7 +384,7 @@ impl Writer<'_> {
     /// The tables and the code of a function.
     fn definition(&self, interface: &Interface) -> String {
         let Interface { name, inputs, outputs, body } = interface;
-        let (prefix, upper) = (self.file.prefix, self.file.prefix.to_ascii_uppercase());
+        let prefix = self.file.prefix;
         let all = || inputs.iter().chain(outputs);
         let list = |items: Vec<String>| crate::wrap::fill(&items.join(", "), crate::wrap::WIDTH, "    ", "    ");
         let names = list(all().map(|(name, _)| format!("\"{name}\"")).collect());
@@ -355,7 +394,7 @@ impl Writer<'_> {
         format!(
             "\n{about}static const char *const {prefix}_names_{name}[] = {{\n{names}\n}};\n\
              static const casadi_int *const {prefix}_patterns_{name}[] = {{\n{patterns}\n}};\n\
-             {upper}_EXTERNAL({name}, {}, {})\n{{\n    (void)arg;\n    (void)iw;\n    (void)w;\n    (void)mem;\n\
+             {prefix}_external({name}, {}, {})\n{{\n    (void)arg;\n    (void)iw;\n    (void)w;\n    (void)mem;\n\
              {body}    return 0;\n}}\n",
             inputs.len(),
             outputs.len()

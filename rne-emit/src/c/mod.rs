@@ -83,6 +83,7 @@ pub fn c_code(
 
 /// The parts of a file of C beside the programs.
 #[derive(Clone, Copy, Debug, Default)]
+#[allow(clippy::struct_excessive_bools)] // each is an option
 pub struct Additions<'a> {
     /// The robot file that the heading names.
     pub origin: Option<&'a Origin>,
@@ -97,6 +98,9 @@ pub struct Additions<'a> {
     /// Whether CasADi can call the programs for which [`is_for_casadi`] is true, with derivatives where the functions
     /// of [`casadi_derivatives`] are among the programs. Needs [`Precision::Double`].
     pub casadi: bool,
+    /// Whether acados can integrate the robot, too: the functions of an explicit differential equation. Needs `casadi`,
+    /// and among the programs `forward_dynamics` and `forward_dynamics_derivatives`.
+    pub acados: bool,
 }
 
 /// The code of [`c_code`], with additions.
