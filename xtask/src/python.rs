@@ -20,6 +20,9 @@ const TESTS: [&str; 1] = ["pytest>=8"];
 /// yaml.
 const PEERS: [&str; 4] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0", "pyyaml>=6"];
 
+/// Packages that the tests need to call the functions of the wheel from CasADi.
+const CASADI: [&str; 2] = ["casadi==3.8.2", "pyyaml>=6"];
+
 /// Whose columns the wheel reads.
 const COLUMNS: [&str; 3] = ["pandas>=2", "polars>=1.8", "pyarrow>=17"];
 
@@ -37,9 +40,9 @@ const FIRST: &str = "import rne\n\
 /// Builds the Python wheel and tests it in a clean environment
 ///
 /// The wheel is built by maturin, installed with numpy into an empty virtual environment, and tested there: against
-/// numpy on random arms, against the command line on logs, and with --peers against Pinocchio on real arms; then the
-/// notebooks run. With --install it is
-/// tried once more in an environment that is made anew, where no compiler is on PATH.
+/// numpy on random arms, against the command line on logs, with --peers against Pinocchio on real arms, and with
+/// --casadi against expressions that CasADi derives; then the notebooks run. With --install it is tried once more in an
+/// environment that is made anew, where no compiler is on PATH.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; what else it needs is fetched into target/python.
@@ -47,7 +50,7 @@ Needs python3 with venv; what else it needs is fetched into target/python.
 Examples:
   cargo xtask python              with what is installed there
   cargo xtask python --install    install it first
-  cargo xtask python --install --peers --notebooks
+  cargo xtask python --install --peers --casadi --notebooks
   cargo xtask python --install --sdist    minutes: pip builds it from sources")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Python {
@@ -57,6 +60,9 @@ pub(crate) struct Python {
     /// Compare with Pinocchio on the URDFs of packages
     #[arg(long)]
     pub(crate) peers: bool,
+    /// Have CasADi derive the dynamics and solve problems of optimal control
+    #[arg(long)]
+    pub(crate) casadi: bool,
     /// Run the notebooks of doors/python/notebooks
     #[arg(long)]
     pub(crate) notebooks: bool,
@@ -70,6 +76,7 @@ impl Python {
         let place = Place::new()?;
         let mut packages = [&TESTS[..], &COLUMNS].concat();
         packages.extend(PEERS.iter().filter(|_| self.peers));
+        packages.extend(CASADI.iter().filter(|_| self.casadi));
         packages.extend(NOTEBOOKS.iter().filter(|_| self.notebooks));
         let wheel = place.wheel(self.install)?;
         let python = place.user(&wheel, &packages, self.install)?;

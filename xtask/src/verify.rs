@@ -167,9 +167,9 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "python_peers",
-        about: "the wheel against Pinocchio, and the notebooks",
+        about: "the wheel against Pinocchio and with CasADi, and the notebooks",
         variables: &[],
-        command: &["cargo", "xtask", "python", "--install", "--peers", "--notebooks"],
+        command: &["cargo", "xtask", "python", "--install", "--peers", "--casadi", "--notebooks"],
         needs: Needs::Time,
     },
     Step {

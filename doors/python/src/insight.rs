@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use rne::DynArm;
 use rne::compiled::SearchOptions;
 use rne_diagnose::{Diagnosis, Observation};
-use rne_emit::{Precision, Prefix, Selection};
+use rne_emit::{Additions, Precision, Prefix, Selection};
 
 use crate::arm::{Arm, Origin, name};
 use crate::arrays::refuse_masked;
@@ -20,6 +20,20 @@ use crate::notebook;
 fn rows(py: Python<'_>, parameters: Vec<[f64; 10]>) -> PyResult<Bound<'_, PyAny>> {
     let parameters: Vec<Vec<f64>> = parameters.into_iter().map(Vec::from).collect();
     py.import("numpy")?.call_method1("array", (parameters,))
+}
+
+impl Arm {
+    /// Adds the functions by which CasADi's derivatives of the others are computed, each once.
+    fn add_derivatives(functions: &mut Vec<String>) -> PyResult<()> {
+        for asked in functions.clone() {
+            for needed in rne_emit::casadi_derivatives(name(&asked)?) {
+                if !functions.iter().any(|other| other == needed.name()) {
+                    functions.push(needed.name().to_owned());
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 #[pymethods]
@@ -91,10 +105,32 @@ impl Arm {
 
     /// A function as code that needs nothing: `language` is `c` (a header and a source in one text) or `rust`.
     ///
-    /// `precision`: of C, `double` or `single`.
-    #[pyo3(signature = (language="c", functions=vec!["inverse_dynamics".to_owned()], *, form=None, precision="double"))]
-    fn code(&self, language: &str, functions: Vec<String>, form: Option<&str>, precision: &str) -> PyResult<String> {
+    /// `precision`: of C, `double` or `single`. `casadi`: of C in double precision, add the functions that CasADi
+    /// calls, with derivatives, and the functions that these need.
+    #[pyo3(signature = (
+        language="c", functions=vec!["inverse_dynamics".to_owned()], *, form=None, precision="double", casadi=false,
+    ))]
+    fn code(
+        &self,
+        language: &str,
+        mut functions: Vec<String>,
+        form: Option<&str>,
+        precision: &str,
+        casadi: bool,
+    ) -> PyResult<String> {
+        if casadi {
+            if (language, precision) != ("c", "double") {
+                return Err(PyValueError::new_err("`casadi=True` is for C in double precision"));
+            }
+            Self::add_derivatives(&mut functions)?;
+        }
         let programs = functions.iter().map(|name| self.program(name, form)).collect::<PyResult<Vec<_>>>()?;
+        if casadi && !programs.iter().any(rne_emit::is_for_casadi) {
+            return Err(PyValueError::new_err(
+                "CasADi can call none of these functions: it calls functions that take vectors and no run-time \
+                 parameters, and return a number, a vector or a matrix, such as inverse_dynamics",
+            ));
+        }
         let precision = match precision {
             "double" => Precision::Double,
             "single" => Precision::Single,
@@ -102,13 +138,27 @@ impl Arm {
                 return Err(PyValueError::new_err(format!("`{other}` is not a precision; write double or single")));
             }
         };
+        let additions = Additions { casadi, ..Additions::default() };
         match language {
             "rust" => Ok(rne_emit::rust_file_with_sin_cos(self.robot(), &programs)),
-            "c" => rne_emit::c_code(self.robot(), &programs, precision, &Prefix::of(self.robot()))
+            "c" => rne_emit::c_code_with(self.robot(), &programs, precision, &Prefix::of(self.robot()), &additions)
                 .map(|code| code.one_file())
                 .map_err(|error| of_evaluation(&error)),
             other => Err(PyValueError::new_err(format!("`{other}` is not a language; write c or rust"))),
         }
+    }
+
+    /// A function as a `casadi.Function`, with its derivatives for optimisers such as IPOPT.
+    ///
+    /// A compiler of C, `$CC` or cc, gcc or clang, compiles its code once, to a library in the user's cache folder (the
+    /// variable RNE_CACHE names another). Inputs and outputs have the names, order and units of the function.
+    /// `inverse_dynamics`, `forward_dynamics`, `gravity_torques` and `bias_torques` have Jacobians, forward and reverse
+    /// derivatives by all inputs, computed without finite differences; other functions have none, and CasADi refuses
+    /// to derive them. Second derivatives: none; give IPOPT the option `hessian_approximation="limited-memory"`.
+    /// Needs the package casadi, 3.6 or later.
+    #[pyo3(signature = (function="inverse_dynamics"))]
+    fn casadi<'py>(slf: &Bound<'py, Self>, function: &str) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("rne.optimal_control")?.call_method1("external", (slf, function))
     }
 
     /// Why another tool's torques differ: the usual slips that give them, the likeliest first.

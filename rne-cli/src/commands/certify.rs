@@ -191,6 +191,8 @@ impl Arguments {
         precision: Precision,
     ) -> Result<CCode, Failure> {
         let request = Request {
+            casadi: false,
+            acados: false,
             file: &self.file,
             bytes,
             prefix: self.prefix.as_ref(),

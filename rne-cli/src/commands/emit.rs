@@ -31,6 +31,7 @@ Examples:
   rne emit robots/puma560.yaml --lang ptx --real double      for a GPU
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
   rne emit docs/desk_arm_identified.yaml --lang c --friction --limits
+  rne emit robots/panda.yaml --lang c --casadi -o panda.c    for CasADi
 
 Without --function rne writes the functions of the trait InverseDynamics. If the
 file of --check is out of date, rne exits with status 1 and prints the command
@@ -53,7 +54,7 @@ pub(crate) struct Arguments {
     /// Prefix of names, not in Rust [default: robot's name]
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
-    /// Functions to write, F,F,… or `all`; see `rne explain functions`
+    /// Functions, F,F,… or `all`: `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
@@ -64,7 +65,7 @@ pub(crate) struct Arguments {
     /// in Rust, reduced in others]
     #[arg(long, value_name = "F", value_parser = choice::form(), hide_possible_values = true)]
     form: Option<Form>,
-    /// Names of parameters of FILE that become function arguments, NAME,NAME,…; the others are constants in the code
+    /// Parameters of FILE that become function arguments, NAME,NAME,…; the others are constants
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     run_time: Vec<String>,
     /// Add friction of the joints to C code: friction_torques
@@ -73,10 +74,16 @@ pub(crate) struct Arguments {
     /// Add effort limits to C code: limit_torques
     #[arg(long)]
     limits: bool,
+    /// Add functions for CasADi, in double precision; docs/optimal-control.md lists those with derivatives
+    #[arg(long, conflicts_with = "run_time")]
+    casadi: bool,
+    /// Add functions for acados to those for CasADi
+    #[arg(long, requires = "casadi")]
+    acados: bool,
     /// Add the index of each joint under its name
     #[arg(long)]
     names: bool,
-    /// Add functions for sine and cosine to Rust code; C code always contains them
+    /// Add sine and cosine to Rust code; C always has them
     #[arg(long)]
     with_sin_cos: bool,
     /// Add tests that compare results of the code with `rne::Arm` and check laws of mechanics
@@ -214,14 +221,23 @@ fn emitted(
     header: Option<Header>,
 ) -> Result<Outcome, Failure> {
     let programs = programs(arguments, robot)?;
+    if arguments.casadi && !programs.iter().any(rne_emit::is_for_casadi) {
+        return Err(Failure::usage(format_args!(
+            "CasADi can call none of these functions: it calls functions that take vectors and return a number, a \
+             vector or a matrix, such as {TYPED}--function inverse_dynamics,forward_dynamics{TYPED:#}"
+        )));
+    }
+    let precision = if arguments.casadi { Real::Double } else { arguments.real.unwrap_or(Real::Float) }.precision();
     let request = Request {
         file: &arguments.file,
         bytes,
         prefix: arguments.prefix.as_ref(),
-        precision: arguments.real.map_or_else(Precision::default, Real::precision),
+        precision,
         friction: arguments.friction,
         limits: arguments.limits,
         names: arguments.names_joints(robot),
+        casadi: arguments.casadi,
+        acados: arguments.acados,
         tests: arguments.tests,
         ascii: arguments.ascii,
     };
@@ -286,7 +302,7 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     use Language::{C, Cuda, Ptx, Rust};
-    let options: [(&str, bool, &[Language], &str); 7] = [
+    let options: [(&str, bool, &[Language], &str); 8] = [
         (
             "--with-sin-cos",
             arguments.with_sin_cos,
@@ -299,7 +315,14 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
         ("--limits", arguments.limits, &[C], "in Rust, `f64::clamp` limits a torque"),
         ("--names", arguments.names, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--tests", arguments.tests, &[Rust, C], "code for processors of graphics has functions alone"),
+        ("--casadi", arguments.casadi, &[C], "CasADi calls functions of C"),
     ];
+    if arguments.casadi && arguments.real == Some(Real::Float) {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--real float{TYPED:#} is not for CasADi, which computes in double precision. Write \
+             {TYPED}--real double{TYPED:#}"
+        )));
+    }
     let refused = options.iter().find(|(_, is_given, of, _)| *is_given && !of.contains(&arguments.lang));
     let Some((option, _, of, why)) = refused else { return Ok(()) };
     let of: Vec<String> = of.iter().map(|lang| format!("{TYPED}--lang {}{TYPED:#}", lang.name())).collect();
@@ -325,6 +348,10 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         return choice::functions_of(robot).collect();
     }
     let is_asked = |function: &Function| match asked.as_slice() {
+        _ if arguments.acados && *function == Function::ForwardDynamics => true,
+        [] if arguments.casadi && robot.closed.is_empty() => {
+            matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
+        }
         [] if !arguments.frames.is_empty() => function.of_frame().is_some(),
         // tips are there for their wrenches
         [] => {
@@ -339,7 +366,12 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         [] => Function::of_robot(robot).collect(),
         _ => Function::ALL.to_vec(),
     };
-    of_robot.into_iter().filter(is_asked).collect()
+    let asked: Vec<Function> = of_robot.into_iter().filter(is_asked).collect();
+    let for_derivatives = asked.iter().filter(|_| arguments.casadi);
+    let for_derivatives: Vec<Function> =
+        for_derivatives.flat_map(|&function| rne_emit::casadi_derivatives(function)).collect();
+    let is_needed = |function: &Function| asked.contains(function) || for_derivatives.contains(function);
+    Function::ALL.into_iter().filter(is_needed).collect()
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {

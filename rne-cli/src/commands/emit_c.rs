@@ -50,17 +50,19 @@ pub(super) struct Request<'a> {
     pub(super) friction: bool,
     pub(super) limits: bool,
     pub(super) names: bool,
+    pub(super) casadi: bool,
+    pub(super) acados: bool,
     pub(super) tests: bool,
     pub(super) ascii: bool,
 }
 
 /// The code, with the tests that are asked for.
 pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
-    let &Request { file, precision, limits, names, .. } = request;
+    let &Request { file, precision, limits, names, casadi, acados, .. } = request;
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     let origin = origin(request);
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
-    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names };
+    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names, casadi, acados };
     if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
         let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
         let follower =

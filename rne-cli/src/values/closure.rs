@@ -132,11 +132,11 @@ fn pivots(robot: &Robot, arm: &DynArm, q: &[f64], passive: &[f64]) -> Vec<f64> {
     // by columns, in the order of elimination
     let mut matrix: Vec<Vec<f64>> = order.iter().map(|pivot| column(pivot.passive)).collect();
     for step in 0..matrix.len() {
-        for later in step + 1..matrix.len() {
-            let factor = matrix[later][step] / matrix[step][step];
-            for row in step..matrix.len() {
-                matrix[later][row] -= factor * matrix[step][row];
-            }
+        let (before, after) = matrix.split_at_mut(step + 1);
+        let pivot = &before[step];
+        for column in after {
+            let factor = column[step] / pivot[step];
+            column.iter_mut().zip(pivot).skip(step).for_each(|(x, by)| *x -= factor * by);
         }
     }
     (0..matrix.len()).map(|step| matrix[step][step]).collect()

@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 24] = [
+const DOCUMENTS: [&str; 25] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/c-library.md",
@@ -31,6 +31,7 @@ const DOCUMENTS: [&str; 24] = [
     "docs/lecture/results.md",
     "docs/lecture/two-links.md",
     "docs/logs.md",
+    "docs/optimal-control.md",
     "docs/robot-file.md",
     "docs/run-time.md",
     "docs/teaching.md",
@@ -61,6 +62,9 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
     // with the flags of pkg-config, below the prefix that it was given
     ("export PKG_CONFIG_PATH=", "xtask/src/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
+    ("pip install ./doors/python", "xtask/src/python.rs", "pip install --quiet"),
+    ("pip install casadi", "xtask/src/python.rs", "const CASADI"),
+    ("cc -std=c99 -O2 -ffp-contract=off -fPIC", "doors/python/tests/test_casadi.py", "shlex.split(command)"),
     ("cc doors/capi/examples/torque.c", "xtask/src/capi.rs", "(\"doors/capi/examples/torque.c\", \"cc\""),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),

@@ -12,6 +12,7 @@ mod diagnose;
 mod documents;
 mod emit;
 mod emit_c;
+mod emit_casadi;
 mod emit_gpu;
 mod emit_joints;
 mod emit_names;

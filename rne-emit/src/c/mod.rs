@@ -1,5 +1,6 @@
 //! Programs as C99 without a library: a header that documents the functions, and the source.
 
+mod casadi;
 pub(crate) mod header;
 mod joint_functions;
 mod motors;
@@ -18,6 +19,7 @@ use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
 
+pub use casadi::{casadi_derivatives, is_for_casadi};
 pub use joint_functions::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
 pub use signature::record_name;
@@ -80,6 +82,7 @@ pub fn c_code(
 
 /// The parts of a file of C beside the programs.
 #[derive(Clone, Copy, Debug, Default)]
+#[allow(clippy::struct_excessive_bools)] // each is an option
 pub struct Additions<'a> {
     /// The robot file that the heading names.
     pub origin: Option<&'a Origin>,
@@ -91,6 +94,12 @@ pub struct Additions<'a> {
     /// says its name. Two joints with one identifier give a header that does not compile;
     /// [`Checked::identifiers`](rne_model::Checked::identifiers) is the error then.
     pub names: bool,
+    /// Whether CasADi can call the programs for which [`is_for_casadi`] is true, with derivatives where the functions
+    /// of [`casadi_derivatives`] are among the programs. Needs [`Precision::Double`].
+    pub casadi: bool,
+    /// Whether acados can integrate the robot, too: the functions of an explicit differential equation. Needs `casadi`,
+    /// and among the programs `forward_dynamics` and `forward_dynamics_derivatives`.
+    pub acados: bool,
 }
 
 /// The code of [`c_code`], with additions.

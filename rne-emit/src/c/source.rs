@@ -6,7 +6,7 @@ use rne_codegen::{ArgumentArray, Layout, Program};
 
 use super::header::columns;
 use super::signature::{head, inputs, places, subscript};
-use super::{ConstantTooLarge, File, joint_functions, motors, observer};
+use super::{ConstantTooLarge, File, casadi, joint_functions, motors, observer};
 use crate::expression::line;
 use crate::line_breaks::statement;
 use crate::listing::{Line, Selection, listing};
@@ -46,6 +46,7 @@ pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     text.push_str(&observer::definitions(file));
     text.push_str(&joint_functions::definitions(file)?);
     text.push_str(&motors::definitions(file)?);
+    text.push_str(&casadi::definitions(file));
     Ok(text)
 }
 

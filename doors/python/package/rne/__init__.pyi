@@ -429,8 +429,10 @@ class Arm:
     def show(self, function: str = ..., *, joint: int | None = ..., form: Form = ...) -> str: ...
     def code(
         self, language: Literal["c", "rust"] = ..., functions: Sequence[str] = ..., *, form: Form | None = ...,
-        precision: Literal["double", "single"] = ...,
+        precision: Literal["double", "single"] = ..., casadi: bool = ...,
     ) -> str: ...
+    def casadi(self, function: str = ...) -> Any:
+        """A function as a `casadi.Function`, with its derivatives for optimisers such as IPOPT."""
     def diagnose(
         self, q: Sequence[float], qd: Sequence[float], qdd: Sequence[float], tau: Sequence[float], *,
         tolerance: float = ...,

@@ -1,0 +1,87 @@
+//! `rne emit --lang c --casadi`: functions by CasADi's external interface, called as CasADi calls them.
+//! `doors/python/tests/test_casadi.py` has CasADi itself call them.
+
+use std::fs;
+use std::process::Command;
+
+use crate::call::{fails, fine, folder, rne};
+use crate::emit_c::{path, printed};
+
+const FUNCTIONS: &str = "inverse_dynamics,forward_dynamics,gravity_torques,bias_torques";
+
+#[test]
+fn functions_and_derivatives_are_those_of_the_file() {
+    // planes, prismatic joints, and legs whose joints do not feel each other
+    for robot in ["planar2", "stanford", "trees/hyq"] {
+        let folder = folder(&format!("casadi_{}", robot.replace('/', "_")));
+        let (file, out) = (format!("robots/{robot}.yaml"), path(&folder, "arm.c"));
+        let emit = [
+            "emit",
+            &file,
+            "--lang",
+            "c",
+            "--casadi",
+            "--acados",
+            "--prefix",
+            "arm",
+            "--function",
+            FUNCTIONS,
+            "-o",
+            &out,
+        ];
+        assert_eq!(rne(&emit).status, 0, "{robot}");
+        fs::write(folder.join("driver.c"), include_str!("casadi/driver.c")).expect("written");
+        let options = ["-Wshadow", "-Wmissing-prototypes", "-Wdouble-promotion"];
+        let code = fs::read_to_string(folder.join("arm.c")).expect("it was written");
+        assert!(code.contains("arm_external(jac_forward_dynamics, 4, 3)"), "{robot}");
+        let Some(said) = printed(&folder, &["arm.c", "driver.c"], &options) else { return };
+        let count = said.strip_suffix(" numbers\n").and_then(|count| count.parse().ok()).unwrap_or(0);
+        assert!(count > 500, "{robot}: {said}");
+    }
+}
+
+#[test]
+fn elements_that_are_zero_in_every_state_are_left_out() {
+    let code = fine(&["emit", "robots/trees/hyq.yaml", "--lang", "c", "--casadi"]);
+    // four legs of three joints: no column has rows of another leg
+    let of_legs = "{12, 12, 0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33, 36,";
+    assert!(code.replace("\n    ", " ").replace("{ ", "{").contains(of_legs), "the mass matrix");
+}
+
+#[test]
+fn a_library_shows_the_functions_for_casadi() {
+    let folder = folder("casadi_library");
+    let out = path(&folder, "planar2.c");
+    assert_eq!(rne(&["emit", "planar2", "--lang", "c", "--casadi", "-o", &out]).status, 0);
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    let library = ["-std=c99", "-fPIC", "-fvisibility=hidden", "-shared", "planar2.c", "-o", "libplanar2.so"];
+    let Ok(made) = Command::new(compiler).args(library).current_dir(&folder).output() else { return };
+    assert!(made.status.success(), "{made:?}");
+    let main = "#include <stdio.h>\nlong long int adj1_forward_dynamics_n_in(void);\nint main(void)\n{\n    \
+                printf(\"%d\", (int)adj1_forward_dynamics_n_in());\n    return 0;\n}\n";
+    fs::write(folder.join("main.c"), main).expect("written");
+    let rpath = format!("-Wl,-rpath,{}", folder.display());
+    let Some(said) = printed(&folder, &["main.c", "libplanar2.so"], &[&rpath]) else { return };
+    assert_eq!(said, "5", "q, qd, tau, out_qdd, adj_qdd");
+}
+
+#[test]
+fn what_casadi_cannot_call_is_refused() {
+    let c = ["emit", "planar2", "--lang", "c", "--casadi"];
+    fails(2, &[&c[..], &["--real", "float"]].concat(), &["computes in double precision", "--real double"]);
+    fails(2, &[&c[..], &["--function", "forward_kinematics"]].concat(), &["CasADi can call none of these functions"]);
+    fails(2, &["emit", "planar2", "--casadi"], &["--casadi is for C", "--lang c"]);
+    fails(2, &[&c[..], &["--run-time", "m1"]].concat(), &["--casadi", "--run-time"]);
+    let mass = fine(&[&c[..], &["--function", "mass_matrix"]].concat());
+    assert!(mass.contains("planar2_external(mass_matrix, 1, 1)") && !mass.contains("jac_"), "no derivatives");
+}
+
+#[test]
+fn a_prefix_may_be_a_word_of_the_template() {
+    let folder = folder("casadi_prefix");
+    for prefix in ["DOF", "PREFIX", "LONGEST"] {
+        let code = fine(&["emit", "planar2", "--lang", "c", "--casadi", "--acados", "--prefix", prefix]);
+        fs::write(folder.join("arm.c"), code + "int main(void) { return 0; }\n").expect("written");
+        printed(&folder, &["arm.c"], &[]);
+    }
+}

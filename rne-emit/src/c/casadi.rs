@@ -1,0 +1,403 @@
+//! The functions of a file by CasADi's external interface, with Jacobians and directional derivatives.
+//!
+//! `casadi.external("inverse_dynamics", "arm.so")` finds a function by its name, and its derivatives by theirs:
+//! `jac_inverse_dynamics`, `fwd1_inverse_dynamics`, `adj1_inverse_dynamics`. The names, the order of inputs and outputs
+//! and the compressed columns are those of the code that CasADi 3.6 to 3.8 generates.
+
+use std::fmt::Write;
+
+use rne_codegen::{ArgumentArray, Function, Layout, Program, Value};
+
+use super::signature::{inputs, record_type, wrapped};
+use super::{File, comment};
+use crate::parameters;
+
+/// The part that is the same for all functions; PREFIX, DOF and LONGEST are replaced.
+const INTERFACE: &str = include_str!("casadi.c");
+
+/// The operations on matrices that the derivatives need.
+const MATRICES: &str = include_str!("casadi_matrices.c");
+
+/// The operation that derivatives without a gradient need.
+const TRANSPOSED: &str = include_str!("casadi_transposed.c");
+
+/// The bodies of the functions for acados, in the order of [`Writer::of_acados`].
+const ACADOS: &str = include_str!("acados.c");
+
+/// Matrices that one call of a function of the file gives: the field of the result, and the input by which the result
+/// of the CasADi function is derived.
+struct Source {
+    function: Function,
+    blocks: &'static [(&'static str, usize)],
+}
+
+/// The derivatives of a function by all of its inputs.
+struct Derivatives {
+    sources: &'static [Source],
+    /// The function with the product of a row of multipliers with them, with the fields of its result.
+    gradient: Option<(Function, &'static [&'static str])>,
+}
+
+/// The functions beside `function` that its derivatives for CasADi are computed by; none if it has no derivatives.
+#[must_use]
+pub fn casadi_derivatives(function: Function) -> Vec<Function> {
+    let derivatives = derivatives(function);
+    let of_derivatives = |derivatives: Derivatives| {
+        let sources = derivatives.sources.iter().map(|source| source.function);
+        sources.chain(derivatives.gradient.map(|(function, _)| function)).collect()
+    };
+    derivatives.map(of_derivatives).unwrap_or_default()
+}
+
+fn derivatives(function: Function) -> Option<Derivatives> {
+    const fn source(blocks: &'static [(&'static str, usize)]) -> Source {
+        Source { function: Function::InverseDynamicsDerivatives, blocks }
+    }
+    const MASS: Source = Source { function: Function::MassMatrix, blocks: &[("", 2)] };
+    const OF_MOTION: Source =
+        Source { function: Function::ForwardDynamicsDerivatives, blocks: &[("dq", 0), ("dqd", 1), ("dtau", 2)] };
+    let (sources, fields): (&'static [Source], &'static [&'static str]) = match function {
+        Function::InverseDynamics => (&const { [source(&[("dq", 0), ("dqd", 1)]), MASS] }, &["dq", "dqd", "dqdd"]),
+        Function::BiasTorques => (&const { [source(&[("dq", 0), ("dqd", 1)])] }, &["dq", "dqd"]),
+        Function::GravityTorques => (&const { [source(&[("dq", 0)])] }, &["dq"]),
+        Function::ForwardDynamics => (&const { [OF_MOTION] }, &[]),
+        _ => return None,
+    };
+    let gradient = (!fields.is_empty()).then_some((Function::TorqueGradient, fields));
+    Some(Derivatives { sources, gradient })
+}
+
+/// Whether CasADi can call a program: all that it takes are vectors, and it returns a number, a vector or a matrix.
+#[must_use]
+pub fn is_for_casadi(program: &Program) -> bool {
+    let takes_vectors = inputs(program).iter().all(|array| array.lengths().len() == 1);
+    takes_vectors && !parameters::are_used(program) && shape(&program.layout()).is_some()
+}
+
+/// Rows and columns.
+fn shape(layout: &Layout) -> Option<(usize, usize)> {
+    match layout {
+        Layout::Number => Some((1, 1)),
+        Layout::Array(rows, of) => match &**of {
+            Layout::Number => Some((*rows, 1)),
+            Layout::Array(columns, of) if **of == Layout::Number => Some((*rows, *columns)),
+            _ => None,
+        },
+        Layout::Record(..) => None,
+    }
+}
+
+/// A function as CasADi sees it: names and compressed columns of inputs and outputs.
+#[derive(Default)]
+struct Interface {
+    name: String,
+    inputs: Vec<(String, String)>,
+    outputs: Vec<(String, String)>,
+    body: String,
+}
+
+/// The functions for CasADi.
+pub(super) fn definitions(file: &File) -> String {
+    if !file.additions.casadi {
+        return String::new();
+    }
+    let mut writer = Writer { file, patterns: Vec::new() };
+    let programs: Vec<&Program> = file.programs.iter().filter(|program| is_for_casadi(program)).collect();
+    let mut interfaces: Vec<Interface> = programs.iter().flat_map(|program| writer.interfaces(program)).collect();
+    if file.additions.acados {
+        interfaces.extend(writer.of_acados());
+    }
+    let derived: Vec<Derivatives> = programs.iter().filter_map(|program| writer.sources(program)).collect();
+    let longest = programs.iter().flat_map(|program| inputs(program)).map(|array| array.elements.len()).max();
+
+    let mut text = "\n".to_owned();
+    let interface = INTERFACE.replace("LONGEST", &longest.unwrap_or(1).to_string());
+    text.push_str(&writer.filled(&interface));
+    if !derived.is_empty() {
+        text.push_str(&writer.filled(MATRICES));
+    }
+    if derived.iter().any(|derivatives| derivatives.gradient.is_none()) {
+        text.push_str(&writer.filled(TRANSPOSED));
+    }
+    text.push_str("\n// rows, columns; then 1 if all elements are there, else starts of the columns and the rows\n");
+    for (index, pattern) in writer.patterns.iter().enumerate() {
+        let numbers: Vec<String> = pattern.iter().map(ToString::to_string).collect();
+        let start = format!("static const casadi_int {}_pattern_{index}[] = {{", file.prefix);
+        text.push_str(wrapped(&start, &numbers).trim_end_matches(')'));
+        text.push_str("};\n");
+    }
+    for interface in &interfaces {
+        text.push_str(&writer.definition(interface));
+    }
+    text.push_str("\n#ifdef __cplusplus\n}\n#endif\n");
+    text
+}
+
+struct Writer<'a> {
+    file: &'a File<'a>,
+    /// The compressed columns, each once.
+    patterns: Vec<Vec<usize>>,
+}
+
+impl Writer<'_> {
+    /// Text with the numbers and names of the file. The prefix comes last: it may be any word.
+    fn filled(&self, text: &str) -> String {
+        text.replace("DOF", &self.file.robot.dof().to_string()).replace("PREFIX", self.file.prefix)
+    }
+
+    /// The name of compressed columns.
+    fn pattern(&mut self, pattern: Vec<usize>) -> String {
+        let index = self.patterns.iter().position(|other| *other == pattern).unwrap_or_else(|| {
+            self.patterns.push(pattern);
+            self.patterns.len() - 1
+        });
+        format!("{}_pattern_{index}", self.file.prefix)
+    }
+
+    fn dense(&mut self, rows: usize, columns: usize) -> String {
+        self.pattern(vec![rows, columns, 1])
+    }
+
+    /// The compressed columns of a square matrix whose elements, row by row, stand after the first `skipped` outputs.
+    fn square(&mut self, program: &Program, skipped: usize) -> String {
+        let dof = program.dof;
+        let is_there = |row: usize, column: usize| {
+            let output = &program.outputs[skipped + row * dof + column];
+            program.values.get(output.value) != Value::Constant(0.0)
+        };
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for column in 0..dof {
+            rows.extend((0..dof).filter(|&row| is_there(row, column)));
+            starts.push(rows.len());
+        }
+        if rows.len() == dof * dof {
+            return self.dense(dof, dof);
+        }
+        self.pattern([vec![dof, dof], starts, rows].concat())
+    }
+
+    fn find(&self, function: Function) -> Option<&Program> {
+        self.file.programs.iter().find(|program| program.function == function)
+    }
+
+    /// The derivatives of a program, if the file has the functions that they are computed by.
+    fn sources(&self, program: &Program) -> Option<Derivatives> {
+        let needed = casadi_derivatives(program.function);
+        derivatives(program.function).filter(|_| needed.iter().all(|function| self.find(*function).is_some()))
+    }
+
+    /// A function, and its derivatives if it has any.
+    fn interfaces(&mut self, program: &Program) -> Vec<Interface> {
+        let Some((rows, columns)) = shape(&program.layout()) else { return Vec::new() };
+        let arrays = inputs(program);
+        let given: Vec<(String, String)> =
+            arrays.iter().map(|array| (array.name.to_owned(), self.dense(array.elements.len(), 1))).collect();
+        let result = match program.function {
+            Function::ForwardDynamics => "qdd",
+            function if function.returns_torques() => "tau",
+            function => match function.entry().output {
+                "" => function.name(),
+                output => output,
+            },
+        };
+        let returned = (result.to_owned(), self.dense(rows, columns));
+        let value = Interface {
+            name: program.name.clone(),
+            inputs: given.clone(),
+            outputs: vec![returned.clone()],
+            body: self.value(program, &arrays, columns),
+        };
+        let Some(derivatives) = self.sources(program) else { return vec![value] };
+
+        let absent = (format!("out_{result}"), self.pattern([vec![rows, 1], vec![0, 0]].concat()));
+        let named = |start: &str, of: &[(String, String)]| -> Vec<(String, String)> {
+            of.iter().map(|(name, pattern)| (format!("{start}{name}"), pattern.clone())).collect()
+        };
+        let at = [given.clone(), vec![absent]].concat();
+        let blocks = self.blocks(&derivatives);
+        let jacobian = Interface {
+            name: format!("jac_{}", program.name),
+            inputs: at.clone(),
+            outputs: given
+                .iter()
+                .zip(&blocks)
+                .map(|((by, _), block)| (format!("jac_{result}_{by}"), block.clone()))
+                .collect(),
+            body: self.jacobian(&arrays, &derivatives, &blocks),
+        };
+        let forward = Interface {
+            name: format!("fwd1_{}", program.name),
+            inputs: [at.clone(), named("fwd_", &given)].concat(),
+            outputs: named("fwd_", std::slice::from_ref(&returned)),
+            body: self.forward(&arrays, &derivatives),
+        };
+        let reverse = Interface {
+            name: format!("adj1_{}", program.name),
+            inputs: [at, named("adj_", &[returned])].concat(),
+            outputs: named("adj_", &given),
+            body: self.reverse(&arrays, &derivatives),
+        };
+        vec![value, jacobian, forward, reverse]
+    }
+
+    /// The functions of an explicit differential equation as acados has CasADi generate them: x = (q, qd), u = tau, and
+    /// no parameters p. The derivatives of x by where it began, Sx and Su, are in columns.
+    fn of_acados(&mut self) -> Vec<Interface> {
+        let (prefix, dof) = (self.file.prefix, self.file.robot.dof());
+        let functions: [(&str, &[&str], &[&str]); 3] = [
+            ("expl_ode_fun", &["x", "u", "p"], &["xdot"]),
+            ("expl_vde_forw", &["x", "Sx", "Su", "u", "p"], &["xdot", "Sxdot", "Sudot"]),
+            ("expl_vde_adj", &["x", "lambda", "u", "p"], &["adj"]),
+        ];
+        let bodies = ACADOS.split("// next function\n");
+        let bodies: Vec<String> = bodies.map(|body| self.filled(body)).collect();
+        let mut named = |names: &[&str]| -> Vec<(String, String)> {
+            let pattern = |name: &str| match name {
+                "Sx" | "Sxdot" => vec![2 * dof, 2 * dof, 1],
+                "Su" | "Sudot" => vec![2 * dof, dof, 1],
+                "u" => vec![dof, 1, 1],
+                "p" => vec![0, 0, 0],
+                "adj" => vec![3 * dof, 1, 1],
+                _ => vec![2 * dof, 1, 1],
+            };
+            names.iter().map(|&name| (name.to_owned(), self.pattern(pattern(name)))).collect()
+        };
+        let interface = |((name, inputs, outputs), body): ((&str, &[&str], &[&str]), String)| Interface {
+            name: format!("{prefix}_{name}"),
+            inputs: named(inputs),
+            outputs: named(outputs),
+            body,
+        };
+        functions.into_iter().zip(bodies).map(interface).collect()
+    }
+
+    /// The compressed columns of the derivatives by each input.
+    fn blocks(&mut self, derivatives: &Derivatives) -> Vec<String> {
+        let mut blocks = Vec::new();
+        for source in derivatives.sources {
+            for (place, _) in source.blocks.iter().enumerate() {
+                let Some(program) = self.file.programs.iter().find(|program| program.function == source.function)
+                else {
+                    continue;
+                };
+                blocks.push(self.square(program, place * program.dof * program.dof));
+            }
+        }
+        blocks
+    }
+
+    /// A call of a function of the file: what the function for CasADi has no input for is zero.
+    fn call(&self, function: Function, arrays: &[ArgumentArray], last: &[String]) -> String {
+        let prefix = self.file.prefix;
+        let Some(program) = self.find(function) else { return String::new() };
+        let input = |name: &str| match arrays.iter().position(|array| array.name == name) {
+            Some(index) => format!("{prefix}_given(arg[{index}])"),
+            None if name == "multipliers" => format!("{prefix}_given(arg[{}])", arrays.len() + 1),
+            None => format!("{prefix}_zeros"),
+        };
+        let arguments: Vec<String> = inputs(program).iter().map(|array| input(array.name)).collect();
+        format!("{prefix}_{}({})", program.name, [arguments, last.to_vec()].concat().join(", "))
+    }
+
+    fn value(&self, program: &Program, arrays: &[ArgumentArray], columns: usize) -> String {
+        // a frame's function has its function's name only in the trait
+        let prefix = self.file.prefix;
+        let mut arguments: Vec<String> =
+            (0..arrays.len()).map(|index| format!("{prefix}_given(arg[{index}])")).collect();
+        let call = |arguments: &[String]| format!("{prefix}_{}({})", program.name, arguments.join(", "));
+        let Layout::Array(rows, _) = program.layout() else {
+            return format!("    if (res[0]) {{\n        *res[0] = {};\n    }}\n", call(&arguments));
+        };
+        if columns == 1 && !matches!(program.layout(), Layout::Array(_, of) if *of != Layout::Number) {
+            arguments.push("res[0]".to_owned());
+            return format!("    if (res[0]) {{\n        {};\n    }}\n", call(&arguments));
+        }
+        arguments.push("matrix".to_owned());
+        let call = call(&arguments);
+        format!(
+            "    if (res[0]) {{\n        casadi_real matrix[{rows}][{columns}];\n        {call};\n        \
+             for (int column = 0; column < {columns}; column++) {{\n            \
+             for (int row = 0; row < {rows}; row++) {{\n                \
+             res[0][column * {rows} + row] = matrix[row][column];\n            }}\n        }}\n    }}\n"
+        )
+    }
+
+    /// Statements on the matrices of each call, where `condition` holds for one of the inputs.
+    fn with_matrices(
+        &self,
+        arrays: &[ArgumentArray],
+        derivatives: &Derivatives,
+        condition: impl Fn(usize) -> String,
+        statement: impl Fn(usize, &str) -> String,
+    ) -> String {
+        let mut text = String::new();
+        for source in derivatives.sources {
+            let Some(program) = self.find(source.function) else { continue };
+            let mut conditions: Vec<String> = source.blocks.iter().map(|&(_, input)| condition(input)).collect();
+            conditions.dedup();
+            let (declaration, place) = match program.layout() {
+                Layout::Record(record, _) => (format!("{} by", record_type(self.file, record)), "&by"),
+                _ => (format!("casadi_real by[{0}][{0}]", program.dof), "by"),
+            };
+            let call = self.call(source.function, arrays, &[place.to_owned()]);
+            let _ = writeln!(text, "    if ({}) {{", conditions.join(" || "));
+            let _ = writeln!(text, "        {declaration};\n        {call};");
+            for &(field, input) in source.blocks {
+                let matrix = if field.is_empty() { "by".to_owned() } else { format!("by.{field}") };
+                let _ = writeln!(text, "        {};", statement(input, &matrix));
+            }
+            text.push_str("    }\n");
+        }
+        text
+    }
+
+    fn jacobian(&self, arrays: &[ArgumentArray], derivatives: &Derivatives, blocks: &[String]) -> String {
+        let prefix = self.file.prefix;
+        let put = |input: usize, matrix: &str| format!("{prefix}_put({matrix}, {}, res[{input}])", blocks[input]);
+        self.with_matrices(arrays, derivatives, |input| format!("res[{input}]"), put)
+    }
+
+    fn forward(&self, arrays: &[ArgumentArray], derivatives: &Derivatives) -> String {
+        let (prefix, first) = (self.file.prefix, arrays.len() + 1);
+        let add = |input: usize, matrix: &str| format!("{prefix}_add({matrix}, arg[{}], res[0])", first + input);
+        let sums = self.with_matrices(arrays, derivatives, |input| format!("arg[{}]", first + input), add);
+        format!("    if (!res[0]) {{\n        return 0;\n    }}\n    {prefix}_copy({prefix}_zeros, res[0]);\n{sums}")
+    }
+
+    fn reverse(&self, arrays: &[ArgumentArray], derivatives: &Derivatives) -> String {
+        let (prefix, last) = (self.file.prefix, arrays.len() + 1);
+        let Some((gradient, fields)) = derivatives.gradient else {
+            let product = |input: usize, matrix: &str| {
+                format!("{prefix}_multiply_row({prefix}_given(arg[{last}]), {matrix}, res[{input}])")
+            };
+            return self.with_matrices(arrays, derivatives, |input| format!("res[{input}]"), product);
+        };
+        let Some(Layout::Record(record, _)) = self.find(gradient).map(Program::layout) else { return String::new() };
+        let call = self.call(gradient, arrays, &["&by".to_owned()]);
+        let mut text = format!("    {} by;\n    {call};\n", record_type(self.file, record));
+        for (index, field) in fields.iter().enumerate() {
+            let _ = writeln!(text, "    {prefix}_copy(by.{field}, res[{index}]);");
+        }
+        text
+    }
+
+    /// The tables and the code of a function.
+    fn definition(&self, interface: &Interface) -> String {
+        let Interface { name, inputs, outputs, body } = interface;
+        let prefix = self.file.prefix;
+        let all = || inputs.iter().chain(outputs);
+        let list = |items: Vec<String>| crate::wrap::fill(&items.join(", "), crate::wrap::WIDTH, "    ", "    ");
+        let names = list(all().map(|(name, _)| format!("\"{name}\"")).collect());
+        let patterns = list(all().map(|(_, pattern)| pattern.clone()).collect());
+        let listed = |of: &[(String, String)]| of.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+        let about = comment("//", &format!("{name}: ({}) -> ({})", listed(inputs), listed(outputs)));
+        format!(
+            "\n{about}static const char *const {prefix}_names_{name}[] = {{\n{names}\n}};\n\
+             static const casadi_int *const {prefix}_patterns_{name}[] = {{\n{patterns}\n}};\n\
+             {prefix}_external({name}, {}, {})\n{{\n    (void)arg;\n    (void)iw;\n    (void)w;\n    (void)mem;\n\
+             {body}    return 0;\n}}\n",
+            inputs.len(),
+            outputs.len()
+        )
+    }
+}
