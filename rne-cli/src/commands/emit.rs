@@ -30,7 +30,6 @@ Examples:
   rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
   rne emit robots/puma560.yaml --lang ptx --real double      for a GPU
   rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
-  rne emit docs/desk_arm_identified.yaml --lang c --friction --limits
   rne emit robots/panda.yaml --lang c --casadi -o panda.c    for CasADi
 
 Without --function rne writes the functions of the trait InverseDynamics. If the

@@ -109,6 +109,7 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("qd", state.qd.clone()),
         ("qdd", state.qdd.clone()),
         ("tau", state.tau.clone()),
+        ("multipliers", state.multipliers.clone()),
         ("force", wrench.force.to_vec()),
         ("moment", wrench.moment.to_vec()),
         ("wrenches", state.wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten().collect()),

@@ -70,7 +70,7 @@ fn what_casadi_cannot_call_is_refused() {
     let c = ["emit", "planar2", "--lang", "c", "--casadi"];
     fails(2, &[&c[..], &["--real", "float"]].concat(), &["computes in double precision", "--real double"]);
     fails(2, &[&c[..], &["--function", "forward_kinematics"]].concat(), &["CasADi can call none of these functions"]);
-    fails(2, &["emit", "planar2", "--casadi"], &["--casadi is for C", "--lang c"]);
+    fails(2, &["emit", "planar2", "--casadi"], &["--casadi is for --lang c", "--lang c"]);
     fails(2, &[&c[..], &["--run-time", "m1"]].concat(), &["--casadi", "--run-time"]);
     let mass = fine(&[&c[..], &["--function", "mass_matrix"]].concat());
     assert!(mass.contains("planar2_external(mass_matrix, 1, 1)") && !mass.contains("jac_"), "no derivatives");

@@ -64,8 +64,20 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
         Value::Array(parts) => parts.iter().for_each(|part| flat(part, numbers)),
         // in their order, which is not that of their names
         Value::Object(parts) => {
-            let names =
-                ["rotation", "translation", "wrench", "force", "moment", "tau", "dq", "dqd", "momentum", "rate"];
+            let names = [
+                "rotation",
+                "translation",
+                "wrench",
+                "force",
+                "moment",
+                "tau",
+                "dq",
+                "dqd",
+                "dqdd",
+                "dtau",
+                "momentum",
+                "rate",
+            ];
             let of_accelerations = ["accelerations", "base", "linear", "angular", "qdd", "wrenches_on_robot"];
             names
                 .iter()
@@ -99,7 +111,9 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
     let mut give = |option: &str, list: Option<String>| {
         arguments.extend(list.into_iter().flat_map(|list| [option.to_owned(), list]));
     };
-    for (option, prefix) in [("--q", "q"), ("--qd", "qd"), ("--qdd", "qdd"), ("--tau", "tau")] {
+    for (option, prefix) in
+        [("--q", "q"), ("--qd", "qd"), ("--qdd", "qdd"), ("--tau", "tau"), ("--multipliers", "multipliers")]
+    {
         give(option, list(prefix));
     }
     give("--wrench", list("force").zip(list("moment")).map(|(force, moment)| format!("{force},{moment}")));
