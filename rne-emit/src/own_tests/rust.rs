@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Function, Program};
+use rne_codegen::{Function, Program, Shape};
 use rne_model::Robot;
 
 use super::{Golden, Law, MOTION, floor, program, results};
@@ -23,6 +23,10 @@ pub fn rust_tests(robot: &Robot, programs: &[Program], golden: &[Golden]) -> Str
          mod tests {{\n    extern crate std;\n\n    use core::ops::{{{imported}}};\n    use std::vec::Vec;\n\n    \
          use super::Scalar;\n{NUMBER}{division}{SCALAR}{by_sign}    }}\n{COMPARISON}\n"
     );
+    let has_three_parts = |program: &Program| matches!(program.function.shape(), Shape::Record(_, [_, _, _]));
+    if programs.iter().any(has_three_parts) {
+        text.push_str(THREE_PARTS);
+    }
     text.push_str(&tests.states());
     for index in 0..programs.len() {
         text.push_str(&tests.values(index).unwrap_or_default());
@@ -70,6 +74,12 @@ const SCALAR: &str = "    impl Scalar for Number {
 const BY_SIGN: &str = "        fn by_sign(self, positive: Self, negative: Self) -> Self {
             if self.0 > 0.0 { positive } else if self.0 < 0.0 { negative } else { Self(0.0) }
         }
+";
+
+const THREE_PARTS: &str = "    impl<A: Flat, B: Flat, C: Flat> Flat for (A, B, C) {
+        fn flat(&self) -> Vec<f64> { [self.0.flat(), self.1.flat(), self.2.flat()].concat() }
+    }
+
 ";
 
 const COMPARISON: &str = "
