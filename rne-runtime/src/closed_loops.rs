@@ -257,7 +257,7 @@ impl<S: Constant> DynArm<S> {
         Ok((map, of_tree))
     }
 
-    /// The symmetric matrix of the coordinates, by that of the tree: `of_base` rows and columns stay as they are.
+    /// The symmetric matrix of the coordinates, by that of the tree; `of_base` rows and columns are those of the tree.
     fn projected<T: Scalar>(&self, map: &[Vec<T>], of_base: usize, of_tree: &[Vec<T>]) -> Vec<Vec<T>> {
         let gathered = |row: &[T]| [&row[..of_base], &self.by_coordinates(map, &row[of_base..])].concat();
         let columns: Vec<Vec<T>> = of_tree.iter().map(|row| gathered(row)).collect();

@@ -1,5 +1,6 @@
-//! A controller that plans: one real-time iteration of sequential quadratic programming for each sample (M. Diehl, H. G.
-//! Bock, J. P. Schlöder, "A real-time iteration scheme for nonlinear optimization in optimal feedback control", 2005).
+//! A controller that plans: one real-time iteration of sequential quadratic programming for each sample (M. Diehl,
+//! H. G. Bock, J. P. Schlöder, "A real-time iteration scheme for nonlinear optimization in optimal feedback control",
+//! 2005).
 
 use std::time::{Duration, Instant};
 

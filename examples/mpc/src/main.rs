@@ -27,11 +27,11 @@ fn main() -> ExitCode {
     row(&samples, "accelerations and their derivatives at 21 nodes, us", |it| it.dynamics.as_secs_f64() * 1e6);
     row(&samples, "these, tips, Jacobians and gravity, us", |it| it.model.as_secs_f64() * 1e6);
     row(&samples, "iterations of the solver", |it| f64::from(it.iterations));
-    if let Some(path) = std::env::args_os().nth(1) {
-        if let Err(error) = std::fs::write(&path, table(&samples)) {
-            eprintln!("{}: {error}", path.display());
-            return ExitCode::FAILURE;
-        }
+    if let Some(path) = std::env::args_os().nth(1)
+        && let Err(error) = std::fs::write(&path, table(&samples))
+    {
+        eprintln!("{}: {error}", path.display());
+        return ExitCode::FAILURE;
     }
     ExitCode::SUCCESS
 }
@@ -52,8 +52,8 @@ fn table(samples: &[Sample]) -> String {
     table.push('\n');
     for Sample { time, state, tau, off, .. } in samples {
         let _ = write!(table, "{time:.3},{off}");
-        for joint in 0..DOF {
-            let _ = write!(table, ",{},{},{}", state.q[joint], state.qd[joint], tau[joint]);
+        for ((q, qd), tau) in state.q.iter().zip(&state.qd).zip(tau) {
+            let _ = write!(table, ",{q},{qd},{tau}");
         }
         table.push('\n');
     }

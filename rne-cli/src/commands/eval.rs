@@ -102,7 +102,8 @@ pub(crate) struct Arguments {
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "passive", "qd", "qdd", "tau", "multipliers", "wrench", "tip_wrench", "payload", "base_omega",
-        "base_omega_dot", "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "golden", "trace", "axes",
+        "base_omega_dot", "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "golden",
+        "trace", "axes",
         "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,

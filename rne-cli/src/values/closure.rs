@@ -52,8 +52,9 @@ pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<
     let end = nearest.map_or_else(Vec::new, |(_, end)| end);
     let end = end.into_iter().map(six_digits).collect::<Vec<_>>().join(", ");
     Err(Failure::usage(format_args!(
-        "no assembly of {name} that was found reaches these positions --q: the nearest one ends at a singular position, \
-         or the loops open, at q = {end}. Give other positions, or with --passive a guess of {names} for another assembly"
+        "no assembly of {name} that was found reaches these positions --q: the nearest one ends at a singular \
+         position, or the loops open, at q = {end}. Give other positions, or with --passive a guess of {names} for \
+         another assembly"
     )))
 }
 
@@ -71,8 +72,8 @@ pub(crate) fn remark(robot: &Robot, arm: &DynArm, state: &State, is_chosen: bool
         Some(Err(end)) => {
             let end = end.into_iter().map(six_digits).collect::<Vec<_>>().join(", ");
             format!(
-                "note: the assembly of the first configuration of the file ends, or meets another one, near q = {end} on \
-                 the way to this position; the numbers are of another assembly, and --passive chooses one\n"
+                "note: the assembly of the first configuration of the file ends, or meets another one, near q = {end} \
+                 on the way to this position; the numbers are of another assembly, and --passive chooses one\n"
             )
         }
         _ => String::new(),
@@ -84,9 +85,9 @@ pub(crate) fn remark(robot: &Robot, arm: &DynArm, state: &State, is_chosen: bool
     }
     other
         + &format!(
-            "note: the loops are close to a singular position, where the dependent joints do not follow from q (a pivot \
-             of their equations is {} of the largest singular value): torques can be very large, and have fewer digits \
-             than the positions\n",
+            "note: the loops are close to a singular position, where the dependent joints do not follow from q (a \
+             pivot of their equations is {} of the largest singular value): torques can be very large, and have fewer \
+             digits than the positions\n",
             three_digits(part)
         )
 }

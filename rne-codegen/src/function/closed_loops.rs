@@ -18,8 +18,8 @@ const TORQUES: Entry =
     Entry { divides: Some(SINGULAR), ..Entry::torques(Function::InverseDynamicsOfLoops, Capability::ClosedLoops) };
 
 /// Why accelerations may be none.
-const MOVES_NO_MASS: &str = "the accelerations are not finite: the mass matrix is singular (a joint moves no mass), the \
-                             loops are singular in this position, or the state is too large";
+const MOVES_NO_MASS: &str = "the accelerations are not finite: the mass matrix is singular (a joint moves no mass), \
+                             the loops are singular in this position, or the state is too large";
 
 /// The functions.
 pub(super) const CLOSED_LOOPS: &[Entry] = &[

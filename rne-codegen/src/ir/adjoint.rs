@@ -23,7 +23,7 @@ struct Formulas {
     residues: Vec<Residue>,
 }
 
-/// What a node's users contribute to its adjoint: products of an adjoint and a partial derivative.
+/// Contributions of a node's users to its adjoint: products of an adjoint and a partial derivative.
 type Terms<'s> = Vec<(Symbol<'s>, Symbol<'s>)>;
 
 impl Builder {
