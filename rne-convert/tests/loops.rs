@@ -293,6 +293,34 @@ fn mjcf_closes_loops_by_bodies_and_by_sites() {
     );
 }
 
+/// A weld with a pose and an anchor joins the point at the pose of the first body to the anchor of the second one.
+#[test]
+fn a_weld_has_a_pose_and_an_anchor() {
+    let weld = "<weld body1=\"coupler\" body2=\"rocker\" relpose=\"1 0 0.1 1 0 0 0\" anchor=\"0.5 0 0.1\"/>";
+    let text = model(weld, "<joint name=\"b\" type=\"ball\"/>");
+    let [closed] = &plain(&text).robot.closed.loops[..] else { panic!("one loop") };
+    assert_eq!(closed.between.map(|end| end.placement.xyz), [[1.0, 0.0, 0.1], [0.5, 0.0, 0.1]]);
+}
+
+/// An equality is inactive by itself, by a class, or by the options of the file.
+#[test]
+fn inactive_loops_are_left_out() {
+    let connect = "<connect body1=\"coupler\" body2=\"rocker\" anchor=\"1 0 0\"/>";
+    let text = model(connect, "<joint name=\"b\"/>");
+    for inactive in [
+        text.replace("<connect ", "<connect active=\"false\" "),
+        text.replace("<worldbody>", "<default><equality active=\"false\"/></default><worldbody>"),
+        text.replace("<worldbody>", "<option><flag equality=\"disable\"/></option><worldbody>"),
+    ] {
+        let imported = import(&inactive, &whole());
+        assert!(imported.robot.closed.is_empty(), "{inactive}");
+        assert!(told(&imported).contains("equalities that are not active are left out"), "{}", told(&imported));
+    }
+    let class = "<default><equality active=\"false\"/></default><worldbody>";
+    let active = text.replace("<worldbody>", class).replace("<connect ", "<connect active=\"true\" ");
+    assert_eq!(plain(&active).robot.closed.loops.len(), 1);
+}
+
 /// A ball in a loop is three joints; the coupler turns about itself between two spherical joints.
 #[test]
 fn a_ball_in_a_loop_is_three_joints() {

@@ -266,7 +266,7 @@ impl<'a> Equations<'a> {
     }
 
     /// Whether all joints are within their limits.
-    fn is_within(&self, positions: &[f64]) -> bool {
+    pub(crate) fn is_within(&self, positions: &[f64]) -> bool {
         let is_within = |(joint, position): (&Joint, &f64)| {
             joint.limits.position.is_none_or(|(lower, upper)| (lower - ROUNDING..=upper + ROUNDING).contains(position))
         };

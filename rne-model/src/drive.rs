@@ -121,8 +121,14 @@ impl Robot {
     }
 }
 
-/// Reads the list `motors` of a file whose root is `root`.
-pub(crate) fn drives(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -> Option<Vec<Drive>> {
+/// Reads the list `motors` of a file whose root is `root`. `passive` are the dependent joints of closed loops.
+pub(crate) fn drives(
+    cx: &Context,
+    root: &Node,
+    format: u32,
+    joints: &[Joint],
+    passive: &[usize],
+) -> Option<Vec<Drive>> {
     let help = "begin each motor with a dash, such as `- {turns: {joint2: 42, joint3: -25}}`";
     let items = items(cx, root, ("motors", format), "motors", help)?;
     if let Some(excess) = items.get(MAX_DRIVES) {
@@ -147,6 +153,23 @@ pub(crate) fn drives(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -
                 first + 1
             );
             refused(Diagnostic::error(place, message).label("name taken"));
+        }
+        // its speed would be no constant sum of those of the coordinates
+        let is_dependent = |joint: usize| {
+            let coupling = joints[joint].coupling.as_ref();
+            let mut followed = coupling.into_iter().flat_map(|coupling| &coupling.follows);
+            passive.contains(&joint) || followed.any(|(followed, _)| passive.contains(followed))
+        };
+        if let Some(&(joint, _)) = drive.turns.iter().find(|(joint, _)| is_dependent(*joint)) {
+            let message = format!(
+                "the motor {} turns with the joint {}, which is dependent in a closed loop",
+                quoted(&drive.name),
+                quoted(&names[joint])
+            );
+            let help = "name joints that are not dependent in `turns`; the inertia of a rotor that turns with a \
+                        dependent joint belongs into its link";
+            let place = item.get("turns").map_or(item.head(), Node::head);
+            refused(Diagnostic::error(place, message).label("a dependent joint").help(help));
         }
         for &(joint, _) in drive.turns.iter().filter(|_| drive.rotor.is_some()) {
             if let Some(inertia) = inertia_of_joint(root, joint) {

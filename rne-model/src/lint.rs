@@ -480,6 +480,11 @@ pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], loops: &
         let help = "if it should move, check its lengths and axes; if it is a rigid frame, weld its links to one";
         cx.report(Diagnostic::lint(place.clone(), message).label("rigid").help(help));
     }
+    if remarks.beyond {
+        let message = "no configuration within the position limits was found that closes the loops";
+        let help = "check the position limits of the joints of the loops, and the lengths";
+        cx.report(Diagnostic::lint(place.clone(), message).label("beyond the limits").help(help));
+    }
     // what rounding leaves of a zero
     let rounded = |position: f64| short(if position.abs() < 1e-9 { 0.0 } else { position });
     let at = |positions: &[f64]| {

@@ -54,6 +54,8 @@ pub(crate) struct Remarks {
     pub(crate) pivot: Option<(f64, Vec<f64>)>,
     /// The dependent joints that the least singular value moves there.
     pub(crate) undetermined: Vec<usize>,
+    /// Whether all configurations that were found are beyond the position limits.
+    pub(crate) beyond: bool,
     /// Loops that cannot move: all joints that move them are dependent.
     pub(crate) rigid: Vec<usize>,
     /// The joints that move the loops.
@@ -135,7 +137,8 @@ pub(crate) fn solved(
     };
     let rigid = found.groups().into_iter().filter(is_rigid).flatten().collect();
     let few = (closures.len() < CLOSURES).then_some((closures.len(), CLOSURES));
-    let remarks = Remarks { few, singular, pivot, undetermined, rigid, joints: equations.variables.clone() };
+    let beyond = !closures.iter().any(|positions| equations.is_within(positions));
+    let remarks = Remarks { few, singular, pivot, undetermined, beyond, rigid, joints: equations.variables.clone() };
     let elimination = steps.iter().map(|&(equation, passive, _)| Pivot { equation, passive }).collect();
     Ok((ClosedLoops { loops, passive, elimination, closures, singular_values, smallest_pivot }, remarks))
 }

@@ -76,7 +76,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     let contacts = contacts(cx, node, format, (&frames, &tips))?;
     couplings(cx, node, format, &mut joints)?;
     let (closed, of_loops) = loops(cx, node, (format, convention), &mut joints, takes.loops)?;
-    let drives = drives(cx, node, format, &joints)?;
+    let drives = drives(cx, node, format, &joints, &closed.passive)?;
     let mut bodies = bodies(cx, node, format, &joints)?;
     let mut floating_base = floating_base::floating_base(cx, node, format)?;
     if let Some(node) = node.get("gravity") {

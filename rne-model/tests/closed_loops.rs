@@ -597,3 +597,21 @@ fn opposite_axes_are_told_from_wrong_lengths() {
     let report = checked(&text).expect_err("opposite axes");
     assert!(report.contains("turn one place by `rpy: [pi, 0, 0]`"), "{report}");
 }
+
+#[test]
+fn limits_that_leave_no_closure_are_told() {
+    let limited = "{name: rocker, parent: base, type: revolute, limits: {position: [0.1, 0.2]},";
+    let text = FOUR_BAR.replace("{name: rocker, parent: base, type: revolute,", limited);
+    let told = "no configuration within the position limits was found that closes the loops";
+    assert!(checked(&text).expect("a four-bar").lints.to_string().contains(told));
+    assert!(!checked(FOUR_BAR).expect("a four-bar").lints.to_string().contains(told));
+}
+
+/// The speed of a dependent joint is no constant multiple of that of the crank.
+#[test]
+fn motors_turn_joints_that_are_not_dependent() {
+    let motors = |turns: &str| format!("{FOUR_BAR}motors: [{{name: m, turns: {{{turns}}}}}]\n");
+    assert!(checked(&motors("crank: 3")).is_ok());
+    let report = checked(&motors("crank: 3, rocker: 5")).expect_err("a dependent joint");
+    assert!(report.contains("the motor `m` turns with the joint `rocker`, which is dependent"), "{report}");
+}

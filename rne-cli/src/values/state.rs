@@ -478,6 +478,9 @@ fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
     };
     let others: Vec<String> = Function::ALL.iter().filter(|other| is_named(other)).map(ToString::to_string).collect();
     let hint = match others.as_slice() {
+        _ if kind == Argument::Wrench && function.takes(Argument::Wrenches) => {
+            "; give it as --tip-wrench TIP=…, with the name of a tip, or `tip`".to_owned()
+        }
         [only] => format!("; {only} does"),
         [some @ .., last] if others.len() <= MOST_NAMED => format!("; {} and {last} do", some.join(", ")),
         _ => String::new(),

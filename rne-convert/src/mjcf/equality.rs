@@ -17,7 +17,8 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
     for element in root.below("equality") {
         let equality = settings.classed(element, 0)?;
         let name = element.text("name").unwrap_or(&element.name);
-        if equality.flag("active")? == Some(false) {
+        let is_active = equality.flag("active")?.or_else(|| settings.default_flag("equality", "active", equality));
+        if is_active == Some(false) || are_disabled(root) {
             left_out.add("equalities that are not active are left out", name);
             continue;
         }
@@ -78,6 +79,12 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
     Ok(())
 }
 
+/// Whether the options of the file switch all equalities off.
+fn are_disabled(root: &Element) -> bool {
+    let flags = root.children("option").flat_map(|option| option.children.iter().filter(|flag| flag.name == "flag"));
+    flags.filter_map(|flag| flag.text("equality")).last() == Some("disable")
+}
+
 /// Adds the loop of a `connect`, which is a spherical joint, or of a `weld`.
 fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(), Report> {
     let element = equality.element;
@@ -111,7 +118,7 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
         };
         *link = known;
     }
-    let [anchor, relative] = [equality.numbers("anchor", 3, 3)?, equality.numbers("relpose", 7, 7)?];
+    let (anchor, relative) = (equality.vector::<3>("anchor")?, equality.numbers("relpose", 7, 7)?);
     let of_one = urdf.at_reference(links[0]).inverse() * urdf.at_reference(links[1]);
     let places = match (cut, anchor, relative) {
         (_, None, None) if are_sites => [Pose::identity(); 2],
@@ -119,19 +126,18 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
             let message = format!("`{}` between sites has no `anchor` and no `relpose`", element.name);
             return Err(equality.refused(message, "delete them: the sites say where the ends are".to_owned()));
         }
-        (Cut::Weld, _, Some(pose)) if pose[3..] != [0.0; 4] => {
+        (Cut::Weld, anchor, Some(pose)) if pose[3..] != [0.0; 4] => {
             let Some(rotation) = Rotation::quaternion([pose[3], pose[4], pose[5], pose[6]]) else {
                 return Err(equality.error("relpose", "its quaternion has no direction"));
             };
             let translation = Vector::decimal([pose[0], pose[1], pose[2]]);
-            [Pose { rotation, translation }, Pose::identity()]
+            // the point at this pose of the first body is that at the anchor of the second one
+            let anchor = anchor.map_or(Vector::ZERO, Vector::decimal);
+            [Pose { rotation, translation }, Pose { rotation: Rotation::identity(), translation: anchor }]
         }
         (Cut::Weld, ..) => [of_one, Pose::identity()],
         (_, Some(anchor), _) => {
-            let place = Pose {
-                rotation: Rotation::identity(),
-                translation: Vector::decimal([anchor[0], anchor[1], anchor[2]]),
-            };
+            let place = Pose { rotation: Rotation::identity(), translation: Vector::decimal(anchor) };
             [place, of_one.inverse() * place]
         }
         (_, None, _) => {

@@ -91,6 +91,16 @@ impl<'a> Settings<'a> {
         Ok(Classed { element, settings: self, class: Some(class) })
     }
 
+    /// Whether an attribute is true in the values of a kind of elements, in the class of an element.
+    pub(super) fn default_flag(&self, kind: &str, attribute: &str, of: Classed<'_>) -> Option<bool> {
+        let classes = std::iter::successors(of.class, |&class| self.classes[class].parent);
+        let value = classes.into_iter().find_map(|class| {
+            let elements = self.classes[class].elements.iter().rev().filter(|element| element.name == kind);
+            elements.into_iter().find_map(|element| element.text(attribute))
+        });
+        value.map(|value| value != "false")
+    }
+
     /// An element without class.
     pub(super) fn plain(&'a self, element: &'a Element) -> Classed<'a> {
         Classed { element, settings: self, class: None }
