@@ -326,6 +326,7 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::MomentumAndRateWithPayload => {
             arm.momentum_and_rate_with_payload(q, qd, tau, &Payload::from_array(*payload))?.concat()
         }
+        other => unreachable!("{other} is of closed loops"),
     })
 }
 

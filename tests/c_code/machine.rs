@@ -58,6 +58,7 @@ impl States {
             ("qd", rows(&|state| state.joints[1].clone())),
             ("qdd", rows(&|state| state.joints[2].clone())),
             ("tau", rows(&|state| state.joints[3].clone())),
+            ("multipliers", rows(&|state| state.joints[3].clone())),
             ("sin", turns(|turn| turn.0)),
             ("cos", turns(|turn| turn.1)),
             ("force", vector(0)),
