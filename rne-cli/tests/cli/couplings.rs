@@ -186,6 +186,27 @@ fn closed_loops_are_computed() {
     assert!(rne(&["ops", FOUR_BAR, "--function", "mass_matrix"]).status != 0, "no function of loops");
 }
 
+/// The piston is where the triangle of crank and rod has it, and the crank holds the weights of both by virtual work.
+#[test]
+fn a_slider_crank_is_its_closed_form() {
+    let (crank, rod, angle, gravity) = (0.1_f64, 0.3_f64, 0.4_f64, 9.81);
+    let text = fine(&["eval", "docs/slider_crank.yaml", "--q", "0.4", "--qd", "0", "--qdd", "0"]);
+    let number = |before: &str| -> f64 {
+        let (_, rest) = text.split_once(before).expect(before);
+        rest.split_whitespace().next().and_then(|word| word.trim_end_matches(',').parse().ok()).expect("a number")
+    };
+    let slope = -(crank * angle.sin() / rod).asin();
+    assert!((number("piston = ") - (crank * angle.cos() + rod * slope.cos())).abs() < 1e-14, "{text}");
+    assert!((number("rod = ") - (slope - angle)).abs() < 1e-14, "{text}");
+    // the rod turns by this for each turn of the crank
+    let ratio = -crank * angle.cos() / (rod * slope.cos());
+    let of_rod = 0.8 * (crank * angle.cos() + 0.12 * slope.cos() * ratio);
+    let holding = gravity * (0.5 * 0.04 * angle.cos() + of_rod);
+    let row = text.lines().find(|line| line.trim_start().starts_with("crank")).expect("its row");
+    let torque: f64 = row.split_whitespace().nth(4).and_then(|word| word.parse().ok()).expect("a torque");
+    assert!((torque - holding).abs() < 1e-14, "{torque} {holding}");
+}
+
 /// The rods of the ankle reach no further than 0.77 rad with this foot: what is behind is another assembly, with a foot
 /// that is turned over. A parallelogram and its crossed bars meet where all bars lie on one line.
 #[test]
