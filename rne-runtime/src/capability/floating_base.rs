@@ -1,7 +1,7 @@
 //! The functions of a robot whose base nothing holds.
 
 #[cfg(doc)]
-use super::TipWrenches;
+use super::{Energy, InverseDynamics, MassMatrix, Regressor, TipWrenches};
 use crate::{BaseMotion, BaseTwist, Pose, Scalar, Wrench};
 
 /// The torques of a robot whose base nothing holds, and what its base needs, for one state.
