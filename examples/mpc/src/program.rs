@@ -89,7 +89,7 @@ struct Kept {
 pub struct Change(Vec<f64>);
 
 impl Change {
-    /// Of the positions, velocities or torques (`part` 0, 1, 2) of a node.
+    /// The changes of the positions, velocities or torques (`part` 0, 1, 2) of a node.
     #[must_use]
     pub fn of(&self, node: usize, part: usize) -> Joints {
         std::array::from_fn(|joint| self.0[node * WIDTH + part * DOF + joint])
