@@ -21,7 +21,8 @@ def external(arm, function):
     except ImportError as error:
         raise ImportError("`Arm.casadi` needs the package casadi, 3.6 or later: pip install casadi") from error
     code = arm.code("c", [function], casadi=True)
-    return casadi.external(function, str(_library(arm.name, code)))
+    # Without this CasADi derives a large problem direction by direction, and calls `fwd1_` for each.
+    return casadi.external(function, str(_library(arm.name, code)), {"jac_penalty": 0})
 
 
 def _library(name, code):
