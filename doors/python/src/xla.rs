@@ -108,7 +108,12 @@ impl Arm {
         };
         let told = Function::of_robot(arm.robot()).map(|function| {
             let operands = operands(&arm, function).into_iter().map(|operand| (operand.name, operand.shape));
-            (function.of_frame().unwrap_or(function.name()), function.name(), operands.collect(), results(&arm, function))
+            (
+                function.of_frame().unwrap_or(function.name()),
+                function.name(),
+                operands.collect(),
+                results(&arm, function),
+            )
         });
         let told = told.collect();
         ARMS.write().unwrap_or_else(PoisonError::into_inner).insert(name, arm);
