@@ -1,5 +1,6 @@
 """in_jax.py: torques of many states inside a program of XLA, one thread: `jit(vmap(...))` of `Arm.jax` beside MuJoCo's MJX
-and two recursions of jax.numpy, all on the same Panda. `pip install mujoco-mjx` has jax, mujoco and MJX.
+and two recursions of jax.numpy, all on the same Panda. `pip install jax==0.6.2 mujoco==3.3.3 mujoco-mjx==3.3.3`; MJX takes
+much longer with newer ones of these.
 
 MJX: `mjx.inverse` on a model that has the bodies of the table, its C-like pipeline of positions and velocities included,
 without constraints. Recursions: doors/python/tests/jnp_recursion.py, with vectors and matrices, and with a number for each
@@ -52,8 +53,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--states", type=int, default=100_000)
     parser.add_argument("--repetitions", type=int, default=15)
+    parser.add_argument("--single", action="store_true", help="float32 in place of float64")
     asked = parser.parse_args()
-    jax.config.update("jax_enable_x64", True)
+    jax.config.update("jax_enable_x64", not asked.single)
     arm = rne.robots.panda
     chain = Chain(arm)
     functions = arm.jax()
@@ -74,24 +76,21 @@ def main():
     q, qd, qdd = (random.uniform(-high, high, (asked.states, arm.dof)) for high in (np.pi, 2.0, 5.0))
     expected = arm.inverse_dynamics(q, qd, qdd)
     print(f"jax {jax.__version__}, {asked.states} states of {arm.name}, medians of {asked.repetitions}, one thread")
-    for kind in (np.float64, np.float32):
-        states = [jnp.asarray(array, kind) for array in (q, qd, qdd)]
-        if kind == np.float32:
-            # MJX computes in the type of its model, which has float64 here
-            calls.pop("MJX", None)
-        programs = {name: jax.jit(jax.vmap(call)) for name, call in calls.items()}
-        times = {name: [] for name in programs}
-        errors = {name: float(abs(np.asarray(one(*states)) - expected).max()) for name, one in programs.items()}
-        for _ in range(asked.repetitions):
-            for name, program in programs.items():
-                start = time.perf_counter()
-                program(*states).block_until_ready()
-                times[name].append((time.perf_counter() - start) / asked.states * 1e9)
-        ours = statistics.median(times["rne"])
-        for name, found in times.items():
-            median = statistics.median(found)
-            print(f"{np.dtype(kind).name:<8} {name:<14} {median:>9.1f} ns  {median / ours:>6.1f} times  error "
-                  f"{errors[name]:.1e}", flush=True)
+    kind = np.dtype(np.float32 if asked.single else np.float64)
+    states = [jnp.asarray(array, kind) for array in (q, qd, qdd)]
+    programs = {name: jax.jit(jax.vmap(call)) for name, call in calls.items()}
+    times = {name: [] for name in programs}
+    errors = {name: float(abs(np.asarray(one(*states)) - expected).max()) for name, one in programs.items()}
+    for _ in range(asked.repetitions):
+        for name, program in programs.items():
+            start = time.perf_counter()
+            program(*states).block_until_ready()
+            times[name].append((time.perf_counter() - start) / asked.states * 1e9)
+    ours = statistics.median(times["rne"])
+    for name, found in times.items():
+        median = statistics.median(found)
+        print(f"{kind.name:<8} {name:<14} {median:>9.1f} ns {median / ours:>7.1f} times   error {errors[name]:.1e} N m",
+              flush=True)
 
 
 if __name__ == "__main__":

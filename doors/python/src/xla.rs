@@ -21,10 +21,10 @@ use crate::arm::Arm;
 /// The arms that XLA may call, by the names that calls have for them.
 static ARMS: LazyLock<RwLock<HashMap<String, CompiledArm>>> = LazyLock::new(RwLock::default);
 
-/// What XLA calls, with one function for all arms.
+/// What XLA calls, with one function for all arms, where XLA has this version of its interface.
 #[pyfunction]
-pub(crate) fn xla_handler(py: Python<'_>) -> PyResult<Bound<'_, PyCapsule>> {
-    border::capsule(py)
+pub(crate) fn xla_handler(py: Python<'_>, major: i32, minor: i32) -> PyResult<Bound<'_, PyCapsule>> {
+    border::capsule(py, (major, minor))
 }
 
 /// An operand of a function: its name, its shape for one state, and the arrays of the machine that it is made of.

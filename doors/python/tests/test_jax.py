@@ -2,7 +2,11 @@
 Skipped where JAX is not."""
 
 import concurrent.futures
+import contextlib
 import ctypes
+import io
+import os
+import re
 import subprocess
 import sys
 import warnings
@@ -279,10 +283,12 @@ def test_hostile_calls_are_refused(wrong, words):
 
 def test_frames_of_another_size_are_refused():
     """What is too short to be a call frame is not read, and there is no way to make an error of XLA."""
-    capsule = rne._rne.xla_handler()
+    capsule = rne._rne.xla_handler(*rne.xla.version())
     pointer = ctypes.pythonapi.PyCapsule_GetPointer
     pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
     handler = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p)(pointer(capsule, b"xla._CUSTOM_CALL_TARGET"))
+    with pytest.raises(RuntimeError, match="version 1.0 of XLA's foreign-function interface, but rne knows 0.0 to 0.3"):
+        rne._rne.xla_handler(1, 0)
     assert handler(None) is None
     for size in (0, 8, 24, 96):
         frame = (ctypes.c_size_t * 64)(size)
@@ -313,3 +319,21 @@ def test_a_program_of_the_cache_of_another_process_is_that_of_its_arm(tmp_path):
     )
     for order in (["panda", "iiwa14"], ["iiwa14", "panda"]):
         subprocess.run([sys.executable, "-c", program.format(order)], check=True)
+
+
+def test_the_examples_of_the_page_run():
+    page = Path(__file__).parents[3] / "docs/jax.md"
+    text = page.read_text(encoding="utf-8")
+    names, written = {}, text
+    for example in re.finditer(r"```python\n(.*?)```\n\n```text\n(.*?)```\n", text, re.DOTALL):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(example[1], names)  # noqa: S102
+        block = f"```python\n{example[1]}```\n\n```text\n{printed.getvalue()}```\n"
+        if "RNE_WRITE_DOCUMENTS" in os.environ:
+            written = written.replace(example[0], block)
+        else:
+            assert example[0] == block
+    if "RNE_WRITE_DOCUMENTS" in os.environ:
+        page.write_text(written, encoding="utf-8")
+    assert "power" in names

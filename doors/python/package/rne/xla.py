@@ -3,6 +3,8 @@
 import functools
 import hashlib
 import math
+import pathlib
+import re
 import warnings
 
 import numpy as np
@@ -39,7 +41,15 @@ _KNOWN = {}
 def _register():
     import jax
 
-    jax.ffi.register_ffi_target(TARGET, xla_handler(), platform="cpu")
+    jax.ffi.register_ffi_target(TARGET, xla_handler(*version()), platform="cpu")
+
+
+def version():
+    """The version of XLA's foreign-function interface, as the header says that JAX brings."""
+    import jax
+
+    header = pathlib.Path(jax.ffi.include_dir(), "xla/ffi/api/c_api.h").read_text(encoding="utf-8")
+    return [int(re.search(rf"#define XLA_FFI_API_{part} (\d+)", header)[1]) for part in ("MAJOR", "MINOR")]
 
 
 class Functions:

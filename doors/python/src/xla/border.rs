@@ -13,14 +13,19 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::mem::offset_of;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::{self, NonNull};
+use std::sync::atomic::{AtomicI32, Ordering};
 
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 
 use super::{Argument, Call, Numbers, Room, compute};
 
 /// The newest version of the interface whose structs are known here. A minor version only adds fields at the end.
-const VERSION: (c_int, c_int) = (0, 3);
+const KNOWN: (c_int, c_int) = (0, 3);
+
+/// The minor version that is told to XLA: one that it has too.
+static MINOR: AtomicI32 = AtomicI32::new(KNOWN.1);
 
 /// Values of C's enums.
 const METADATA: u32 = 1;
@@ -130,8 +135,18 @@ struct CallFrame {
     attributes: Attributes,
 }
 
-/// What XLA calls, as a capsule for `jax.ffi.register_ffi_target`.
-pub(super) fn capsule(py: Python<'_>) -> PyResult<Bound<'_, PyCapsule>> {
+/// What XLA calls, as a capsule for `jax.ffi.register_ffi_target`, where XLA has this version of the interface. A call
+/// that asks for the version does not tell which one XLA has, and some XLA takes none but its own.
+pub(super) fn capsule(py: Python<'_>, version: (c_int, c_int)) -> PyResult<Bound<'_, PyCapsule>> {
+    let (major, minor) = version;
+    if major != KNOWN.0 || minor < 0 {
+        return Err(PyRuntimeError::new_err(format!(
+            "JAX has version {major}.{minor} of XLA's foreign-function interface, but rne knows {}.0 to {}.{}: install \
+             another version of JAX",
+            KNOWN.0, KNOWN.0, KNOWN.1
+        )));
+    }
+    MINOR.store(minor.min(KNOWN.1), Ordering::Relaxed);
     const NAME: &CStr = c"xla._CUSTOM_CALL_TARGET";
     let handler: extern "C" fn(*mut CallFrame) -> *mut c_void = handle;
     let pointer = NonNull::new(handler as *mut c_void).unwrap_or(NonNull::dangling());
@@ -205,7 +220,7 @@ unsafe fn handled(frame: *mut CallFrame) -> Result<(), String> {
     }
 }
 
-/// Answers the question for the version: the newest one that both sides know.
+/// Answers the question for the version.
 ///
 /// # Safety
 /// The first extension of the frame is a struct of the kind [`METADATA`].
@@ -218,14 +233,7 @@ unsafe fn tell_version(frame: &CallFrame) -> Result<(), String> {
         // what comes behind is newer, and XLA's to fill
         let known = offset_of!(Metadata, traits) + size_of::<u32>();
         sized_pointer(metadata, known, "the metadata")?;
-        let (major, newest) = VERSION;
-        let mut minor = newest;
-        if sized_pointer(frame.api, offset_of!(Api, internal), "the table of functions").is_ok() {
-            let theirs = (&raw const (*frame.api).api_version).read();
-            if theirs.major == major {
-                minor = newest.min(theirs.minor);
-            }
-        }
+        let (major, minor) = (KNOWN.0, MINOR.load(Ordering::Relaxed));
         let version = ApiVersion { struct_size: size_of::<ApiVersion>(), extensions: ptr::null_mut(), major, minor };
         (&raw mut (*metadata).api_version).write(version);
         (&raw mut (*metadata).traits).write(0);
