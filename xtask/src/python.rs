@@ -44,8 +44,8 @@ const FIRST: &str = "import rne\n\
 ///
 /// The wheel is built by maturin, installed with numpy into an empty virtual environment, and tested there: against
 /// numpy on random arms, against the command line on logs, with --peers against Pinocchio on real arms, and with
-/// --casadi and --jax against expressions that CasADi and JAX derive; then the notebooks run. With --install it is tried once more in an
-/// environment that is made anew, where no compiler is on PATH.
+/// --casadi and --jax against expressions that CasADi and JAX derive; then the notebooks run. With --install it is
+/// tried once more in an environment that is made anew, where no compiler is on PATH.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; what else it needs is fetched into target/python.

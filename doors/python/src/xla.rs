@@ -127,9 +127,11 @@ impl Arm {
 
     /// Functions of this arm for JAX: `jit`, `vmap`, `grad`, `jacfwd` and `jacrev` of them work, on the CPU.
     ///
-    /// Each function of the arm is an attribute of what is returned: `arm.jax().inverse_dynamics(q, qd, qdd)`. Arguments
-    /// have any leading axes, which follow numpy's rules of broadcasting, then those of one state: shape (..., n).
-    /// Several results are a tuple. The program that XLA compiles calls the machine with the addresses of its arrays;
+    /// Each function of the arm is an attribute of what is returned: `arm.jax().inverse_dynamics(q, qd, qdd)`.
+    /// Arguments have any leading axes, which follow numpy's rules of broadcasting, then those of one state: shape
+    /// (..., n). Several results are a tuple.
+    ///
+    /// The program that XLA compiles calls the machine with the addresses of its arrays;
     /// axes of `vmap` become leading axes of one call. More than some thousand states are computed on all cores, or as
     /// the variable RAYON_NUM_THREADS says. Arrays of float32 are computed in single precision, and everything is where
     /// JAX's option `jax_enable_x64` is off; a warning says so of numpy's arrays of float64.
