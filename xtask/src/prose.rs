@@ -59,6 +59,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/lecture/two-links.md",
     "docs/logs.md",
     "docs/optimal-control.md",
+    "docs/jax.md",
     "docs/performance.md",
     "docs/python.md",
     "docs/reduced-form.md",

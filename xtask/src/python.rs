@@ -23,6 +23,9 @@ const PEERS: [&str; 4] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==
 /// Packages that the tests need to call the functions of the wheel from CasADi.
 const CASADI: [&str; 2] = ["casadi==3.8.2", "pyyaml>=6"];
 
+/// Packages that the tests need to call the functions of the wheel from JAX.
+const JAX: [&str; 1] = ["jax==0.10.2"];
+
 /// Whose columns the wheel reads.
 const COLUMNS: [&str; 3] = ["pandas>=2", "polars>=1.8", "pyarrow>=17"];
 
@@ -41,8 +44,8 @@ const FIRST: &str = "import rne\n\
 ///
 /// The wheel is built by maturin, installed with numpy into an empty virtual environment, and tested there: against
 /// numpy on random arms, against the command line on logs, with --peers against Pinocchio on real arms, and with
-/// --casadi against expressions that CasADi derives; then the notebooks run. With --install it is tried once more in an
-/// environment that is made anew, where no compiler is on PATH.
+/// --casadi and --jax against expressions that CasADi and JAX derive; then the notebooks run. With --install it is
+/// tried once more in an environment that is made anew, where no compiler is on PATH.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; what else it needs is fetched into target/python.
@@ -50,7 +53,7 @@ Needs python3 with venv; what else it needs is fetched into target/python.
 Examples:
   cargo xtask python              with what is installed there
   cargo xtask python --install    install it first
-  cargo xtask python --install --peers --casadi --notebooks
+  cargo xtask python --install --peers --casadi --jax --notebooks
   cargo xtask python --install --sdist    minutes: pip builds it from sources")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Python {
@@ -63,6 +66,9 @@ pub(crate) struct Python {
     /// Have CasADi derive the dynamics and solve problems of optimal control
     #[arg(long)]
     pub(crate) casadi: bool,
+    /// Have JAX derive the dynamics, and compile calls of the functions
+    #[arg(long)]
+    pub(crate) jax: bool,
     /// Run the notebooks of doors/python/notebooks
     #[arg(long)]
     pub(crate) notebooks: bool,
@@ -77,6 +83,7 @@ impl Python {
         let mut packages = [&TESTS[..], &COLUMNS].concat();
         packages.extend(PEERS.iter().filter(|_| self.peers));
         packages.extend(CASADI.iter().filter(|_| self.casadi));
+        packages.extend(JAX.iter().filter(|_| self.jax));
         packages.extend(NOTEBOOKS.iter().filter(|_| self.notebooks));
         let wheel = place.wheel(self.install)?;
         let python = place.user(&wheel, &packages, self.install)?;

@@ -1,7 +1,8 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
 //! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`pose`], [`rollout`] and [`insight`] its methods,
-//! [`arrays`] what numpy's arrays are to the machine, [`load`] how an arm is read, [`errors`] what goes wrong.
+//! [`arrays`] what numpy's arrays are to the machine and [`xla`] what those of JAX are, [`load`] how an arm is read,
+//! [`errors`] what goes wrong.
 //! [`logs`], [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes
 //! wrong there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
 
@@ -24,6 +25,7 @@ mod pose;
 mod reply;
 mod rollout;
 mod watching;
+mod xla;
 
 use pyo3::prelude::*;
 
@@ -48,6 +50,8 @@ mod _rne {
     use super::pose::pose_log;
     #[pymodule_export]
     use super::watching::{followed, watched};
+    #[pymodule_export]
+    use super::xla::xla_handler;
 
     use pyo3::prelude::*;
 

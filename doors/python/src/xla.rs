@@ -1,0 +1,290 @@
+//! Functions of an arm for XLA, the compiler of JAX: `Arm.jax` stands on it, in `rne/xla.py`.
+//!
+//! XLA's foreign-function interface calls a C function with the addresses of its arrays. [`border`] makes slices of
+//! them, and [`compute`] gives these to the machine, which reads and writes them where they are. The attributes of a
+//! call name the arm and the function. An arm is kept under its name as long as the process lives, because a compiled
+//! program of XLA can call it at any time.
+
+mod border;
+
+use std::collections::HashMap;
+use std::sync::{LazyLock, PoisonError, RwLock};
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyCapsule;
+use rne::compiled::{Arguments, Array, CompiledArm, Destination, Function, Number};
+use rne_codegen::{Layout, Record, Sizes};
+
+use crate::arm::Arm;
+
+/// The arms that XLA may call, by the names that calls have for them.
+static ARMS: LazyLock<RwLock<HashMap<String, CompiledArm>>> = LazyLock::new(RwLock::default);
+
+/// What XLA calls, with one function for all arms, where XLA has this version of its interface.
+#[pyfunction]
+pub(crate) fn xla_handler(py: Python<'_>, major: i32, minor: i32) -> PyResult<Bound<'_, PyCapsule>> {
+    border::capsule(py, (major, minor))
+}
+
+/// An operand of a function: its name, its shape for one state, and the arrays of the machine that it is made of.
+struct Operand {
+    name: &'static str,
+    shape: Vec<usize>,
+    parts: Vec<(&'static str, usize)>,
+}
+
+/// The operands of a function: an array for each argument, and for each part of the motion of a base.
+fn operands(arm: &CompiledArm, function: Function) -> Vec<Operand> {
+    let sizes = Sizes::of(arm.robot());
+    let mut all = Vec::new();
+    for argument in function.arguments() {
+        let parts: Vec<_> = argument.parts().map(|part| (part.name, part.length.of(sizes))).collect();
+        let elements = argument.elements(sizes);
+        match (&parts[..], argument.row()) {
+            (&[(name, _)], row) => {
+                let shape = match name {
+                    // homogeneous matrices are those of Python
+                    "pose" => vec![12],
+                    _ => row.map_or_else(|| vec![elements], |row| vec![elements / row, row]),
+                };
+                all.push(Operand { name, shape, parts: vec![(name, elements)] });
+            }
+            (&[("force", _), ..], _) => all.push(Operand { name: "wrench", shape: vec![elements], parts }),
+            _ => all.extend(parts.iter().map(|&(name, length)| Operand {
+                name,
+                shape: vec![length],
+                parts: vec![(name, length)],
+            })),
+        }
+    }
+    let run_time = arm.robot().run_time.names.len();
+    if run_time > 0 {
+        all.push(Operand { name: "parameters", shape: vec![run_time], parts: vec![("parameters", run_time)] });
+    }
+    all
+}
+
+/// The shapes of the arrays that a function returns, one behind the other, and whether they are poses.
+fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>, bool)> {
+    fn of(layout: &Layout) -> Vec<(Vec<usize>, bool)> {
+        match layout {
+            Layout::Number => vec![(vec![], false)],
+            Layout::Array(length, each) => {
+                let of_each = of(each);
+                let [(shape, is_pose)] = &of_each[..] else { return of_each };
+                vec![([&[*length], &shape[..]].concat(), *is_pose)]
+            }
+            Layout::Record(Record::Pose, _) => vec![(vec![], true)],
+            Layout::Record(Record::Wrench | Record::BaseAcceleration, _) => vec![(vec![layout.len()], false)],
+            Layout::Record(_, parts) => parts.iter().flat_map(of).collect(),
+        }
+    }
+    let mut found = of(&arm.layout(function));
+    if let [(shape, _)] = &mut found[..]
+        && function.is_of_every_link()
+        && let [rows, bodies, parameters] = shape[..]
+    {
+        *shape = vec![rows, bodies * parameters];
+    }
+    found
+}
+
+/// A function as Python is told of it: its name among the methods of the class, its own name, its operands with their
+/// shapes, its results with their shapes and whether they are poses.
+type Told = (&'static str, &'static str, Vec<(&'static str, Vec<usize>)>, Vec<(Vec<usize>, bool)>);
+
+#[pymethods]
+impl Arm {
+    /// Keeps this arm, or this arm at a frame, for XLA under a name, and tells of its functions.
+    #[pyo3(signature = (name, frame=None))]
+    fn _for_xla(&self, name: String, frame: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Told>> {
+        let arm = match frame {
+            Some(frame) => {
+                let frame = self.frame_name(frame)?;
+                self.arm.at_frame(&frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?
+            }
+            None => self.arm.clone(),
+        };
+        let told = Function::of_robot(arm.robot()).map(|function| {
+            let operands = operands(&arm, function).into_iter().map(|operand| (operand.name, operand.shape));
+            (
+                function.of_frame().unwrap_or(function.name()),
+                function.name(),
+                operands.collect(),
+                results(&arm, function),
+            )
+        });
+        let told = told.collect();
+        ARMS.write().unwrap_or_else(PoisonError::into_inner).insert(name, arm);
+        Ok(told)
+    }
+
+    /// The run-time parameters as they stand in the robot file.
+    fn _parameter_values(&self) -> Vec<f64> {
+        self.robot().run_time.values(self.robot())
+    }
+
+    /// Functions of this arm for JAX: `jit`, `vmap`, `grad`, `jacfwd` and `jacrev` of them work, on the CPU.
+    ///
+    /// Each function of the arm is an attribute of what is returned: `arm.jax().inverse_dynamics(q, qd, qdd)`.
+    /// Arguments have any leading axes, which follow numpy's rules of broadcasting, then those of one state: shape
+    /// (..., n). Several results are a tuple.
+    ///
+    /// The program that XLA compiles calls the machine with the addresses of its arrays;
+    /// axes of `vmap` become leading axes of one call. More than some thousand states are computed on all cores, or as
+    /// the variable RAYON_NUM_THREADS says. Arrays of float32 are computed in single precision, and everything is where
+    /// JAX's option `jax_enable_x64` is off; a warning says so of numpy's arrays of float64.
+    ///
+    /// `inverse_dynamics`, `forward_dynamics`, `gravity_torques` and `bias_torques`, those with a payload, the two
+    /// energies, `pose` and `centre_of_mass` have derivatives by positions, velocities, accelerations and
+    /// torques. Others have none, nor are there second derivatives: JAX raises NotImplementedError. `frame`: functions
+    /// of the tip are those of this frame. Needs the package jax, 0.5 or later.
+    #[pyo3(signature = (*, frame=None))]
+    fn jax<'py>(slf: &Bound<'py, Self>, frame: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("rne.xla")?.call_method1("functions", (slf, frame))
+    }
+}
+
+/// Numbers of an array of XLA.
+enum Numbers<'a> {
+    Single(&'a [f32]),
+    Double(&'a [f64]),
+}
+
+/// Room for numbers of a result of XLA.
+enum Room<'a> {
+    Single(&'a mut [f32]),
+    Double(&'a mut [f64]),
+}
+
+/// An array of XLA, row by row: the lengths of its axes, and its numbers.
+struct Argument<'a> {
+    shape: Vec<usize>,
+    numbers: Numbers<'a>,
+}
+
+/// A call of XLA's: the attributes, the arrays, the shape of the result and the room for it.
+struct Call<'a> {
+    arm: &'a str,
+    function: &'a str,
+    arguments: Vec<Argument<'a>>,
+    shape: Vec<usize>,
+    room: Room<'a>,
+}
+
+/// A number whose arrays XLA may pass.
+trait Passed: Number {
+    /// The numbers, if they are of this precision.
+    fn of<'a>(numbers: &Numbers<'a>) -> Option<&'a [Self]>;
+}
+
+impl Passed for f32 {
+    fn of<'a>(numbers: &Numbers<'a>) -> Option<&'a [Self]> {
+        if let Numbers::Single(numbers) = numbers { Some(numbers) } else { None }
+    }
+}
+
+impl Passed for f64 {
+    fn of<'a>(numbers: &Numbers<'a>) -> Option<&'a [Self]> {
+        if let Numbers::Double(numbers) = numbers { Some(numbers) } else { None }
+    }
+}
+
+/// Computes a call: what an error of XLA says is returned.
+fn compute(call: Call<'_>) -> Result<(), String> {
+    let Call { arm, function: name, arguments, shape, room } = call;
+    let found = ARMS.read().unwrap_or_else(PoisonError::into_inner).get(arm).cloned();
+    let arm = found.ok_or_else(|| format!("this process has no arm `{arm}`: call `Arm.jax` before"))?;
+    let function: Function = name.parse().map_err(|error: rne_codegen::UnknownName| error.to_string())?;
+    if !Function::of_robot(arm.robot()).any(|other| other == function) {
+        return Err(format!("`{}` has no function `{name}`", arm.robot().name));
+    }
+    match room {
+        Room::Single(room) => compute_in(&arm, function, &arguments, &shape, room),
+        Room::Double(room) => compute_in(&arm, function, &arguments, &shape, room),
+    }
+}
+
+fn compute_in<T: Passed>(
+    arm: &CompiledArm,
+    function: Function,
+    given: &[Argument<'_>],
+    shape: &[usize],
+    room: &mut [T],
+) -> Result<(), String> {
+    let name = function.name();
+    let compiled = arm.function(function).map_err(|error| error.to_string())?;
+    let Some((&outputs, leading)) = shape.split_last().filter(|(outputs, _)| **outputs == compiled.outputs()) else {
+        return Err(format!("the result of `{name}` has the shape {shape:?}; its last axis is {}", compiled.outputs()));
+    };
+    if outputs == 0 || room.is_empty() {
+        return Ok(());
+    }
+    let states = room.len() / outputs;
+    let operands = operands(arm, function);
+    if operands.len() != given.len() {
+        return Err(format!("`{name}` takes {} arrays, but {} are given", operands.len(), given.len()));
+    }
+    // what is neither a row per state nor one row for all
+    let mut spread = Vec::new();
+    let mut arrays = Vec::new();
+    for (Operand { name, parts, .. }, argument) in operands.iter().zip(given) {
+        let elements: usize = parts.iter().map(|(_, length)| length).sum();
+        let of_state = argument.shape.split_last().filter(|&(&last, _)| last == elements);
+        let fits = |axes: &[usize]| {
+            axes.len() == leading.len() && axes.iter().zip(leading).all(|(&axis, &whole)| axis == whole || axis == 1)
+        };
+        let Some((_, axes)) = of_state.filter(|(_, axes)| fits(axes)) else {
+            return Err(format!(
+                "`{name}` has the shape {:?}; it is {leading:?}, or 1 in place of some of them, then {elements}",
+                argument.shape
+            ));
+        };
+        let numbers =
+            T::of(&argument.numbers).ok_or_else(|| format!("`{name}` has another precision than the result"))?;
+        let rows: usize = axes.iter().product();
+        if rows != 1 && rows != states {
+            spread.push(spread_over(numbers, elements, axes, leading, states));
+            arrays.push(None);
+        } else if rows == states {
+            arrays.push(Some(Array::Rows(numbers)));
+        } else {
+            arrays.push(Some(Array::Same(numbers)));
+        }
+    }
+    let mut spread = spread.iter();
+    let mut arguments = Arguments::new();
+    for (Operand { name, parts, .. }, array) in operands.iter().zip(arrays) {
+        let array = array.or_else(|| spread.next().map(|numbers| Array::Rows(numbers)));
+        let missing = || format!("`{name}` is no argument");
+        let array = array.ok_or_else(missing)?;
+        let elements: usize = parts.iter().map(|(_, length)| length).sum();
+        let mut from = 0;
+        for &(part, length) in parts {
+            let array = if length == elements { array } else { array.part(elements, from..from + length) };
+            arguments = arguments.with(part, array).ok_or_else(missing)?;
+            from += length;
+        }
+    }
+    if states == 1 {
+        arm.run_one(function, &arguments, room)
+    } else {
+        arm.run(function, states, &arguments, Destination::Rows(room))
+    }
+    .map_err(|error| error.to_string())
+}
+
+/// A copy with a row for each state, of an array that has 1 in place of some leading axes.
+fn spread_over<T: Copy>(numbers: &[T], elements: usize, axes: &[usize], leading: &[usize], states: usize) -> Vec<T> {
+    let mut spread = Vec::with_capacity(states * elements);
+    for state in 0..states {
+        let (mut rest, mut row, mut stride) = (state, 0, 1);
+        for (&axis, &whole) in axes.iter().zip(leading).rev() {
+            row += if axis == 1 { 0 } else { rest % whole * stride };
+            (rest, stride) = (rest / whole, stride * axis);
+        }
+        spread.extend_from_slice(numbers.get(row * elements..(row + 1) * elements).unwrap_or_default());
+    }
+    spread
+}
