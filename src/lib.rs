@@ -139,10 +139,11 @@ pub use rne_runtime::{
     ContactDynamics, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
     FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
     FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointOrderError, JointWrenches, Kinematics,
-    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
-    Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, TorqueGradient,
-    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    IntegratorStep, IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
+    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
+    MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics,
+    Pose, Quaternion, Regressor, Scalar, StepDerivatives, TipWrenches, TorqueDerivatives, TorqueGradient, VectorUnit,
+    Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

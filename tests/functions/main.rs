@@ -23,6 +23,7 @@ mod floating_base;
 mod frames;
 mod golden;
 mod imported_loops;
+mod integrator;
 mod kinematics;
 mod matrices;
 mod momentum;

@@ -1,0 +1,141 @@
+//! Steps of integrators of random arms and trees, with code of both forms: beside the classical method of a textbook on
+//! the runtime, and dual numbers through that.
+
+use rne::{
+    AccelerationDerivatives, Dual, ForwardDynamics, ForwardDynamicsDerivatives, IntegratorStep,
+    IntegratorStepDerivatives, Scalar,
+};
+use rne_codegen::{Form, Function};
+use rne_model::Robot;
+
+use crate::arm::{Arm, Given, Maker};
+use crate::arms;
+use crate::check::{Worst, conditioning, error_on_scale};
+use crate::trees::{self, State};
+
+/// A robot whose number of joints is known.
+struct Joints<'a, const DOF: usize>(&'a Arm);
+
+fn given<'a, T: Scalar>([q, qd, tau]: [&'a [T]; 3]) -> Given<'a, T> {
+    // the accelerations are not used
+    Given { tau, ..Given::of_joints(q, qd, qd) }
+}
+
+impl<const DOF: usize> ForwardDynamics<DOF> for Joints<'_, DOF> {
+    fn forward_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> [T; DOF] {
+        let found = self.0.numbers(Function::ForwardDynamics, &given([q, qd, tau]));
+        found.try_into().expect("one per joint")
+    }
+}
+
+impl<const DOF: usize> ForwardDynamicsDerivatives<DOF> for Joints<'_, DOF> {
+    fn forward_dynamics_derivatives<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+    ) -> AccelerationDerivatives<DOF, T> {
+        let found = self.0.numbers(Function::ForwardDynamicsDerivatives, &given([q, qd, tau]));
+        let block = |kind: usize| std::array::from_fn(|i| std::array::from_fn(|j| found[(kind * DOF + i) * DOF + j]));
+        AccelerationDerivatives { dq: block(0), dqd: block(1), dtau: block(2) }
+    }
+}
+
+/// x + h y
+fn moved<T: Scalar>(x: &[T], y: &[T], step: T) -> Vec<T> {
+    x.iter().zip(y).map(|(&x, &y)| x + step * y).collect()
+}
+
+/// The next positions and velocities by slopes of the whole state.
+fn textbook<T: Scalar>(arm: &Arm, [q, qd, tau]: [&[T]; 3], step: T) -> Vec<T> {
+    let state = [q, qd].concat();
+    let slope = |x: &[T]| {
+        let (q, qd) = x.split_at(q.len());
+        [qd, &arm.numbers(Function::ForwardDynamics, &given([q, qd, tau]))].concat()
+    };
+    let number = |x: f64| T::from_f64(x);
+    let first = slope(&state);
+    let second = slope(&moved(&state, &first, step * number(0.5)));
+    let third = slope(&moved(&state, &second, step * number(0.5)));
+    let fourth = slope(&moved(&state, &third, step));
+    let sum = moved(&moved(&moved(&first, &second, number(2.0)), &third, number(2.0)), &fourth, number(1.0));
+    moved(&state, &sum, step / number(6.0))
+}
+
+fn euler<T: Scalar>(arm: &Arm, [q, qd, tau]: [&[T]; 3], step: T) -> Vec<T> {
+    let rates = moved(qd, &arm.numbers(Function::ForwardDynamics, &given([q, qd, tau])), step);
+    [moved(q, &rates, step), rates].concat()
+}
+
+/// The blocks of the derivatives of a step by dual numbers.
+fn by_dual_numbers(state: [&[f64]; 3], step: impl Fn([&[Dual<f64>]; 3]) -> Vec<Dual<f64>>) -> Vec<f64> {
+    let dof = state[0].len();
+    let mut found = vec![0.0; 6 * dof * dof];
+    for (kind, column) in (0..3).flat_map(|kind| (0..dof).map(move |column| (kind, column))) {
+        let mut moving = state.map(|x| x.iter().copied().map(Dual::constant).collect::<Vec<_>>());
+        moving[kind][column].derivative = 1.0;
+        let next = step([&moving[0], &moving[1], &moving[2]]);
+        for (row, number) in next.into_iter().enumerate() {
+            found[((row / dof * 3 + kind) * dof + row % dof) * dof + column] = number.derivative;
+        }
+    }
+    found
+}
+
+fn compare<const DOF: usize>(robot: &Robot, seed: u64, worst: &mut Worst) -> bool {
+    let runtime = Arm::by_no_choice(robot, Maker::Runtime);
+    let State { q, qd, tau, .. } = State::random(seed, DOF);
+    if conditioning(&runtime.mass_matrix(&q)).is_none_or(|of| of.number > 1e3) {
+        return false;
+    }
+    let accelerations = runtime.forward_dynamics(&q, &qd, &tau);
+    // a step after which the velocities are others, not numbers without measure
+    let step = 0.5 / accelerations.iter().fold(10.0_f64, |largest, x| largest.max(x.abs()));
+    let state: [&[f64]; 3] = [&q, &qd, &tau];
+    let expected = [
+        [euler(&runtime, state, step), by_dual_numbers(state, |x| euler(&runtime, x, Dual::constant(step)))],
+        [textbook(&runtime, state, step), by_dual_numbers(state, |x| textbook(&runtime, x, Dual::constant(step)))],
+    ];
+    let [q, qd, tau]: [[f64; DOF]; 3] = state.map(|x| x.try_into().expect("one per joint"));
+    for form in Form::ALL {
+        let arm = Arm::by_no_choice(robot, Maker::Code(form));
+        let robot = Joints::<DOF>(&arm);
+        let next = [robot.euler_step(&q, &qd, &tau, step), robot.runge_kutta_step(&q, &qd, &tau, step)];
+        let by = [
+            robot.euler_step_derivatives(&q, &qd, &tau, step),
+            robot.runge_kutta_step_derivatives(&q, &qd, &tau, step),
+        ];
+        for (method, names) in
+            [["euler_step", "its derivatives"], ["runge_kutta_step", "their derivatives"]].into_iter().enumerate()
+        {
+            let found = [next[method].q, next[method].qd].concat();
+            worst.see(names[0], error_on_scale(&found, &expected[method][0], 0.0));
+            let (positions, rates) = (&by[method].q, &by[method].qd);
+            let blocks = [positions.dq, positions.dqd, positions.dtau, rates.dq, rates.dqd, rates.dtau];
+            for (found, expected) in blocks.iter().zip(expected[method][1].chunks(DOF * DOF)) {
+                worst.see(names[1], error_on_scale(found.as_flattened(), expected, 0.0));
+            }
+        }
+    }
+    true
+}
+
+#[test]
+fn steps_of_random_robots_are_those_of_the_textbook() {
+    let (mut worst, mut compared) = (Worst::default(), 0);
+    let arms = (0..260).map(|seed| (seed, Robot::from_yaml(&arms::yaml(seed)).expect("an arm")));
+    let trees = (0..90).map(|seed| (seed, trees::random(seed, trees::dof(seed).min(5))));
+    for (seed, robot) in arms.chain(trees) {
+        compared += usize::from(match robot.dof() {
+            1 => compare::<1>(&robot, seed, &mut worst),
+            2 => compare::<2>(&robot, seed, &mut worst),
+            3 => compare::<3>(&robot, seed, &mut worst),
+            4 => compare::<4>(&robot, seed, &mut worst),
+            5 => compare::<5>(&robot, seed, &mut worst),
+            _ => false,
+        });
+    }
+    println!("{compared} robots");
+    assert!(compared >= 100, "{compared}");
+    worst.at_most(1e-11, "random arms and trees");
+}
