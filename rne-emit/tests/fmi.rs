@@ -66,6 +66,37 @@ fn printed(robot: &Robot, files: &[(String, String)], main: &str) -> Option<Vec<
     Some(text.lines().map(|line| line.parse().expect("a number")).collect())
 }
 
+/// The program of [`driver`], whose words in capitals are replaced.
+const MAIN: &str = r#"#include <stdio.h>
+#include "fmi_types.h"
+DECLARATIONS
+int main(void)
+{
+    const unsigned given[] = {REFERENCES}, asked[] = {ASKED};
+    const double values[] = {VALUES};
+    double seen[sizeof asked / sizeof *asked];
+    size_t k;
+    int i;
+OWN    void *arm = BEGIN;
+    if (arm == 0 || PUT != 0) {
+        return 1;
+    }
+    for (i = 0; i < STEPS; i++) {
+        if (STEP != 0) {
+            return 2;
+        }
+    }
+    if (GET != 0) {
+        return 3;
+    }
+    for (k = 0; k < sizeof asked / sizeof *asked; k++) {
+        printf("%.17g\n", seen[k]);
+    }
+    FREE(arm);
+    return 0;
+}
+"#;
+
 /// A program that sets the values with the first references, steps or evaluates, and prints `count` values.
 fn driver(version: FmiVersion, set: &[(usize, f64)], steps: usize, duration: f64, print: &[usize]) -> String {
     let list = |numbers: Vec<String>| numbers.join(", ");
@@ -99,14 +130,22 @@ fn driver(version: FmiVersion, set: &[(usize, f64)], steps: usize, duration: f64
     };
     let own = if version == FmiVersion::Three { "    bool a, b, c;\n    double last;\n" } else { "" };
     let free = if version == FmiVersion::Two { "fmi2FreeInstance" } else { "fmi3FreeInstance" };
-    format!(
-        "#include <stdio.h>\n#include \"fmi_types.h\"\n{declarations}\nint main(void)\n{{\n    const unsigned given[] = \
-         {{{references}}}, asked[] = {{{printed}}};\n    const double values[] = {{{values}}};\n    double \
-         seen[{asked}];\n    int i, k;\n{own}    void *arm = {begin};\n    if (arm == NULL || {put} != 0) {{\n        \
-         return 1;\n    }}\n    for (i = 0; i < {steps}; i++) {{\n        if ({step} != 0) {{\n            return 2;\n        \
-         }}\n    }}\n    if ({get} != 0) {{\n        return 3;\n    }}\n    for (k = 0; k < {asked}; k++) {{\n        \
-         printf(\"%.17g\\n\", seen[k]);\n    }}\n    {free}(arm);\n    return 0;\n}}\n"
-    )
+    let (steps, begin) = (steps.to_string(), begin.as_str());
+    [
+        ("DECLARATIONS", declarations),
+        ("REFERENCES", &references),
+        ("ASKED", &printed),
+        ("VALUES", &values),
+        ("OWN", own),
+        ("BEGIN", begin),
+        ("PUT", &put),
+        ("STEPS", &steps),
+        ("STEP", &step),
+        ("GET", &get),
+        ("FREE", free),
+    ]
+    .into_iter()
+    .fold(MAIN.to_owned(), |text, (place, part)| text.replace(place, part))
 }
 
 /// q, q̇ and a third array, of moderate size.
@@ -203,8 +242,9 @@ fn descriptions_list_each_variable_once() {
     for robot in robots() {
         let dof = robot.dof();
         let robot = with_inertial_parameters(robot);
-        for (version, causality) in
-            VERSIONS.into_iter().flat_map(|version| [FmuCausality::Forward, FmuCausality::Inverse].map(|of| (version, of)))
+        for (version, causality) in VERSIONS
+            .into_iter()
+            .flat_map(|version| [FmuCausality::Forward, FmuCausality::Inverse].map(|of| (version, of)))
         {
             let files = files(&robot, version, causality);
             let xml = file(&files, "modelDescription.xml");

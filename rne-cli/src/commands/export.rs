@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use rne_emit::FmiVersion;
 
 use crate::commands::fmu;
@@ -14,7 +14,7 @@ use crate::outcome::{Failure, Outcome};
 
 /// Convert a robot file to a URDF or an FMU, for other programs
 #[derive(Args)]
-#[command(after_help = "\
+#[command(group = ArgGroup::new("format").required(true).args(["urdf", "fmu"]), after_help = "\
 Examples:
   rne export robots/ur5.yaml --urdf -o ur5.urdf
   rne export puma560 --urdf
@@ -37,11 +37,11 @@ pub(crate) struct Arguments {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Write the URDF format
-    #[arg(long, required_unless_present = "fmu")]
+    #[arg(long)]
     urdf: bool,
     /// Write an FMU of FMI 2 or 3 [default: 3]; docs/fmi.md explains it
     #[arg(long, value_name = "VERSION", num_args = 0..=1, default_missing_value = "3", value_parser = ["2", "3"],
-        hide_possible_values = true, conflicts_with = "urdf", requires = "out")]
+        hide_possible_values = true, requires = "out")]
     fmu: Option<String>,
     #[command(flatten)]
     options: fmu::Options,

@@ -27,8 +27,9 @@ pub(super) struct Options {
     /// FMU: sources only, no binary
     #[arg(long, requires = "fmu")]
     no_build: bool,
-    #[command(flatten)]
-    rotors: Rotors,
+    /// FMU: include the inertia of the motors' rotors
+    #[arg(long, requires = "fmu")]
+    rotors: bool,
 }
 
 /// Writes the FMU of a robot file.
@@ -47,7 +48,14 @@ pub(super) fn write(
     check_new(out, None, &[file], force)?;
     file_name::check(out, Format::Fmu)?;
     let checked = robot_file::read_with_free_parameters(file, Shape::Closed)?;
-    let robot = rne_emit::with_inertial_parameters(options.rotors.of(checked.robot));
+    if checked.robot.floating_base.is_some() {
+        return Err(Failure::input(format_args!(
+            "{}: the base of this robot floats, and an FMU needs a fixed base; remove `floating_base` to fix the base",
+            file.display()
+        )));
+    }
+    let rotors = Rotors { rotors: options.rotors };
+    let robot = rne_emit::with_inertial_parameters(rotors.of(checked.robot));
     let causality = if options.inverse { FmuCausality::Inverse } else { FmuCausality::Forward };
     let compiler = Compiler::without_file(file, &robot);
     let functions = causality.functions().iter();
@@ -83,7 +91,7 @@ pub(super) fn write(
     }
     let archive = archive(&entries).map_err(|error| Failure::input(format_args!("{}: {error}", out.display())))?;
     remark += &write_bytes(out, &archive)?;
-    remark += &options.rotors.note(&robot);
+    remark += &rotors.note(&robot);
     remark += &robot_file::lint_remark(&checked.lints, file);
     Ok(Outcome::remark(remark))
 }

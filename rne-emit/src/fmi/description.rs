@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::variables::{Role, Variable};
-use super::{Fmu, FmiVersion, FmuCausality, units};
+use super::{FmiVersion, Fmu, FmuCausality, units};
 use crate::inert;
 
 /// Text in an attribute of XML.
@@ -55,14 +55,12 @@ impl Fmu<'_> {
             }
             let of = ["kg", "m", "s", "rad"].into_iter().zip(exponents).filter(|(_, exponent)| *exponent != 0);
             let base: String = of.map(|(base, exponent)| format!(" {base}=\"{exponent}\"")).collect();
-            let degrees = if unit == "rad" {
-                "<DisplayUnit name=\"deg\" factor=\"57.29577951308232\"/>"
-            } else {
-                ""
-            };
+            let degrees = if unit == "rad" { "<DisplayUnit name=\"deg\" factor=\"57.29577951308232\"/>" } else { "" };
             let _ = writeln!(text, "    <Unit name=\"{unit}\"><BaseUnit{base}/>{degrees}</Unit>");
         }
-        text.push_str("  </UnitDefinitions>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\" stepSize=\"0.01\"/>\n");
+        text.push_str(
+            "  </UnitDefinitions>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\" stepSize=\"0.01\"/>\n",
+        );
         text.push_str("  <ModelVariables>\n");
         for (index, variable) in variables.iter().enumerate() {
             self.variable(&mut text, index, variable);

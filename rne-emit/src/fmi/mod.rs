@@ -29,7 +29,7 @@ pub enum FmiVersion {
     Three,
 }
 
-/// What an FMU computes.
+/// The direction of an FMU: its inputs and outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmuCausality {
     /// Torques in, motion out: forward dynamics, whose states are q and q̇.
@@ -44,9 +44,7 @@ impl FmuCausality {
     pub const fn functions(self) -> &'static [Function] {
         match self {
             Self::Forward => &[Function::ForwardDynamics, Function::ForwardDynamicsDerivatives],
-            Self::Inverse => {
-                &[Function::InverseDynamics, Function::MassMatrix, Function::InverseDynamicsDerivatives]
-            }
+            Self::Inverse => &[Function::InverseDynamics, Function::MassMatrix, Function::InverseDynamicsDerivatives],
         }
     }
 }
@@ -62,7 +60,7 @@ pub struct Fmu<'a> {
     pub code: &'a CCode,
     /// The version of FMI.
     pub version: FmiVersion,
-    /// What is computed.
+    /// Forward or inverse dynamics.
     pub causality: FmuCausality,
     /// A text that no FMU with other variables has.
     pub token: &'a str,
@@ -186,13 +184,7 @@ impl Fmu<'_> {
             FmuCausality::Forward => "tau.JOINT in, q.JOINT, qd.JOINT and qdd.JOINT out (forward dynamics)",
             FmuCausality::Inverse => "q.JOINT, qd.JOINT and qdd.JOINT in, tau.JOINT out (inverse dynamics)",
         };
-        format!(
-            "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>{title}</title></head><body>\n\
-             <h1>{title}</h1>\n<p>{what}. The torques are those of the actuators without friction.</p>\n\
-             <p>The folder sources has C99 code that needs no library. These commands, in the folder of the \
-             unpacked FMU, build the binary for this computer and pack an FMU with it:</p>\n\
-             <pre>cmake -S sources -B build\ncmake --build build --target fmu</pre>\n</body></html>\n"
-        )
+        include_str!("index.html").replace("CONTENT", what).replace("TITLE", &title)
     }
 }
 
