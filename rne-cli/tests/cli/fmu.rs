@@ -73,7 +73,7 @@ fn parameters_of_the_file_are_parameters_of_the_fmu() {
     let xml = &files[0].1;
     let parameters = xml.lines().filter(|line| line.contains("causality=\"parameter\""));
     let names: Vec<&str> = parameters.filter_map(|line| line.split("name=\"").nth(1)?.split('"').next()).collect();
-    assert_eq!(names, ["step", "g", "m", "half", "inertia.j1.zz"]);
+    assert_eq!(names, ["step", "g", "m", "half", "inertia.joint1.zz"]);
 }
 
 #[test]
