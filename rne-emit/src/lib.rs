@@ -12,6 +12,7 @@ mod cuda;
 mod emitted_sine;
 mod evidence;
 mod expression;
+mod fmi;
 mod formula;
 mod heading;
 mod inert;
@@ -36,6 +37,7 @@ pub use c::{
 pub use cuda::cuda;
 pub use emitted_sine::sin_cos_f32;
 pub use evidence::{evidence, refusals};
+pub use fmi::{FmiVersion, Fmu, FmuCausality, with_inertial_parameters};
 pub use formula::Formula;
 pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};

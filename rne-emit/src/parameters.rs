@@ -17,7 +17,7 @@ pub(super) struct Parameter {
     /// The name of the parameter as a member of a struct.
     pub(super) member: String,
     /// The unit, if the table determines it.
-    unit: Option<&'static str>,
+    pub(super) unit: Option<&'static str>,
     /// The numbers of the table that depend on it.
     entries: Vec<String>,
 }

@@ -10,6 +10,7 @@ mod counts;
 mod doors;
 mod features;
 mod fleet;
+mod fmu;
 mod frozen;
 mod fuzz;
 mod gpu;
@@ -93,6 +94,7 @@ enum Task {
     Page(page::Page),
     Playground(playground::Playground),
     Site(site::Site),
+    Fmu(fmu::Fmus),
 }
 
 /// Result of a task.
@@ -142,6 +144,7 @@ impl Task {
             Self::Page(task) => ("page", task.install, task.run()),
             Self::Playground(task) => ("playground", task.install, task.run()),
             Self::Site(task) => ("site", task.install, task.run()),
+            Self::Fmu(task) => ("fmu", task.install, task.run()),
         }
     }
 }

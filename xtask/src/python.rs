@@ -174,7 +174,7 @@ impl Place {
     }
 
     /// The command line, built, with whose numbers those of logs are compared; optimised, for the tests call it often.
-    fn command_line(&self) -> Result<PathBuf> {
+    pub(crate) fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
         machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --package rne-cli --features full"))
             .quiet()

@@ -173,6 +173,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Time,
     },
     Step {
+        name: "fmu",
+        about: "FMUs validated and simulated by FMPy, which is fetched",
+        variables: &[],
+        command: &["cargo", "xtask", "fmu", "--install"],
+        needs: Needs::Time,
+    },
+    Step {
         name: "page",
         about: "the page of `rne report` in headless Chromium, which is fetched",
         variables: &[],

@@ -23,6 +23,7 @@ mod excite;
 mod explain;
 mod export;
 mod firmware;
+mod fmu;
 mod golden;
 mod identify;
 mod import;

@@ -19,6 +19,7 @@ pub(crate) enum Format {
     C,
     Ptx,
     Cuda,
+    Fmu,
 }
 
 /// Ends of names that say something, though nothing of it is written here.
@@ -26,7 +27,7 @@ const OTHERS: [&str; 14] =
     ["bag", "cc", "cpp", "cxx", "db3", "jpg", "json", "mcap", "npz", "pdf", "png", "py", "toml", "xacro"];
 
 impl Format {
-    const ALL: [Self; 11] = [
+    const ALL: [Self; 12] = [
         Self::Csv,
         Self::Npy,
         Self::Parquet,
@@ -38,6 +39,7 @@ impl Format {
         Self::C,
         Self::Ptx,
         Self::Cuda,
+        Self::Fmu,
     ];
 
     /// Ends of names, the usual one first.
@@ -56,6 +58,7 @@ impl Format {
             Self::Ptx => &["ptx"],
             // a header of C++ as well
             Self::Cuda => &["cuh", "cu", "hpp"],
+            Self::Fmu => &["fmu"],
         }
     }
 }

@@ -196,6 +196,16 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
     write_all(&[(path, text)])
 }
 
+/// Writes bytes in place of a file that [`check_new`] allows; what was done, for the reader.
+pub(crate) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<String, Failure> {
+    let written = Replacement::begin(path).and_then(|replacement| {
+        replacement.file()?.write_all(bytes)?;
+        replacement.keep()
+    });
+    written.map_err(|error| unwritable(path, &error))?;
+    Ok(format!("{GOOD}wrote{GOOD:#} {}\n", path.display()))
+}
+
 /// The file of a result, or standard output.
 #[derive(Args)]
 pub(crate) struct Output {

@@ -66,12 +66,33 @@ fn read_by(
     frames: Frames,
     shape: Shape,
 ) -> Result<(Checked, Vec<u8>), Failure> {
-    let (name, bytes) = match open(path)? {
-        Opened::RobotFile(name, bytes) => (name, bytes),
-        Opened::Urdf(name, text) => (format!("{name} (imported)"), imported(&name, &text, frames)?.into_bytes()),
-    };
+    let (name, bytes) = yaml(path, frames)?;
     let checked = checked(&name, &bytes, parameters, shape)?;
     Ok((checked, bytes))
+}
+
+/// A robot file, or the one that an import makes, with the name that messages call it.
+fn yaml(path: &Path, frames: Frames) -> Result<(String, Vec<u8>), Failure> {
+    Ok(match open(path)? {
+        Opened::RobotFile(name, bytes) => (name, bytes),
+        Opened::Urdf(name, text) => (format!("{name} (imported)"), imported(&name, &text, frames)?.into_bytes()),
+    })
+}
+
+/// A valid robot whose parameters stay free until run time, but for those that cannot, such as angles, and those that
+/// are defined through others that are free.
+pub(crate) fn read_with_free_parameters(path: &Path, shape: Shape) -> Result<Checked, Failure> {
+    let (name, bytes) = yaml(path, Frames::Dropped)?;
+    let constant = checked(&name, &bytes, (&[], &[]), shape)?;
+    let names = constant.robot.parameters.iter().map(|(name, _)| name.as_str()).enumerate();
+    let alone = |(index, parameter)| {
+        let free = checked(&name, &bytes, (&[], &[parameter]), shape).ok()?.robot.run_time;
+        (!free.entries.is_empty()).then_some((index, parameter, free.parameters))
+    };
+    let free: Vec<_> = names.filter_map(alone).collect();
+    let is_defined = |index: usize| free.iter().any(|(_, _, defined)| defined.iter().any(|(other, _)| *other == index));
+    let free: Vec<&str> = free.iter().filter(|(index, ..)| !is_defined(*index)).map(|(_, name, _)| *name).collect();
+    checked(&name, &bytes, (&[], &free), shape)
 }
 
 /// A robot by what its file is, with the name that messages call it.

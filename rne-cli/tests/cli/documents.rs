@@ -11,12 +11,13 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 25] = [
+const DOCUMENTS: [&str; 26] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/c-library.md",
     "docs/command-line.md",
     "docs/firmware.md",
+    "docs/fmi.md",
     "docs/identify.md",
     "docs/inspection.md",
     "docs/lecture/README.md",
@@ -60,6 +61,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask site", "xtask/src/verify.rs", "\"xtask\", \"site\", \"--install\""),
     ("cargo xtask python", "xtask/src/verify.rs", "\"xtask\", \"python\", \"--install\""),
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
+    ("cargo xtask fmu", "xtask/src/verify.rs", "\"xtask\", \"fmu\", \"--install\""),
     // with the flags of pkg-config, below the prefix that it was given
     ("export PKG_CONFIG_PATH=", "xtask/src/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
     ("pip install ./doors/python", "xtask/src/python.rs", "pip install --quiet"),

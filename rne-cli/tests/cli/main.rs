@@ -21,6 +21,7 @@ mod eval;
 mod excite;
 mod files;
 mod firmware;
+mod fmu;
 mod help;
 #[cfg(unix)]
 mod hostile;

@@ -1,0 +1,91 @@
+//! `rne export --fmu`: the archive, and what is refused.
+
+use std::fs;
+use std::path::Path;
+
+use crate::call::{called, command, fails, folder, rne};
+
+/// The files of an archive: paths and texts; a file that is no text is empty.
+fn files(path: &Path) -> Vec<(String, String)> {
+    let bytes = fs::read(path).expect("an archive");
+    let archive = rawzip::ZipArchive::from_slice(&bytes).expect("a zip archive");
+    let mut entries = archive.entries();
+    let mut files = Vec::new();
+    while let Some(entry) = entries.next_entry().expect("an entry") {
+        let name = entry.file_path().try_normalize().expect("a path").as_ref().to_owned();
+        let local = archive.get_entry(entry.wayfinder()).expect("its data");
+        let mut text = Vec::new();
+        std::io::Read::read_to_end(&mut local.verifying_reader(local.data()), &mut text).expect("its checksum");
+        files.push((name, String::from_utf8(text).unwrap_or_default()));
+    }
+    files
+}
+
+#[test]
+fn an_fmu_is_an_archive_of_sources_for_its_version() {
+    let folder = folder("fmu_sources");
+    for (version, own) in [("2", "fmiVersion=\"2.0\""), ("3", "fmiVersion=\"3.0\"")] {
+        let out = folder.join(format!("arm{version}.fmu"));
+        let path = out.to_str().expect("UTF-8");
+        let called = rne(&["export", "planar2", "--fmu", version, "--no-build", "-o", path]);
+        assert_eq!(called.status, 0, "{}", called.err);
+        assert!(called.said().contains("no binary was built, because of --no-build"), "{}", called.err);
+        let files = files(&out);
+        let text = |name: &str| &files.iter().find(|(known, _)| known == name).expect(name).1;
+        assert!(text("modelDescription.xml").contains(own));
+        for name in ["planar2.c", "planar2.h", "fmu.c", "fmi_types.h", "CMakeLists.txt"] {
+            assert!(!text(&format!("sources/{name}")).is_empty());
+        }
+        let has = |name: &str| files.iter().any(|(known, _)| known.starts_with(name));
+        assert_eq!([has("sources/buildDescription.xml"), has("binaries/")], [version == "3", false]);
+        // an export that is repeated gives the same bytes
+        let first = fs::read(&out).expect("an archive");
+        let again = rne(&["export", "planar2", "--fmu", version, "--no-build", "-o", path, "--force"]);
+        assert_eq!((again.status, fs::read(&out).expect("an archive")), (0, first));
+    }
+}
+
+#[test]
+fn an_fmu_has_no_binary_where_there_is_no_compiler() {
+    let out = folder("fmu_without").join("arm.fmu");
+    let path = out.to_str().expect("UTF-8");
+    let mut call = command(&["export", "planar1", "--fmu", "-o", path]);
+    let called = called(call.env("CC", "no-such-compiler").output().expect("rne starts"));
+    assert_eq!(called.status, 0, "{}", called.err);
+    assert!(called.said().contains("there is no C compiler, so the FMU has sources and no binary"), "{}", called.err);
+    assert!(files(&out).iter().all(|(name, _)| !name.starts_with("binaries/")));
+}
+
+/// What is defined through a parameter changes with it, and has no name of its own.
+#[test]
+fn parameters_of_the_file_are_parameters_of_the_fmu() {
+    let folder = folder("fmu_parameters");
+    let (file, out) = (folder.join("rod.yaml"), folder.join("rod.fmu"));
+    let text = "format: 1\nname: rod\nsource: own numbers\nconvention: standard\ngravity: [0, -g, 0]\n\
+                parameters: {g: 9.81, m: 2, half: 0.25, twice: 2 * half, angle: 0.5, unused: 3}\njoints:\n  \
+                - {type: revolute, dh: {theta: angle, d: 0, a: twice, alpha: 0}, link: {mass: m, com: [-half, 0, 0], \
+                inertia: {zz: 0.04}}}\n";
+    fs::write(&file, text).expect("written");
+    let [file, path] = [&file, &out].map(|path| path.to_str().expect("UTF-8"));
+    let called = rne(&["export", file, "--fmu", "--no-build", "-o", path]);
+    assert_eq!(called.status, 0, "{}", called.err);
+    let files = files(&out);
+    let xml = &files[0].1;
+    let parameters = xml.lines().filter(|line| line.contains("causality=\"parameter\""));
+    let names: Vec<&str> = parameters.filter_map(|line| line.split("name=\"").nth(1)?.split('"').next()).collect();
+    assert_eq!(names, ["step", "g", "m", "half", "inertia.joint1.zz"]);
+}
+
+#[test]
+fn what_cannot_be_an_fmu_is_refused() {
+    let folder = folder("fmu_refused");
+    let out = folder.join("arm.fmu");
+    let path = out.to_str().expect("UTF-8");
+    fails(2, &["export", "planar1", "--fmu", "4", "-o", path], &["4", "2, 3"]);
+    fails(2, &["export", "planar1", "--fmu", "-o", "-"], &["--fmu needs the name of a file, such as -o arm.fmu"]);
+    fails(2, &["export", "planar1", "--fmu", "-o", "arm.zip.urdf"], &["arm.zip.fmu"]);
+    fails(2, &["export", "planar1", "--urdf", "--inverse"], &["--fmu"]);
+    fails(1, &["export", "docs/four_bar.yaml", "--fmu", "-o", path], &["closed loop"]);
+    fails(1, &["export", "docs/satellite.yaml", "--fmu", "-o", path], &["floating"]);
+    assert!(!out.exists());
+}

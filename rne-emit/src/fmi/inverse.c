@@ -1,0 +1,21 @@
+// Motion in, torques out: there are no states, the result is tau.
+enum { STATES = 0, RESULT = TAU, THIRD = QDD };
+
+static void evaluate(double *v)
+{
+FILLED    PREFIX_inverse_dynamics(v + Q, v + QD, v + QDDVALUE_ARGUMENT, v + TAU);
+}
+
+static void derivatives(const double *v, Blocks blocks)
+{
+    PREFIX_torque_derivatives by;
+FILLED    PREFIX_inverse_dynamics_derivatives(v + Q, v + QD, v + QDDDERIVATIVES_ARGUMENT, &by);
+    memcpy(blocks[0], by.dq, sizeof by.dq);
+    memcpy(blocks[1], by.dqd, sizeof by.dqd);
+    PREFIX_mass_matrix(v + QMASS_ARGUMENT, blocks[2]);
+}
+
+static int integrate(double *v, double duration)
+{
+    return are_finite(v, COUNT) && duration >= 0.0;
+}

@@ -1,0 +1,194 @@
+//! FMUs of FMI 2.0 and 3.0: the texts of a robot for model exchange and co-simulation.
+//!
+//! The C code of [`c_code_with`](crate::c_code_with) computes; a wrapper has the functions of FMI. The types of FMI are
+//! declared in our own words, so an FMU compiles without the headers of the standard.
+
+mod description;
+mod parameters;
+mod units;
+mod variables;
+
+use std::fmt::Write;
+
+use rne_codegen::{Function, Program};
+use rne_model::Robot;
+
+use crate::parameters::{are_used, used};
+use crate::{CCode, inert};
+use parameters::FmuParameter;
+use variables::Variable;
+
+pub use parameters::with_inertial_parameters;
+
+/// A version of the standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FmiVersion {
+    /// FMI 2.0.
+    Two,
+    /// FMI 3.0.
+    Three,
+}
+
+/// The direction of an FMU: its inputs and outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FmuCausality {
+    /// Torques in, motion out: forward dynamics, whose states are q and q̇.
+    Forward,
+    /// Motion in, torques out: inverse dynamics without states.
+    Inverse,
+}
+
+impl FmuCausality {
+    /// The functions that the C code of an FMU needs.
+    #[must_use]
+    pub const fn functions(self) -> &'static [Function] {
+        match self {
+            Self::Forward => &[Function::ForwardDynamics, Function::ForwardDynamicsDerivatives],
+            Self::Inverse => &[Function::InverseDynamics, Function::MassMatrix, Function::InverseDynamicsDerivatives],
+        }
+    }
+}
+
+/// A robot as an FMU, without its binaries.
+#[derive(Clone, Copy, Debug)]
+pub struct Fmu<'a> {
+    /// The robot; its run-time parameters that the programs use are parameters of the FMU.
+    pub robot: &'a Robot,
+    /// The programs of [`FmuCausality::functions`].
+    pub programs: &'a [Program],
+    /// The code of these programs in double precision, whose prefix is the name of the robot.
+    pub code: &'a CCode,
+    /// The version of FMI.
+    pub version: FmiVersion,
+    /// Forward or inverse dynamics.
+    pub causality: FmuCausality,
+    /// A text that no FMU with other variables has.
+    pub token: &'a str,
+}
+
+/// The default of the longest step of the integrator, s.
+const STEP: f64 = 0.001;
+
+impl Fmu<'_> {
+    /// The files of the FMU: paths with `/`, and texts.
+    #[must_use]
+    pub fn files(&self) -> Vec<(String, String)> {
+        let name = &self.robot.name;
+        let variables = self.variables();
+        let header = format!("{name}.h");
+        let types = match self.version {
+            FmiVersion::Two => include_str!("fmi_types2.h"),
+            FmiVersion::Three => include_str!("fmi_types3.h"),
+        };
+        let number = if self.version == FmiVersion::Two { "2" } else { "3" };
+        let cmake = include_str!("CMakeLists.txt").replace("VERSION EQUAL 2", &format!("{number} EQUAL 2"));
+        let cmake = cmake.replace("MODEL_IDENTIFIER", name);
+        let mut files = vec![
+            ("modelDescription.xml".to_owned(), self.description(&variables)),
+            (format!("sources/{name}.c"), self.code.source(&header)),
+            (format!("sources/{header}"), self.code.header().to_owned()),
+            ("sources/fmu.c".to_owned(), self.wrapper(&variables)),
+            ("sources/fmi_types.h".to_owned(), types.to_owned()),
+            ("sources/CMakeLists.txt".to_owned(), cmake),
+            ("documentation/index.html".to_owned(), self.documentation()),
+        ];
+        if self.version == FmiVersion::Three {
+            files.push(("sources/buildDescription.xml".to_owned(), self.build_description()));
+        }
+        files
+    }
+
+    /// The names of the sources in the folder `sources` that a compiler is given.
+    #[must_use]
+    pub fn sources(&self) -> [String; 2] {
+        [format!("{}.c", self.robot.name), "fmu.c".to_owned()]
+    }
+
+    /// The parameters that some program uses.
+    fn parameters(&self) -> Vec<FmuParameter> {
+        let is_used = |index| self.programs.iter().any(|program| used(program).any(|(used, _)| used == index));
+        parameters::of(self.robot, is_used)
+    }
+
+    /// The source with the functions of FMI.
+    fn wrapper(&self, variables: &[Variable]) -> String {
+        let (name, parameters) = (&self.robot.name, self.parameters());
+        let equations = match self.causality {
+            FmuCausality::Forward => include_str!("forward.c"),
+            FmuCausality::Inverse => include_str!("inverse.c"),
+        };
+        let (own, [state, real, instance, deserialize, derivatives]) = match self.version {
+            FmiVersion::Two => (
+                include_str!("fmi2.c"),
+                ["FMUstate", "fmi2Real", "fmi2Component", "DeSerializeFMUstate", "GetDerivatives"],
+            ),
+            FmiVersion::Three => (
+                include_str!("fmi3.c"),
+                ["FMUState", "fmi3Float64", "fmi3Instance", "DeserializeFMUState", "GetContinuousStateDerivatives"],
+            ),
+        };
+        let number = if self.version == FmiVersion::Two { "2" } else { "3" };
+        let common = include_str!("common.c")
+            .replace("STATE_TYPE", &format!("fmi{number}{state}"))
+            .replace("FMU_STATE", state)
+            .replace("REAL", real)
+            .replace("INSTANCE", instance)
+            .replace("DESERIALIZE", deserialize)
+            .replace("GET_DERIVATIVES", derivatives)
+            .replace("fmiN", &format!("fmi{number}"));
+        let first = variables.len() - parameters.len();
+        let mut filled = String::new();
+        if !parameters.is_empty() {
+            let upper = name.to_ascii_uppercase();
+            let _ = writeln!(filled, "    {name}_parameters parameters = {upper}_PARAMETERS;");
+            for (index, parameter) in parameters.iter().enumerate() {
+                let _ = writeln!(filled, "    parameters.{} = v[{}];", parameter.member, first + index);
+            }
+        }
+        let argument = |function: Function| {
+            let program = self.programs.iter().find(|program| program.function == function);
+            program.is_some_and(are_used)
+        };
+        let [value, by, mass] = match self.causality {
+            FmuCausality::Forward => {
+                [Function::ForwardDynamics, Function::ForwardDynamicsDerivatives, Function::MassMatrix]
+            }
+            FmuCausality::Inverse => {
+                [Function::InverseDynamics, Function::InverseDynamicsDerivatives, Function::MassMatrix]
+            }
+        }
+        .map(argument);
+        let mut equations = equations.to_owned();
+        for (place, is_used) in [("VALUE_ARGUMENT", value), ("DERIVATIVES_ARGUMENT", by), ("MASS_ARGUMENT", mass)] {
+            equations = equations.replace(place, if is_used { ", &parameters" } else { "" });
+        }
+        // a function that uses no parameter needs no struct
+        let mut parts = equations.split("FILLED").map(str::to_owned).collect::<Vec<_>>();
+        for (part, is_used) in parts.iter_mut().skip(1).zip([value, by || mass]) {
+            part.insert_str(0, if is_used { &filled } else { "" });
+        }
+        let starts: Vec<String> = variables.iter().map(|variable| format!("{:?}", variable.start)).collect();
+        let model = include_str!("model.c")
+            .replace("EQUATIONS", &parts.concat())
+            .replace("COUNT_OF_VALUES", &variables.len().to_string())
+            .replace("START_VALUES", &starts.join(",\n    "))
+            .replace("INSTANTIATION_TOKEN", self.token)
+            .replace("DOF", &self.robot.dof().to_string());
+        let title = crate::c::comment("//", &format!("{}: the functions of FMI {number}.0.", inert::title(self.robot)));
+        title + &with_name(&(model + own + "\n" + &common), name)
+    }
+
+    fn documentation(&self) -> String {
+        let title = description::escaped(&inert::title(self.robot));
+        let what = match self.causality {
+            FmuCausality::Forward => "tau.JOINT in, q.JOINT, qd.JOINT and qdd.JOINT out (forward dynamics)",
+            FmuCausality::Inverse => "q.JOINT, qd.JOINT and qdd.JOINT in, tau.JOINT out (inverse dynamics)",
+        };
+        include_str!("index.html").replace("CONTENT", what).replace("TITLE", &title)
+    }
+}
+
+/// A template with the name of the robot. It comes last: it may be any word.
+fn with_name(text: &str, name: &str) -> String {
+    text.replace("PREFIX", name)
+}

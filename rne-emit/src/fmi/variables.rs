@@ -1,0 +1,94 @@
+//! The variables of an FMU; the place of a variable in the list is its value reference.
+
+use rne_model::JointKind;
+
+use super::{Fmu, FmuCausality, STEP};
+
+/// The role of a variable.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Role {
+    Time,
+    Input,
+    Output,
+    /// An output that is a state too.
+    State,
+    /// A parameter that may change between two steps.
+    Tunable,
+    /// A parameter that is set before the simulation.
+    Fixed,
+}
+
+/// A variable; all are real numbers.
+pub(super) struct Variable {
+    pub(super) name: String,
+    pub(super) description: String,
+    pub(super) unit: Option<&'static str>,
+    pub(super) role: Role,
+    pub(super) start: f64,
+    pub(super) range: Option<(f64, f64)>,
+    /// The variable of which it is the derivative.
+    pub(super) derivative_of: Option<usize>,
+}
+
+impl Fmu<'_> {
+    /// Time; q, q̇, q̈ and τ of all joints; the step of the integrator; the parameters. The C code knows this order.
+    pub(super) fn variables(&self) -> Vec<Variable> {
+        let is_forward = self.causality == FmuCausality::Forward;
+        let dof = self.robot.dof();
+        let of_run = |name: &str, description: &str, role, start| Variable {
+            name: name.to_owned(),
+            description: description.to_owned(),
+            unit: Some("s"),
+            role,
+            start,
+            range: None,
+            derivative_of: None,
+        };
+        let mut variables = vec![of_run("time", "Simulation time", Role::Time, 0.0)];
+        for (order, kind) in ["q", "qd", "qdd", "tau"].into_iter().enumerate() {
+            for (index, joint) in self.robot.independent_joints().enumerate() {
+                let limits = &joint.limits;
+                let symmetric = |largest: Option<f64>| largest.map(|largest| (-largest, largest));
+                let (what, range) = match order {
+                    0 => ("Position", limits.position),
+                    1 => ("Velocity", symmetric(limits.velocity)),
+                    2 => ("Acceleration", None),
+                    _ => ("Torque or force without friction", symmetric(limits.effort)),
+                };
+                let role = match (is_forward, order) {
+                    (true, 0 | 1) => Role::State,
+                    (true, 2) | (false, 3) => Role::Output,
+                    _ => Role::Input,
+                };
+                let units = match joint.row.kind {
+                    JointKind::Revolute => ["rad", "rad/s", "rad/s2", "N.m"],
+                    JointKind::Prismatic => ["m", "m/s", "m/s2", "N"],
+                };
+                variables.push(Variable {
+                    name: format!("{kind}.{}", joint.name),
+                    description: format!("{what} of joint {}", index + 1),
+                    unit: Some(units[order]),
+                    role,
+                    // 0, or the limit that is nearest to it
+                    start: range.map_or(0.0, |(least, most)| 0.0_f64.max(least).min(most)),
+                    range: range.filter(|(least, most)| least <= most),
+                    derivative_of: (is_forward && matches!(order, 1 | 2)).then(|| 1 + (order - 1) * dof + index),
+                });
+            }
+        }
+        if is_forward {
+            let about = "Longest step of the integrator in co-simulation (Runge-Kutta of order 4)";
+            variables.push(of_run("step", about, Role::Fixed, STEP));
+        }
+        variables.extend(self.parameters().into_iter().map(|parameter| Variable {
+            name: parameter.name,
+            description: parameter.description,
+            unit: parameter.unit,
+            role: Role::Tunable,
+            start: parameter.value,
+            range: None,
+            derivative_of: None,
+        }));
+        variables
+    }
+}
