@@ -34,6 +34,12 @@ pub struct Sample {
     pub off: f64,
     /// What the controller took.
     pub spent: Spent,
+    /// The state that was measured at its begin.
+    pub measured: State,
+    /// The external torques at its begin, N m.
+    pub external: Joints,
+    /// The goal of the plan, m.
+    pub reference: [f64; 3],
 }
 
 /// How far positions (rad), velocities (rad/s) and torques (N m) were beyond their limits at most.
@@ -75,7 +81,8 @@ pub fn run(method: Method) -> Vec<Sample> {
             let (place, _) = tip(&plant.state.q);
             let off = place.iter().zip(goal).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
             let time = samples.last().map_or(0.0, |last: &Sample| last.time) + INTERVAL;
-            samples.push(Sample { time, state: plant.state, tau, tip: place, off, spent });
+            let state = plant.state;
+            samples.push(Sample { time, state, tau, tip: place, off, spent, measured: now, external, reference });
         }
     }
     samples

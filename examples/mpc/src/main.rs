@@ -5,7 +5,8 @@
 //! does not know, and its sensors have noise; a momentum observer tells the controller of external torques. The motion
 //! runs twice: with a plan by Euler's semi-implicit method, and by that of Runge and Kutta.
 //!
-//! A FILE that ends in .csv gets the first motion: the columns t, off (m from the goal), and q1, qd1, tau1 and so on. A
+//! A FILE that ends in .csv gets the first motion: the columns t, off (m from the goal), whole and model (s
+//! that an iteration took), goal1 and so on. A
 //! FILE that ends in .svg gets a picture of it.
 
 use std::fmt::Write as _;
@@ -77,16 +78,23 @@ fn middle(samples: &[Sample], of: fn(&Spent) -> f64) -> String {
     format!("{middle:.3} ({high:.3})")
 }
 
+/// The motion, and what the controller was given and took: casadi_mpc.py plans again from the same inputs.
 fn table(samples: &[Sample]) -> String {
-    let mut table = String::from("t,off");
+    let mut table = String::from("t,off,whole,model,goal1,goal2,goal3");
     for joint in 1..=DOF {
-        let _ = write!(table, ",q{joint},qd{joint},tau{joint}");
+        let names = ["q", "qd", "tau", "measured_q", "measured_qd", "external"];
+        for name in names {
+            let _ = write!(table, ",{name}{joint}");
+        }
     }
     table.push('\n');
-    for Sample { time, state, tau, off, .. } in samples {
-        let _ = write!(table, "{time:.3},{off}");
-        for ((q, qd), tau) in state.q.iter().zip(&state.qd).zip(tau) {
-            let _ = write!(table, ",{q},{qd},{tau}");
+    for Sample { time, state, tau, off, spent, measured, external, reference: [x, y, z], .. } in samples {
+        let (whole, model) = (spent.whole.as_secs_f64(), spent.model.as_secs_f64());
+        let _ = write!(table, "{time:.3},{off},{whole},{model},{x},{y},{z}");
+        for joint in 0..DOF {
+            for numbers in [&state.q, &state.qd, tau, &measured.q, &measured.qd, external] {
+                let _ = write!(table, ",{}", numbers[joint]);
+            }
         }
         table.push('\n');
     }

@@ -28,15 +28,14 @@ pub fn picture(samples: &[Sample]) -> String {
     };
     let off = |end: usize| format!("{:.1} mm", 1e3 * samples[end * SAMPLES - 1].off);
     let drawn = [
-        panel("positions, middle of the range 0, limits 1 and -1", most(&position), &position, vec![-1.0, 1.0]),
-        panel("velocities / limits", most(&velocity), &velocity, vec![-1.0, 1.0]),
-        panel("torques / limits", most(&torque), &torque, vec![-1.0, 1.0]),
+        panel("positions, limits at 1 and -1", most(&position), &position, vec![-1.0, 1.0]),
+        panel("velocities, limits at 1 and -1", most(&velocity), &velocity, vec![-1.0, 1.0]),
+        panel("torques, limits at 1 and -1", most(&torque), &torque, vec![-1.0, 1.0]),
         panel("tip from its goal, mm", format!("at the ends {} and {}", off(1), off(2)), &tip, Vec::new()),
     ];
     let about = format!(
-        "Two goals of {} s each; a plan of {NODES} intervals of {INTERVAL} s, improved once in each; {LOAD} kg at the \
-         tip that the controller does not know",
-        (samples.len() / GOALS.len()) as f64 * INTERVAL
+        "{} goals, {NODES} intervals of {INTERVAL} s, one iteration for each sample; {LOAD} kg that the model lacks",
+        GOALS.len()
     );
     panels("Motion of a Panda under model-predictive control", "Panda, model-predictive control", &about, &time, &drawn)
 }

@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 25] = [
+const DOCUMENTS: [&str; 26] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/c-library.md",
@@ -31,6 +31,7 @@ const DOCUMENTS: [&str; 25] = [
     "docs/lecture/results.md",
     "docs/lecture/two-links.md",
     "docs/logs.md",
+    "docs/operational-space.md",
     "docs/optimal-control.md",
     "docs/robot-file.md",
     "docs/run-time.md",
@@ -64,6 +65,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("export PKG_CONFIG_PATH=", "xtask/src/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
     ("pip install ./doors/python", "xtask/src/python.rs", "pip install --quiet"),
     ("pip install casadi", "xtask/src/python.rs", "const CASADI"),
+    ("cargo run --release --manifest-path examples/mpc/Cargo.toml", "examples/mpc/tests/reach.rs", "run(method)"),
+    ("python examples/mpc/casadi_mpc.py", "doors/python/tests/test_casadi.py", "import casadi_mpc"),
     ("cc -std=c99 -O2 -ffp-contract=off -fPIC", "doors/python/tests/test_casadi.py", "shlex.split(command)"),
     ("cc doors/capi/examples/torque.c", "xtask/src/capi.rs", "(\"doors/capi/examples/torque.c\", \"cc\""),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
