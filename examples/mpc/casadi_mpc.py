@@ -47,7 +47,7 @@ def tip_of(expressions, q):
     return origin + ca.mtimes(turn, ca.SX(list(map(expressions.number, tool))))
 
 
-def program(source, arm, expressions, folder, stages):
+def program(source, arm, expressions, folder, stages, level="-O3"):
     """The numbers of a quadratic program, in C: of the plan, the goal and the external torques. With
     `stages`, an interval gives the next positions without the next velocities, as solvers for optimal control need it."""
     q = ca.SX.sym("q", DOF)
@@ -97,7 +97,7 @@ def program(source, arm, expressions, folder, stages):
     generator.add(numbers)
     generator.generate(f"{folder}/")
     libraries = [str(path) for path in Path(os.environ["RNE_CACHE"]).glob("*")] if source == "rne" else []
-    command = ["cc", "-O3", "-fPIC", "-shared", f"{name}.c", *libraries, "-o", f"{name}.so"]
+    command = ["cc", level, "-fPIC", "-shared", f"{name}.c", *libraries, "-o", f"{name}.so"]
     subprocess.run(command, cwd=folder, check=True)
     return ca.external("numbers", f"{folder}/{name}.so")
 

@@ -281,14 +281,12 @@ def test_the_example_of_a_controller_plans_alike_with_expressions_and_with_rne(t
     for joint in range(7):
         sample |= {f"measured_q{joint + 1}": casadi_mpc.REST[joint], f"measured_qd{joint + 1}": 0.01 * joint}
         sample |= {f"external{joint + 1}": 0.1}
-    # of each source, by two solvers: with and without stages
     torques = []
-    for source in ("expressions", "rne"):
-        for solver in ("hpipm", "piqp"):
-            numbers = casadi_mpc.program(source, arm, expressions, tmp_path, stages=solver == "hpipm")
-            planned, _, _, failed = casadi_mpc.planned(numbers, solver, arm, [sample] * 3)
-            assert failed == 0
-            torques.append(planned)
+    for source, solver in (("rne", "hpipm"), ("rne", "piqp"), ("expressions", "piqp")):
+        numbers = casadi_mpc.program(source, arm, expressions, tmp_path, solver == "hpipm", "-O0")
+        planned, _, _, failed = casadi_mpc.planned(numbers, solver, arm, [sample] * 3)
+        assert failed == 0
+        torques.append(planned)
     for found in torques[1:]:
         assert np.abs(found - torques[0]).max() < 1e-3 * np.abs(torques[0]).max()
 
