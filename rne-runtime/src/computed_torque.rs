@@ -38,8 +38,8 @@ pub struct ComputedTorque<const DOF: usize, T> {
 
 impl<const DOF: usize, T: Scalar> ComputedTorque<DOF, T> {
     /// One tick: returns the torques of the actuators, N m or N, from measured positions and velocities (rad and rad/s,
-    /// or m and m/s). `applied` are the torques that acted until now, in N m or N: those that the last tick returned, as
-    /// the drives limited them. Friction is neither compensated nor observed.
+    /// or m and m/s). `applied` are the torques that acted until now, in N m or N: those that the last tick returned,
+    /// as the drives limited them. Friction is neither compensated nor observed.
     ///
     /// As [`ObserverState::update`], a tick has no branch that looks at its numbers.
     #[inline]

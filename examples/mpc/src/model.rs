@@ -80,8 +80,8 @@ impl Interval {
     }
 }
 
-/// The four slopes, and their derivatives by the chain rule: of a slope at x, where x has the derivatives S, those of the
-/// velocities are the lower rows of S, and those of the accelerations ∂q̈/∂x S + ∂q̈/∂τ.
+/// The four slopes, and their derivatives by the chain rule: of a slope at x, where x has the derivatives S, those of
+/// the velocities are the lower rows of S, and those of the accelerations ∂q̈/∂x S + ∂q̈/∂τ.
 fn runge_kutta(start: &State, tau: &Joints, external: &Joints, interval: f64) -> Interval {
     let unit: [Rows; 2] = std::array::from_fn(|part| {
         std::array::from_fn(|row| std::array::from_fn(|column| if column == part * DOF + row { 1.0 } else { 0.0 }))

@@ -47,8 +47,8 @@ fn the_linear_model_is_that_of_an_interval() {
     }
 }
 
-/// The chain rule over four slopes beside differences of the interval, and the order of the method: the error of half an
-/// interval is a 32nd.
+/// The chain rule over four slopes beside differences of the interval, and the order of the method: the error of half
+/// an interval is a 32nd.
 #[test]
 fn an_interval_of_runge_and_kutta_has_its_derivatives() {
     let state = State { q: [0.3, -0.5, 0.2, -1.9, 0.4, 1.5, 0.7], qd: [0.5, -0.4, 0.3, 0.6, -0.2, 0.8, -0.7] };

@@ -225,7 +225,7 @@ const CONTROLLERS: &str = "\
 This table is about one tick of a controller, the method `tick` of `rne::ComputedTorque`: computed torque, and an update
 of the momentum observer, which estimates the torques of contacts. Torques and observer need the same sines, cosines and
 velocities, and the compiler computes them once. The counts contain the control law, the loads of its gains and of the
-desired motion, and the low-pass of the observer. The column `results` is about the torques and about the external torques.";
+desired motion, and the low-pass of the observer. The column `results` is about torques and external torques.";
 
 const C: &str = "\
 This table is about `inverse_dynamics` in the C code that `rne emit --lang c` writes. The code uses `float`. GCC

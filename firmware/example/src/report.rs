@@ -6,8 +6,8 @@ use cortex_m_semihosting::{hprint, hprintln};
 pub const PERIODS: u16 = 1000;
 const ROWS: [u16; 6] = [0, 50, 100, 200, 400, PERIODS - 1];
 
-/// The joint that is pushed, counted from 0, and how hard: N m. What the observer says at the end of the push may differ
-/// by a part of it.
+/// The joint that is pushed, counted from 0, and how hard: N m. What the observer says at the end of the push may
+/// differ by a part of it.
 pub const PUSHED: usize = 1;
 const PUSH: f32 = 10.0;
 const DEVIATION: f32 = 0.05;
