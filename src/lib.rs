@@ -135,8 +135,8 @@ pub use rne_model as model;
 pub use rne_runtime::{
     AccelerationDerivatives, AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
-    BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, Constant,
-    ContactDynamics, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
+    BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, ComputedTorque, Constant,
+    ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
     FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
     FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
     IntegratorStep, IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,

@@ -21,6 +21,7 @@ mod capability;
 mod centre_of_mass;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod closed_loops;
+mod computed_torque;
 #[cfg(feature = "arm")]
 mod contact_dynamics;
 #[cfg(feature = "arm")]
@@ -122,6 +123,7 @@ pub use capability::{
     InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate,
     MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
 };
+pub use computed_torque::{ComputedTorque, Desired};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;
 pub use dual::Dual;

@@ -10,7 +10,9 @@ use std::f64::consts::TAU;
 use common::{Numbers, one_link, six_joints, tool};
 use rne_model::Convention::{Modified, Standard};
 use rne_model::{Model, Robot};
-use rne_runtime::{Arm, ForwardDynamics, InverseDynamics, Kinematics, MomentumObserver, ObserverState, Pose};
+use rne_runtime::{
+    Arm, ComputedTorque, Desired, ForwardDynamics, InverseDynamics, Kinematics, MomentumObserver, ObserverState, Pose,
+};
 
 /// One step of Runge and Kutta's, of the state (q, q̇).
 fn step<const DOF: usize>(
@@ -324,4 +326,29 @@ fn arms_of_both_kinds_of_joint_are_observed() {
         seen.iter().any(|x: &f64| *x != 0.0)
     }
     assert!(moves(&Arm::new(common::revolute_prismatic())) && moves(&Arm::new(common::prismatic_revolute())));
+}
+
+/// With the torques of a tick of computed torque, forward dynamics accelerates the joints as the law of the error says;
+/// the observer of the controller sees what an observer alone sees, to the bit.
+#[test]
+fn a_tick_of_computed_torque_obeys_its_law() {
+    let arm = Arm::new(six_joints(Standard));
+    let mut numbers = Numbers::new(11);
+    let alone = ObserverState::new(20.0, 1e-3);
+    let (stiffness, damping) = ([256.0, 100.0, 50.0, 20.0, 10.0, 5.0], [32.0, 20.0, 14.0, 9.0, 6.0, 4.0]);
+    let (mut controller, mut observer) = (ComputedTorque { stiffness, damping, observer: alone }, alone);
+    let mut tau = [0.0; 6];
+    for _ in 0..20 {
+        let [q, qd, wanted, rates, accelerations] = std::array::from_fn(|_| numbers.array(1.0));
+        let desired = Desired { q: wanted, qd: rates, qdd: accelerations };
+        let external = observer.update(&arm, &q, &qd, &tau);
+        tau = controller.tick(&arm, &q, &qd, &desired, &tau);
+        assert_eq!(controller.observer.external_torques(), &external);
+        let qdd = arm.forward_dynamics(&q, &qd, &tau);
+        for i in 0..6 {
+            let error = [wanted[i] - q[i], rates[i] - qd[i], accelerations[i] - qdd[i]];
+            let rest = error[2] + damping[i] * error[1] + stiffness[i] * error[0];
+            assert!(rest.abs() < 1e-9 * stiffness[0], "joint {}: {rest:e}", i + 1);
+        }
+    }
 }

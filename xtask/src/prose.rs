@@ -58,6 +58,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/lecture/results.md",
     "docs/lecture/two-links.md",
     "docs/logs.md",
+    "docs/operational-space.md",
     "docs/optimal-control.md",
     "docs/jax.md",
     "docs/performance.md",

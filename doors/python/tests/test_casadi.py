@@ -269,9 +269,38 @@ def test_code_that_casadi_writes_calls_the_library(tmp_path, monkeypatch):
     assert difference(linked([0.3, 0.4]), outer([0.3, 0.4])) == 0
 
 
-def test_the_page_runs_as_it_stands(tmp_path):
+def test_the_example_of_a_controller_plans_alike_with_expressions_and_with_rne(tmp_path, monkeypatch):
+    if shutil.which("cc") is None:
+        pytest.skip("there is no compiler of C called cc")
+    monkeypatch.setenv("RNE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.syspath_prepend(ROBOTS.parent / "examples/mpc")
+    import casadi_mpc
+
+    arm, expressions = rne.robots.panda, Expressions("panda")
+    sample = {f"goal{axis}": x for axis, x in zip((1, 2, 3), (0.4, 0.3, 0.4))}
+    for joint in range(7):
+        sample |= {f"measured_q{joint + 1}": casadi_mpc.REST[joint], f"measured_qd{joint + 1}": 0.01 * joint}
+        sample |= {f"external{joint + 1}": 0.1}
+    torques = []
+    for source, solver in (("rne", "hpipm"), ("rne", "piqp"), ("expressions", "piqp")):
+        numbers = casadi_mpc.program(source, arm, expressions, tmp_path, solver == "hpipm", "-O0")
+        planned, _, _, failed = casadi_mpc.planned(numbers, solver, arm, [sample] * 3)
+        assert failed == 0
+        torques.append(planned)
+    for found in torques[1:]:
+        assert np.abs(found - torques[0]).max() < 1e-3 * np.abs(torques[0]).max()
+
+
+def test_the_page_runs_as_it_stands(tmp_path, monkeypatch):
     page = ROBOTS.parent / "docs/optimal-control.md"
     text = page.read_text(encoding="utf-8")
+    program = os.environ.get("RNE")
+    if program is None:
+        pytest.skip("RNE names no command line")
+    monkeypatch.chdir(tmp_path)
+    (command,) = re.findall(r"^cargo run -- (export .*)$", text, re.MULTILINE)
+    (tmp_path / "robots").symlink_to(ROBOTS)
+    subprocess.run([program, *shlex.split(command)], check=True)
     names, written = {}, text
     for example in re.finditer(r"```python\n(.*?)```\n(?:\n```text\n(.*?)```\n)?", text, re.DOTALL):
         printed = io.StringIO()
@@ -285,9 +314,6 @@ def test_the_page_runs_as_it_stands(tmp_path):
     if written != text:
         page.write_text(written, encoding="utf-8")
     # the commands of the shell, and what reads their library
-    program = os.environ.get("RNE")
-    if program is None or shutil.which("cc") is None:
-        pytest.skip("RNE names no command line, or there is no cc")
     (block,) = (block[1] for block in re.finditer(r"```sh\n(rne emit .*?)```", text, re.DOTALL))
     for command in block.splitlines():
         words = shlex.split(command)

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md run as they stand, and print what stands below them."""
+"""The examples of documents run as they stand, and print what stands below them."""
 
 import contextlib
 import io
@@ -10,21 +10,23 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-PAGE = ROOT / "docs/python.md"
 EXAMPLE = re.compile(r"```python\n(.*?)```\n(?:\n```text\n(.*?)```\n)?", re.DOTALL)
 
 
-def test_the_examples_run(tmp_path, monkeypatch):
-    pytest.importorskip("polars")
+@pytest.mark.parametrize(("name", "least"), [("python", 6), ("operational-space", 6)])
+def test_the_examples_run(name, least, tmp_path, monkeypatch):
+    if name == "python":
+        pytest.importorskip("polars")
+    page = ROOT / f"docs/{name}.md"
     # what an example writes is no file of the repository
     (tmp_path / "docs").mkdir()
     for path in ROOT.glob("docs/desk_arm*"):
         shutil.copy(path, tmp_path / "docs")
     monkeypatch.chdir(tmp_path)
-    text = PAGE.read_text(encoding="utf-8")
+    text = page.read_text(encoding="utf-8")
     names, written = {}, text
     examples = list(EXAMPLE.finditer(text))
-    assert len(examples) >= 6
+    assert len(examples) >= least
     for example in examples:
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
@@ -35,4 +37,4 @@ def test_the_examples_run(tmp_path, monkeypatch):
         else:
             assert example[0] == block
     if "RNE_WRITE_DOCUMENTS" in os.environ:
-        PAGE.write_text(written, encoding="utf-8")
+        page.write_text(written, encoding="utf-8")

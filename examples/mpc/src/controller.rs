@@ -4,9 +4,9 @@
 
 use std::time::{Duration, Instant};
 
-use rne::{AccelerationDerivatives, InverseDynamics};
+use rne::InverseDynamics;
 
-use crate::model::{DOF, Joints, Panda, State, accelerations, tip};
+use crate::model::{DOF, Interval, Joints, Method, Panda, State, tip};
 use crate::program::Program;
 
 /// Intervals of the plan.
@@ -53,8 +53,8 @@ pub struct Plan {
 
 /// The model at a node.
 pub struct Node {
-    /// Accelerations, and how they change with the state and the torques.
-    pub accelerations: (Joints, AccelerationDerivatives<DOF, f64>),
+    /// The interval after it, and how its end changes with the state and the torques.
+    pub interval: Interval,
     /// Tip, and linear rows of its Jacobian.
     pub tip: ([f64; 3], [[f64; DOF]; 3]),
     /// Torques that hold the arm still.
@@ -68,7 +68,7 @@ pub struct Spent {
     pub whole: Duration,
     /// Dynamics, kinematics and their derivatives.
     pub model: Duration,
-    /// Accelerations and their derivatives alone.
+    /// Intervals and their derivatives alone.
     pub dynamics: Duration,
     /// Iterations of the solver of the quadratic program.
     pub iterations: u32,
@@ -76,6 +76,7 @@ pub struct Spent {
 
 /// The controller, with its last plan.
 pub struct Controller {
+    method: Method,
     plan: Plan,
     program: Program,
 }
@@ -83,9 +84,9 @@ pub struct Controller {
 impl Controller {
     /// A controller whose first plan holds the arm where it is.
     #[must_use]
-    pub fn new(start: &State) -> Self {
+    pub fn new(method: Method, start: &State) -> Self {
         let plan = Plan { states: vec![*start; NODES + 1], torques: vec![Panda.gravity_torques(&start.q); NODES] };
-        Self { plan, program: Program::default() }
+        Self { method, plan, program: Program::default() }
     }
 
     /// The torques for the next interval.
@@ -93,17 +94,17 @@ impl Controller {
         let begin = Instant::now();
         self.shift();
         let states = self.plan.states.iter().enumerate();
-        // the last node has no torques, and its accelerations are not used
+        // the last node has no torques, and its interval is not used
         let torques = |node: usize| self.plan.torques[node.min(NODES - 1)];
-        let of_motion: Vec<_> =
-            states.clone().map(|(node, state)| accelerations(state, &torques(node), &task.external)).collect();
+        let interval = |(node, state)| Interval::new(self.method, state, &torques(node), &task.external, task.interval);
+        let intervals: Vec<Interval> = states.clone().map(interval).collect();
         let dynamics = begin.elapsed();
         let nodes: Vec<Node> = states
-            .zip(of_motion)
-            .map(|((_, state), accelerations)| {
+            .zip(intervals)
+            .map(|((_, state), interval)| {
                 let gravity = Panda.gravity_torques(&state.q);
                 let holding = std::array::from_fn(|joint| gravity[joint] - task.external[joint]);
-                Node { accelerations, tip: tip(&state.q), holding }
+                Node { interval, tip: tip(&state.q), holding }
             })
             .collect();
         let model = begin.elapsed();

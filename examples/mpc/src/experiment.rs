@@ -4,7 +4,7 @@ use fastrand::Rng;
 use rne::{InverseDynamics, ObserverState, Payload};
 
 use crate::controller::{Controller, Spent, Task, Weights};
-use crate::model::{DOF, Joints, Panda, State, tip};
+use crate::model::{DOF, Interval, Joints, Method, Panda, State, tip};
 use crate::plant::Plant;
 
 /// Length of an interval and of a sample, s.
@@ -34,6 +34,12 @@ pub struct Sample {
     pub off: f64,
     /// What the controller took.
     pub spent: Spent,
+    /// The state that was measured at its begin.
+    pub measured: State,
+    /// The external torques at its begin, N m.
+    pub external: Joints,
+    /// The goal of the plan, m.
+    pub reference: [f64; 3],
 }
 
 /// How far positions (rad), velocities (rad/s) and torques (N m) were beyond their limits at most.
@@ -51,13 +57,13 @@ pub fn beyond(samples: &[Sample]) -> [f64; 3] {
     most
 }
 
-/// Runs the closed loop.
+/// Runs the closed loop with a controller that plans by a method.
 #[must_use]
-pub fn run() -> Vec<Sample> {
+pub fn run(method: Method) -> Vec<Sample> {
     let start = State { q: [0.0, -0.4, 0.0, -2.0, 0.0, 1.7, 0.8], qd: [0.0; DOF] };
     let payload = Payload { mass: LOAD, com: [0.0, 0.0, 0.05], ..Payload::default() };
     let mut plant = Plant { state: start, payload, noise: [1e-4, 5e-3], random: Rng::with_seed(1) };
-    let mut controller = Controller::new(&start);
+    let mut controller = Controller::new(method, &start);
     // a slow one: the load's inertia is an external torque, too, and it answers to the accelerations of the plan
     let mut observer = ObserverState::new(1.0, INTERVAL);
     let mut tau = Panda.gravity_torques(&start.q);
@@ -75,10 +81,26 @@ pub fn run() -> Vec<Sample> {
             let (place, _) = tip(&plant.state.q);
             let off = place.iter().zip(goal).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
             let time = samples.last().map_or(0.0, |last: &Sample| last.time) + INTERVAL;
-            samples.push(Sample { time, state: plant.state, tau, tip: place, off, spent });
+            let state = plant.state;
+            samples.push(Sample { time, state, tau, tip: place, off, spent, measured: now, external, reference });
         }
     }
     samples
+}
+
+/// How far the end of an interval is from that of 20 short ones at most, at the states of a motion: rad.
+#[must_use]
+pub fn model_error(method: Method, samples: &[Sample]) -> f64 {
+    let end = |method, state: &State, tau: &Joints, length| {
+        Interval::new(method, state, tau, &[0.0; DOF], length).end(state, length)
+    };
+    let mut most = 0.0_f64;
+    for Sample { state, tau, .. } in samples {
+        let exact = (0..20).fold(*state, |state, _| end(Method::RungeKutta, &state, tau, INTERVAL / 20.0));
+        let found = end(method, state, tau, INTERVAL);
+        most = found.q.iter().zip(exact.q).fold(most, |most, (a, b)| most.max((a - b).abs()));
+    }
+    most
 }
 
 /// The point on the way to a goal that is a stride away.

@@ -3,5 +3,6 @@
 pub mod controller;
 pub mod experiment;
 pub mod model;
+pub mod picture;
 pub mod plant;
 pub mod program;

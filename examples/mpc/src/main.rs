@@ -1,59 +1,100 @@
-//! Model-predictive control of a Panda: `cargo run --release --manifest-path examples/mpc/Cargo.toml [-- motion.csv]`
+//! Model-predictive control of a Panda: `cargo run --release --manifest-path examples/mpc/Cargo.toml [-- FILE …]`
 //!
 //! The arm reaches for two points, one after the other, within the limits of its positions, velocities and torques. A
 //! plan of 20 intervals is improved once for each sample, 50 times a second. The arm carries a load that the controller
-//! does not know, and its sensors have noise; a momentum observer tells the controller of external torques. The file
-//! has the columns t, off (m from the goal), and q1, qd1, tau1 and so on.
+//! does not know, and its sensors have noise; a momentum observer tells the controller of external torques. The motion
+//! runs twice: with a plan by Euler's semi-implicit method, and by that of Runge and Kutta.
+//!
+//! A FILE that ends in .csv gets the first motion: the columns t, off (m from the goal), whole and model (s
+//! that an iteration took), goal1 and so on. A
+//! FILE that ends in .svg gets a picture of it.
 
 use std::fmt::Write as _;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use mpc::controller::{NODES, Spent};
-use mpc::experiment::{GOALS, INTERVAL, LOAD, SAMPLES, Sample, beyond, run};
-use mpc::model::DOF;
+use mpc::experiment::{GOALS, INTERVAL, LOAD, SAMPLES, Sample, beyond, model_error, run};
+use mpc::model::{DOF, Method};
+use mpc::picture::picture;
 
 fn main() -> ExitCode {
-    let samples = run();
+    let methods = [("semi-implicit Euler", Method::Euler), ("Runge-Kutta, 4 slopes", Method::RungeKutta)];
+    let motions = methods.map(|(_, method)| run(method));
     println!("Panda, {NODES} intervals of {INTERVAL} s, {LOAD} kg at the tip that the controller does not know\n");
-    println!("  goal, m               from the goal after 0.5 s        1 s        2 s");
-    for (goal, samples) in GOALS.iter().zip(samples.chunks(SAMPLES)) {
-        let off = [SAMPLES / 4, SAMPLES / 2, SAMPLES].map(|at| format!("{:7.2} mm", samples[at - 1].off * 1e3));
-        println!("  {:<34} {}", format!("{goal:?}"), off.join(" "));
+    print!("{:<52}", "");
+    methods.iter().for_each(|(name, _)| print!("{name:>24}"));
+    println!("\nclosed loop");
+    for (index, goal) in GOALS.iter().enumerate() {
+        for (after, at) in [("0.5 s", SAMPLES / 4), ("1 s", SAMPLES / 2), ("2 s", SAMPLES)] {
+            let off = |samples: &[Sample]| 1e3 * samples[index * SAMPLES + at - 1].off;
+            row(&format!("tip from {goal:?} after {after}, mm"), &motions, off);
+        }
     }
-    let [position, velocity, torque] = beyond(&samples);
-    println!("\n  beyond a limit at most: {position:.2} rad, {velocity:.2} rad/s, {torque:.2} N m");
-    println!("\none real-time iteration, median of {}:", samples.len());
-    row(&samples, "whole, ms", |it| it.whole.as_secs_f64() * 1e3);
-    row(&samples, "accelerations and their derivatives at 21 nodes, us", |it| it.dynamics.as_secs_f64() * 1e6);
-    row(&samples, "these, tips, Jacobians and gravity, us", |it| it.model.as_secs_f64() * 1e6);
-    row(&samples, "iterations of the solver", |it| f64::from(it.iterations));
-    if let Some(path) = std::env::args_os().nth(1)
-        && let Err(error) = std::fs::write(&path, table(&samples))
-    {
-        eprintln!("{}: {error}", path.display());
-        return ExitCode::FAILURE;
+    for (part, name) in ["position, rad", "velocity, rad/s", "torque, N m"].into_iter().enumerate() {
+        row(&format!("beyond a limit at most: {name}"), &motions, |samples| beyond(samples)[part]);
+    }
+    println!("model");
+    let errors = methods.map(|(_, method)| 1e6 * model_error(method, &motions[0]));
+    println!("  {:<50}{:>24.4}{:>24.4}", "error of an interval at most, urad", errors[0], errors[1]);
+    println!("one real-time iteration, median (99 % are below)");
+    let times: [(&str, fn(&Spent) -> f64); 4] = [
+        ("whole, ms", |it| it.whole.as_secs_f64() * 1e3),
+        ("intervals and their derivatives at 21 nodes, ms", |it| it.dynamics.as_secs_f64() * 1e3),
+        ("these, tips, Jacobians and gravity, ms", |it| it.model.as_secs_f64() * 1e3),
+        ("iterations of the solver", |it| f64::from(it.iterations)),
+    ];
+    for (name, of) in times {
+        let cells = motions.each_ref().map(|samples| middle(samples, of));
+        println!("  {name:<50}{:>24}{:>24}", cells[0], cells[1]);
+    }
+    for path in std::env::args_os().skip(1).map(PathBuf::from) {
+        let text = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("csv") => table(&motions[0]),
+            Some("svg") => picture(&motions[0]),
+            _ => {
+                eprintln!("{}: name a file that ends in .csv or .svg", path.display());
+                return ExitCode::FAILURE;
+            }
+        };
+        if let Err(error) = std::fs::write(&path, text) {
+            eprintln!("{}: {error}", path.display());
+            return ExitCode::FAILURE;
+        }
     }
     ExitCode::SUCCESS
 }
 
+/// A number of each motion.
+fn row(name: &str, motions: &[Vec<Sample>; 2], of: impl Fn(&[Sample]) -> f64) {
+    println!("  {name:<50}{:>24.2}{:>24.2}", of(&motions[0]), of(&motions[1]));
+}
+
 /// The median of a number, and what 99 % of the samples are below.
-fn row(samples: &[Sample], name: &str, of: fn(&Spent) -> f64) {
+fn middle(samples: &[Sample], of: fn(&Spent) -> f64) -> String {
     let mut numbers: Vec<f64> = samples.iter().map(|sample| of(&sample.spent)).collect();
     numbers.sort_by(f64::total_cmp);
     let [middle, high] = [50, 99].map(|percent| numbers[numbers.len() * percent / 100]);
-    println!("  {name:<52} {middle:8.2}   99 % below {high:.2}");
+    format!("{middle:.3} ({high:.3})")
 }
 
+/// The motion, and what the controller was given and took: casadi_mpc.py plans again from the same inputs.
 fn table(samples: &[Sample]) -> String {
-    let mut table = String::from("t,off");
+    let mut table = String::from("t,off,whole,model,goal1,goal2,goal3");
     for joint in 1..=DOF {
-        let _ = write!(table, ",q{joint},qd{joint},tau{joint}");
+        let names = ["q", "qd", "tau", "measured_q", "measured_qd", "external"];
+        for name in names {
+            let _ = write!(table, ",{name}{joint}");
+        }
     }
     table.push('\n');
-    for Sample { time, state, tau, off, .. } in samples {
-        let _ = write!(table, "{time:.3},{off}");
-        for ((q, qd), tau) in state.q.iter().zip(&state.qd).zip(tau) {
-            let _ = write!(table, ",{q},{qd},{tau}");
+    for Sample { time, state, tau, off, spent, measured, external, reference: [x, y, z], .. } in samples {
+        let (whole, model) = (spent.whole.as_secs_f64(), spent.model.as_secs_f64());
+        let _ = write!(table, "{time:.3},{off},{whole},{model},{x},{y},{z}");
+        for joint in 0..DOF {
+            for numbers in [&state.q, &state.qd, tau, &measured.q, &measured.qd, external] {
+                let _ = write!(table, ",{}", numbers[joint]);
+            }
         }
         table.push('\n');
     }

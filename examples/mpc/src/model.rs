@@ -37,6 +37,86 @@ impl State {
     }
 }
 
+/// How a plan goes from one node to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Euler's semi-implicit method: one call of the dynamics for an interval.
+    Euler,
+    /// The method of Runge and Kutta of the fourth order: four calls of the dynamics for an interval.
+    RungeKutta,
+}
+
+/// Rows of a matrix with a column for each position, velocity and torque at the begin of an interval.
+pub type Rows = [[f64; 3 * DOF]; DOF];
+
+/// The linear model of an interval: derivatives by positions, velocities and torques at its begin.
+pub enum Interval {
+    /// Accelerations and their derivatives.
+    Euler(Joints, Box<AccelerationDerivatives<DOF, f64>>),
+    /// The state at the end, and the derivatives of its positions and velocities.
+    RungeKutta(State, Box<[Rows; 2]>),
+}
+
+impl Interval {
+    /// The model at a state, for torques to which the external ones are added.
+    #[must_use]
+    pub fn new(method: Method, state: &State, tau: &Joints, external: &Joints, interval: f64) -> Self {
+        match method {
+            Method::Euler => {
+                let (qdd, by) = accelerations(state, tau, external);
+                Self::Euler(qdd, Box::new(by))
+            }
+            Method::RungeKutta => runge_kutta(state, tau, external, interval),
+        }
+    }
+
+    /// The state at the end.
+    #[must_use]
+    pub fn end(&self, state: &State, interval: f64) -> State {
+        match self {
+            Self::Euler(qdd, _) => state.after(qdd, interval),
+            Self::RungeKutta(end, _) => *end,
+        }
+    }
+}
+
+/// The four slopes, and their derivatives by the chain rule: of a slope at x, where x has the derivatives S, those of
+/// the velocities are the lower rows of S, and those of the accelerations ∂q̈/∂x S + ∂q̈/∂τ.
+fn runge_kutta(start: &State, tau: &Joints, external: &Joints, interval: f64) -> Interval {
+    let unit: [Rows; 2] = std::array::from_fn(|part| {
+        std::array::from_fn(|row| std::array::from_fn(|column| if column == part * DOF + row { 1.0 } else { 0.0 }))
+    });
+    let (mut state, mut moved) = (*start, unit);
+    let (mut end, mut by) = (*start, Box::new(unit));
+    // the part of the interval after which the next slope is taken, and the weight of this one
+    for (ahead, weight) in [(0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (0.0, 1.0)] {
+        let (qdd, of) = accelerations(&state, tau, external);
+        let mut slope: Box<[Rows; 2]> = Box::new([moved[1], [[0.0; 3 * DOF]; DOF]]);
+        for (row, sum) in slope[1].iter_mut().enumerate() {
+            sum[2 * DOF..].copy_from_slice(&of.dtau[row]);
+            for joint in 0..DOF {
+                let (position, velocity) = (of.dq[row][joint], of.dqd[row][joint]);
+                for ((sum, q), qd) in sum.iter_mut().zip(&moved[0][joint]).zip(&moved[1][joint]) {
+                    *sum += position * q + velocity * qd;
+                }
+            }
+        }
+        let plus = |x: &Joints, rate: &Joints, by: f64| -> Joints { std::array::from_fn(|i| x[i] + by * rate[i]) };
+        let share = interval * weight / 6.0;
+        end = State { q: plus(&end.q, &state.qd, share), qd: plus(&end.qd, &qdd, share) };
+        state = State { q: plus(&start.q, &state.qd, interval * ahead), qd: plus(&start.qd, &qdd, interval * ahead) };
+        for part in 0..2 {
+            for (row, slope) in slope[part].iter().enumerate() {
+                for (column, slope) in slope.iter().enumerate() {
+                    by[part][row][column] += share * slope;
+                    moved[part][row][column] = unit[part][row][column] + interval * ahead * slope;
+                }
+            }
+        }
+    }
+    Interval::RungeKutta(end, by)
+}
+
 /// Accelerations of the arm and their derivatives, for torques to which the external ones are added.
 #[must_use]
 pub fn accelerations(state: &State, tau: &Joints, external: &Joints) -> (Joints, AccelerationDerivatives<DOF, f64>) {

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use osqp::{CscMatrix, Problem, Settings, Status};
 
 use crate::controller::{NODES, Node, Plan, Task};
-use crate::model::{DOF, Joints, Panda};
+use crate::model::{DOF, Interval, Joints, Panda};
 
 /// Iterations of the solver after which its solution is taken as it is.
 const MOST_ITERATIONS: u32 = 100;
@@ -185,7 +185,8 @@ impl Data {
         }
     }
 
-    /// δq̇⁺ = δq̇ + h (∂q̈/∂q δq + ∂q̈/∂q̇ δq̇ + ∂q̈/∂τ δτ) + gap, and δq⁺ = δq + h δq̇⁺ + gap.
+    /// Euler: δq̇⁺ = δq̇ + h (∂q̈/∂q δq + ∂q̈/∂q̇ δq̇ + ∂q̈/∂τ δτ) + gap, and δq⁺ = δq + h δq̇⁺ + gap, which has fewer
+    /// elements than δq̇⁺ in it. Runge and Kutta: both rows of positions, velocities and torques.
     fn dynamics(&mut self, plan: &Plan, nodes: &[Node], task: &Task) {
         for joint in 0..DOF {
             for (part, gap) in
@@ -198,25 +199,42 @@ impl Data {
             }
         }
         let h = task.interval;
-        for (node, Node { accelerations: (qdd, by), .. }) in nodes.iter().enumerate().take(NODES) {
+        for (node, Node { interval, .. }) in nodes.iter().enumerate().take(NODES) {
             let (state, next) = (&plan.states[node], &plan.states[node + 1]);
-            for joint in 0..DOF {
-                let row = self.lower.len();
-                self.constraints.put(row, at(node + 1, 1, joint), 1.0);
-                for (part, matrix) in [&by.dq, &by.dqd, &by.dtau].into_iter().enumerate() {
-                    for (column, element) in matrix[joint].iter().enumerate() {
-                        let own = if part == 1 && column == joint { 1.0 } else { 0.0 };
-                        self.constraints.put(row, at(node, part, column), -own - h * element);
+            match interval {
+                Interval::Euler(qdd, by) => {
+                    for joint in 0..DOF {
+                        let row = self.lower.len();
+                        self.constraints.put(row, at(node + 1, 1, joint), 1.0);
+                        for (part, matrix) in [&by.dq, &by.dqd, &by.dtau].into_iter().enumerate() {
+                            for (column, element) in matrix[joint].iter().enumerate() {
+                                let own = if part == 1 && column == joint { 1.0 } else { 0.0 };
+                                self.constraints.put(row, at(node, part, column), -own - h * element);
+                            }
+                        }
+                        self.equal(state.qd[joint] + h * qdd[joint] - next.qd[joint]);
+                    }
+                    for joint in 0..DOF {
+                        let row = self.lower.len();
+                        self.constraints.put(row, at(node + 1, 0, joint), 1.0);
+                        self.constraints.put(row, at(node, 0, joint), -1.0);
+                        self.constraints.put(row, at(node + 1, 1, joint), -h);
+                        self.equal(state.q[joint] + h * next.qd[joint] - next.q[joint]);
                     }
                 }
-                self.equal(state.qd[joint] + h * qdd[joint] - next.qd[joint]);
-            }
-            for joint in 0..DOF {
-                let row = self.lower.len();
-                self.constraints.put(row, at(node + 1, 0, joint), 1.0);
-                self.constraints.put(row, at(node, 0, joint), -1.0);
-                self.constraints.put(row, at(node + 1, 1, joint), -h);
-                self.equal(state.q[joint] + h * next.qd[joint] - next.q[joint]);
+                Interval::RungeKutta(end, by) => {
+                    let gaps = [(&end.q, &next.q), (&end.qd, &next.qd)];
+                    for (part, (rows, (end, next))) in by.iter().zip(gaps).enumerate() {
+                        for joint in 0..DOF {
+                            let row = self.lower.len();
+                            self.constraints.put(row, at(node + 1, part, joint), 1.0);
+                            for (column, element) in rows[joint].iter().enumerate() {
+                                self.constraints.put(row, at(node, 0, column), -element);
+                            }
+                            self.equal(end[joint] - next[joint]);
+                        }
+                    }
+                }
             }
         }
     }

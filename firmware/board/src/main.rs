@@ -39,7 +39,10 @@ fn main() -> ! {
     }
     robots::each(&mut Board);
     #[cfg(feature = "methods")]
-    puma560::each(&mut Board);
+    {
+        puma560::each(&mut Board);
+        robots::each_controller(&mut Board);
+    }
     echo::each(|dof, ticks| hprintln!("ticks echo {} {}", dof, ticks));
     let arm = black_box(runtime::arm());
     let State { q, qd, qdd } = State::new(0);

@@ -122,6 +122,21 @@ impl Examined {
         Ok(rows)
     }
 
+    /// A tick of the controller of every robot; its torques and its external torques must be identical to the expected
+    /// ones.
+    pub(crate) fn controllers(&self, expected: &Log) -> Result<Vec<Row>> {
+        let mut rows = Vec::new();
+        for Robot { name, form, .. } in functions::controllers() {
+            let results = self.results(expected, &format!("torques {name} {form}"), Agreement::Identical)?;
+            if form == "tick" {
+                let figures = self.image.straight(&format!("robots::torques::{name}::controller::tick"))?;
+                let (form, results) = ("reduced".to_owned(), results.to_string());
+                rows.push(Row { name: name.to_owned(), form, figures, results });
+            }
+        }
+        Ok(rows)
+    }
+
     /// Whether all that keeps a function from being straight are calls that clear or copy a known number of bytes: so
     /// the compiler writes large arrays of zeros.
     fn only_moves_memory(&self, function: &str) -> Result<bool> {

@@ -18,16 +18,25 @@ pub(crate) struct Method {
     pub(crate) form: &'static str,
 }
 
+struct Names(Vec<Robot>);
+
+impl robots::Visitor for Names {
+    fn visit<const DOF: usize>(&mut self, name: &'static str, form: &'static str, _: Torques<DOF>) {
+        self.0.push(Robot { name, form, dof: DOF });
+    }
+}
+
 /// All robots in both forms.
 pub(crate) fn robots() -> Vec<Robot> {
-    struct Names(Vec<Robot>);
-    impl robots::Visitor for Names {
-        fn visit<const DOF: usize>(&mut self, name: &'static str, form: &'static str, _: Torques<DOF>) {
-            self.0.push(Robot { name, form, dof: DOF });
-        }
-    }
     let mut names = Names(Vec::new());
     robots::each(&mut names);
+    names.0
+}
+
+/// All robots, each with what is compared of its controller in the place of a form.
+pub(crate) fn controllers() -> Vec<Robot> {
+    let mut names = Names(Vec::new());
+    robots::each_controller(&mut names);
     names.0
 }
 

@@ -63,6 +63,7 @@ impl Log {
         robots::each(&mut log);
         robots::each_double(&mut log);
         puma560::each(&mut log);
+        robots::each_controller(&mut log);
         log
     }
 

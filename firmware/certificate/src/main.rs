@@ -24,7 +24,7 @@ use crate::board::Board;
 use crate::image::Figures;
 use crate::log::{Agreement, Log};
 use crate::report::Report;
-use crate::table::{Baseline, Table};
+use crate::table::{Baseline, Row, Table};
 
 /// Builds, reads and runs the generated code for microcontrollers, and compares it with docs/embedded.md
 #[derive(Parser)]
@@ -114,7 +114,8 @@ fn examine(workspace: &Path, sample: bool) -> Result<Report> {
         let fused = step("Cortex-M4F with fused multiply-add", || fused.examine(workspace))?;
         table(report::FUSED, FUSED, compiler.clone(), "robot", fused.robots(&expected, board::ROUNDING)?);
     }
-    table(report::METHODS, METHODS, compiler, "function", m4.methods(&expected)?);
+    table(report::METHODS, METHODS, compiler.clone(), "function", m4.methods(&expected)?);
+    table(report::CONTROLLERS, CONTROLLERS, compiler, "robot", m4.controllers(&expected)?);
 
     let c = step("C", || c_code::examine(workspace, &expected))?;
     table(report::C, C, format!("{gcc}, `-O2 -ffp-contract=off`"), "robot", c);
@@ -169,8 +170,25 @@ fn summary(report: &Report) -> Result<()> {
     let Figures { instructions, .. } = observer.context("the observer is among the functions")?;
     println!("a tick of the PUMA's momentum observer on the Cortex-M4F, reduced: {instructions} instructions");
     ensure!(instructions <= OBSERVER, "more than {OBSERVER} instructions");
+    let tick = report.figures(report::CONTROLLERS, "puma560", "reduced").context("the PUMA 560 has a controller")?;
+    println!("a tick of the PUMA's controller with its observer, reduced: {} instructions", tick.instructions);
+    ensure!(tick.instructions <= TICK, "more than {TICK} instructions");
+    let is_of_six = |name: &str| functions::robots().iter().any(|robot| robot.name == name && robot.dof == 6);
+    let ticks = report.tables.iter().filter(|table| table.title == report::CONTROLLERS).flat_map(|table| &table.rows);
+    for Row { name, figures, .. } in ticks.filter(|row| is_of_six(&row.name)) {
+        ensure!(
+            figures.instructions <= TICK_OF_SIX,
+            "{name}: a tick of the controller of {} instructions",
+            figures.instructions
+        );
+    }
     Ok(())
 }
+
+/// Instructions that a tick of a controller with an observer may take at most, in the reduced form: of the PUMA, and of
+/// each shipped arm with six joints.
+const TICK: u64 = 1300;
+const TICK_OF_SIX: u64 = 2500;
 
 /// Instructions that a tick of the PUMA's momentum observer may take at most, in the reduced form.
 const OBSERVER: u64 = 1000;
@@ -202,6 +220,12 @@ The tables above are about `inverse_dynamics`. This table is about the other fun
 functions whose code calls memory functions. The compiler writes such calls for large arrays with many zeros, such as
 the 360 numbers of `regressor`: the calls clear or copy memory. Apart from these calls, the code of an omitted function
 has no branch, and its results are compared with the host like all others.";
+
+const CONTROLLERS: &str = "\
+This table is about one tick of a controller, the method `tick` of `rne::ComputedTorque`: computed torque, and an update
+of the momentum observer, which estimates the torques of contacts. Torques and observer need the same sines, cosines and
+velocities, and the compiler computes them once. The counts contain the control law, the loads of its gains and of the
+desired motion, and the low-pass of the observer. The column `results` is about torques and external torques.";
 
 const C: &str = "\
 This table is about `inverse_dynamics` in the C code that `rne emit --lang c` writes. The code uses `float`. GCC

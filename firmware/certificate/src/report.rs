@@ -26,6 +26,7 @@ pub(crate) const M4F: &str = "Cortex-M4F";
 pub(crate) const M7F: &str = "Cortex-M7F";
 pub(crate) const FUSED: &str = "Cortex-M4F with fused multiply-add";
 pub(crate) const METHODS: &str = "Every function of the PUMA 560 on the Cortex-M4F";
+pub(crate) const CONTROLLERS: &str = "Computed torque with an observer on the Cortex-M4F";
 pub(crate) const C: &str = "C on the Cortex-M4F";
 
 impl Report {

@@ -54,14 +54,14 @@ impl Clock {
 
     /// Instructions of one call, `bl` and what passes the arguments included. A mean: a tick can be several
     /// instructions.
-    pub fn instructions(&mut self, call: impl Fn()) -> f32 {
+    pub fn instructions(&mut self, mut call: impl FnMut()) -> f32 {
         const CALLS: u8 = 100;
         let calls = self.ticks(|| (0..CALLS).for_each(|_| call()));
         let loop_alone = self.ticks(|| (0..CALLS).for_each(|_| black_box(())));
         self.instructions_per_tick * (calls - loop_alone) as f32 / f32::from(CALLS)
     }
 
-    fn ticks(&mut self, work: impl Fn()) -> u32 {
+    fn ticks(&mut self, work: impl FnOnce()) -> u32 {
         const ALL_BITS: u32 = 0x00FF_FFFF; // 24
         self.timer.set_reload(ALL_BITS);
         self.timer.clear_current();

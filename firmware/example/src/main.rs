@@ -1,14 +1,13 @@
 //! Computed-torque control of two robot arms at 1 kHz, in `f32`, on a Cortex-M without an operating system: `./run`
 //!
 //! There is no arm on QEMU's board, so the same processor simulates one after the other. Each starts 0.2 rad off its
-//! trajectory, and has to find it.
+//! trajectory, and has to find it. Somebody pushes its second joint for a while, and the observer has to see it.
 #![no_std]
 #![no_main]
 
 mod clock;
 mod report;
 
-use core::array;
 use core::hint::black_box;
 
 use clock::{Clock, PERIOD};
@@ -16,13 +15,13 @@ use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
 use panic_semihosting as _;
 use report::{Report, Row};
-use rne::{ForwardDynamics, InverseDynamics, Scalar};
+use rne::{ComputedTorque, Desired, ForwardDynamics, InverseDynamics, MomentumObserver, ObserverState, Scalar};
 
-#[derive(InverseDynamics, ForwardDynamics)]
+#[derive(InverseDynamics, ForwardDynamics, MomentumObserver)]
 #[robot(path = "../../../robots/puma560.yaml", form = "reduced")] // relative to this source file
 struct Puma560;
 
-#[derive(InverseDynamics, ForwardDynamics)]
+#[derive(InverseDynamics, ForwardDynamics, MomentumObserver)]
 #[robot(path = "../../../robots/panda.yaml", form = "reduced")]
 struct Panda;
 
@@ -30,41 +29,25 @@ struct Panda;
 const STIFFNESS: f32 = 256.0; // 1/s²
 const DAMPING: f32 = 32.0; // 1/s
 
+/// Of the observer's low-pass, Hz.
+const OBSERVER_GAIN: f64 = 20.0;
+
 /// What the encoders say.
 struct State<const DOF: usize> {
     q: [f32; DOF],
     qd: [f32; DOF],
 }
 
-/// Where the arm should be.
-struct Reference<const DOF: usize> {
-    q: [f32; DOF],
-    qd: [f32; DOF],
-    qdd: [f32; DOF],
-}
-
 /// Every joint swings about its home position, once in two seconds.
-fn reference<const DOF: usize>(home: &[f32; DOF], time: f32) -> Reference<DOF> {
+fn reference<const DOF: usize>(home: &[f32; DOF], time: f32) -> Desired<DOF, f32> {
     const AMPLITUDE: f32 = 0.3; // rad
     const OMEGA: f32 = core::f32::consts::PI; // rad/s
     let (sine, cosine) = (OMEGA * time).sin_cos(); // of rne::Scalar; `core` has none
-    Reference {
+    Desired {
         q: home.map(|home| home + AMPLITUDE * sine),
         qd: [AMPLITUDE * OMEGA * cosine; DOF],
         qdd: [-AMPLITUDE * OMEGA * OMEGA * sine; DOF],
     }
-}
-
-/// The torques of the acceleration that is wanted, corrected by the error.
-fn computed_torque<R: InverseDynamics<DOF>, const DOF: usize>(
-    arm: &R,
-    reference: &Reference<DOF>,
-    State { q, qd }: &State<DOF>,
-) -> [f32; DOF] {
-    let qdd = array::from_fn(|i| {
-        reference.qdd[i] + DAMPING * (reference.qd[i] - qd[i]) + STIFFNESS * (reference.q[i] - q[i])
-    });
-    arm.inverse_dynamics(q, qd, &qdd)
 }
 
 /// What an arm does in one period: semi-implicit Euler. Your arm does this by itself.
@@ -76,25 +59,48 @@ fn simulate<R: ForwardDynamics<DOF>, const DOF: usize>(arm: &R, state: &mut Stat
     }
 }
 
+fn controller<const DOF: usize>() -> ComputedTorque<DOF, f32> {
+    let observer = ObserverState::new(OBSERVER_GAIN, PERIOD.into());
+    ComputedTorque { stiffness: [STIFFNESS; DOF], damping: [DAMPING; DOF], observer }
+}
+
+/// The torques for the next period. A function of its own, so that torques and observer share sines and velocities.
+#[inline(never)]
+fn tick<R: InverseDynamics<DOF> + MomentumObserver<DOF>, const DOF: usize>(
+    controller: &mut ComputedTorque<DOF, f32>,
+    arm: &R,
+    q: &[f32; DOF],
+    qd: &[f32; DOF],
+    desired: &Desired<DOF, f32>,
+    applied: &[f32; DOF],
+) -> [f32; DOF] {
+    controller.tick(arm, q, qd, desired, applied)
+}
+
 /// The control loop, for one second.
 fn control<R, const DOF: usize>(clock: &mut Clock, arm: &R, home: &[f32; DOF]) -> Report<DOF>
 where
-    R: InverseDynamics<DOF> + ForwardDynamics<DOF>,
+    R: InverseDynamics<DOF> + ForwardDynamics<DOF> + MomentumObserver<DOF>,
 {
     let mut report = Report::new();
     let mut state = State { q: home.map(|home| home + report::INITIAL_ERROR), qd: [0.0; DOF] };
+    let mut controller = controller();
+    let mut torques = [0.0; DOF];
 
     cortex_m_stack::repaint_stack();
     clock.start();
     for period in 0..report::PERIODS {
         report.missed += clock.wait();
         let wanted = reference(home, PERIOD * f32::from(period));
-        let torques = black_box(computed_torque(arm, &wanted, &state)); // to your drives
+        torques = black_box(tick(&mut controller, arm, &state.q, &state.qd, &wanted, &torques)); // to your drives
+        let observed = controller.observer.external_torques()[report::PUSHED];
         let control = clock::used();
 
         let error = (0..DOF).map(|i| (wanted.q[i] - state.q[i]).abs()).fold(0.0, f32::max);
-        simulate(arm, black_box(&mut state), &torques); // the black boxes keep it behind the clock
-        report.add(period, Row { error, torques }, control, clock::used());
+        let mut pushed = torques;
+        pushed[report::PUSHED] += report::push(period);
+        simulate(arm, black_box(&mut state), &pushed); // the black boxes keep it behind the clock
+        report.add(period, Row { error, observed, torques }, control, clock::used());
     }
     clock.stop();
     report.stack = cortex_m_stack::stack_size() - cortex_m_stack::stack_painted();
@@ -104,14 +110,17 @@ where
 /// Whether one arm was tracked, and everything there is to say about it.
 fn demonstrate<R, const DOF: usize>(clock: &mut Clock, name: &str, arm: &R, home: &[f32; DOF]) -> bool
 where
-    R: InverseDynamics<DOF> + ForwardDynamics<DOF>,
+    R: InverseDynamics<DOF> + ForwardDynamics<DOF> + MomentumObserver<DOF>,
 {
     let motion = [*home, [1.0; DOF], [1.0; DOF]];
+    let wanted = reference(home, 0.1);
+    let mut controller = controller();
+    let mut tick = |q, qd, applied| tick(black_box(&mut controller), arm, q, qd, black_box(&wanted), applied);
     let instructions = clock.instructions(|| {
-        let [q, qd, qdd] = black_box(&motion);
-        black_box(arm.inverse_dynamics(q, qd, qdd));
+        let [q, qd, applied] = black_box(&motion);
+        black_box(tick(q, qd, applied));
     });
-    hprintln!("{name}: {instructions:.0} instructions (QEMU) per call of inverse_dynamics");
+    hprintln!("{name}: {instructions:.0} instructions (QEMU) per tick: computed torque with an observer of contacts");
     let report = control(clock, arm, home);
     report.print();
     report.is_good()

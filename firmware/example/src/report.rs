@@ -6,6 +6,17 @@ use cortex_m_semihosting::{hprint, hprintln};
 pub const PERIODS: u16 = 1000;
 const ROWS: [u16; 6] = [0, 50, 100, 200, 400, PERIODS - 1];
 
+/// The joint that is pushed, counted from 0, and how hard: N m. What the observer says at the end of the push may
+/// differ by a part of it.
+pub const PUSHED: usize = 1;
+const PUSH: f32 = 10.0;
+const DEVIATION: f32 = 0.05;
+
+/// What pushes the joint in a period.
+pub const fn push(period: u16) -> f32 {
+    if period >= ROWS[3] && period < ROWS[4] { PUSH } else { 0.0 }
+}
+
 /// How far off its trajectory every joint starts, and what may be left at the end, in rad.
 pub const INITIAL_ERROR: f32 = 0.2;
 const FINAL_ERROR: f32 = INITIAL_ERROR / 1000.0;
@@ -15,6 +26,8 @@ const FINAL_ERROR: f32 = INITIAL_ERROR / 1000.0;
 pub struct Row<const DOF: usize> {
     /// The largest of the joints, in rad.
     pub error: f32,
+    /// The external torque of the pushed joint as the observer has it, in N m.
+    pub observed: f32,
     pub torques: [f32; DOF],
 }
 
@@ -32,7 +45,7 @@ pub struct Report<const DOF: usize> {
 
 impl<const DOF: usize> Report<DOF> {
     pub fn new() -> Self {
-        let row = Row { error: 0.0, torques: [0.0; DOF] };
+        let row = Row { error: 0.0, observed: 0.0, torques: [0.0; DOF] };
         Self { rows: [row; ROWS.len()], control: 0.0, simulation: 0.0, missed: 0, stack: 0 }
     }
 
@@ -45,20 +58,33 @@ impl<const DOF: usize> Report<DOF> {
     }
 
     /// In time, and on the trajectory.
-    pub fn is_good(&self) -> bool {
+    fn is_tracked(&self) -> bool {
         self.missed == 0 && self.rows.last().is_some_and(|row| row.error < FINAL_ERROR)
     }
 
+    /// The push is seen at its end, and neither before nor long afterwards.
+    fn is_observed(&self) -> bool {
+        let differs = |row: usize, push: f32| (self.rows[row].observed - push).abs() < DEVIATION * PUSH;
+        differs(3, 0.0) && differs(4, PUSH) && differs(5, 0.0)
+    }
+
+    /// Everything is as it should be.
+    pub fn is_good(&self) -> bool {
+        self.is_tracked() && self.is_observed()
+    }
+
     pub fn print(&self) {
-        hprintln!("    ms  error/mrad  torques/(N m)");
+        hprintln!("    ms  error/mrad  push/(N m)  torques/(N m)");
         for (row, period) in self.rows.iter().zip(ROWS) {
-            hprint!("{:6}{:12.3}", period, 1000.0 * row.error);
+            hprint!("{:6}{:12.3}{:12.3}", period, 1000.0 * row.error, row.observed);
             row.torques.iter().for_each(|torque| hprint!("{:9.3}", torque));
             hprintln!();
         }
         let [control, simulation] = [self.control, self.simulation].map(|share| 100.0 * share);
         hprintln!("of a period: {control:.1} % until the torques are there, {simulation:.1} % with the simulated arm");
         hprintln!("periods missed: {}, stack: {} bytes", self.missed, self.stack);
-        hprintln!("{}\n", if self.is_good() { "tracked" } else { "NOT tracked" });
+        let tracked = if self.is_tracked() { "tracked" } else { "NOT tracked" };
+        let observed = if self.is_observed() { "observed" } else { "NOT observed" };
+        hprintln!("{tracked}, the push of joint {} by {PUSH} N m is {observed}\n", PUSHED + 1);
     }
 }

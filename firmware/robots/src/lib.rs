@@ -13,6 +13,8 @@ pub mod torques;
 
 pub use numbers::Numbers;
 pub use states::{STATES, State};
+#[cfg(feature = "methods")]
+pub use torques::each_controller;
 #[cfg(feature = "double")]
 pub use torques::each_double;
 pub use torques::{Torques, Visitor, each};

@@ -17,6 +17,7 @@ macro_rules! robots {
             pub mod $robot {
                 form!(seven_steps, "seven_steps", $path);
                 form!(reduced, "reduced", $path);
+                controller!($path);
             }
         )*
 
@@ -25,6 +26,16 @@ macro_rules! robots {
             $(
                 visitor.visit(stringify!($robot), "seven_steps", $robot::seven_steps::inverse_dynamics);
                 visitor.visit(stringify!($robot), "reduced", $robot::reduced::inverse_dynamics);
+            )*
+        }
+
+        /// The tick of the controller of every robot: its torques, named `tick`, and its external torques, named
+        /// `contact`.
+        #[cfg(feature = "methods")]
+        pub fn each_controller(visitor: &mut impl Visitor) {
+            $(
+                visitor.visit(stringify!($robot), "tick", $robot::controller::torques);
+                visitor.visit(stringify!($robot), "contact", $robot::controller::external_torques);
             )*
         }
 
@@ -85,6 +96,61 @@ macro_rules! form {
                 pub extern "C" fn double(q: &Joints<f64>, qd: &Joints<f64>, qdd: &Joints<f64>, tau: &mut Joints<f64>) {
                     *tau = super::double(q, qd, qdd);
                 }
+            }
+        }
+    };
+}
+
+/// A controller of a robot at 1 kHz, in the reduced form.
+macro_rules! controller {
+    ($path:literal) => {
+        /// Computed torque with an observer of contacts.
+        #[cfg(feature = "methods")]
+        pub mod controller {
+            use rne::{ComputedTorque, Desired, ObserverState};
+
+            #[derive(rne::InverseDynamics, rne::MomentumObserver)]
+            #[robot(path = $path, form = "reduced")]
+            struct Robot;
+
+            /// One number per joint.
+            type Joints = [f32; Robot::DOF];
+            type Controller = ComputedTorque<{ Robot::DOF }, f32>;
+
+            /// A tick.
+            #[inline(never)]
+            #[must_use]
+            pub fn tick(
+                controller: &mut Controller,
+                q: &Joints,
+                qd: &Joints,
+                desired: &Desired<{ Robot::DOF }, f32>,
+                applied: &Joints,
+            ) -> Joints {
+                controller.tick(&Robot, q, qd, desired, applied)
+            }
+
+            /// The torques of the third tick.
+            #[must_use]
+            pub fn torques(q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+                third(q, qd, qdd).1
+            }
+
+            /// The external torques of the third tick.
+            #[must_use]
+            pub fn external_torques(q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+                *third(q, qd, qdd).0.observer.external_torques()
+            }
+
+            fn third(q: &Joints, qd: &Joints, qdd: &Joints) -> (Controller, Joints) {
+                let observer = ObserverState::new(20.0, 1e-3);
+                let [stiffness, damping] = [256.0, 32.0].map(|gain| [gain; Robot::DOF]);
+                let mut controller = ComputedTorque { stiffness, damping, observer };
+                let desired = Desired { q: *qd, qd: *q, qdd: *qdd };
+                let first = tick(&mut controller, q, qd, &desired, qdd);
+                let second = tick(&mut controller, qdd, q, &desired, &first);
+                let third = tick(&mut controller, qd, qdd, &desired, &second);
+                (controller, third)
             }
         }
     };
