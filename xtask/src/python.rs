@@ -26,6 +26,9 @@ const CASADI: [&str; 2] = ["casadi==3.8.2", "pyyaml>=6"];
 /// Packages that the tests need to call the functions of the wheel from JAX.
 const JAX: [&str; 1] = ["jax==0.10.2"];
 
+/// Packages that the tests need to call the functions of the wheel from PyTorch: gigabytes.
+const TORCH: [&str; 1] = ["torch==2.6.0"];
+
 /// Whose columns the wheel reads.
 const COLUMNS: [&str; 3] = ["pandas>=2", "polars>=1.8", "pyarrow>=17"];
 
@@ -69,6 +72,9 @@ pub(crate) struct Python {
     /// Have JAX derive the dynamics, and compile calls of the functions
     #[arg(long)]
     pub(crate) jax: bool,
+    /// Have PyTorch derive costs of the functions; PyPI's torch takes gigabytes
+    #[arg(long)]
+    pub(crate) torch: bool,
     /// Run the notebooks of doors/python/notebooks
     #[arg(long)]
     pub(crate) notebooks: bool,
@@ -84,6 +90,7 @@ impl Python {
         packages.extend(PEERS.iter().filter(|_| self.peers));
         packages.extend(CASADI.iter().filter(|_| self.casadi));
         packages.extend(JAX.iter().filter(|_| self.jax));
+        packages.extend(TORCH.iter().filter(|_| self.torch));
         packages.extend(NOTEBOOKS.iter().filter(|_| self.notebooks));
         let wheel = place.wheel(self.install)?;
         let python = place.user(&wheel, &packages, self.install)?;

@@ -94,30 +94,35 @@ fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>, bool)> {
 /// shapes, its results with their shapes and whether they are poses.
 type Told = (&'static str, &'static str, Vec<(&'static str, Vec<usize>)>, Vec<(Vec<usize>, bool)>);
 
+impl Arm {
+    /// The arm, or the arm at a frame.
+    fn at(&self, frame: Option<&Bound<'_, PyAny>>) -> PyResult<CompiledArm> {
+        let Some(frame) = frame else { return Ok(self.arm.clone()) };
+        let frame = self.frame_name(frame)?;
+        self.arm.at_frame(&frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))
+    }
+}
+
 #[pymethods]
 impl Arm {
-    /// Keeps this arm, or this arm at a frame, for XLA under a name, and tells of its functions.
-    #[pyo3(signature = (name, frame=None))]
-    fn _for_xla(&self, name: String, frame: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Told>> {
-        let arm = match frame {
-            Some(frame) => {
-                let frame = self.frame_name(frame)?;
-                self.arm.at_frame(&frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?
-            }
-            None => self.arm.clone(),
-        };
+    /// Tells of the functions of this arm, or of this arm at a frame.
+    #[pyo3(signature = (frame=None))]
+    fn _functions(&self, frame: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Told>> {
+        let arm = self.at(frame)?;
         let told = Function::of_robot(arm.robot()).map(|function| {
             let operands = operands(&arm, function).into_iter().map(|operand| (operand.name, operand.shape));
-            (
-                function.of_frame().unwrap_or(function.name()),
-                function.name(),
-                operands.collect(),
-                results(&arm, function),
-            )
+            let method = function.of_frame().unwrap_or(function.name());
+            (method, function.name(), operands.collect(), results(&arm, function))
         });
-        let told = told.collect();
+        Ok(told.collect())
+    }
+
+    /// Keeps this arm, or this arm at a frame, for XLA under a name.
+    #[pyo3(signature = (name, frame=None))]
+    fn _for_xla(&self, name: String, frame: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let arm = self.at(frame)?;
         ARMS.write().unwrap_or_else(PoisonError::into_inner).insert(name, arm);
-        Ok(told)
+        Ok(())
     }
 
     /// The run-time parameters as they stand in the robot file.
@@ -143,6 +148,21 @@ impl Arm {
     #[pyo3(signature = (*, frame=None))]
     fn jax<'py>(slf: &Bound<'py, Self>, frame: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("rne.xla")?.call_method1("functions", (slf, frame))
+    }
+
+    /// Functions of this arm for PyTorch, with derivatives in reverse mode, on the CPU.
+    ///
+    /// Each function of the arm is an attribute of what is returned: `arm.torch().inverse_dynamics(q, qd, qdd)`.
+    /// Arguments are tensors with any leading axes, which follow the rules of broadcasting, then those of one state:
+    /// shape (..., n). Several results are a tuple. Each call is one operator, `rne::compute`, also in `torch.compile`
+    /// and in `torch.vmap` (torch 2.5). The backward pass of torques is one call of `torque_gradient`.
+    ///
+    /// The functions that have derivatives for `jax` have them here; others, and second derivatives, are a
+    /// NotImplementedError. `frame`: functions of the tip are those of this frame. Needs the package torch, 2.4 or
+    /// later.
+    #[pyo3(signature = (*, frame=None))]
+    fn torch<'py>(slf: &Bound<'py, Self>, frame: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("rne.pytorch")?.call_method1("functions", (slf, frame))
     }
 }
 

@@ -435,6 +435,8 @@ class Arm:
         """A function as a `casadi.Function`, with its derivatives for optimisers such as IPOPT."""
     def jax(self, *, frame: str | None = ...) -> Any:
         """Functions of this arm for JAX: `jit`, `vmap`, `grad`, `jacfwd` and `jacrev` of them work, on the CPU."""
+    def torch(self, *, frame: str | None = ...) -> Any:
+        """Functions of this arm for PyTorch, with derivatives in reverse mode, on the CPU."""
     def diagnose(
         self, q: Sequence[float], qd: Sequence[float], qdd: Sequence[float], tau: Sequence[float], *,
         tolerance: float = ...,

@@ -1,7 +1,10 @@
-"""Numbers by name: dicts of joints or of run-time parameters, and lists of joints in another order."""
+"""Numbers by name: dicts of joints or of run-time parameters, and lists of joints in another order; names of arms."""
+
+import hashlib
 
 import numpy
 
+from ._rne import __version__
 from .columns import views
 
 
@@ -111,3 +114,9 @@ def order(joints, names, extra, followers):
         if names.count(joint) > 1:
             raise ValueError(f"`names`: the joint `{joint}` is there twice")
     return numpy.array([names.index(joint) for joint in joints], dtype=numpy.intp)
+
+
+def of_content(arm, frame):
+    """A name of an arm, or of an arm at a frame, that tells its content: programs that name it may be kept in files."""
+    content = repr((__version__, arm.__reduce__()[1], frame))
+    return f"{arm.name}-{hashlib.sha256(content.encode()).hexdigest()[:32]}"

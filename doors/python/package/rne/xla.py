@@ -1,7 +1,6 @@
 """Functions of an arm for JAX, computed by the machine inside the programs that XLA compiles: `Arm.jax`."""
 
 import functools
-import hashlib
 import math
 import pathlib
 import re
@@ -9,8 +8,9 @@ import warnings
 
 import numpy as np
 
-from ._rne import __version__, xla_handler
+from ._rne import xla_handler
 from .derivatives import DERIVATIVES, refusal
+from .names import of_content
 
 #: The name of the machine in the programs of XLA.
 TARGET = "rne"
@@ -24,9 +24,8 @@ def functions(arm, frame):
     except ImportError as error:
         raise ImportError("`Arm.jax` needs the package jax, 0.5 or later: pip install jax") from error
     _register()
-    # A compiled program may outlive this process in JAX's cache: the name tells the arm by its content.
-    content = repr((__version__, arm.__reduce__()[1], frame))
-    name = f"{arm.name}-{hashlib.sha256(content.encode()).hexdigest()[:32]}"
+    # a compiled program may outlive this process in JAX's cache
+    name = of_content(arm, frame)
     found = _KNOWN.get(name)
     if found is None:
         found = _KNOWN.setdefault(name, Functions(arm, frame, name))
@@ -56,7 +55,8 @@ class Functions:
     """The functions of an arm for JAX, as attributes: `inverse_dynamics(q, qd, qdd)` and so on."""
 
     def __init__(self, arm, frame, name):
-        told = arm._for_xla(name, frame)
+        arm._for_xla(name, frame)
+        told = arm._functions(frame)
         values = arm._parameter_values() if arm.parameters else None
         self._title = f"{arm.name}{f' at {frame}' if frame else ''}"
         self._all = {}

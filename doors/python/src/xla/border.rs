@@ -81,7 +81,7 @@ struct ErrorArguments {
 struct Api {
     struct_size: usize,
     extensions: *mut Extension,
-    api_version: ApiVersion,
+    version: ApiVersion,
     internal: *const c_void,
     create_error: Option<unsafe extern "C" fn(*mut ErrorArguments) -> *mut c_void>,
 }
@@ -138,6 +138,7 @@ struct CallFrame {
 /// What XLA calls, as a capsule for `jax.ffi.register_ffi_target`, where XLA has this version of the interface. A call
 /// that asks for the version does not tell which one XLA has, and some XLA takes none but its own.
 pub(super) fn capsule(py: Python<'_>, version: (c_int, c_int)) -> PyResult<Bound<'_, PyCapsule>> {
+    const NAME: &CStr = c"xla._CUSTOM_CALL_TARGET";
     let (major, minor) = version;
     if major != KNOWN.0 || minor < 0 {
         return Err(PyRuntimeError::new_err(format!(
@@ -147,7 +148,6 @@ pub(super) fn capsule(py: Python<'_>, version: (c_int, c_int)) -> PyResult<Bound
         )));
     }
     MINOR.store(minor.min(KNOWN.1), Ordering::Relaxed);
-    const NAME: &CStr = c"xla._CUSTOM_CALL_TARGET";
     let handler: extern "C" fn(*mut CallFrame) -> *mut c_void = handle;
     let pointer = NonNull::new(handler as *mut c_void).unwrap_or(NonNull::dangling());
     // SAFETY: the pointer is that of a function, which stays as long as the process, and has no destructor.
@@ -352,7 +352,7 @@ fn checked(buffer: &Buffer, count: usize, what: &str) -> Result<(bool, std::ops:
     let bytes = count.checked_mul(size).filter(|&bytes| isize::try_from(bytes).is_ok());
     let end = bytes.and_then(|bytes| start.checked_add(bytes));
     let end = end.ok_or_else(|| format!("{what} is larger than memory"))?;
-    if start == 0 || start % size != 0 {
+    if start == 0 || !start.is_multiple_of(size) {
         return Err(format!("{what} is NULL or not aligned"));
     }
     Ok((size == size_of::<f64>(), start..end))
