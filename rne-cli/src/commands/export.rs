@@ -19,8 +19,8 @@ Examples:
   rne export robots/ur5.yaml --urdf -o ur5.urdf
   rne export puma560 --urdf
   rne export baxter --urdf -o baxter.urdf        a tree, as any robot
-  rne export panda --fmu -o panda.fmu            FMI 3.0: torques in, motion out
-  rne export panda --fmu 2 --inverse -o panda.fmu    FMI 2.0, motion in
+  rne export puma560 --fmu -o puma560.fmu        FMI 3.0: torques in, motion out
+  rne export puma560 --fmu 2 --inverse -o torques.fmu    FMI 2.0, motion in
 
 The links of the URDF are `world`, `base` (frame 0), `link_1` … and `tip`. The
 frame of a link is on the axis of its joint. Named frames and bodies are links.

@@ -6,6 +6,9 @@ use super::variables::{Role, Variable};
 use super::{FmiVersion, Fmu, FmuCausality, units};
 use crate::inert;
 
+/// Whether a variable belongs to a list of the structure.
+type IsListed = fn(&Variable) -> bool;
+
 /// Text in an attribute of XML.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
@@ -54,7 +57,7 @@ impl Fmu<'_> {
                 continue;
             }
             let of = ["kg", "m", "s", "rad"].into_iter().zip(exponents).filter(|(_, exponent)| *exponent != 0);
-            let base: String = of.map(|(base, exponent)| format!(" {base}=\"{exponent}\"")).collect();
+            let base = of.fold(String::new(), |text, (base, exponent)| text + &format!(" {base}=\"{exponent}\""));
             let degrees = if unit == "rad" { "<DisplayUnit name=\"deg\" factor=\"57.29577951308232\"/>" } else { "" };
             let _ = writeln!(text, "    <Unit name=\"{unit}\"><BaseUnit{base}/>{degrees}</Unit>");
         }
@@ -97,7 +100,8 @@ impl Fmu<'_> {
     }
 
     fn source_files(&self, element: &str) -> String {
-        self.sources().iter().map(|source| format!("<{element} name=\"{}\"/>", escaped(source))).collect()
+        let of = |source: &String| format!("<{element} name=\"{}\"/>", escaped(source));
+        self.sources().iter().fold(String::new(), |text, source| text + &of(source))
     }
 
     pub(super) fn build_description(&self) -> String {
@@ -161,7 +165,7 @@ impl Fmu<'_> {
         } else {
             (3 * dof + 1, (1..=3 * dof).collect())
         };
-        let lists: [(&str, &str, fn(&Variable) -> bool); 3] = [
+        let lists: [(&str, &str, IsListed); 3] = [
             ("Outputs", "Output", |variable| matches!(variable.role, Role::Output | Role::State)),
             ("Derivatives", "ContinuousStateDerivative", |variable| variable.derivative_of.is_some()),
             ("InitialUnknowns", "InitialUnknown", |variable| variable.role == Role::Output),
