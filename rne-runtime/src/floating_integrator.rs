@@ -25,22 +25,22 @@ pub struct FloatingState<const DOF: usize, T> {
 /// and to the torques.
 ///
 /// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its rotation
-/// vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ), in the axes of frame 0 before
-/// the step for the columns, after it for the rows. A change of the velocities has the linear and the angular velocity
+/// vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ). These are the axes before
+/// the step for the columns, and after it for the rows. A change of the velocities has the linear and the angular velocity
 /// of frame 0 in its axes, then the joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloatingStepDerivatives<const DOF: usize, const NV: usize, T> {
-    /// Of the next positions by the positions.
+    /// Derivatives of the next positions by the positions.
     pub q_dq: [[T; NV]; NV],
-    /// Of the next positions by the velocities.
+    /// Derivatives of the next positions by the velocities.
     pub q_dv: [[T; NV]; NV],
-    /// Of the next positions by the torques.
+    /// Derivatives of the next positions by the torques.
     pub q_dtau: [[T; DOF]; NV],
-    /// Of the next velocities by the positions.
+    /// Derivatives of the next velocities by the positions.
     pub v_dq: [[T; NV]; NV],
-    /// Of the next velocities by the velocities.
+    /// Derivatives of the next velocities by the velocities.
     pub v_dv: [[T; NV]; NV],
-    /// Of the next velocities by the torques.
+    /// Derivatives of the next velocities by the torques.
     pub v_dtau: [[T; DOF]; NV],
 }
 
@@ -56,9 +56,9 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     /// velocity, the joints with theirs, and the base turns by the new angular velocity in its axes. The error of a
     /// motion is of order h.
     ///
-    /// The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h ω / 4 and s = u·u. It needs no root, sine
-    /// or quotient by an angle, so it is smooth at ω = 0; its angle is h |ω| less (h |ω|)³ / 48, an error of higher order
-    /// than that of the method. The result has the length 1 to rounding, however many steps came before.
+    /// The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h ω / 4 and s = u·u. It needs no root, no
+    /// sine and no quotient by an angle, so it is smooth at ω = 0; its angle is h |ω| less (h |ω|)³ / 48, an error of
+    /// higher order than that of the method. The result has the length 1 to rounding, however many steps came before.
     #[must_use]
     fn floating_euler_step<T: Scalar>(
         &self,
@@ -168,8 +168,10 @@ pub trait FloatingIntegratorStepDerivatives<const DOF: usize, const NV: usize, c
     }
 }
 
-impl<const DOF: usize, const NV: usize, const TIPS: usize, R> FloatingIntegratorStepDerivatives<DOF, NV, TIPS> for R where
-    R: FloatingBase<DOF, NV, TIPS> + FloatingInverseDynamicsDerivatives<DOF, NV, TIPS> + ?Sized
+impl<const DOF: usize, const NV: usize, const TIPS: usize, R: ?Sized> FloatingIntegratorStepDerivatives<DOF, NV, TIPS>
+    for R
+where
+    R: FloatingBase<DOF, NV, TIPS> + FloatingInverseDynamicsDerivatives<DOF, NV, TIPS>,
 {
 }
 

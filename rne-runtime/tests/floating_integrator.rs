@@ -1,5 +1,5 @@
-//! A step of a robot whose base nothing holds: its derivatives beside dual numbers through the step, the turn of the base
-//! beside the exponential, and conserved momentum.
+//! A step of a robot whose base nothing holds: its derivatives beside dual numbers through the step, the turn of the
+//! base beside the exponential, and conserved momentum.
 
 mod common;
 
