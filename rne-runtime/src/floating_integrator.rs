@@ -26,8 +26,8 @@ pub struct FloatingState<const DOF: usize, T> {
 ///
 /// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its rotation
 /// vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ). These are the axes before
-/// the step for the columns, and after it for the rows. A change of the velocities has the linear and the angular velocity
-/// of frame 0 in its axes, then the joints.
+/// the step for the columns, and after it for the rows. A change of the velocities has the linear and the angular
+/// velocity of frame 0 in its axes, then the joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloatingStepDerivatives<const DOF: usize, const NV: usize, T> {
     /// Derivatives of the next positions by the positions.
