@@ -137,13 +137,14 @@ pub use rne_runtime::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, ComputedTorque, Constant,
     ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
-    FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
-    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    IntegratorStep, IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
-    MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics,
-    Pose, Quaternion, Regressor, Scalar, StepDerivatives, TipWrenches, TorqueDerivatives, TorqueGradient, VectorUnit,
-    Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    FloatingEnergy, FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives,
+    FloatingKinematics, FloatingRegressor, FloatingState, FloatingStepDerivatives, FloatingTorqueDerivatives,
+    FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, IntegratorStep,
+    IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointOrderError,
+    JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass,
+    NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor,
+    Scalar, StepDerivatives, TipWrenches, TorqueDerivatives, TorqueGradient, VectorUnit, Wrench,
+    dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

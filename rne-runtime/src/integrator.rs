@@ -133,7 +133,10 @@ pub trait IntegratorStepDerivatives<const DOF: usize>: ForwardDynamics<DOF> + Fo
     }
 }
 
-impl<const DOF: usize, R: ForwardDynamics<DOF> + ForwardDynamicsDerivatives<DOF>> IntegratorStepDerivatives<DOF> for R {}
+impl<const DOF: usize, R> IntegratorStepDerivatives<DOF> for R where
+    R: ForwardDynamics<DOF> + ForwardDynamicsDerivatives<DOF>
+{
+}
 
 /// Derivatives by q, by q̇ and by τ, each by rows.
 type Blocks<const DOF: usize, T> = [[[T; DOF]; DOF]; 3];
@@ -164,7 +167,7 @@ fn moved<const DOF: usize, T: Scalar>(x: &[T; DOF], change: &[T; DOF], step: T) 
     from_fn(|i| x[i] + step * change[i])
 }
 
-/// What four accelerations add to the mean velocity of a step, and to the velocity.
+/// The changes of the mean velocity of a step, and of the velocity, by four accelerations.
 fn weighted<const DOF: usize, T: Scalar>(of_stages: [&[T; DOF]; 4], step: T) -> [[T; DOF]; 2] {
     let [first, second, third, fourth] = of_stages;
     let sixth = step / T::from_f64(6.0);
@@ -192,9 +195,9 @@ fn moved_by<const DOF: usize, T: Scalar>(place: usize, change: &Blocks<DOF, T>, 
     found
 }
 
-/// The derivatives of the accelerations at a state by those of the step's arguments. The velocities of this state are q̇ +
-/// `duration` times the accelerations `before`. Its positions are q + `duration` times the velocities of the state before,
-/// which are q̇, or q̇ + a duration times the accelerations at the state `earlier`.
+/// The derivatives of the accelerations at a state by those of the step's arguments. The velocities of this state are
+/// q̇ + `duration` times the accelerations `before`. Its positions are q + `duration` times the velocities of the state
+/// before, which are q̇, or q̇ + a duration times the accelerations at the state `earlier`.
 fn chained<const DOF: usize, T: Scalar>(
     own: &AccelerationDerivatives<DOF, T>,
     duration: T,

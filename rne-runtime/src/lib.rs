@@ -40,6 +40,7 @@ mod error;
 #[cfg(feature = "arm")]
 mod floating_base;
 mod floating_derivatives;
+mod floating_integrator;
 #[cfg(feature = "arm")]
 mod floating_kinematics;
 #[cfg(feature = "arm")]
@@ -134,6 +135,9 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(feature = "std")]
 pub use floating_derivatives::DynFloatingTorqueDerivatives;
 pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};
+pub use floating_integrator::{
+    FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingState, FloatingStepDerivatives,
+};
 pub use integrator::{IntegratorStep, IntegratorStepDerivatives, NextState, NextStateDerivatives, StepDerivatives};
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]

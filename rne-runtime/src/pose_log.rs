@@ -108,7 +108,7 @@ pub(crate) fn times<T: Scalar>(matrix: &[[T; 3]; 3], vector: &[T; 3]) -> [T; 3] 
     matrix.map(|row| dot(&row, vector))
 }
 
-fn dot<T: Scalar>([a, b, c]: &[T; 3], [x, y, z]: &[T; 3]) -> T {
+pub(crate) fn dot<T: Scalar>([a, b, c]: &[T; 3], [x, y, z]: &[T; 3]) -> T {
     *a * *x + *b * *y + *c * *z
 }
 

@@ -134,7 +134,7 @@ fn a_pendulum_has_its_period_and_keeps_its_energy() {
     let amplitude = 2.0_f64;
     let (mut a, mut b) = (1.0_f64, (amplitude / 2.0).cos());
     for _ in 0..8 {
-        (a, b) = ((a + b) / 2.0, (a * b).sqrt());
+        (a, b) = (a.midpoint(b), (a * b).sqrt());
     }
     let period = 2.0 * PI * (0.8 / (1.5 * 9.81_f64)).sqrt() / a;
     let start = [[amplitude], [0.0], [0.0]];

@@ -1,0 +1,254 @@
+//! A step of a robot whose base nothing holds: its derivatives beside dual numbers through the step, the turn of the
+//! base beside the exponential, and conserved momentum.
+
+mod common;
+
+use std::array::from_fn;
+
+use common::{Numbers, assert_close, link, six_joints};
+use rne_model::Convention::{Modified, Standard};
+use rne_runtime::{
+    Arm, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,
+    FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingState, FloatingStepDerivatives,
+    FloatingTorqueDerivatives, FloatingTorques, Quaternion, Scalar, Wrench,
+};
+
+const DOF: usize = 6;
+const NV: usize = 12;
+const GRAVITY: [f64; 3] = [0.4, -0.3, -9.7];
+
+type State<T> = FloatingState<DOF, T>;
+
+/// An arm on a trunk that nothing holds, without tips.
+struct Floating(Arm<DOF>);
+
+fn arms() -> [Floating; 2] {
+    let trunk = link(5.0, [0.02, -0.03, 0.05], [0.08, 0.09, 0.06, 0.004, -0.003, 0.002]);
+    [Standard, Modified].map(|convention| Floating(Arm::new(six_joints(convention)).with_floating_base(trunk)))
+}
+
+type OfJoints<T> = [T; DOF];
+
+impl FloatingBase<DOF, NV, 0> for Floating {
+    fn inverse_dynamics_of_floating_base<T: Scalar>(
+        &self,
+        q: &OfJoints<T>,
+        qd: &OfJoints<T>,
+        qdd: &OfJoints<T>,
+        base: &BaseMotion<T>,
+        wrenches: &[Wrench<T>; 0],
+    ) -> FloatingTorques<DOF, T> {
+        self.0.inverse_dynamics_of_floating_base(q, qd, qdd, base, (&[], wrenches))
+    }
+
+    fn floating_mass_matrix<T: Scalar>(&self, q: &OfJoints<T>) -> [[T; NV]; NV] {
+        self.0.floating_mass_matrix(q)
+    }
+
+    fn floating_bias<T: Scalar>(
+        &self,
+        q: &OfJoints<T>,
+        qd: &OfJoints<T>,
+        omega: &[T; 3],
+        wrenches: &[Wrench<T>; 0],
+    ) -> [T; NV] {
+        self.0.floating_bias(q, qd, omega, (&[], wrenches))
+    }
+
+    fn floating_forward_dynamics<T: Scalar>(
+        &self,
+        q: &OfJoints<T>,
+        qd: &OfJoints<T>,
+        tau: &OfJoints<T>,
+        omega: &[T; 3],
+        wrenches: &[Wrench<T>; 0],
+    ) -> FloatingAccelerations<DOF, T> {
+        self.0.floating_forward_dynamics::<T, NV, 0>(q, qd, tau, omega, (&[], wrenches))
+    }
+}
+
+impl FloatingInverseDynamicsDerivatives<DOF, NV, 0> for Floating {
+    fn floating_inverse_dynamics_derivatives<T: Scalar>(
+        &self,
+        q: &OfJoints<T>,
+        qd: &OfJoints<T>,
+        qdd: &OfJoints<T>,
+        base: &BaseMotion<T>,
+        wrenches: &[Wrench<T>; 0],
+    ) -> FloatingTorqueDerivatives<DOF, NV, T> {
+        self.0.floating_inverse_dynamics_derivatives(q, qd, qdd, base, (&[], wrenches))
+    }
+}
+
+fn state(numbers: &mut Numbers) -> State<f64> {
+    let turn: [f64; 3] = numbers.array(2.0);
+    FloatingState {
+        orientation: Quaternion::identity().turned_by(turn),
+        position: numbers.array(1.0),
+        twist: BaseTwist { linear: numbers.array(2.0), angular: numbers.array(3.0) },
+        q: numbers.array(3.0),
+        qd: numbers.array(2.0),
+    }
+}
+
+fn constant(x: &[f64]) -> Vec<Dual<f64>> {
+    x.iter().copied().map(Dual::constant).collect()
+}
+
+fn of<const N: usize>(x: &[Dual<f64>]) -> [Dual<f64>; N] {
+    x.try_into().unwrap_or_else(|_| unreachable!("as many"))
+}
+
+/// The state as it moves along one of the directions of positions and velocities.
+fn along(state: &State<f64>, direction: usize) -> State<Dual<f64>> {
+    let rate = |first: usize, count: usize| -> Vec<f64> {
+        (first..first + count).map(|at| f64::from(u8::from(at == direction))).collect()
+    };
+    let moving = |x: &[f64], first: usize| -> Vec<Dual<f64>> {
+        let rates = rate(first, x.len());
+        x.iter().zip(rates).map(|(&value, derivative)| Dual { value, derivative }).collect()
+    };
+    let rotation = state.orientation.rotation();
+    let shift = rate(0, 3);
+    let position: Vec<Dual<f64>> = (0..3)
+        .map(|row| {
+            let derivative = (0..3).map(|at| rotation[row][at] * shift[at]).sum();
+            Dual { value: state.position[row], derivative }
+        })
+        .collect();
+    let turn = rate(3, 3);
+    let half = |at: usize| Dual { value: 0.0, derivative: turn[at] / 2.0 };
+    let turn = Quaternion { w: Dual::constant(1.0), x: half(0), y: half(1), z: half(2) };
+    let orientation = Quaternion::from_wxyz(of(&constant(&state.orientation.to_wxyz())));
+    FloatingState {
+        orientation: orientation.then(&turn),
+        position: of(&position),
+        twist: BaseTwist {
+            linear: of(&moving(&state.twist.linear, NV)),
+            angular: of(&moving(&state.twist.angular, NV + 3)),
+        },
+        q: of(&moving(&state.q, 6)),
+        qd: of(&moving(&state.qd, NV + 6)),
+    }
+}
+
+/// The changes of positions and velocities of a state.
+fn change(state: &State<Dual<f64>>) -> [[f64; NV]; 2] {
+    let [w, x, y, z] = state.orientation.to_wxyz();
+    let back = Quaternion { w: w.value, x: -x.value, y: -y.value, z: -z.value };
+    let rate = Quaternion { w: w.derivative, x: x.derivative, y: y.derivative, z: z.derivative };
+    let [scalar, turn @ ..] = back.then(&rate).to_wxyz();
+    assert!(scalar.abs() < 1e-13, "the length of the quaternion stays: {scalar:e}");
+    let back = back.rotation();
+    let origin: [f64; 3] = from_fn(|row| (0..3).map(|at| back[row][at] * state.position[at].derivative).sum());
+    let derivatives = |x: &[Dual<f64>]| x.iter().map(|x| x.derivative).collect::<Vec<_>>();
+    let positions = [&origin[..], &turn.map(|x| 2.0 * x), &derivatives(&state.q)].concat();
+    let velocities =
+        [derivatives(&state.twist.linear), derivatives(&state.twist.angular), derivatives(&state.qd)].concat();
+    [positions, velocities].map(|x| x.try_into().unwrap_or_else(|_| unreachable!("NV")))
+}
+
+#[test]
+fn derivatives_are_those_by_dual_numbers() {
+    let mut numbers = Numbers::new(81);
+    for arm in arms() {
+        for round in 0..6 {
+            let mut state = state(&mut numbers);
+            if round == 0 {
+                // the turn is smooth there
+                state.twist.angular = [0.0; 3];
+            }
+            let tau: [f64; DOF] = numbers.array(5.0);
+            let step = 0.05;
+            let found: FloatingStepDerivatives<DOF, NV, f64> =
+                arm.floating_euler_step_derivatives(&state, &tau, &[], &GRAVITY, step);
+            let by = |direction: usize| {
+                let tau = from_fn(|joint| Dual {
+                    value: tau[joint],
+                    derivative: f64::from(u8::from(direction == 2 * NV + joint)),
+                });
+                let state = along(&state, direction);
+                let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(
+                    &arm,
+                    &state,
+                    &tau,
+                    &[],
+                    &GRAVITY.map(Dual::constant),
+                    Dual::constant(step),
+                );
+                change(&next)
+            };
+            for (part, [by_positions, by_velocities]) in
+                [[&found.q_dq, &found.q_dv], [&found.v_dq, &found.v_dv]].into_iter().enumerate()
+            {
+                let expected: [[[f64; NV]; NV]; 2] = from_fn(|kind| {
+                    let columns: Vec<[f64; NV]> = (0..NV).map(|at| by(kind * NV + at)[part]).collect();
+                    from_fn(|row| from_fn(|column| columns[column][row]))
+                });
+                assert_close("by positions", by_positions.as_flattened(), expected[0].as_flattened());
+                assert_close("by velocities", by_velocities.as_flattened(), expected[1].as_flattened());
+            }
+            let columns: Vec<_> = (0..DOF).map(|joint| by(2 * NV + joint)).collect();
+            for (part, found) in [&found.q_dtau, &found.v_dtau].into_iter().enumerate() {
+                let expected: [[f64; DOF]; NV] = from_fn(|row| from_fn(|joint| columns[joint][part][row]));
+                assert_close("by torques", found.as_flattened(), expected.as_flattened());
+            }
+        }
+    }
+}
+
+/// In free flight without gravity, with a turn of exactly the angle h |ω|.
+#[test]
+fn the_base_turns_by_the_exponential_to_third_order() {
+    let mut numbers = Numbers::new(82);
+    let [arm, _] = arms();
+    let state = state(&mut numbers);
+    let tau: [f64; DOF] = numbers.array(5.0);
+    let error = |step: f64| {
+        let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, step);
+        let expected = state.orientation.turned_by(next.twist.angular.map(|x| x * step));
+        let pairs = next.orientation.to_wxyz().into_iter().zip(expected.to_wxyz());
+        let length: f64 = next.orientation.to_wxyz().iter().map(|x| x * x).sum();
+        assert!((length - 1.0).abs() < 1e-15, "{length}");
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let order = (error(0.02) / error(0.01)).log2();
+    assert!((order - 3.0).abs() < 0.2, "{order}");
+}
+
+#[test]
+fn momentum_is_conserved_to_the_order_of_the_method() {
+    let mut numbers = Numbers::new(83);
+    for arm in arms() {
+        let start = state(&mut numbers);
+        let tau: [f64; DOF] = numbers.array(1.0);
+        // about the centre of mass, in world axes
+        let momentum = |state: &State<f64>| -> [f64; 6] {
+            let matrix: [[f64; NV]; 6] = arm.0.centroidal_momentum_matrix(&state.q);
+            let velocities = [&state.twist.linear[..], &state.twist.angular, &state.qd].concat();
+            let found = matrix.map(|row| row.iter().zip(&velocities).map(|(a, v)| a * v).sum::<f64>());
+            let rotation = state.orientation.rotation();
+            from_fn(|at| (0..3).map(|k| rotation[at % 3][k] * found[at / 3 * 3 + k]).sum())
+        };
+        let mass = 5.0 + 4.0 + 3.0 + 2.0 + 1.5 + 1.0 + 0.5;
+        let error = |steps: u32| {
+            let time = 0.1;
+            let end = (0..steps).fold(start, |state, _| {
+                FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(
+                    &arm,
+                    &state,
+                    &tau,
+                    &[],
+                    &GRAVITY,
+                    time / f64::from(steps),
+                )
+            });
+            let (before, after) = (momentum(&start), momentum(&end));
+            let weight = |at: usize| if at < 3 { mass * GRAVITY[at] * time } else { 0.0 };
+            (0..6).map(|at| (after[at] - before[at] - weight(at)).abs()).fold(0.0, f64::max)
+        };
+        let order = (error(200) / error(400)).log2();
+        println!("order {order:.3}");
+        assert!((order - 1.0).abs() < 0.1, "{order}");
+    }
+}
