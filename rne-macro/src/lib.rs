@@ -224,9 +224,8 @@ pub fn derive_moving_base(input: TokenStream) -> TokenStream {
     expand::capability(Capability::MovingBase, input.into()).into()
 }
 
-/// Implements the trait `PayloadDynamics` for a struct: gravity, bias, mass matrix, accelerations, derivatives and
-/// momenta
-/// of the arm with a payload at its tip.
+/// Implements the trait `PayloadDynamics` for a struct: gravity, bias, mass matrix, accelerations, momenta, and
+/// derivatives of torques and accelerations, of the arm with a payload at its tip.
 ///
 /// The payload (mass, centre of mass, inertia) is an argument.
 ///

@@ -117,6 +117,19 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
             let derivatives = robot.forward_dynamics_derivatives(q, qd, tau);
             [flat(derivatives.dq), flat(derivatives.dqd), flat(derivatives.dtau)].concat()
         }
+        Function::InverseMassMatrixTimesTorques => robot.inverse_mass_matrix_times_torques(q, tau).to_vec(),
+        Function::InverseDynamicsDerivativesWithWrenches => {
+            let by = robot.inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &[Wrench { force, moment }]);
+            [flat(by.dq), flat(by.dqd)].concat()
+        }
+        Function::ForwardDynamicsDerivativesWithWrenches => {
+            let by = robot.forward_dynamics_derivatives_with_wrenches(q, qd, tau, &[Wrench { force, moment }]);
+            [flat(by.dq), flat(by.dqd), flat(by.dtau)].concat()
+        }
+        Function::ForwardDynamicsDerivativesWithPayload => {
+            let by = robot.forward_dynamics_derivatives_with_payload(q, qd, tau, &states::payload(payload));
+            [flat(by.dq), flat(by.dqd), flat(by.dtau)].concat()
+        }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
             wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()

@@ -101,7 +101,8 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
         | Function::MassMatrixWithPayload
         | Function::CoriolisMatrix
         | Function::InverseDynamicsDerivatives
-        | Function::InverseDynamicsDerivativesWithPayload => rows().chunks(dof).flat_map(matrix).collect(),
+        | Function::InverseDynamicsDerivativesWithPayload
+        | Function::InverseDynamicsDerivativesWithWrenches => rows().chunks(dof).flat_map(matrix).collect(),
         Function::Jacobian
         | Function::CentreOfMassJacobian
         | Function::MomentumAndRate

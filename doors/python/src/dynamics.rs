@@ -193,6 +193,9 @@ macro_rules! method {
     (InverseDynamicsDerivatives $($rest:tt)*) => {
         loaded! { InverseDynamicsDerivatives InverseDynamicsDerivativesWithPayload $($rest)* }
     };
+    (ForwardDynamicsDerivatives $($rest:tt)*) => {
+        loaded! { ForwardDynamicsDerivatives ForwardDynamicsDerivativesWithPayload $($rest)* }
+    };
     (MomentumAndRate $($rest:tt)*) => {
         loaded! { MomentumAndRate MomentumAndRateWithPayload $($rest)* }
     };

@@ -163,6 +163,10 @@ methods! {
     PayloadDynamics: momentum_and_rate_with_payload(
         q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
     ) -> MomentumAndRate<6, f32>;
+    MassMatrix: inverse_mass_matrix_times_torques(q: [f32; 6], tau: [f32; 6]) -> [f32; 6];
+    PayloadDynamics: forward_dynamics_derivatives_with_payload(
+        q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
+    ) -> AccelerationDerivatives<6, f32>;
     InverseDynamicsGradient: torque_gradient(
         q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], multipliers: [f32; 6]
     ) -> TorqueGradient<6, f32>;

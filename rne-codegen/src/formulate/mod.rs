@@ -69,7 +69,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         | Function::ForwardDynamicsWithPayload
         | Function::ForwardDynamicsWithWrenches
         | Function::ForwardDynamicsOfLoops => {
-            forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), derivation.tau())
+            forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), &derivation.tau())
         }
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
@@ -81,7 +81,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::CentreOfMass => derivation.centre_of_mass(),
         Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
         Function::Regressor => derivation.regressor(),
-        Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
+        Function::InverseDynamicsDerivatives
+        | Function::InverseDynamicsDerivativesWithPayload
+        | Function::InverseDynamicsDerivativesWithWrenches => {
             derivatives(builder, derivation.coordinates(), &derivation.tau())
         }
         Function::JointWrenches => derivation.joint_wrenches(),
@@ -119,7 +121,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             floating_derivatives(builder, derivation.coordinates(), derivation.floating_torques())
         }
         Function::TorqueGradient => adjoint::gradient(builder, derivation.coordinates(), &derivation.tau()),
-        Function::ForwardDynamicsDerivatives => {
+        Function::ForwardDynamicsDerivatives
+        | Function::ForwardDynamicsDerivativesWithWrenches
+        | Function::ForwardDynamicsDerivativesWithPayload => {
             let system = derivation.system();
             let inverse = adjoint::Inverse::of(builder, &system, &derivation.upper_half());
             // the same quantities come again, at these accelerations
@@ -136,6 +140,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::LoopMap => closure::map(builder, derivation.coordinates()),
         Function::LoopMapRateTimesVelocity => closure::bias(builder, derivation.coordinates()),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
+        Function::InverseMassMatrixTimesTorques => {
+            accelerations(builder, &derivation.system(), &derivation.upper_half(), |applied, _| applied)
+        }
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
@@ -488,13 +495,23 @@ pub(crate) fn forward_dynamics<'s>(
     builder: &'s Builder,
     system: &System<'_>,
     upper: &[Vec<Symbol<'s>>],
-    bias: Vec<Symbol<'s>>,
+    bias: &[Symbol<'s>],
 ) -> Outputs<'s> {
-    let rest = |(&joint, torque): (&usize, Symbol<'s>)| {
+    accelerations(builder, system, upper, |applied, place| applied - bias[place])
+}
+
+/// M⁻¹ times what is left of the torques at each place.
+pub(crate) fn accelerations<'s>(
+    builder: &'s Builder,
+    system: &System<'_>,
+    upper: &[Vec<Symbol<'s>>],
+    left: impl Fn(Symbol<'s>, usize) -> Symbol<'s>,
+) -> Outputs<'s> {
+    let rest = |(place, &joint): (usize, &usize)| {
         let applied = system.coordinates.applied(builder, joint);
-        builder.joint(joint + 1).within(Quantity::Reduced, || applied - torque)
+        builder.joint(joint + 1).within(Quantity::Reduced, || left(applied, place))
     };
-    let rest: Vec<_> = system.coordinates.joints().iter().zip(bias).map(rest).collect();
+    let rest: Vec<_> = system.coordinates.joints().iter().enumerate().map(rest).collect();
     by_joint(system.coordinates, Quantity::RateDot, ldlt::solved(builder, system, upper, &rest))
 }
 

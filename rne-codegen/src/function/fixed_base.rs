@@ -83,6 +83,23 @@ const PER_TORQUE: &str =
 const INVERSE_OF_NOTHING: &str =
     "the inverse is not finite: the mass matrix is singular (a joint moves no mass), or the positions are too large";
 
+const ACCELERATION_DERIVATIVES: Entry = Entry {
+    output: "derivatives",
+    listed: "returned: the rows of ∂q̈/∂q, then those of ∂q̈/∂q̇, then those of ∂q̈/∂τ",
+    answer: Answer::Tables(&[
+        AnswerTable::of("∂q̈/∂q (1/s²; rows in rad/s² or m/s², columns per rad or m)", Labels::Joints, Labels::Joints),
+        AnswerTable::of("∂q̈/∂q̇ (1/s)", Labels::Joints, Labels::Joints),
+        AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints),
+    ]),
+    divides: Some(
+        "the derivatives are not finite: the mass matrix is singular \
+         (a joint moves no mass), or the state is too large",
+    ),
+    inverts_mass: true,
+    feels_rotors: true,
+    ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
+};
+
 /// The functions.
 pub(super) const FIXED_BASE: &[Entry] = &[
     Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
@@ -301,24 +318,27 @@ pub(super) const FIXED_BASE: &[Entry] = &[
         feels_rotors: true,
         ..Entry::of(Function::TorqueGradient, Capability::InverseDynamicsGradient)
     },
+    ACCELERATION_DERIVATIVES,
     Entry {
-        output: "derivatives",
-        listed: "returned: the rows of ∂q̈/∂q, then those of ∂q̈/∂q̇, then those of ∂q̈/∂τ",
-        answer: Answer::Tables(&[
-            AnswerTable::of(
-                "∂q̈/∂q (1/s²; rows in rad/s² or m/s², columns per rad or m)",
-                Labels::Joints,
-                Labels::Joints,
-            ),
-            AnswerTable::of("∂q̈/∂q̇ (1/s)", Labels::Joints, Labels::Joints),
-            AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints),
-        ]),
-        divides: Some(
-            "the derivatives are not finite: the mass matrix is singular \
-             (a joint moves no mass), or the state is too large",
-        ),
-        inverts_mass: true,
-        feels_rotors: true,
-        ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
+        function: Function::InverseMassMatrixTimesTorques,
+        capability: Capability::MassMatrix,
+        is_of_motion: true,
+        ..FORWARD_DYNAMICS
+    },
+    Entry {
+        function: Function::InverseDynamicsDerivativesWithWrenches,
+        capability: Capability::TipWrenches,
+        ..DERIVATIVES
+    },
+    Entry {
+        function: Function::ForwardDynamicsDerivativesWithWrenches,
+        capability: Capability::TipWrenches,
+        ..ACCELERATION_DERIVATIVES
+    },
+    Entry {
+        function: Function::ForwardDynamicsDerivativesWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..ACCELERATION_DERIVATIVES
     },
 ];
