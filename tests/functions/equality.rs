@@ -202,7 +202,8 @@ pub(crate) fn error(
                 _ => (Function::ForwardDynamicsWithWrenches, Function::InverseDynamicsDerivativesWithWrenches),
             };
             let qdd = of_runtime(&arm.runtime, solved, given);
-            let of_torques = largest(&of_runtime(&arm.runtime, torques, &Given { qdd: &qdd, ..*given }));
+            let given = &Given { qdd: &qdd, ..*given };
+            let of_torques = largest(&of_runtime(&arm.runtime, torques, given)).max(scale(arm, torques, given));
             error_of_accelerations(found, &expected, of_torques, &Conditioning { number, largest: of_matrix })
         }
         Function::ForwardDynamics

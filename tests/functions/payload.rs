@@ -106,7 +106,8 @@ fn a_link_that_carries_it_is_the_lumped_one() {
 /// The largest derivative of the torques at the accelerations of an arm.
 fn of_torques(arm: &DynArm, given: &Given<'_, f64>) -> f64 {
     let qdd = &of_runtime(arm, Function::ForwardDynamics, given);
-    largest(&of_runtime(arm, Function::InverseDynamicsDerivatives, &Given { qdd, ..*given }))
+    let of = |function| largest(&of_runtime(arm, function, &Given { qdd, ..*given }));
+    of(Function::InverseDynamicsDerivatives).max(1e-2 * of(Function::JointWrenches))
 }
 
 /// The functions that have one with a payload, and those with it.
