@@ -274,6 +274,8 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
             let derivatives = arm.forward_dynamics_derivatives(q, qd, tau)?;
             [derivatives.dq, derivatives.dqd, derivatives.dtau].concat().concat()
         }
+        Function::JacobianRate => arm.jacobian_rate(q, qd)?.concat(),
+        Function::JacobianDerivatives => arm.jacobian_derivatives(q)?.concat().concat(),
         Function::InverseMassMatrixTimesTorques => arm.inverse_mass_matrix_times_torques(q, tau)?,
         Function::InverseDynamicsDerivativesWithWrenches => {
             let by = arm.inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &[*wrench])?;

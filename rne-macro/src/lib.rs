@@ -351,6 +351,17 @@ pub fn derive_forward_dynamics_derivatives(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ForwardDynamicsDerivatives, input.into()).into()
 }
 
+/// Implements the trait `JacobianDerivatives` for a struct: the rate of the Jacobian, and its derivatives by the
+/// positions.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets constants with the operations, `JACOBIAN_RATE_OPERATIONS` and `JACOBIAN_DERIVATIVES_OPERATIONS`; `DOF`, names
+/// and limits come with `InverseDynamics`.
+#[proc_macro_derive(JacobianDerivatives, attributes(robot))]
+pub fn derive_jacobian_derivatives(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::JacobianDerivatives, input.into()).into()
+}
+
 /// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.
 ///
 /// The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. Other derives

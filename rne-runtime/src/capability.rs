@@ -16,7 +16,7 @@ pub use floating_base::{
 use crate::ldlt::{factor, inverse_of, solve};
 use crate::optimisation::{rows_by, still};
 use crate::smooth_sign::SmoothSign;
-use crate::{AccelerationDerivatives, BaseMotion, Payload, Pose, Scalar, Wrench};
+use crate::{AccelerationDerivatives, BaseMotion, Dual, Payload, Pose, Scalar, Wrench};
 
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
@@ -524,5 +524,18 @@ pub trait Actuation<const DOF: usize> {
     fn actuator_torques_smooth<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF], width: T) -> [T; DOF] {
         let smooth = |value| SmoothSign { value, width };
         self.actuator_torques(&qd.map(smooth), &qdd.map(smooth)).map(|torque| torque.value)
+    }
+
+    /// ∂/∂q̇ of [`actuator_torques_smooth`](Self::actuator_torques_smooth), by rows, N m s/rad or N s/m: what friction adds
+    /// to the derivatives of the torques by velocities. The matrix is diagonal where no joint follows others. The
+    /// derivative by accelerations, G² Jm, is constant.
+    ///
+    /// At the joint of a motor it is G² B + |G| (½ (Tc⁺ - Tc⁻) + (Tc⁺ + Tc⁻) s) ds/dq̇, with ds/dq̇ = width² / (q̇² +
+    /// width²)^(3/2). `width` > 0: `actuator_torques` itself has no derivative at rest, and a `width` of zero gives
+    /// numbers there that are not finite.
+    #[must_use]
+    fn actuator_torques_smooth_derivatives<T: Scalar>(&self, qd: &[T; DOF], width: T) -> [[T; DOF]; DOF] {
+        let still_qdd = [Dual::constant(T::zero()); DOF];
+        rows_by(qd, |qd| self.actuator_torques_smooth(qd, &still_qdd, Dual::constant(width)))
     }
 }

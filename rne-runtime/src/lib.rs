@@ -43,6 +43,7 @@ mod floating_derivatives;
 mod floating_kinematics;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
+mod jacobian_derivatives;
 #[cfg(feature = "arm")]
 mod joint;
 mod joint_order;
@@ -131,6 +132,7 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(feature = "std")]
 pub use floating_derivatives::DynFloatingTorqueDerivatives;
 pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};
+pub use jacobian_derivatives::JacobianDerivatives;
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
 pub use names::unknown_frame;

@@ -114,7 +114,7 @@ fn weighted<T: Scalar>(torques: &[Dual<T>], multipliers: &[T]) -> T {
 }
 
 /// Element i of a list, with element j on its way.
-fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
+pub(crate) fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
     Dual { value: x[i], derivative: if i == j { T::one() } else { T::zero() } }
 }
 
@@ -294,7 +294,7 @@ impl<T: Scalar> DynAccelerationDerivatives<T> {
 
 /// As [`rows_by`].
 #[cfg(all(feature = "arm", feature = "std"))]
-fn dyn_rows_by<T: Scalar>(
+pub(crate) fn dyn_rows_by<T: Scalar>(
     x: &[T],
     y: impl Fn(&[Dual<T>]) -> Result<Vec<Dual<T>>, WrongLength>,
 ) -> Result<Vec<Vec<T>>, WrongLength> {
@@ -305,6 +305,6 @@ fn dyn_rows_by<T: Scalar>(
 
 /// Numbers of which one is on its way.
 #[cfg(all(feature = "arm", feature = "std"))]
-fn moving<T: Scalar>(x: &[T], j: Option<usize>) -> Vec<Dual<T>> {
+pub(crate) fn moving<T: Scalar>(x: &[T], j: Option<usize>) -> Vec<Dual<T>> {
     (0..x.len()).map(|i| along(x, i, j.unwrap_or(x.len()))).collect()
 }

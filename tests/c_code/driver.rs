@@ -158,6 +158,7 @@ impl Driver<'_> {
                 | Function::ForwardKinematics
                 | Function::LinkPoses
                 | Function::Jacobian
+                | Function::JacobianDerivatives
                 | Function::PotentialEnergy
                 | Function::CentreOfMass
                 | Function::CentreOfMassJacobian
@@ -167,6 +168,7 @@ impl Driver<'_> {
                 Function::BiasTorques
                 | Function::CoriolisMatrix
                 | Function::JacobianRateTimesVelocity
+                | Function::JacobianRate
                 | Function::KineticEnergy => "q, qd",
                 Function::ForwardDynamics | Function::MomentumAndRate | Function::ForwardDynamicsDerivatives => {
                     "q, qd, tau"
@@ -206,7 +208,8 @@ impl Driver<'_> {
                 | Function::CoriolisMatrix => (format!("{real} x[{n}][{n}]"), "x"),
                 Function::ForwardKinematics => (format!("{prefix}_pose x"), "&x"),
                 Function::LinkPoses => (format!("{prefix}_pose x[{n}]"), "x"),
-                Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
+                Function::Jacobian | Function::JacobianRate => (format!("{real} x[6][{n}]"), "x"),
+                Function::JacobianDerivatives => (format!("{real} x[6][{n}][{n}]"), "x"),
                 Function::CentreOfMass => (format!("{real} x[3]"), "x"),
                 Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
                 Function::JacobianRateTimesVelocity | Function::CentroidalBias | Function::CentroidalMomentum => {

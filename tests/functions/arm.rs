@@ -414,6 +414,8 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::ForwardDynamicsDerivatives => {
             arm.forward_dynamics_derivatives(q, qd, tau).map(|by| flat([by.dq, by.dqd, by.dtau].concat()))
         }
+        Function::JacobianRate => arm.jacobian_rate(q, qd).map(flat),
+        Function::JacobianDerivatives => arm.jacobian_derivatives(q).map(|rows| flat(rows.concat())),
         Function::InverseMassMatrixTimesTorques => arm.inverse_mass_matrix_times_torques(q, tau),
         Function::InverseDynamicsDerivativesWithWrenches => arm
             .inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &wrenches)

@@ -5,7 +5,7 @@
 
 use fastrand::Rng;
 use rne::{BaseMotion, Payload, Wrench};
-use rne_codegen::{Argument, Form, Function};
+use rne_codegen::{Argument, Capability, Form, Function};
 use rne_model::{Dh, Robot};
 
 use crate::arm::{Arm, Given, Maker, base_rotation, of_runtime};
@@ -99,6 +99,9 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
             LEAST * mass * largest(&arm.robot.gravity) * reach(arm, given)
         }
         Function::CentreOfMass | Function::CentreOfMassJacobian => LEAST * reach(arm, given),
+        // axes have the length one
+        Function::JacobianRate => (1.0 + reach(arm, given)) * largest(given.qd),
+        Function::JacobianDerivatives => 1.0 + reach(arm, given),
         Function::WrenchTorques => {
             let Wrench { force, moment } = given.wrench;
             LEAST * (largest(&moment) + largest(&force) * (1.0 + reach(arm, given)))
@@ -109,7 +112,11 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
 
 /// Compares all functions of an arm at a state.
 pub(crate) fn compare(arm: &Arm, maker: Maker, given: &Given<'_, f64>, tolerance: f64, worst: &mut Worst) {
-    let takes = |function: &Function| !(arm.robot.has_couplings() && function.is_of_every_link());
+    // code has the rates of the tip alone, where the runtime has those at the frame that a robot is seen from
+    let is_of_tip = |function: &Function| function.capability() == Capability::JacobianDerivatives;
+    let takes = |function: &Function| {
+        !(arm.robot.has_couplings() && function.is_of_every_link()) && !(arm.robot.at.is_some() && is_of_tip(function))
+    };
     for function in Function::OF_TREES.into_iter().filter(takes) {
         let found = arm.numbers(function, given);
         worst.see(function.name(), error(arm, maker, function, given, &found, tolerance));

@@ -174,6 +174,11 @@ fn in_contact(robot: &Robot, state: &State) -> Vec<f64> {
     [&solution.as_slice()[..size], &wrenches].concat()
 }
 
+/// The products of the rows of a matrix, which are as long as `x`, with it.
+fn times_rows(rows: &[f64], x: &[f64]) -> Vec<f64> {
+    rows.chunks(x.len()).map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
+}
+
 /// What a function returns, without a recursion. Of the functions that solve with the mass matrix, the solution of
 /// nalgebra.
 #[allow(clippy::too_many_lines)] // an arm for each function
@@ -363,6 +368,15 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let [_, parts] = oracle::rates(&oracle::frame(robot, &tip, &motion), &Vector3::zeros());
             parts.iter().flat_map(|part| (world.0 * part).as_slice().to_vec()).collect()
         }
+        Function::JacobianRate | Function::JacobianDerivatives => {
+            let elements = |q: &[f64]| {
+                let columns = oracle::jacobian(robot, &tip, q, &Vector3::zeros());
+                rows(&columns.iter().map(|it| it.map(|part| world.0 * part)).collect::<Vec<_>>())
+            };
+            let by: Vec<Vec<f64>> = (0..dof).map(|joint| oracle::by_position(robot, q, joint, elements)).collect();
+            let by = transposed(by);
+            if function == Function::JacobianDerivatives { by } else { times_rows(&by, qd) }
+        }
         Function::WrenchTorques => of_wrench(),
         Function::KineticEnergy => vec![oracle::kinetic_energy(robot, q, qd, None)],
         Function::PotentialEnergy => vec![-Vector3::from(robot.gravity).dot(&oracle::first_moment(robot, q).1)],
@@ -445,6 +459,8 @@ pub(crate) fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
         | Function::FloatingInverseDynamicsDerivatives
         | Function::InverseDynamicsDerivativesWithPayload
         | Function::InverseDynamicsDerivativesWithWrenches => largest,
+        Function::JacobianRate => state.qd.iter().fold(0.0, |most, qd| f64::max(most, qd.abs())),
+        Function::JacobianDerivatives => 1.0,
         // centripetal, one metre from an axis
         Function::JacobianRateTimesVelocity => state.qd.iter().map(|qd| qd * qd).fold(0.0, f64::max),
         Function::TipAccelerations => state.qd.iter().chain(&state.base.omega).map(|qd| qd * qd).fold(0.0, f64::max),

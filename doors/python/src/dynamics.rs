@@ -65,6 +65,9 @@ macro_rules! returned {
     (SpatialRows) => {
         "shape (6, n) or (N, 6, n)."
     };
+    (SpatialMatrices) => {
+        "shape (6, n, n) or (N, 6, n, n)."
+    };
     (Pose) => {
         "a homogeneous matrix: shape (4, 4) or (N, 4, 4)."
     };

@@ -75,6 +75,8 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::LinkPoses => derivation.link_poses(),
         Function::Jacobian => derivation.jacobian(),
         Function::JacobianRateTimesVelocity => derivation.tip_acceleration(),
+        Function::JacobianRate => derivation.jacobian_rate(),
+        Function::JacobianDerivatives => derivation.jacobian_derivatives(),
         Function::WrenchTorques => derivation.wrench_torques(),
         Function::KineticEnergy | Function::FloatingKineticEnergy => derivation.kinetic_energy(),
         Function::PotentialEnergy => derivation.potential_energy(),
@@ -309,10 +311,42 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     fn jacobian(&self) -> Outputs<'s> {
         let columns = kinematics::jacobian(&self.arm, &self.frames());
-        let of_joints = |half: usize| columns.iter().map(|column| column[half]).collect::<Vec<_>>();
-        let [linear, angular] = [0, 1].map(|half| self.columns(&of_joints(half)));
-        let by_row = |quantity, columns| by_row(self.coordinates(), quantity, columns);
-        [by_row(Quantity::JacobianLinear, &linear), by_row(Quantity::JacobianAngular, &angular)].concat()
+        self.spatial_rows([Quantity::JacobianLinear, Quantity::JacobianAngular], &columns)
+    }
+
+    fn jacobian_rate(&self) -> Outputs<'s> {
+        let columns = kinematics::jacobian_rate(&self.arm, &self.states, &self.frames());
+        self.spatial_rows([Quantity::JacobianLinearRate, Quantity::JacobianAngularRate], &columns)
+    }
+
+    /// Three linear rows, then three angular ones, of columns of the joints.
+    fn spatial_rows(&self, quantities: [Quantity; 2], columns: &[[Vector<'s>; 2]]) -> Outputs<'s> {
+        let rows = |half: usize| {
+            let of_joints: Vec<_> = columns.iter().map(|column| column[half]).collect();
+            by_row(self.coordinates(), quantities[half], &self.columns(&of_joints))
+        };
+        [rows(0), rows(1)].concat()
+    }
+
+    fn jacobian_derivatives(&self) -> Outputs<'s> {
+        let found = kinematics::jacobian_derivatives(&self.arm, &self.frames());
+        let joints = self.coordinates().joints();
+        let mut outputs = Vec::new();
+        for (row, quantity) in [Quantity::JacobianLinear, Quantity::JacobianAngular].iter().enumerate() {
+            for axis in Axis::ALL {
+                let elements: Vec<Vec<_>> = found
+                    .iter()
+                    .map(|column| column.iter().map(|parts: &[Vector<'s>; 2]| parts[row].0[axis as usize]).collect())
+                    .collect();
+                let matrix = self.coordinates().matrix(&elements);
+                outputs.extend(square(joints.len(), |column, position| {
+                    let by = Some(WithRespectTo::Position(joints[position] + 1));
+                    let name = Name { by, ..Name::vector(*quantity, joints[column] + 1, axis) };
+                    self.coordinates().named(name, matrix[column][position])
+                }));
+            }
+        }
+        outputs
     }
 
     fn tip_acceleration(&self) -> Outputs<'s> {

@@ -11,6 +11,11 @@ const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
     AnswerTable { about, unit: Some(unit), rows: Labels::Joints, columns: Labels::Joints }
 }
 
+/// A row for each column of the Jacobian, and a column for each position.
+const fn by_position(about: &'static str) -> AnswerTable {
+    AnswerTable::of(about, Labels::Joints, Labels::Joints)
+}
+
 /// The mass of the payload in a listing.
 const PAYLOAD_MASS: Own = Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1");
 
@@ -340,5 +345,32 @@ pub(super) const FIXED_BASE: &[Entry] = &[
         capability: Capability::PayloadDynamics,
         own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..ACCELERATION_DERIVATIVES
+    },
+    Entry {
+        output: "rate",
+        listed: "returned: three linear rows, then three angular ones",
+        own: &[
+            Own::of(Quantity::JacobianLinearRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+            Own::of(Quantity::JacobianAngularRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "acceleration of the tip per joint velocity, world axes: v in m/s², w in rad/s²",
+            Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
+            Labels::Joints,
+        )]),
+        ..Entry::of(Function::JacobianRate, Capability::JacobianDerivatives)
+    },
+    Entry {
+        output: "derivatives",
+        listed: "returned: six matrices, of vx, vy, vz, wx, wy, wz: the column of the Jacobian, then the position",
+        answer: Answer::Tables(&[
+            by_position("∂(row vx of the Jacobian)/∂q, world axes"),
+            by_position("∂(row vy)/∂q"),
+            by_position("∂(row vz)/∂q"),
+            by_position("∂(row wx)/∂q"),
+            by_position("∂(row wy)/∂q"),
+            by_position("∂(row wz)/∂q"),
+        ]),
+        ..Entry::of(Function::JacobianDerivatives, Capability::JacobianDerivatives)
     },
 ];

@@ -130,7 +130,9 @@ impl Algorithm {
             | Function::TipAccelerations
             | Function::ClosureStep
             | Function::LoopMap
-            | Function::LoopMapRateTimesVelocity => &[],
+            | Function::LoopMapRateTimesVelocity
+            | Function::JacobianRate
+            | Function::JacobianDerivatives => &[],
         }
     }
 
