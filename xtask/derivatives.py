@@ -60,7 +60,8 @@ class Pair:
         at, v, a, u = pin.integrate(model, pin.neutral(model), own(q)), own(qd), own(qdd), own(tau)
         condition = np.linalg.cond(matrix(pin.crba(model, data, at), upper=True))
         torques = [matrix(part) for part in pin.computeRNEADerivatives(model, data, at, v, a)[:2]]
-        yield "inverse_dynamics_derivatives", self.eval("inverse_dynamics_derivatives", q=q, qd=qd, qdd=qdd), torques, None
+        found = self.eval("inverse_dynamics_derivatives", q=q, qd=qd, qdd=qdd)
+        yield "inverse_dynamics_derivatives", found, torques, None
         by_q, by_qd, by_tau = (np.array(part) for part in pin.computeABADerivatives(model, data, at, v, u))
         expected = [matrix(by_q), matrix(by_qd), matrix(by_tau, upper=True)]
         found = self.eval("forward_dynamics_derivatives", q=q, qd=qd, tau=tau)

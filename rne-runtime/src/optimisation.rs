@@ -77,7 +77,7 @@ pub trait ForwardDynamicsDerivatives<const DOF: usize> {
 }
 
 impl<const DOF: usize, T: Scalar> AccelerationDerivatives<DOF, T> {
-    /// Of accelerations by q and q̇, with the inverse of the mass matrix.
+    /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
     pub(crate) fn of(
         q: &[T; DOF],
         qd: &[T; DOF],
@@ -278,7 +278,7 @@ impl<S: Constant> DynArm<S> {
 
 #[cfg(all(feature = "arm", feature = "std"))]
 impl<T: Scalar> DynAccelerationDerivatives<T> {
-    /// Of accelerations by q and q̇, with the inverse of the mass matrix.
+    /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
     fn of(
         q: &[T],
         qd: &[T],

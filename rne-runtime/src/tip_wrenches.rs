@@ -40,9 +40,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         self.mechanism().forward_dynamics(q, qd, tau, AtTip::Wrenches(&self.at_tips(tips, wrenches)))
     }
 
-    /// As
-    /// [`TipWrenches::inverse_dynamics_derivatives_with_wrenches`](crate::TipWrenches::inverse_dynamics_derivatives_with_wrenches),
-    /// at these tips.
+    /// As [`TipWrenches::inverse_dynamics_derivatives_with_wrenches`], at these tips.
     #[must_use]
     pub fn inverse_dynamics_derivatives_with_wrenches<T: Scalar, const TIPS: usize>(
         &self,
@@ -55,9 +53,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         AtTheseTips { arm: self, tips }.inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, wrenches)
     }
 
-    /// As
-    /// [`TipWrenches::forward_dynamics_derivatives_with_wrenches`](crate::TipWrenches::forward_dynamics_derivatives_with_wrenches),
-    /// at these tips.
+    /// As [`TipWrenches::forward_dynamics_derivatives_with_wrenches`], at these tips.
     #[must_use]
     pub fn forward_dynamics_derivatives_with_wrenches<T: Scalar, const TIPS: usize>(
         &self,

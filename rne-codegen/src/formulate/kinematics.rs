@@ -92,8 +92,8 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<[Vector<'s
     columns.collect()
 }
 
-/// The columns of J̇. Joint i turns or slides with the link before it, whose angular velocity is ω, and the tip moves with
-/// u by joint i and those behind it:
+/// The columns of J̇. The link before joint i has the angular velocity ω; joint i and those behind it move the tip with
+/// the velocity u:
 ///
 /// ω × J_v + z_i × u, ω × z_i (revolute);   ω × z_i, 0 (prismatic)
 pub(crate) fn jacobian_rate<'s>(arm: &Arm<'s>, states: &[JointState<'s>], frames: &Frames<'s>) -> Vec<[Vector<'s>; 2]> {
