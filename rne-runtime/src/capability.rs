@@ -527,8 +527,8 @@ pub trait Actuation<const DOF: usize> {
     }
 
     /// The derivatives of [`actuator_torques_smooth`](Self::actuator_torques_smooth) by q̇, by rows, N m s/rad or N s/m:
-    /// what friction adds to the derivatives of the torques by velocities. The matrix is diagonal where no joint follows others. The
-    /// derivative by accelerations, G² Jm, is constant.
+    /// what friction adds to the derivatives of the torques by velocities. The matrix is diagonal where no joint
+    /// follows others. The derivative by accelerations, G² Jm, is constant.
     ///
     /// At the joint of a motor it is G² B + |G| (½ (Tc⁺ - Tc⁻) + (Tc⁺ + Tc⁻) s) ds/dq̇, with ds/dq̇ = width² / (q̇² +
     /// width²)^(3/2). `width` > 0: `actuator_torques` itself has no derivative at rest, and a `width` of zero gives
